@@ -1,0 +1,110 @@
+// POSIX memory maps and temporary-then-rename writes.
+#include "engine/base/file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "engine/base/error.h"
+
+namespace gse {
+namespace {
+
+[[noreturn]] void throw_open_error(const std::filesystem::path& path) {
+    const int reason = errno;
+    if (reason == ENOENT) throw Error(ErrorCode::NotFound, "the file does not exist", "check the name", path);
+    throw Error(ErrorCode::Unreadable, std::string("the file cannot be opened (") + std::strerror(reason) + ")", "", path);
+}
+
+std::filesystem::path temporary_beside(const std::filesystem::path& path) {
+    static std::atomic<unsigned> counter{0};
+    const std::string name = "." + path.stem().string() + ".tmp" + std::to_string(getpid()) + "-" +
+                             std::to_string(counter.fetch_add(1)) + path.extension().string();
+    return path.parent_path() / name;
+}
+
+void sync_file(const std::filesystem::path& path) {
+    const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) return;
+    fsync(descriptor);
+    close(descriptor);
+}
+
+}  // namespace
+
+MappedFile::MappedFile(const std::filesystem::path& path) {
+    const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0) throw_open_error(path);
+    struct stat status {};
+    if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
+        close(descriptor);
+        throw Error(ErrorCode::Unreadable, "this is not a regular file", "name a file", path);
+    }
+    size_ = static_cast<std::size_t>(status.st_size);
+    if (size_ > 0) {
+        void* address = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, descriptor, 0);
+        if (address == MAP_FAILED) {
+            close(descriptor);
+            throw Error(ErrorCode::Unreadable, "the file cannot be mapped into memory", "", path);
+        }
+        data_ = static_cast<const std::byte*>(address);
+    }
+    close(descriptor);
+}
+
+MappedFile::~MappedFile() {
+    if (data_ != nullptr) munmap(const_cast<std::byte*>(data_), size_);
+}
+
+MappedFile::MappedFile(MappedFile&& other) noexcept : data_(other.data_), size_(other.size_) {
+    other.data_ = nullptr;
+    other.size_ = 0;
+}
+
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path& temporary)>& write) {
+    std::error_code failure;
+    if (path.has_parent_path()) {
+        std::filesystem::create_directories(path.parent_path(), failure);
+        if (failure)
+            throw Error(ErrorCode::Unwritable, "the folder cannot be made (" + failure.message() + ")",
+                        "choose another place", path.parent_path());
+    }
+    if (std::filesystem::is_directory(path, failure))
+        throw Error(ErrorCode::Unwritable, "the output is a folder", "name a file", path);
+    const std::filesystem::path temporary = temporary_beside(path);
+    try {
+        write(temporary);
+    } catch (...) {
+        std::filesystem::remove(temporary, failure);
+        throw;
+    }
+    sync_file(temporary);
+    std::filesystem::rename(temporary, path, failure);
+    if (failure) {
+        const std::string reason = failure.message();
+        std::filesystem::remove(temporary, failure);
+        throw Error(ErrorCode::Unwritable, "the file cannot be written (" + reason + ")", "choose another place", path);
+    }
+}
+
+void write_file(const std::filesystem::path& path, std::string_view bytes) {
+    write_atomically(path, [&](const std::filesystem::path& temporary) {
+        std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+        stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        stream.close();
+        if (!stream)
+            throw Error(ErrorCode::Unwritable, std::string("the file cannot be written (") + std::strerror(errno) + ")",
+                        "check the free space and the rights of the folder", path);
+    });
+}
+
+std::string read_file(const std::filesystem::path& path) { return std::string(MappedFile(path).text()); }
+
+}  // namespace gse

@@ -1,0 +1,62 @@
+// spdlog behind a small face, so that no header of ours needs it.
+#include "engine/base/log.h"
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+
+namespace gse::log {
+namespace {
+
+struct State {
+    std::mutex mutex;
+    Sink sink;
+    std::atomic<Level> level{Level::Info};
+    std::shared_ptr<spdlog::logger> console = make_console();
+
+    static std::shared_ptr<spdlog::logger> make_console() {
+        auto logger = std::make_shared<spdlog::logger>("gseditpro", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+        logger->set_pattern("%^%l%$: %v");
+        logger->set_level(spdlog::level::debug);
+        return logger;
+    }
+};
+
+State& state() {
+    static State instance;
+    return instance;
+}
+
+spdlog::level::level_enum to_spdlog(Level level) {
+    switch (level) {
+        case Level::Debug: return spdlog::level::debug;
+        case Level::Info: return spdlog::level::info;
+        case Level::Warning: return spdlog::level::warn;
+        case Level::Error: return spdlog::level::err;
+        case Level::Off: break;
+    }
+    return spdlog::level::off;
+}
+
+}  // namespace
+
+void set_level(Level level) { state().level = level; }
+
+void set_sink(Sink sink) {
+    const std::lock_guard lock(state().mutex);
+    state().sink = std::move(sink);
+}
+
+void write(Level level, std::string_view text) {
+    if (level < state().level.load()) return;
+    const std::lock_guard lock(state().mutex);
+    if (state().sink)
+        state().sink(level, text);
+    else
+        state().console->log(to_spdlog(level), "{}", text);
+}
+
+}  // namespace gse::log

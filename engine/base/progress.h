@@ -1,0 +1,24 @@
+// How long work tells how far it is, and learns that it should stop.
+#pragma once
+
+#include <functional>
+#include <stop_token>
+#include <string_view>
+
+namespace gse {
+
+/// Called with the name of the stage, the step done and the number of steps (0 = unknown).
+using ProgressCallback = std::function<void(std::string_view stage, int step, int total)>;
+
+/// What a long call is handed: where to report, and the token it checks every step. Both may be empty.
+struct JobControl {
+    ProgressCallback progress;
+    std::stop_token stop;
+
+    void report(std::string_view stage, int step, int total) const {
+        if (progress) progress(stage, step, total);
+    }
+    bool stop_requested() const { return stop.stop_requested(); }
+};
+
+}  // namespace gse

@@ -1,0 +1,92 @@
+// What the edit needs from networks and segmenters, in plain types: implemented in engine/neural and here.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/image.h"
+#include "engine/base/progress.h"
+#include "engine/scene/scene.h"
+
+namespace gse::edit {
+
+/// What a guidance sees of one iteration.
+struct GuidanceInput {
+    const Image& rendered;       // [H,W,3] in [0,1], the current render
+    const View& view;            // where it was rendered from
+    std::size_t view_index = 0;  // index into the edit's views
+    std::string view_words;      // "front view", "side view", "back view" or empty: appended to the prompt
+    int iteration = 0;
+    int iteration_count = 1;
+    std::uint64_t seed = 0;      // already mixed with the iteration: the only source of randomness
+};
+
+/// Gradient of the guidance loss with respect to the image, and numbers for the log.
+struct GuidanceOutput {
+    Image gradient;                          // [H,W,3] dL/dImage
+    std::map<std::string, double> scalars;   // "loss", "timestep", "gradient_norm", ...
+};
+
+/// Pulls the rendered image towards the goal of the edit.
+class Guidance {
+public:
+    virtual ~Guidance() = default;
+    virtual GuidanceOutput evaluate(const GuidanceInput& input) = 0;
+};
+
+/// One attention query: where in the image does each of these words of the prompt land?
+struct AttentionQuery {
+    const Image& image;               // [H,W,3] in [0,1]
+    std::string prompt;               // must contain every word
+    std::vector<std::string> words;   // one map each
+    std::string view_words;           // as in GuidanceInput
+    bool absent = false;              // the thing is not in the image yet: look at high timesteps
+    int repeats = 3;
+    std::uint64_t seed = 0;
+};
+
+/// Cross-attention of a text-to-image model (GSEditPro 3.2). Returns one single-channel image per word, at the size of
+/// the input image, non-negative, divided by its own maximum (all zero if the word drew no attention at all).
+class AttentionSource {
+public:
+    virtual ~AttentionSource() = default;
+    virtual std::vector<Image> locate(const AttentionQuery& query) = 0;
+    /// Binarisation threshold the model was measured to work best with; 0.5 (the paper's) unless it states its own.
+    virtual double threshold() const { return 0.5; }
+    /// Side in pixels of the square images the model works at.
+    virtual int image_size() const = 0;
+};
+
+/// A click: positive = inside the wanted region. Pixel coordinates, pixel centres at .5.
+struct PointPrompt {
+    double x = 0, y = 0;
+    bool positive = true;
+};
+
+struct BoxPrompt {
+    double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// Image and clicks (or a box) to a mask.
+class Segmenter {
+public:
+    virtual ~Segmenter() = default;
+    /// `hint` (may be empty) is a coarse map in [0,1] of where the object probably is, at the image's size.
+    virtual Mask segment(const Image& image, const std::vector<PointPrompt>& points, const std::optional<BoxPrompt>& box,
+                         const Image& hint) = 0;
+    virtual std::string name() const = 0;
+};
+
+/// Image and noun to a mask with a confidence in [0,1]; absent without weights.
+class TextSegmenter {
+public:
+    virtual ~TextSegmenter() = default;
+    virtual std::pair<Mask, double> segment(const Image& image, const std::string& noun) = 0;
+};
+
+}  // namespace gse::edit

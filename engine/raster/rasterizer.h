@@ -1,0 +1,84 @@
+// Differentiable Gaussian rasterizer: the 3DGS image formation (Kerbl et al. 2023, EWA splatting), forward, backward
+// and per-Gaussian contributions. Double-precision truth and fast float versions behind one interface.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/image.h"
+#include "engine/base/thread_pool.h"
+#include "engine/math/camera.h"
+#include "engine/scene/gaussian_set.h"
+
+namespace gse::raster {
+
+/// Image formation settings; the defaults are the program's.
+struct Settings {
+    float near_plane = 0.2f;
+    float far_plane = 1e10f;
+    float blur_px2 = 0.3f;                        // added to the diagonal of the projected covariance
+    bool antialiased = false;                     // opacity compensation sqrt(det / det_blurred)
+    int sh_degree = 3;                            // highest degree used; the scene's own if lower
+    float negative_colour_slope = 0.0f;           // gradient of the clamp at 0 below 0 (0 = exact; 0.01 in training)
+    std::array<float, 3> background{0, 0, 0};
+};
+
+struct ForwardOutput {
+    Image colour;   // [H,W,3]
+    Image alpha;    // [H,W,1] 1 - final transmittance
+    Image depth;    // [H,W,1] sum of alpha T z, not normalised
+    std::vector<std::int32_t> blended;  // [H*W] Gaussians blended in the pixel
+    std::size_t pairs = 0;              // tile-Gaussian pairs looked at (work, not result)
+};
+
+/// Gradients of the rows [first_row, N): index 0 of every array belongs to first_row.
+struct Gradients {
+    std::vector<float> position;       // [M,3]
+    std::vector<float> log_scale;      // [M,3]
+    std::vector<float> rotation;       // [M,4] through the normalisation
+    std::vector<float> opacity_logit;  // [M]
+    std::vector<float> sh;             // [M,K,3]
+    std::vector<float> mean2d_norm;    // [M] |dL/d(mean2d)| in NDC units (pixel gradient x W/2, H/2), for densification
+    std::vector<std::uint8_t> visible; // [M] 1 where the row was blended into at least one pixel
+};
+
+/// A rasterizer keeps its scratch memory between calls: one object per thread of use, no allocation once warm.
+/// Results are bit-identical for every number of threads.
+class Rasterizer {
+public:
+    virtual ~Rasterizer() = default;
+
+    /// Renders. Keeps what backward() needs; `gaussians` must stay alive and unchanged until then.
+    virtual void forward(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
+                         ForwardOutput& output) = 0;
+
+    /// Gradient of sum(colour * d_colour) + sum(alpha * d_alpha) of the last forward(), for rows >= first_row.
+    /// d_alpha may be empty. Rows that were not drawn get exact zeros.
+    virtual void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row, Gradients& output) = 0;
+
+    /// Adds to masked[i] the sum over pixels of alpha T mask, to total[i] the sum of alpha T (double accumulators of
+    /// length N), for one view. `mask` is [H,W,1]. Used for back-projection (method S5, variant B).
+    virtual void contributions(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
+                               const Image& mask, std::span<double> masked, std::span<double> total) = 0;
+
+    /// Composites one value per Gaussian instead of its colour: [H,W,1] sum of alpha T value (label and part renders).
+    virtual void forward_values(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
+                                std::span<const float> values, Image& output) = 0;
+
+    /// "plain", "scalar", "avx2" or "avx512".
+    virtual std::string name() const = 0;
+};
+
+/// The truth: double precision, one thread, no tiles.
+std::unique_ptr<Rasterizer> make_plain_rasterizer();
+
+/// The fast one: tiles, SIMD chosen at run time (forced by GSE_CPU=scalar|avx2|avx512), threads from `pool`
+/// (kept by reference; must outlive the rasterizer).
+std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool);
+
+}  // namespace gse::raster

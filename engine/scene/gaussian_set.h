@@ -1,0 +1,72 @@
+// The scene: an immutable structure of arrays, each attribute shared on its own so that an edit copies what it changes.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/math/sh.h"
+#include "engine/math/vec.h"
+
+namespace gse {
+
+/// Plain mutable arrays of N Gaussians, as readers, generators and the edit loop fill them. Raw (pre-activation)
+/// values exactly as in a 3DGS file.
+struct GaussianData {
+    int sh_degree = 0;
+    std::vector<float> position;       // [N,3] world units
+    std::vector<float> log_scale;      // [N,3] natural log of the standard deviation
+    std::vector<float> rotation;       // [N,4] (w,x,y,z), not normalised
+    std::vector<float> opacity_logit;  // [N]
+    std::vector<float> sh;             // [N,(d+1)^2,3], coefficient-major, DC first
+
+    std::size_t size() const { return opacity_logit.size(); }
+    std::size_t sh_stride() const { return static_cast<std::size_t>(sh_coefficient_count(sh_degree)) * 3; }
+    /// Sets every array to n rows (new rows are zero).
+    void resize(std::size_t n);
+    /// Appends row `row` of `other` (same SH degree).
+    void append_row(const GaussianData& other, std::size_t row);
+};
+
+/// Read-only view of N Gaussians for the rasterizer; whoever made it keeps the arrays alive.
+struct GaussianSpans {
+    std::size_t size = 0;
+    int sh_degree = 0;
+    std::span<const float> position, log_scale, rotation, opacity_logit, sh;
+};
+
+GaussianSpans spans(const GaussianData& data);
+
+/// Immutable set; copies share their arrays.
+class GaussianSet {
+public:
+    using Buffer = std::shared_ptr<const std::vector<float>>;
+
+    GaussianSet();
+    /// Takes the arrays over; aborts if their lengths disagree.
+    explicit GaussianSet(GaussianData data);
+
+    std::size_t size() const { return opacity_logit_->size(); }
+    bool empty() const { return size() == 0; }
+    int sh_degree() const { return sh_degree_; }
+    std::span<const float> position() const { return *position_; }
+    std::span<const float> log_scale() const { return *log_scale_; }
+    std::span<const float> rotation() const { return *rotation_; }
+    std::span<const float> opacity_logit() const { return *opacity_logit_; }
+    std::span<const float> sh() const { return *sh_; }
+
+    GaussianSpans spans() const;
+    /// Deep copy for changing.
+    GaussianData to_data() const;
+    /// Rows for which keep[row] != 0, in order.
+    GaussianSet filtered(std::span<const unsigned char> keep) const;
+    /// Bytes of all attributes.
+    std::size_t byte_size() const;
+
+private:
+    int sh_degree_ = 0;
+    Buffer position_, log_scale_, rotation_, opacity_logit_, sh_;
+};
+
+}  // namespace gse

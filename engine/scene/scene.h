@@ -1,0 +1,76 @@
+// A loaded scene: the Gaussians, what the file said about them, labels, and the viewpoints.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/math/camera.h"
+#include "engine/scene/gaussian_set.h"
+
+namespace gse {
+
+/// A named viewpoint. `distorted`: the source camera had lens distortion, so it is a viewpoint only.
+struct View {
+    std::string name;
+    Camera camera;
+    bool distorted = false;
+};
+
+/// One named label over the rows of a set: a weight in [0,1] and, after thresholding, a bit per row.
+/// Changing the threshold recomputes the bits, never the weights.
+struct Label {
+    std::string name;
+    std::shared_ptr<const std::vector<float>> weight;        // [N]
+    std::shared_ptr<const std::vector<std::uint8_t>> bits;   // [N] 0 or 1
+};
+
+/// The named labels of a scene.
+struct LabelSet {
+    std::vector<Label> labels;
+};
+
+/// bits[row] = weight[row] > threshold.
+Label make_label(std::string name, std::vector<float> weight, float threshold);
+
+/// What the file (or the generator) said beside the Gaussians.
+struct SceneInfo {
+    std::string format;                  // "ply", "compressed.ply", "splat", "spz", "sog", "synthetic"
+    Vec3 up{0, -1, 0};                   // world up; 3DGS scenes follow COLMAP, -y up
+    bool up_known = false;               // true when the file stated it
+    bool antialiased = false;            // trained with opacity compensation
+    std::vector<std::string> warnings;   // what was odd but survivable, one sentence each
+};
+
+struct Scene {
+    GaussianSet gaussians;
+    SceneInfo info;
+    LabelSet labels;
+};
+
+/// Counts of what may be wrong with a scene; printed by `info`, shown by the window.
+struct SceneStatistics {
+    std::size_t count = 0;
+    std::size_t nan_rows = 0;              // any NaN in any attribute
+    std::size_t infinite_rows = 0;         // any infinity except a legal +-inf opacity logit or -inf log-scale
+    std::size_t giant_rows = 0;            // largest standard deviation above the robust scene radius
+    std::size_t invisible_rows = 0;        // opacity below 1/255
+    std::size_t zero_quaternion_rows = 0;  // |q| < 1e-8
+    Vec3 bounds_low{}, bounds_high{};              // over finite positions
+    Vec3 robust_low{}, robust_high{};              // 2nd to 98th percentile of visible finite rows
+    double mean_opacity = 0;
+};
+
+SceneStatistics compute_statistics(const GaussianSet& set);
+
+/// Orbit that frames the robust bounds of the scene; `up` is the world's up direction.
+OrbitParameters fit_orbit(const SceneStatistics& statistics, const Vec3& up);
+
+/// `count` views evenly spaced on the orbit, at two alternating elevations so that tops are seen.
+std::vector<View> orbit_views(const OrbitParameters& orbit, int count, int width, int height);
+
+/// Drops rows that cannot be drawn (NaN, illegal infinities); returns the kept rows.
+GaussianSet drop_unusable(const GaussianSet& set);
+
+}  // namespace gse

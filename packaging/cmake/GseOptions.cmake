@@ -1,0 +1,43 @@
+# Options, warnings, sanitizers and the third-party packages every module may ask for.
+option(GSE_TESTS "Build the tests" ON)
+option(GSE_OPENCV "Use OpenCV (image and video files, GrabCut)" ON)
+option(GSE_NEURAL "Build the networks (needs libtorch)" ON)
+option(GSE_FUZZ "Build the fuzz targets with libFuzzer (clang)" OFF)
+set(GSE_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize=, for example address,undefined or thread")
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+
+find_program(GSE_CCACHE ccache)
+if(GSE_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${GSE_CCACHE})
+endif()
+
+# -ffp-contract=off: the plain and the fast rasterizer must not differ by where the compiler fuses; fast code
+# asks for FMA by intrinsic.
+add_library(gse_flags INTERFACE)
+target_compile_options(gse_flags INTERFACE -Wall -Wextra -Wshadow -Wno-unused-parameter -ffp-contract=off)
+target_include_directories(gse_flags INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+if(GSE_SANITIZE)
+  target_compile_options(gse_flags INTERFACE -fsanitize=${GSE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(gse_flags INTERFACE -fsanitize=${GSE_SANITIZE})
+  target_compile_definitions(gse_flags INTERFACE GSE_SANITIZED=1)
+endif()
+if(GSE_FUZZ)
+  target_compile_options(gse_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all)
+  target_link_options(gse_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+find_package(Threads REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(PkgConfig REQUIRED)
+if(GSE_OPENCV)
+  find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs videoio)
+endif()
