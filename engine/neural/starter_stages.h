@@ -1,0 +1,46 @@
+// The two stages of the starter model: the VAE, then text encoder and UNet on its latents.
+#pragma once
+
+#include "engine/neural/starter_training.h"
+#include "engine/neural/text_encoder.h"
+#include "engine/neural/unet.h"
+#include "engine/neural/vae.h"
+
+namespace gse::neural {
+
+/// Structure of the starter model.
+struct StarterConfigs {
+    VaeConfig vae;
+    TextEncoderConfig text;
+    UNetConfig unet;
+};
+inline constexpr int StarterTokenCount = 32;   // model_max_length of the tokenizer
+StarterConfigs starter_configs(const StarterTrainParameters& parameters, const StarterVocabulary& vocabulary);
+
+/// Trains the VAE and leaves the averaged weights in it.
+void train_vae(AutoencoderKl& vae, const StarterTrainParameters& parameters, const StarterPictures& pictures,
+               const std::filesystem::path& work, const JobControl& job);
+
+/// Posterior means of all pictures, [N,4,G,G] float, before scaling; also their standard deviation.
+struct StarterLatents {
+    torch::Tensor mean;
+    double deviation = 1;
+};
+StarterLatents encode_pictures(AutoencoderKl& vae, const StarterTrainParameters& parameters,
+                               const StarterPictures& pictures);
+
+/// Trains text encoder and UNet (v-prediction) with the attention losses and leaves the averaged weights in them.
+struct StarterNetworks {
+    ClipTextEncoder text{nullptr};
+    UNet unet{nullptr};
+};
+void train_unet(StarterNetworks& networks, const StarterConfigs& configs, const StarterTrainParameters& parameters,
+                const StarterPictures& pictures, const StarterLatents& latents, const StarterSource& source,
+                const StarterVocabulary& vocabulary, const std::filesystem::path& work, const JobControl& job);
+
+/// Writes the diffusers folder in fp16.
+void export_starter(const StarterConfigs& configs, const StarterVocabulary& vocabulary, AutoencoderKl& vae,
+                    StarterNetworks& networks, const StarterTrainParameters& parameters, const StarterSource& source,
+                    const std::filesystem::path& output);
+
+}  // namespace gse::neural

@@ -1,0 +1,70 @@
+// Runs the stages of the starter model in order.
+#include "engine/neural/starter_trainer.h"
+
+#include <thread>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/neural/starter_stages.h"
+
+namespace gse::neural {
+
+StarterConfigs starter_configs(const StarterTrainParameters& parameters, const StarterVocabulary& vocabulary) {
+    StarterConfigs configs;
+    const int c = parameters.vae_channels;
+    configs.vae.block_out_channels = {c, 3 * c, 6 * c};
+    configs.vae.layers_per_block = 1;
+    configs.vae.latent_channels = 4;
+    configs.vae.norm_num_groups = 8;
+    configs.vae.sample_size = parameters.image_size;
+
+    configs.text.vocab_size = vocabulary.size;
+    configs.text.hidden_size = parameters.text_width;
+    configs.text.intermediate_size = 4 * parameters.text_width;
+    configs.text.num_hidden_layers = 3;
+    configs.text.num_attention_heads = 4;
+    configs.text.max_position_embeddings = StarterTokenCount;
+    configs.text.hidden_act = "quick_gelu";
+    configs.text.bos_token_id = vocabulary.bos;
+    configs.text.eos_token_id = vocabulary.eos;
+
+    const int u = parameters.unet_channels;
+    configs.unet.sample_size = parameters.image_size / 4;
+    configs.unet.in_channels = configs.unet.out_channels = 4;
+    configs.unet.block_out_channels = {u, u * 8 / 5, u * 12 / 5};
+    configs.unet.layers_per_block = 1;
+    configs.unet.down_block_types = {"CrossAttnDownBlock2D", "CrossAttnDownBlock2D", "DownBlock2D"};
+    configs.unet.up_block_types = {"UpBlock2D", "CrossAttnUpBlock2D", "CrossAttnUpBlock2D"};
+    configs.unet.attention_head_dim = {u / 40, u * 8 / 5 / 32, u * 12 / 5 / 32};  // numbers of heads
+    configs.unet.cross_attention_dim = parameters.text_width;
+    configs.unet.norm_num_groups = 16;
+    return configs;
+}
+
+void train_starter(const StarterTrainParameters& requested, const StarterSource& source,
+                   const std::filesystem::path& work, const std::filesystem::path& output, const JobControl& job) {
+    StarterTrainParameters parameters = requested;
+    if (parameters.threads == 0)
+        parameters.threads =
+            parameters.device == "cpu" ? static_cast<int>(std::max(1u, std::thread::hardware_concurrency())) : 1;
+    std::filesystem::create_directories(work);
+    const auto pictures = load_or_render_pictures(parameters, source, work, job);
+    const auto vocabulary = build_vocabulary(source.vocabulary());
+    const auto configs = starter_configs(parameters, vocabulary);
+
+    torch::manual_seed(parameters.seed);
+    AutoencoderKl vae(configs.vae);
+    train_vae(vae, parameters, pictures, work, job);
+    const auto latents = encode_pictures(vae, parameters, pictures);
+    log::info("latents have a standard deviation of {:.3f}", latents.deviation);
+
+    auto trained = configs;
+    trained.vae.scaling_factor = 1.0 / latents.deviation;
+    torch::manual_seed(parameters.seed + 1);
+    StarterNetworks networks{ClipTextEncoder(configs.text), UNet(configs.unet)};
+    train_unet(networks, trained, parameters, pictures, latents, source, vocabulary, work, job);
+    export_starter(trained, vocabulary, vae, networks, parameters, source, output);
+    log::info("the model is in {}", output.string());
+}
+
+}  // namespace gse::neural

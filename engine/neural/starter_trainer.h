@@ -1,0 +1,113 @@
+// Trains the embedded starter model (VAE, text encoder, UNet in the Stable Diffusion structure) on captioned pictures.
+// No torch type appears here: the program hands over a picture source and gets a diffusers folder.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/base/fields.h"
+#include "engine/base/progress.h"
+
+namespace gse::neural {
+
+/// What a caption's word may name; the order of the coverage maps of a StarterPicture.
+enum class StarterPart : int { Ground = 0, Object = 1, Accessory = 2 };
+inline constexpr int StarterPartCount = 3;
+
+/// One training picture. `coverage` holds, per part, how much of each latent cell the part covers (0..255).
+struct StarterPicture {
+    std::vector<std::uint8_t> rgb;        // [S,S,3] display values
+    std::vector<std::uint8_t> coverage;   // [3,G,G], G = S / 4
+    /// The accessory map is that of the twin scene: the picture itself shows no accessory. Captions asked for with
+    /// `insertion` then name the accessory, so the words learn where it belongs before it is there.
+    bool bare_twin = false;
+};
+
+/// A caption and which of its words name which part (`occurrence` counts equal words from 0).
+struct StarterCaption {
+    struct Grounding {
+        std::string word;
+        int occurrence = 0;
+        StarterPart part = StarterPart::Object;
+    };
+    std::string text;
+    std::vector<Grounding> groundings;
+};
+
+/// Where the pictures come from; every method is const, deterministic and callable from several threads.
+class StarterSource {
+public:
+    virtual ~StarterSource() = default;
+    virtual StarterPicture picture(std::uint64_t index, int size) const = 0;
+    /// A caption of picture `index`; `seed` varies the wording.
+    virtual StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool insertion) const = 0;
+    virtual std::vector<std::string> vocabulary() const = 0;
+    /// Changes when the same index would give another picture (names the picture cache).
+    virtual std::string identity() const = 0;
+};
+
+/// Everything that decides the result of a training run.
+struct StarterTrainParameters {
+    int image_size = 64;
+    int pictures = 24000;
+    double vae_minutes = 20;
+    double unet_minutes = 90;
+    int vae_steps = 0;
+    int unet_steps = 0;
+    int threads = 0;
+    int vae_batch = 8;
+    int unet_batch = 16;
+    double vae_lr = 1.5e-3;
+    double unet_lr = 8e-4;
+    int vae_channels = 16;
+    int unet_channels = 80;
+    int text_width = 128;
+    double grounding_weight = 0.1;
+    double spread_weight = 0.03;
+    double insertion_share = 0.3;
+    double caption_dropout = 0.1;
+    bool bf16 = false;
+    std::string device = "cpu";
+    std::uint64_t seed = 1;
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("image_size", self.image_size, "Side of the training pictures in pixels.", Range{32, 256});
+        f("pictures", self.pictures, "Number of training pictures rendered first.", Range{8, 1e6});
+        f("vae_minutes", self.vae_minutes, "Time for the VAE; ignored when vae_steps is set.", Range{0, 1e5});
+        f("unet_minutes", self.unet_minutes, "Time for text encoder and UNet; ignored when unet_steps is set.",
+          Range{0, 1e5});
+        f("vae_steps", self.vae_steps, "Steps of the VAE; 0 = go by time.", Range{0, 1e8});
+        f("unet_steps", self.unet_steps, "Steps of the UNet; 0 = go by time.", Range{0, 1e8});
+        f("threads", self.threads, "Single-threaded replicas whose gradients are averaged; 0 = one per core.",
+          Range{0, 64});
+        f("vae_batch", self.vae_batch, "Pictures per replica and VAE step.", Range{1, 4096});
+        f("unet_batch", self.unet_batch, "Pictures per replica and UNet step.", Range{1, 4096});
+        f("vae_lr", self.vae_lr, "Peak learning rate of the VAE (cosine to zero).", Range{0, 1});
+        f("unet_lr", self.unet_lr, "Peak learning rate of text encoder and UNet (cosine to zero).", Range{0, 1});
+        f("vae_channels", self.vae_channels, "Channels of the VAE at full resolution (x3, x6 below).", Range{8, 512});
+        f("unet_channels", self.unet_channels, "Channels of the UNet at latent resolution.", Range{16, 1024});
+        f("text_width", self.text_width, "Width of the text encoder.", Range{32, 1024});
+        f("grounding_weight", self.grounding_weight,
+          "Weight of the loss that makes the words of a part attend to that part.", Range{0, 10});
+        f("spread_weight", self.spread_weight, "Weight of the loss that spreads each word evenly over its part.",
+          Range{0, 10});
+        f("insertion_share", self.insertion_share,
+          "Share of pictures without accessory that are shown with a caption naming one (attention only).",
+          Range{0, 1});
+        f("caption_dropout", self.caption_dropout, "Share of empty captions (classifier-free guidance).", Range{0, 1});
+        f("bf16", self.bf16, "Convolutions and matrix products in bfloat16, norms and losses in float.");
+        f("device", self.device, "cpu or cuda.");
+        f("seed", self.seed, "Seed of pictures, weights, wording and noise.");
+    }
+};
+
+/// Trains in `work` (pictures, checkpoints, log.tsv; an interrupted run resumes there) and writes the finished model as
+/// a diffusers folder in fp16 to `output`. Throws Error; on a stop request the last checkpoint stays and Cancelled is
+/// thrown.
+void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
+                   const std::filesystem::path& work, const std::filesystem::path& output, const JobControl& job);
+
+}  // namespace gse::neural

@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""Holds the sources to the design's table of arrows and to the size rules; prints one line per violation."""
+import pathlib
+import re
+import sys
+import tempfile
+
+# folder -> folders of engine it may include besides itself
+ARROWS = {
+    "base": set(),
+    "math": {"base"},
+    "scene": {"base", "math"},
+    "io": {"base", "math", "scene"},
+    "raster": {"base", "math", "scene"},
+    "vulkan": {"base"},
+    "preview": {"base", "math", "scene", "vulkan"},
+    "localize": {"base", "math", "scene", "raster"},
+    "edit": {"base", "math", "scene", "raster", "localize"},
+    "neural": {"base", "edit"},
+    "synth": {"base", "math", "scene"},
+    "evaluate": {"base", "math", "scene"},
+}
+UI_FORBIDDEN = {"vulkan", "preview", "neural"}
+SOURCE_LIMIT = 600     # lines of a file
+FUNCTION_LIMIT = 60    # lines of a function body
+SUFFIXES = {".h", ".cpp", ".inl", ".cu", ".comp"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
+FOREIGN_OWNERS = {"torch/": {"neural"}, "ATen/": {"neural"}, "c10/": {"neural"}, "vulkan/": {"vulkan", "preview"}}
+
+
+def folder_of(path):
+    parts = path.parts
+    if parts[0] == "engine":
+        return "engine", parts[1]
+    return parts[0], None
+
+
+def check_include(relative, line_number, target, is_header):
+    room, folder = folder_of(relative)
+    for prefix, owners in FOREIGN_OWNERS.items():
+        if target.startswith(prefix) and room in {"engine", "ui"} and folder not in owners:
+            yield f"{relative}:{line_number}: {target} may only be included in engine/{{{','.join(sorted(owners))}}}"
+    if target.startswith("opencv2/") and is_header and room != "tests":
+        yield f"{relative}:{line_number}: OpenCV must not appear in a header"
+    if room == "engine":
+        if target.startswith(("app/", "ui/")):
+            yield f"{relative}:{line_number}: the engine must not include {target}"
+        if target.startswith("engine/"):
+            used = target.split("/")[1]
+            if used != folder and used not in ARROWS[folder]:
+                yield f"{relative}:{line_number}: engine/{folder} must not include engine/{used}"
+    if room == "ui" and target.startswith("engine/") and target.split("/")[1] in UI_FORBIDDEN:
+        yield f"{relative}:{line_number}: ui must not include {target}"
+
+
+def strip_strings(line):
+    line = re.sub(r"'(\\.|[^'\\])'", "''", line)
+    return re.sub(r'"(\\.|[^"\\])*"', '""', line)
+
+
+def function_lengths(lines):
+    """Yields (first line, length) of brace blocks whose header looks like a function's."""
+    stack = []
+    statement = ""
+    in_comment = False
+    for number, raw in enumerate(lines, 1):
+        line = strip_strings(raw)
+        if in_comment:
+            if "*/" not in line:
+                continue
+            line = line.split("*/", 1)[1]
+            in_comment = False
+        line = re.sub(r"/\*.*?\*/", "", line)
+        if "/*" in line:
+            line, in_comment = line.split("/*", 1)[0], True
+        line = line.split("//", 1)[0]
+        if line.lstrip().startswith("#"):
+            continue
+        for letter in line:
+            if letter == "{":
+                head = statement.strip()
+                is_function = ")" in head and not re.match(
+                    r"^(if|for|while|switch|else|do|catch|namespace|struct|class|enum|union)\b", head) and "=" not in head.split("(")[0]
+                stack.append((number, is_function and not re.search(r"[=,(]\s*$", head)))
+                statement = ""
+            elif letter == "}":
+                if stack:
+                    begin, is_function = stack.pop()
+                    if is_function:
+                        yield begin, number - begin + 1
+                statement = ""
+            elif letter == ";":
+                statement = ""
+            else:
+                statement += letter
+        statement += " "
+
+
+def check_file(root, path):
+    relative = path.relative_to(root)
+    lines = path.read_text(encoding="utf-8").split("\n")
+    if len(lines) - 1 > SOURCE_LIMIT:
+        yield f"{relative}: {len(lines) - 1} lines (at most {SOURCE_LIMIT})"
+    if not lines[0].startswith(("//", "/*", "#!")) and not (path.suffix == ".comp"):
+        yield f"{relative}:1: the first line must say what the file is for"
+    for number, line in enumerate(lines, 1):
+        found = INCLUDE.match(line)
+        if found:
+            yield from check_include(relative, number, found.group(1), path.suffix == ".h")
+    if relative.parts[0] in {"engine", "app", "ui"}:
+        for begin, length in function_lengths(lines):
+            if length > FUNCTION_LIMIT:
+                yield f"{relative}:{begin}: a function of {length} lines (at most {FUNCTION_LIMIT})"
+
+
+def check_tree(root):
+    violations = []
+    for room in ("app", "engine", "ui", "tests", "shaders"):
+        for path in sorted((root / room).rglob("*")):
+            if path.suffix in SUFFIXES and path.is_file():
+                violations.extend(check_file(root, path))
+    allowed = {"CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "app", "engine", "shaders", "ui", "assets",
+               "tests", "packaging", "build", "out"}
+    for entry in sorted(root.iterdir()):
+        if not entry.name.startswith(".") and entry.name not in allowed:
+            violations.append(f"{entry.name}: not a top-level name of this project")
+    return violations
+
+
+def self_test():
+    """Every rule must catch a file that breaks it."""
+    cases = {
+        "engine/scene/a.cpp": ("// x\n#include \"engine/io/ply.h\"\n", "must not include engine/io"),
+        "engine/edit/b.cpp": ("// x\n#include <torch/torch.h>\n", "torch/torch.h may only"),
+        "engine/edit/n.cpp": ("// x\n#include \"engine/neural/unet.h\"\n", "must not include engine/neural"),
+        "engine/io/c.h": ("// x\n#include <opencv2/core.hpp>\n", "OpenCV must not"),
+        "ui/d.cpp": ("// x\n#include \"engine/neural/model.h\"\n", "ui must not include"),
+        "engine/base/e.cpp": ("int x;\n", "first line must say"),
+        "engine/base/f.cpp": ("// x\n" + "int x;\n" * 700, "lines (at most 600)"),
+        "engine/base/g.cpp": ("// x\nvoid f(int a) {\n" + "    a += 1;\n" * 70 + "}\n", "a function of 72 lines"),
+        "engine/raster/h.cpp": ("// x\n#include \"app/main.h\"\n", "must not include app"),
+        "strange": (None, "not a top-level name"),
+    }
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        for name, (text, _) in cases.items():
+            path = root / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.mkdir() if text is None else path.write_text(text)
+        found = check_tree(root)
+    missed = [name for name, (_, message) in cases.items() if not any(name in line and message in line for line in found)]
+    for name in missed:
+        print(f"the lint did not catch {name}")
+    print(f"{len(cases) - len(missed)} of {len(cases)} broken rules caught")
+    return 1 if missed else 0
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        return self_test()
+    violations = check_tree(pathlib.Path(sys.argv[1]).resolve())
+    print("\n".join(violations) if violations else "all rules hold")
+    return 1 if violations else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
