@@ -1,0 +1,57 @@
+// Builds the command line and dispatches.
+#include "app/cli.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "app/process.h"
+#include "app/progress_bar.h"
+#include "engine/base/log.h"
+
+#ifndef GSE_VERSION
+#define GSE_VERSION "unknown"
+#endif
+
+namespace gse::app {
+
+std::string option_name(const std::string& field) {
+    std::string name = "--" + field;
+    std::replace(name.begin(), name.end(), '_', '-');
+    std::replace(name.begin(), name.end(), '.', '-');
+    return name;
+}
+
+JobControl CommandContext::job() const {
+    JobControl control;
+    control.stop = interrupt_token();
+    if (!quiet) {
+        auto bar = std::make_shared<ProgressBar>();
+        control.progress = [bar](std::string_view stage, int step, int total) { bar->update(stage, step, total); };
+    }
+    return control;
+}
+
+int run_command_line(int argc, char** argv) {
+    CLI::App app{"GSEditPro: text-driven editing of 3D Gaussian Splatting scenes"};
+    app.set_version_flag("--version", std::string("gseditpro ") + GSE_VERSION);
+    app.require_subcommand(1);
+    CommandContext context;
+    app.add_flag("-q,--quiet", context.quiet, "No progress bar, only warnings");
+    add_scene_commands(app, context);
+    add_edit_commands(app, context);
+    add_training_command(app, context);
+    add_bench_command(app, context);
+    for (auto* command : app.get_subcommands({})) command->fallthrough();
+    app.parse_complete_callback([&] {
+        if (context.quiet) log::set_level(log::Level::Warning);
+    });
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        const int code = app.exit(error);
+        return code == 0 ? 0 : 2;
+    }
+    return 0;
+}
+
+}  // namespace gse::app

@@ -1,0 +1,33 @@
+// gseditpro train-starter: trains the embedded text-to-image model on the synthetic world.
+#include <filesystem>
+#include <memory>
+
+#include "app/cli.h"
+#include "app/neural_loader.h"
+#include "app/starter_source.h"
+
+namespace gse::app {
+namespace {
+
+struct TrainingOptions {
+    neural::StarterTrainParameters parameters;
+    std::filesystem::path work = ".training/starter";
+    std::filesystem::path output = "assets/models/starter";
+};
+
+}  // namespace
+
+void add_training_command(CLI::App& app, CommandContext& context) {
+    auto options = std::make_shared<TrainingOptions>();
+    auto* command = app.add_subcommand("train-starter", "Train the embedded starter model on the synthetic world");
+    command->add_option("--work", options->work, "Folder of pictures, checkpoints and logs; a run resumes there")
+        ->capture_default_str();
+    command->add_option("--out", options->output, "Diffusers folder to write")->capture_default_str();
+    bind_fields(*command, options->parameters, "Training");
+    command->callback([options, &context] {
+        const auto source = make_starter_source(options->parameters.seed);
+        neural_api().train_starter(options->parameters, *source, options->work, options->output, context.job());
+    });
+}
+
+}  // namespace gse::app

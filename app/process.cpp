@@ -1,0 +1,69 @@
+// Signals, rusage and the restart for OpenBLAS.
+#include "app/process.h"
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+namespace gse::app {
+namespace {
+
+std::atomic<int> interrupts{0};
+
+extern "C" void on_interrupt(int) {
+    if (interrupts.fetch_add(1) > 0) _exit(130);
+}
+
+/// Turns the signal's counter into a stop request (a handler itself may not lock).
+class InterruptWatch {
+public:
+    InterruptWatch() {
+        struct sigaction action {};
+        action.sa_handler = on_interrupt;
+        sigaction(SIGINT, &action, nullptr);
+        sigaction(SIGTERM, &action, nullptr);
+        thread_ = std::jthread([this](const std::stop_token& done) {
+            while (!done.stop_requested()) {
+                if (interrupts.load() > 0) source_.request_stop();
+                std::this_thread::sleep_for(std::chrono::milliseconds(50));
+            }
+        });
+    }
+    std::stop_token token() const { return source_.get_token(); }
+
+private:
+    std::stop_source source_;
+    std::jthread thread_;
+};
+
+}  // namespace
+
+std::stop_token interrupt_token() {
+    static InterruptWatch watch;
+    return watch.token();
+}
+
+double peak_rss_mb() {
+    struct rusage usage {};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+void prefer_fast_blas(char** argv) {
+#if defined(__x86_64__) && !defined(GSE_SANITIZED)
+    __builtin_cpu_init();
+    if (!__builtin_cpu_is("amd") || !__builtin_cpu_supports("avx512f") || !__builtin_cpu_supports("avx512vl")) return;
+    if (std::getenv("OPENBLAS_CORETYPE") != nullptr) return;
+    setenv("OPENBLAS_CORETYPE", "SkylakeX", 1);
+    execv("/proc/self/exe", argv);   // on failure the program just goes on with the slower kernels
+#else
+    (void)argv;
+#endif
+}
+
+}  // namespace gse::app
