@@ -1,0 +1,314 @@
+// Reading and writing the networks' configurations; what the code does not implement is refused by name.
+#include "engine/neural/config.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+
+namespace gse::neural {
+namespace {
+
+// Reads the fields of one config file and complains with its path.
+class Reader {
+public:
+    Reader(const Json& json, const std::filesystem::path& path) : json_(json), path_(path) {
+        if (!json.is_object()) throw Error(ErrorCode::Malformed, "the network's configuration is not a JSON object", {}, path);
+    }
+
+    template <class T>
+    void get(const char* key, T& value) const {
+        if (!has(key)) return;
+        try {
+            json_.at(key).get_to(value);
+        } catch (const nlohmann::json::exception&) {
+            throw Error(ErrorCode::Malformed, fmt::format("the configuration's \"{}\" has the wrong type", key), {}, path_);
+        }
+    }
+    bool has(const char* key) const { return json_.contains(key) && !json_.at(key).is_null(); }
+
+    /// Keys that change the network in ways that are not implemented: only these values are accepted.
+    void expect(const char* key, std::initializer_list<Json> allowed) const {
+        if (!has(key) || std::find(allowed.begin(), allowed.end(), json_.at(key)) != allowed.end()) return;
+        refuse(fmt::format("the configuration's \"{}\": {} is not supported", key, json_.at(key).dump()));
+    }
+    void expect_absent(const char* key) const {
+        if (has(key)) refuse(fmt::format("the configuration asks for \"{}\", which is not supported", key));
+    }
+    void positive(const char* key, std::int64_t value, std::int64_t limit) const {
+        if (value < 1 || value > limit)
+            throw Error(ErrorCode::Malformed, fmt::format("the configuration's \"{}\" is {}, outside 1..{}", key, value, limit),
+                        {}, path_);
+    }
+    [[noreturn]] void refuse(const std::string& message) const {
+        throw Error(ErrorCode::Model, message, "only Stable Diffusion 1.x and 2.x structures can be loaded", path_);
+    }
+    [[noreturn]] void malformed(const std::string& message) const {
+        throw Error(ErrorCode::Malformed, message, {}, path_);
+    }
+    const Json& json() const { return json_; }
+
+private:
+    const Json& json_;
+    const std::filesystem::path& path_;
+};
+
+constexpr std::int64_t MaxWidth = 1 << 16;
+constexpr std::int64_t MaxLevels = 8;
+
+void check_levels(const Reader& reader, const std::vector<std::int64_t>& channels, std::int64_t groups,
+                  std::int64_t layers) {
+    reader.positive("norm_num_groups", groups, MaxWidth);
+    reader.positive("layers_per_block", layers, 16);
+    reader.positive("block_out_channels (count)", static_cast<std::int64_t>(channels.size()), MaxLevels);
+    for (const auto width : channels) {
+        reader.positive("block_out_channels", width, MaxWidth);
+        if (width % groups != 0)
+            reader.malformed(fmt::format("{} channels cannot be split into {} norm groups", width, groups));
+    }
+}
+
+std::vector<std::int64_t> read_heads(const Reader& reader, std::size_t levels) {
+    // "attention_head_dim" is the number of heads (goldens.md trap 3); "num_attention_heads" is its later, right name.
+    const char* key = reader.has("num_attention_heads") ? "num_attention_heads" : "attention_head_dim";
+    std::vector<std::int64_t> heads(levels, 8);
+    if (!reader.has(key)) return heads;
+    if (reader.json().at(key).is_array()) {
+        reader.get(key, heads);
+    } else {
+        std::int64_t same = 8;
+        reader.get(key, same);
+        heads.assign(levels, same);
+    }
+    return heads;
+}
+
+void check_attention(const Reader& reader, const UNetConfig& config) {
+    const auto levels = config.block_out_channels.size();
+    if (config.heads.size() != levels || config.down_block_types.size() != levels || config.up_block_types.size() != levels)
+        reader.malformed("the lists of block types, channels and heads have different lengths");
+    for (std::size_t i = 0; i < levels; ++i) {
+        reader.positive("attention_head_dim", config.heads[i], 1024);
+        if (config.block_out_channels[i] % config.heads[i] != 0)
+            reader.malformed(fmt::format("{} channels cannot be split into {} heads", config.block_out_channels[i], config.heads[i]));
+        const auto& down = config.down_block_types[i];
+        const auto& up = config.up_block_types[levels - 1 - i];
+        if (down != "DownBlock2D" && down != "CrossAttnDownBlock2D") reader.refuse("unknown block type \"" + down + "\"");
+        if (up != "UpBlock2D" && up != "CrossAttnUpBlock2D") reader.refuse("unknown block type \"" + up + "\"");
+    }
+}
+
+}  // namespace
+
+Json read_json_file(const std::filesystem::path& path) {
+    try {
+        return Json::parse(read_file(path));
+    } catch (const nlohmann::json::exception&) {
+        throw Error(ErrorCode::Malformed, "the file is not valid JSON", {}, path);
+    }
+}
+
+UNetConfig UNetConfig::from_json(const Json& json, const std::filesystem::path& path) {
+    const Reader reader(json, path);
+    reader.expect("_class_name", {"UNet2DConditionModel"});
+    reader.expect("act_fn", {"silu", "swish"});
+    reader.expect("center_input_sample", {false});
+    reader.expect("mid_block_scale_factor", {1, 1.0});
+    reader.expect("mid_block_type", {"UNetMidBlock2DCrossAttn"});
+    reader.expect("dual_cross_attention", {false});
+    reader.expect("only_cross_attention", {false});
+    reader.expect("resnet_time_scale_shift", {"default"});
+    reader.expect("transformer_layers_per_block", {1});
+    reader.expect("time_embedding_type", {"positional"});
+    reader.expect("conv_in_kernel", {3});
+    reader.expect("conv_out_kernel", {3});
+    for (const char* key : {"num_class_embeds", "class_embed_type", "addition_embed_type", "encoder_hid_dim",
+                            "time_cond_proj_dim", "time_embedding_dim", "time_embedding_act_fn", "timestep_post_act"})
+        reader.expect_absent(key);
+    UNetConfig config;
+    if (reader.has("sample_size") && json.at("sample_size").is_number()) reader.get("sample_size", config.sample_size);
+    reader.get("in_channels", config.in_channels);
+    reader.get("out_channels", config.out_channels);
+    reader.get("flip_sin_to_cos", config.flip_sin_to_cos);
+    reader.get("freq_shift", config.freq_shift);
+    reader.get("down_block_types", config.down_block_types);
+    reader.get("up_block_types", config.up_block_types);
+    reader.get("block_out_channels", config.block_out_channels);
+    reader.get("layers_per_block", config.layers_per_block);
+    reader.get("downsample_padding", config.downsample_padding);
+    reader.get("norm_num_groups", config.norm_num_groups);
+    reader.get("norm_eps", config.norm_eps);
+    reader.get("cross_attention_dim", config.cross_attention_dim);
+    reader.get("use_linear_projection", config.use_linear_projection);
+    reader.get("upcast_attention", config.upcast_attention);
+    config.heads = read_heads(reader, config.block_out_channels.size());
+    reader.positive("in_channels", config.in_channels, 64);
+    reader.positive("out_channels", config.out_channels, 64);
+    reader.positive("cross_attention_dim", config.cross_attention_dim, MaxWidth);
+    check_levels(reader, config.block_out_channels, config.norm_num_groups, config.layers_per_block);
+    check_attention(reader, config);
+    return config;
+}
+
+Json UNetConfig::to_json() const {
+    Json json = {{"_class_name", "UNet2DConditionModel"}, {"_diffusers_version", "0.6.0"}, {"act_fn", "silu"}};
+    json["attention_head_dim"] = heads;
+    json["block_out_channels"] = block_out_channels;
+    json["center_input_sample"] = false;
+    json["cross_attention_dim"] = cross_attention_dim;
+    json["down_block_types"] = down_block_types;
+    json["downsample_padding"] = downsample_padding;
+    json["flip_sin_to_cos"] = flip_sin_to_cos;
+    json["freq_shift"] = freq_shift;
+    json["in_channels"] = in_channels;
+    json["layers_per_block"] = layers_per_block;
+    json["mid_block_scale_factor"] = 1;
+    json["norm_eps"] = norm_eps;
+    json["norm_num_groups"] = norm_num_groups;
+    json["out_channels"] = out_channels;
+    json["sample_size"] = sample_size;
+    json["up_block_types"] = up_block_types;
+    json["upcast_attention"] = upcast_attention;
+    json["use_linear_projection"] = use_linear_projection;
+    return json;
+}
+
+VaeConfig VaeConfig::from_json(const Json& json, const std::filesystem::path& path) {
+    const Reader reader(json, path);
+    reader.expect("_class_name", {"AutoencoderKL"});
+    reader.expect("act_fn", {"silu", "swish"});
+    reader.expect("mid_block_add_attention", {true});
+    reader.expect("use_quant_conv", {true});
+    reader.expect("use_post_quant_conv", {true});
+    for (const char* key : {"shift_factor", "latents_mean", "latents_std"}) reader.expect_absent(key);
+    VaeConfig config;
+    if (reader.has("sample_size") && json.at("sample_size").is_number()) reader.get("sample_size", config.sample_size);
+    reader.get("in_channels", config.in_channels);
+    reader.get("out_channels", config.out_channels);
+    reader.get("latent_channels", config.latent_channels);
+    reader.get("block_out_channels", config.block_out_channels);
+    reader.get("layers_per_block", config.layers_per_block);
+    reader.get("norm_num_groups", config.norm_num_groups);
+    reader.get("scaling_factor", config.scaling_factor);
+    reader.positive("in_channels", config.in_channels, 16);
+    reader.positive("out_channels", config.out_channels, 16);
+    reader.positive("latent_channels", config.latent_channels, 64);
+    check_levels(reader, config.block_out_channels, config.norm_num_groups, config.layers_per_block);
+    return config;
+}
+
+Json VaeConfig::to_json() const {
+    const auto levels = block_out_channels.size();
+    Json json = {{"_class_name", "AutoencoderKL"}, {"_diffusers_version", "0.6.0"}, {"act_fn", "silu"}};
+    json["block_out_channels"] = block_out_channels;
+    json["down_block_types"] = std::vector<std::string>(levels, "DownEncoderBlock2D");
+    json["in_channels"] = in_channels;
+    json["latent_channels"] = latent_channels;
+    json["layers_per_block"] = layers_per_block;
+    json["norm_num_groups"] = norm_num_groups;
+    json["out_channels"] = out_channels;
+    json["sample_size"] = sample_size;
+    json["scaling_factor"] = scaling_factor;
+    json["up_block_types"] = std::vector<std::string>(levels, "UpDecoderBlock2D");
+    return json;
+}
+
+TextEncoderConfig TextEncoderConfig::from_json(const Json& json, const std::filesystem::path& path) {
+    const Reader reader(json, path);
+    reader.expect("model_type", {"clip_text_model"});
+    reader.expect("hidden_act", {"quick_gelu", "gelu"});
+    TextEncoderConfig config;
+    if (reader.has("architectures") && json.at("architectures").is_array())
+        for (const auto& name : json.at("architectures")) config.with_projection |= name == "CLIPTextModelWithProjection";
+    reader.get("vocab_size", config.vocab_size);
+    reader.get("hidden_size", config.hidden_size);
+    reader.get("intermediate_size", config.intermediate_size);
+    reader.get("projection_dim", config.projection_dim);
+    reader.get("num_hidden_layers", config.num_hidden_layers);
+    reader.get("num_attention_heads", config.num_attention_heads);
+    reader.get("max_position_embeddings", config.max_position_embeddings);
+    reader.get("hidden_act", config.hidden_act);
+    reader.get("layer_norm_eps", config.layer_norm_eps);
+    reader.get("bos_token_id", config.bos_token_id);
+    reader.get("eos_token_id", config.eos_token_id);
+    reader.get("pad_token_id", config.pad_token_id);
+    reader.positive("vocab_size", config.vocab_size, 1 << 24);
+    reader.positive("hidden_size", config.hidden_size, MaxWidth);
+    reader.positive("intermediate_size", config.intermediate_size, MaxWidth);
+    reader.positive("num_hidden_layers", config.num_hidden_layers, 256);
+    reader.positive("num_attention_heads", config.num_attention_heads, 1024);
+    reader.positive("max_position_embeddings", config.max_position_embeddings, MaxWidth);
+    if (config.hidden_size % config.num_attention_heads != 0)
+        reader.malformed("the text encoder's hidden_size is not a multiple of its number of heads");
+    return config;
+}
+
+Json TextEncoderConfig::to_json() const {
+    Json json;
+    json["architectures"] = {with_projection ? "CLIPTextModelWithProjection" : "CLIPTextModel"};
+    json["attention_dropout"] = 0.0;
+    json["bos_token_id"] = bos_token_id;
+    json["eos_token_id"] = eos_token_id;
+    json["hidden_act"] = hidden_act;
+    json["hidden_size"] = hidden_size;
+    json["initializer_factor"] = 1.0;
+    json["initializer_range"] = 0.02;
+    json["intermediate_size"] = intermediate_size;
+    json["layer_norm_eps"] = layer_norm_eps;
+    json["max_position_embeddings"] = max_position_embeddings;
+    json["model_type"] = "clip_text_model";
+    json["num_attention_heads"] = num_attention_heads;
+    json["num_hidden_layers"] = num_hidden_layers;
+    json["pad_token_id"] = pad_token_id;
+    json["projection_dim"] = projection_dim;
+    json["vocab_size"] = vocab_size;
+    return json;
+}
+
+SchedulerConfig SchedulerConfig::from_json(const Json& json, const std::filesystem::path& path) {
+    const Reader reader(json, path);
+    reader.expect("beta_schedule", {"scaled_linear", "linear", "squaredcos_cap_v2"});
+    reader.expect("prediction_type", {"epsilon", "v_prediction"});
+    reader.expect("timestep_spacing", {"leading", "linspace", "trailing"});
+    reader.expect("rescale_betas_zero_snr", {false});
+    reader.expect_absent("trained_betas");
+    SchedulerConfig config;
+    config.steps_offset = 0;
+    reader.get("_class_name", config.class_name);
+    config.set_alpha_to_one = config.class_name == "DDIMScheduler";  // diffusers' default; PNDM's is false
+    reader.get("num_train_timesteps", config.num_train_timesteps);
+    config.beta_start = 0.0001;
+    config.beta_end = 0.02;
+    config.beta_schedule = "linear";
+    reader.get("beta_start", config.beta_start);
+    reader.get("beta_end", config.beta_end);
+    reader.get("beta_schedule", config.beta_schedule);
+    reader.get("prediction_type", config.prediction_type);
+    reader.get("timestep_spacing", config.timestep_spacing);
+    reader.get("steps_offset", config.steps_offset);
+    reader.get("set_alpha_to_one", config.set_alpha_to_one);
+    reader.get("clip_sample", config.clip_sample);
+    reader.positive("num_train_timesteps", config.num_train_timesteps, 1 << 20);
+    return config;
+}
+
+Json SchedulerConfig::to_json() const {
+    Json json = {{"_class_name", class_name}, {"_diffusers_version", "0.8.0"}};
+    json["beta_end"] = beta_end;
+    json["beta_schedule"] = beta_schedule;
+    json["beta_start"] = beta_start;
+    json["clip_sample"] = clip_sample;
+    json["num_train_timesteps"] = num_train_timesteps;
+    json["prediction_type"] = prediction_type;
+    json["set_alpha_to_one"] = set_alpha_to_one;
+    json["skip_prk_steps"] = true;
+    json["steps_offset"] = steps_offset;
+    if (!timestep_spacing.empty()) json["timestep_spacing"] = timestep_spacing;
+    json["trained_betas"] = nullptr;
+    return json;
+}
+
+}  // namespace gse::neural

@@ -1,0 +1,34 @@
+// Entry point of the networks' shared library.
+#include <torch/torch.h>
+
+#include <algorithm>
+#include <thread>
+
+#include "engine/neural/api.h"
+#include "engine/neural/model.h"
+#include "engine/neural/torch_errors.h"
+
+namespace gse::neural {
+namespace {
+
+class Plugin final : public Api {
+public:
+    std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const std::string& device) override {
+        return neural::load_model(path, device);
+    }
+    void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
+                       const std::filesystem::path& work, const std::filesystem::path& output,
+                       const JobControl& job) override {
+        guard_torch("training the starter model",
+                    [&] { neural::train_starter(parameters, source, work, output, job); });
+    }
+    void set_threads(int count) override { neural::set_threads(count); }
+};
+
+}  // namespace
+}  // namespace gse::neural
+
+extern "C" gse::neural::Api* gse_neural_api() {
+    static gse::neural::Plugin plugin;
+    return &plugin;
+}

@@ -1,0 +1,54 @@
+// Safetensors files: memory-mapped reading with every malformed file refused, and atomic writing.
+#pragma once
+
+#include <torch/torch.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/base/file.h"
+
+namespace gse::neural {
+
+/// One open file. Tensors are copied out of the map on request, so the object may go before them.
+class SafetensorsFile {
+public:
+    struct Entry {
+        torch::Dtype dtype = torch::kFloat32;
+        std::vector<std::int64_t> shape;
+        std::size_t begin = 0, end = 0;   // bytes in the data part; need not be aligned
+    };
+
+    /// Throws Error (NotFound, Unreadable, Malformed).
+    explicit SafetensorsFile(const std::filesystem::path& path);
+
+    const std::filesystem::path& path() const { return path_; }
+    const std::map<std::string, Entry>& entries() const { return entries_; }
+    const std::map<std::string, std::string>& metadata() const { return metadata_; }
+    bool contains(const std::string& name) const { return entries_.contains(name); }
+
+    /// A copy of the tensor in the type of the file. Throws Error (Model) when it is not there.
+    torch::Tensor tensor(const std::string& name) const;
+    /// Copies the tensor into `target` (same number of elements), converting to its type and device.
+    void copy_to(const std::string& name, torch::Tensor target) const;
+
+private:
+    torch::Tensor view_or_copy(const Entry& entry) const;
+
+    std::filesystem::path path_;
+    MappedFile file_;
+    std::size_t data_begin_ = 0;
+    std::map<std::string, Entry> entries_;
+    std::map<std::string, std::string> metadata_;
+};
+
+using NamedTensors = std::vector<std::pair<std::string, torch::Tensor>>;
+
+/// Writes the tensors in the given order, atomically. Throws Error (Unwritable).
+void write_safetensors(const std::filesystem::path& path, const NamedTensors& tensors,
+                       const std::map<std::string, std::string>& metadata = {});
+
+}  // namespace gse::neural

@@ -1,0 +1,37 @@
+// Settings of the SDS guidance (score distillation, GSEditPro eq. 3), without any torch type.
+#pragma once
+
+#include <string>
+
+#include "engine/base/fields.h"
+
+namespace gse::neural {
+
+/// Timesteps are shares of the training schedule: 0 = clean, 1 = pure noise.
+struct SdsParameters {
+    double t_min = 0.02;
+    double t_max_start = 0.98;
+    double t_max_end = 0.5;
+    double guidance_scale = 7.5;
+    double clamp = 1.0;
+    double weight = 1.0;
+    bool sample_posterior = true;
+    bool view_words = true;
+    std::string negative_prompt;
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("t_min", self.t_min, "Lowest noise level, as a share of the schedule.", Range{0, 1});
+        f("t_max_start", self.t_max_start, "Highest noise level at the first iteration.", Range{0, 1});
+        f("t_max_end", self.t_max_end, "Highest noise level at the last iteration.", Range{0, 1});
+        f("guidance_scale", self.guidance_scale, "Classifier-free guidance: 1 = none, higher follows the prompt harder.",
+          Range{0, 200});
+        f("clamp", self.clamp, "Largest absolute gradient per latent value; 0 = no limit.", Range{0, 1e6});
+        f("weight", self.weight, "Factor of the whole guidance gradient.", Range{0, 1e6});
+        f("sample_posterior", self.sample_posterior, "Sample the VAE's latent distribution instead of taking its mean.");
+        f("view_words", self.view_words, "Append \"front view\", \"side view\" or \"back view\" to the prompt.");
+        f("negative_prompt", self.negative_prompt, "What the picture should not show.");
+    }
+};
+
+}  // namespace gse::neural

@@ -1,0 +1,165 @@
+// UNet: construction with the reference's names, time embedding, forward pass.
+#include "engine/neural/unet.h"
+
+#include <cmath>
+
+#include "engine/base/check.h"
+#include "engine/neural/transformer.h"
+
+namespace gse::neural {
+
+/// One resolution of the network (or the middle).
+struct UNetImpl::Level {
+    std::vector<ResnetBlock> resnets;
+    std::vector<SpatialTransformer> attentions;   // empty for a level without cross-attention
+    Downsample downsampler{nullptr};
+    Upsample upsampler{nullptr};
+};
+
+namespace {
+
+struct Builder {
+    const UNetConfig& config;
+    const WeightOptions& options;
+
+    std::int64_t time_width() const { return config.block_out_channels.front() * 4; }
+
+    ResnetBlock resnet(std::int64_t in, std::int64_t out) const {
+        return ResnetBlock(ResnetShape{in, out, config.norm_num_groups, config.norm_eps, time_width()}, options);
+    }
+    SpatialTransformer attention(std::int64_t channels, std::int64_t heads, const std::string& name) const {
+        const TransformerShape shape{channels,
+                                     heads,
+                                     config.cross_attention_dim,
+                                     config.norm_num_groups,
+                                     config.use_linear_projection,
+                                     config.upcast_attention};
+        SpatialTransformer module(shape, options);
+        module->layer_name = name;
+        return module;
+    }
+};
+
+}  // namespace
+
+UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : config_(config) {
+    const Builder build{config_, options};
+    const auto& widths = config_.block_out_channels;
+    const auto levels = widths.size();
+    conv_in = register_module("conv_in", Conv2d(Conv2dImpl::Shape{config_.in_channels, widths[0]}, options));
+    auto time = std::make_shared<torch::nn::Module>();
+    time_linear_1 =
+        time->register_module("linear_1", Linear(LinearImpl::Shape{widths[0], build.time_width()}, options));
+    time_linear_2 =
+        time->register_module("linear_2", Linear(LinearImpl::Shape{build.time_width(), build.time_width()}, options));
+    register_module("time_embedding", time);
+
+    std::vector<std::int64_t> skips = {widths[0]};   // channels of the stored activations
+    torch::nn::ModuleList downs;
+    for (std::size_t i = 0; i < levels; ++i) {
+        auto block = std::make_shared<torch::nn::Module>();
+        Level level;
+        for (std::int64_t j = 0; j < config_.layers_per_block; ++j) {
+            level.resnets.push_back(build.resnet(skips.back(), widths[i]));
+            if (config_.down_block_types[i] == "CrossAttnDownBlock2D")
+                level.attentions.push_back(build.attention(
+                    widths[i], config_.heads[i], "down_blocks." + std::to_string(i) + ".attentions." + std::to_string(j)));
+            skips.push_back(widths[i]);
+        }
+        register_list(*block, "resnets", level.resnets);
+        if (!level.attentions.empty()) register_list(*block, "attentions", level.attentions);
+        if (i + 1 < levels) {
+            level.downsampler = Downsample(widths[i], false, config_.downsample_padding, options);
+            register_list(*block, "downsamplers", std::vector{level.downsampler});
+            skips.push_back(widths[i]);
+        }
+        downs->push_back(block);
+        down_.push_back(std::move(level));
+    }
+    register_module("down_blocks", downs);
+
+    mid_ = std::make_unique<Level>();
+    auto mid = std::make_shared<torch::nn::Module>();
+    mid_->resnets = register_list(
+        *mid, "resnets", std::vector{build.resnet(widths.back(), widths.back()), build.resnet(widths.back(), widths.back())});
+    mid_->attentions = register_list(
+        *mid, "attentions", std::vector{build.attention(widths.back(), config_.heads.back(), "mid_block.attentions.0")});
+    register_module("mid_block", mid);
+
+    torch::nn::ModuleList ups;
+    auto channels = widths.back();
+    for (std::size_t i = 0; i < levels; ++i) {
+        auto block = std::make_shared<torch::nn::Module>();
+        const auto width = widths[levels - 1 - i];
+        Level level;
+        for (std::int64_t j = 0; j <= config_.layers_per_block; ++j) {
+            level.resnets.push_back(build.resnet(channels + skips.back(), width));
+            skips.pop_back();
+            channels = width;
+            if (config_.up_block_types[i] == "CrossAttnUpBlock2D")
+                level.attentions.push_back(
+                    build.attention(width, config_.heads[levels - 1 - i],
+                                    "up_blocks." + std::to_string(i) + ".attentions." + std::to_string(j)));
+        }
+        register_list(*block, "resnets", level.resnets);
+        if (!level.attentions.empty()) register_list(*block, "attentions", level.attentions);
+        if (i + 1 < levels) {
+            level.upsampler = Upsample(width, options);
+            register_list(*block, "upsamplers", std::vector{level.upsampler});
+        }
+        ups->push_back(block);
+        up_.push_back(std::move(level));
+    }
+    register_module("up_blocks", ups);
+    conv_norm_out = register_module("conv_norm_out", GroupNorm(widths[0], config_.norm_num_groups, config_.norm_eps, options));
+    conv_out = register_module("conv_out", Conv2d(Conv2dImpl::Shape{widths[0], config_.out_channels}, options));
+}
+
+UNetImpl::~UNetImpl() = default;
+
+torch::Tensor UNetImpl::time_projection(const torch::Tensor& timesteps, std::int64_t batch) const {
+    const auto half = config_.block_out_channels.front() / 2;
+    auto t = timesteps.to(conv_in->weight.device(), torch::kFloat32).reshape({-1, 1});
+    if (t.size(0) != batch) t = t.expand({batch, 1});
+    auto frequency = torch::arange(half, torch::TensorOptions().dtype(torch::kFloat32).device(t.device()));
+    frequency = (frequency * -std::log(10000.0) / (static_cast<double>(half) - config_.freq_shift)).exp();
+    const auto angle = t * frequency;
+    return config_.flip_sin_to_cos ? torch::cat({angle.cos(), angle.sin()}, 1) : torch::cat({angle.sin(), angle.cos()}, 1);
+}
+
+torch::Tensor UNetImpl::time_embedding(const torch::Tensor& projection) const {
+    return time_linear_2->forward(apply_silu(time_linear_1->forward(projection)));
+}
+
+torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
+                                const torch::Tensor& context, AttentionCapture* capture) {
+    GSE_CHECK_EQ(sample.dim(), std::int64_t{4});
+    const auto time = apply_silu(time_embedding(time_projection(timesteps, sample.size(0)).to(sample.scalar_type())));
+    auto x = conv_in->forward(sample.contiguous(torch::MemoryFormat::ChannelsLast));
+    std::vector<torch::Tensor> skips = {x};
+    for (const auto& level : down_) {
+        for (std::size_t j = 0; j < level.resnets.size(); ++j) {
+            x = level.resnets[j]->forward(x, time);
+            if (!level.attentions.empty()) x = level.attentions[j]->forward(x, context, capture);
+            skips.push_back(x);
+        }
+        if (level.downsampler.is_empty()) continue;
+        x = level.downsampler->forward(x);
+        skips.push_back(x);
+    }
+    x = mid_->resnets[0]->forward(x, time);
+    x = mid_->attentions[0]->forward(x, context, capture);
+    x = mid_->resnets[1]->forward(x, time);
+    for (const auto& level : up_) {
+        for (std::size_t j = 0; j < level.resnets.size(); ++j) {
+            x = level.resnets[j]->forward(torch::cat({x, skips.back()}, 1), time);
+            skips.pop_back();
+            if (!level.attentions.empty()) x = level.attentions[j]->forward(x, context, capture);
+        }
+        // To the next skip's size: latents need not be a multiple of 2^levels.
+        if (!level.upsampler.is_empty()) x = level.upsampler->forward(x, skips.back().size(2), skips.back().size(3));
+    }
+    return conv_out->forward(conv_norm_out->forward_silu(x));
+}
+
+}  // namespace gse::neural

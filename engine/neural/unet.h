@@ -1,0 +1,58 @@
+// The denoising network of Stable Diffusion 1.x and 2.x (UNet2DConditionModel), with capture of its cross-attention.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/neural/blocks.h"
+#include "engine/neural/config.h"
+
+namespace gse::neural {
+
+/// What to keep of the cross-attention of one forward pass. Maps are appended in execution order (down, mid, up).
+struct AttentionCapture {
+    struct Map {
+        std::string layer;            // "up_blocks.1.attentions.0.transformer_blocks.0.attn2"
+        std::int64_t height = 0, width = 0;
+        torch::Tensor probabilities;  // [B or B/2, heads, height*width, k] fp32
+    };
+
+    std::vector<std::int64_t> columns;   // token columns wanted, in this order; empty = all
+    bool conditional_half_only = false;  // the batch is [negative; positive]: keep the second half
+    bool keep_graph = false;             // gradients flow through the kept probabilities
+    /// Which layers; empty = all.
+    std::function<bool(std::string_view layer, std::int64_t height, std::int64_t width)> wants;
+
+    std::vector<Map> maps;
+};
+
+class UNetImpl : public torch::nn::Module {
+public:
+    explicit UNetImpl(const UNetConfig& config, const WeightOptions& options = {});
+    ~UNetImpl() override;
+
+    /// sample [B,C,h,w]; timesteps [B] or a scalar, integer or float; context [B,T,D]. All of the weights' dtype
+    /// (timesteps excepted). Returns the prediction [B,out,h,w].
+    torch::Tensor forward(const torch::Tensor& sample, const torch::Tensor& timesteps, const torch::Tensor& context,
+                          AttentionCapture* capture = nullptr);
+
+    /// Sinusoid [B,C0] in fp32, and what the two linear layers make of it (for tests).
+    torch::Tensor time_projection(const torch::Tensor& timesteps, std::int64_t batch) const;
+    torch::Tensor time_embedding(const torch::Tensor& projection) const;
+
+    const UNetConfig& config() const { return config_; }
+
+private:
+    struct Level;
+    UNetConfig config_;
+    Conv2d conv_in{nullptr}, conv_out{nullptr};
+    Linear time_linear_1{nullptr}, time_linear_2{nullptr};
+    GroupNorm conv_norm_out{nullptr};
+    std::vector<Level> down_, up_;
+    std::unique_ptr<Level> mid_;
+};
+TORCH_MODULE(UNet);
+
+}  // namespace gse::neural
