@@ -1,0 +1,37 @@
+// Camera files: COLMAP (binary and text), transforms.json (Blender, nerfstudio) and the cameras.json of 3DGS
+// training.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "engine/scene/scene.h"
+
+namespace gse {
+
+/// Reads the cameras of a COLMAP folder (the folder itself, its sparse/0 or sparse, or one of its files), a
+/// transforms*.json or a cameras.json. Throws Error. Cameras with lens distortion come back with `distorted`
+/// set.
+std::vector<View> load_cameras(const std::filesystem::path& path);
+
+/// Looks beside a scene file (and up to three folders above, as in an Inria output folder) for cameras.
+/// Returns the path that load_cameras takes, or nothing.
+std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& scene_path);
+
+/// Writes an Inria cameras.json: camera centre, camera-to-world rotation and focal lengths. The format has no
+/// principal point; it is taken as the image centre when read back.
+void save_cameras_json(const std::filesystem::path& path, const std::vector<View>& views);
+
+/// Readers on memory. The two COLMAP files go together; `images` and `cameras` are both binary or both text.
+std::vector<View> parse_colmap_binary(std::span<const std::byte> cameras, std::span<const std::byte> images);
+std::vector<View> parse_colmap_text(std::string_view cameras, std::string_view images);
+/// `folder` is where image files are looked for when the file leaves the image size out (Blender); may be
+/// empty.
+std::vector<View> parse_transforms_json(std::string_view text, const std::filesystem::path& folder);
+std::vector<View> parse_cameras_json(std::string_view text);
+
+}  // namespace gse

@@ -1,0 +1,44 @@
+// Scene files: one call reads any supported format, one writes; the format is told by content first, then by
+// name.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/scene/scene.h"
+
+namespace gse {
+
+/// Reads a scene: 3DGS PLY, PlayCanvas compressed PLY, .splat, .spz (v1-v4), .sog (zip, folder or meta.json),
+/// lod-meta.json (finest level) or an Inria output folder (highest iteration). Throws Error with one clear
+/// sentence. Infinite opacity logits that come from 8-bit 0 or 255 are clamped; values of PLY files are kept
+/// bit for bit.
+Scene load_scene(const std::filesystem::path& path);
+
+/// Same for a file already in memory; `name` only helps to tell formats without a magic number (.splat).
+/// Formats that are folders are not readable this way.
+Scene parse_scene(std::span<const std::byte> bytes, std::string_view name);
+
+/// What to write beside the Gaussians.
+struct SaveOptions {
+    /// "ply", "compressed.ply", "splat" or "spz"; empty = from the file's name.
+    std::string format;
+    /// Optional columns of a 3DGS PLY, each empty or one value per row; written as floats after rot_3.
+    std::span<const float> label;
+    std::span<const float> label_weight;
+    /// Takes `label` and `label_weight` from this label instead (must have one value per row).
+    const Label* from_label = nullptr;
+};
+
+/// Writes the scene, atomically. Throws Error (InvalidArgument for an unknown format or labels in a format
+/// that has no room for them, Unwritable). Losses of the format are told with log::warning.
+void save_scene(const std::filesystem::path& path, const Scene& scene, const SaveOptions& options = {});
+
+/// Names for SaveOptions::format, in the order a user should see them.
+std::vector<std::string> writable_formats();
+
+}  // namespace gse
