@@ -1,4 +1,5 @@
-// Synthetic world: procedural, captioned Gaussian scenes with a part label on every Gaussian and true edited scenes.
+// Synthetic world: procedural, captioned Gaussian scenes with a part label on every Gaussian and true edited
+// scenes.
 #pragma once
 
 #include <cstdint>
@@ -15,20 +16,21 @@ enum class Part : std::uint8_t { Ground = 0, Object = 1, Accessory = 2 };
 
 /// Everything that defines a scene in words and numbers; the same spec gives the same scene, bit for bit.
 struct SceneSpec {
-    std::string object = "bear";     // see object_words()
-    std::string material = "red";    // see material_words(); colour or material of the object
-    std::string accessory;           // see accessory_words(); empty = none
-    std::string accessory_colour;    // colour of the accessory; empty = its natural look
-    std::string ground = "grass";    // see ground_words()
-    std::uint64_t seed = 0;          // shape, pose, texture and light variation
-    int gaussian_budget = 6000;      // about this many Gaussians in all
+    std::string object = "bear";   // see object_words()
+    std::string material = "red";  // see material_words(); colour or material of the object
+    std::string accessory;         // see accessory_words(); empty = none
+    std::string accessory_colour;  // colour of the accessory; empty = its natural look
+    std::string ground = "grass";  // see ground_words()
+    std::uint64_t seed = 0;        // shape, pose, texture and light variation
+    int gaussian_budget = 6000;    // about this many Gaussians in all
 };
 
-/// A generated scene: up is -y as in COLMAP worlds, object standing on y = 0, front towards -z, about 1 unit tall.
+/// A generated scene: up is -y as in COLMAP worlds, object standing on y = 0, front towards -z, about 1 unit
+/// tall.
 struct SynthScene {
     SceneSpec spec;
     Scene scene;
-    std::vector<Part> parts;         // [N]
+    std::vector<Part> parts;  // [N]
 };
 
 const std::vector<std::string>& object_words();     // at least 8
@@ -36,13 +38,33 @@ const std::vector<std::string>& material_words();   // at least 8
 const std::vector<std::string>& accessory_words();  // at least 5: hat crown sunglasses scarf flames ...
 const std::vector<std::string>& ground_words();     // at least 4
 
+/// Colours an accessory is made in (random specs choose among them); empty when it has its natural look only.
+const std::vector<std::string>& accessory_colour_words(const std::string& accessory);
+
+/// Every word of any caption and every word apply_edit() understands, without punctuation (captions use
+/// commas).
+const std::vector<std::string>& vocabulary();
+
+/// The scene of a spec. Ground, object and accessory come from random streams of their own: taking the
+/// accessory away leaves the other rows bit-identical, another material or colour changes nothing but
+/// colours. Row order: ground, object, accessory. Throws Error for a word that is not in the lists.
 SynthScene generate(const SceneSpec& spec);
+
+/// True for about a tenth of all combinations of object, material and accessory: kept out of training.
+bool held_out(const SceneSpec& spec);
 
 /// Random spec. `with_accessory`: probability of an accessory.
 SceneSpec random_spec(Random& random, double with_accessory = 0.5);
+/// The same, never held out.
+SceneSpec training_spec(Random& random, double with_accessory = 0.5);
+/// The same, always held out.
+SceneSpec held_out_spec(Random& random, double with_accessory = 0.5);
 
-/// Camera around the scene at `azimuth` (0 = front) and `elevation` radians. `zoom` 1 frames the object with ground.
-Camera scene_camera(const SynthScene& scene, double azimuth, double elevation, double zoom, int width, int height);
+/// Camera around the scene at `azimuth` (0 = front) and `elevation` radians, 45 degrees field of view over
+/// the shorter side. `zoom` 1 frames the object with ground and leaves room for an accessory on top; it
+/// depends on the angles only, so that a scene and its edited twin are seen by the same camera.
+Camera scene_camera(const SynthScene& scene, double azimuth, double elevation, double zoom, int width,
+                    int height);
 
 /// "front view", "side view" or "back view" of an azimuth.
 std::string view_words(double azimuth);
@@ -53,6 +75,7 @@ struct Caption {
     struct Grounding {
         std::string word;
         Part part;
+        int occurrence = 0;  // which one of this word's occurrences in the text, from 0
     };
     std::vector<Grounding> groundings;
 };
@@ -60,11 +83,14 @@ struct Caption {
 /// Full caption "a red bear wearing a blue hat on the grass".
 Caption full_caption(const SceneSpec& spec);
 
-/// Random template with words left out (each kind 10-20 % of the time) and view words appended half of the time.
+/// Random template with words left out (each kind 10-20 % of the time) and view words appended half of the
+/// time.
 Caption random_caption(const SceneSpec& spec, double azimuth, Random& random);
 
-/// Applies an edit sentence ("a blue bear", "a bear wearing a red hat", "a golden statue on the sand") to a spec:
-/// words the sentence names replace those of the spec, the rest stays. Throws Error if no known word is found.
+/// Applies an edit sentence ("a blue bear", "a bear wearing a red hat", "a golden statue on the sand", "turn
+/// the bear into a wooden dog", "a bear made of stone", "remove the hat") to a spec: words the sentence names
+/// replace those of the spec (of two for one thing the last counts), the rest stays. Throws Error if no known
+/// word is found.
 SceneSpec apply_edit(const SceneSpec& spec, const std::string& sentence);
 
 }  // namespace gse::synth

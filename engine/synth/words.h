@@ -1,0 +1,31 @@
+// What the words of the synthetic world mean to its generator.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "engine/synth/synth.h"
+
+namespace gse::synth {
+
+/// Throws Error for a word that is not in its list.
+void require_known_words(const SceneSpec& spec);
+
+/// Position of a word in its list; the word is known.
+std::uint64_t word_index(const std::vector<std::string>& words, const std::string& word);
+
+/// Material of the accessory: its colour word, or its natural one.
+std::string accessory_material(const SceneSpec& spec);
+
+/// A word people may type for one of the lists' words ("wood" for "wooden").
+struct Synonym {
+    const char* typed;
+    const char* meant;
+};
+
+const std::vector<Synonym>& synonyms();
+
+/// The list word a typed word stands for: itself, or what the synonym means.
+std::string canonical_word(const std::string& typed);
+
+}  // namespace gse::synth
