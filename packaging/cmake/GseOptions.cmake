@@ -49,3 +49,7 @@ if(GSE_OPENCV)
     target_link_libraries(gse_opencv INTERFACE ${GSE_OPENCV_${part}})
   endforeach()
 endif()
+if(GSE_NEURAL)
+  # Here and not in engine/neural: imported targets are only visible below the folder that asks for them.
+  find_package(Torch REQUIRED)
+endif()
