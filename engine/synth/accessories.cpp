@@ -19,7 +19,7 @@ ShapeList make_hat(const Anchor& anchor, Random& random) {
     const double brim = std::max(0.33, anchor.head_radius * random.uniform(1.4, 1.55));
     const double crown = brim * random.uniform(0.6, 0.68);
     const double height = random.uniform(0.28, 0.34);
-    const Vec3 base = anchor.top + Vec3{0, -0.055, 0};
+    const Vec3 base = anchor.top + Vec3{0, -0.04, 0};
     ShapeList shapes;
     shapes.push_back(revolution(
         base,
@@ -41,10 +41,10 @@ ShapeList make_hat(const Anchor& anchor, Random& random) {
 ShapeList make_crown(const Anchor& anchor, Random& random) {
     const double radius = std::max(0.22, anchor.head_radius * random.uniform(0.98, 1.08));
     const double band = 0.11;
-    const double height = random.uniform(0.28, 0.33);
+    const double height = random.uniform(0.3, 0.35);
     constexpr int Points = 6;
     const double turn = 0.5 / Points;
-    const Vec3 base = anchor.top + Vec3{0, -0.07, 0};
+    const Vec3 base = anchor.top + Vec3{0, -0.05, 0};
     ShapeList shapes;
     shapes.push_back(sheet(
         base,
@@ -64,7 +64,7 @@ ShapeList make_crown(const Anchor& anchor, Random& random) {
         const double tip = Tau * (static_cast<double>(i) / Points + turn - 0.25);
         const double flare = radius * 1.16;
         shapes.push_back(ellipsoid(base + Vec3{flare * std::cos(tip), height, flare * std::sin(tip)},
-                                   {0.038, 0.038, 0.038}, Pale));
+                                   {0.03, 0.03, 0.03}, Pale));
         const double between = tip + 0.5 * Tau / Points;
         const double gem = radius * 1.03 + 0.01;
         Shape stone =
@@ -79,8 +79,7 @@ ShapeList make_crown(const Anchor& anchor, Random& random) {
 ShapeList make_sunglasses(const Anchor& anchor, Random& random) {
     const double half = std::max(anchor.eye_half, 0.115);
     const double radius = half * random.uniform(0.95, 1.02);
-    const Paint glass{Slot::Fixed, {0.03, 0.03, 0.05}};
-    const Paint glint{Slot::Fixed, {0.95, 0.97, 1.0}};
+    const Paint glass{Slot::Fixed, {0.02, 0.02, 0.04}};
     const Vec3 front = anchor.eyes + Vec3{0, 0, -0.035};
     ShapeList shapes;
     for (const double side : {-1.0, 1.0}) {
@@ -89,11 +88,11 @@ ShapeList make_sunglasses(const Anchor& anchor, Random& random) {
         shapes.push_back(frame);
         Shape lens = ellipsoid(lens_at + Vec3{0, 0, -0.022}, {radius * 0.82, radius * 0.68, 0.03}, glass);
         lens.density = 2;
+        lens.paint_at = [glass](const SurfacePoint& point) {
+            const double sky = smooth_step(0.6, 0.85, point.v);  // the upper part mirrors a little sky
+            return Paint{Slot::Fixed, mix(glass.colour, {0.22, 0.26, 0.36}, sky)};
+        };
         shapes.push_back(lens);
-        Shape shine = ellipsoid(lens_at + Vec3{-0.3 * radius, 0.25 * radius, -0.045},
-                                {radius * 0.2, radius * 0.2, 0.015}, glint);
-        shine.density = 3;
-        shapes.push_back(shine);
         const Vec3 hinge = front + Vec3{side * (half * 1.08 + radius * 0.9), 0.03, 0.01};
         const Vec3 ear{side * std::max(hinge.x * side, anchor.head_radius + 0.03), hinge.y + 0.01,
                        hinge.z + anchor.face_depth};
@@ -133,7 +132,7 @@ ShapeList make_scarf(const Anchor& anchor, Random& random) {
     const double bottom = std::max(0.03, knot.y - hang);
     for (const double spread : {-0.055, 0.06}) {
         const double low = spread > 0 ? bottom : bottom + 0.09;
-        const Vec3 half{0.07, 0.5 * (knot.y - low), 0.026};
+        const Vec3 half{0.06, 0.5 * (knot.y - low), 0.026};
         Shape end = box({knot.x + side * spread * 1.3, 0.5 * (knot.y + low), front - 0.02}, half, Main);
         end.rotation = rotation_z(side * spread * 2.5);
         end.paint_at = [](const SurfacePoint& point) {
@@ -169,7 +168,7 @@ ShapeList make_flames(const Anchor& anchor, Random& random) {
         const double away = std::cos(angle);  // 1 = behind the object
         const Vec3 foot{(anchor.body_radius + 0.05) * std::sin(angle), 0.0,
                         (anchor.body_depth + 0.05) * away};
-        const double height = away < -0.3 ? random.uniform(0.28, 0.4) : random.uniform(0.6, 0.95);
+        const double height = away < -0.3 ? random.uniform(0.22, 0.34) : random.uniform(0.5, 0.85);
         shapes.push_back(tongue(foot, random.uniform(0.09, 0.12), height, -0.25 * foot.x, -0.25 * foot.z));
     }
     for (int i = 0; i < 3; ++i) {
@@ -181,7 +180,7 @@ ShapeList make_flames(const Anchor& anchor, Random& random) {
 }
 
 ShapeList make_wings(const Anchor& anchor, Random& random) {
-    const double span = random.uniform(0.46, 0.54);
+    const double span = random.uniform(0.24, 0.32);
     const double lift = random.uniform(0.2, 0.3);
     ShapeList shapes;
     constexpr int Feathers = 5;
@@ -189,7 +188,7 @@ ShapeList make_wings(const Anchor& anchor, Random& random) {
         const Vec3 root = anchor.back + Vec3{side * 0.05, 0, 0.03};
         for (int i = 0; i < Feathers; ++i) {
             const double t = static_cast<double>(i) / (Feathers - 1);
-            const double reach = (anchor.body_radius + span) * (1 - 0.45 * t);
+            const double reach = std::clamp(anchor.body_radius + span, 0.55, 0.68) * (1 - 0.45 * t);
             const double angle = 0.75 + lift - 1.35 * t;  // from the horizontal, upper feathers first
             const Vec3 direction = normalized({side * std::cos(angle), std::sin(angle), 0.25});
             Shape feather = ellipsoid(root + direction * (0.5 * reach), {0.1, 0.52 * reach, 0.028},

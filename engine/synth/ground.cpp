@@ -85,7 +85,7 @@ Vec3 ground_colour(const std::string& word, const Vec3& p, const Vec3& offset) {
         return mix(base, {0.85, 0.97, 1.0},
                    0.8 * smooth_step(0.82, 1.0, wave) * smooth_step(0.35, 0.6, value_noise(q * 2.7)));
     }
-    constexpr double Tile = 0.42;
+    constexpr double Tile = 0.5;
     const auto column = static_cast<long>(std::floor(p.x / Tile + 0.5));
     const auto row = static_cast<long>(std::floor(p.z / Tile + 0.5));
     return ((column + row) & 1) == 0 ? Vec3{0.90, 0.90, 0.88} : Vec3{0.25, 0.28, 0.33};

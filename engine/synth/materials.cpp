@@ -74,9 +74,9 @@ Vec3 gold(const Material& material, const Light& light, const SurfacePoint& poin
                     value_noise(q + Vec3{0, 57, 0}) - 0.5};
     const Vec3 n = normalized(point.normal + dent * 0.7);
     const double towards = dot(n, light.key);
-    Vec3 colour = mix({0.42, 0.23, 0.02}, {0.86, 0.60, 0.12}, smooth_step(-0.7, 0.7, n.y + 0.4 * towards));
-    colour = mix(colour, {0.30, 0.15, 0.01}, 0.75 * bell(n.y, -0.12, 0.16));
-    colour = mix(colour, {1.0, 0.95, 0.62}, 0.9 * bell(towards, 0.95, 0.17) + 0.45 * bell(n.y, 0.35, 0.12));
+    Vec3 colour = mix({0.42, 0.23, 0.02}, {0.90, 0.64, 0.10}, smooth_step(-0.9, 0.45, n.y + 0.4 * towards));
+    colour = mix(colour, {0.30, 0.15, 0.01}, 0.8 * bell(n.y, -0.42, 0.2) + 0.35 * bell(n.y, 0.14, 0.07));
+    colour = mix(colour, {1.0, 0.95, 0.62}, 0.95 * bell(towards, 0.93, 0.16) + 0.5 * bell(n.y, 0.38, 0.12));
     return colour;
 }
 

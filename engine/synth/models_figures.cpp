@@ -57,17 +57,17 @@ Model make_bear(Random& random) {
         s.push_back(ellipsoid({side * 0.245, 0.125, -0.41}, {0.075, 0.08, 0.055}, Pale));
     }
     s.push_back(ellipsoid({0, 0.15, 0.26 * girth}, {0.07, 0.07, 0.06}, Main));
-    model.anchor = {{0, 0.965, 0.0},
-                    0.25,
-                    {0, 0.79, -0.255},
-                    0.125,
-                    0.27,
-                    {0, 0.53, -0.01},
-                    0.2,
-                    0.18,
-                    {0, 0.48, 0.2},
-                    0.38,
-                    0.32};
+    model.anchor = {.top = {0, 0.98, 0.0},
+                    .head_radius = 0.25,
+                    .eyes = {0, 0.79, -0.255},
+                    .eye_half = 0.125,
+                    .face_depth = 0.27,
+                    .neck = {0, 0.53, -0.01},
+                    .neck_x = 0.2,
+                    .neck_z = 0.18,
+                    .back = {0, 0.48, 0.2},
+                    .body_radius = 0.38,
+                    .body_depth = 0.32};
     return model;
 }
 
@@ -96,17 +96,17 @@ Model make_dog(Random& random) {
         }
     }
     s.push_back(capsule({0, spine + 0.08, rear + 0.1}, {tail, spine + 0.4, rear + 0.26}, 0.06, 0.04, Main));
-    model.anchor = {{0, head + 0.195, -0.32},
-                    0.2,
-                    {0, head + 0.06, -0.535},
-                    0.11,
-                    0.24,
-                    {0, spine + 0.13, -0.24},
-                    0.155,
-                    0.165,
-                    {0, spine + 0.16, 0.0},
-                    0.26,
-                    0.55};
+    model.anchor = {.top = {0, head + 0.205, -0.32},
+                    .head_radius = 0.2,
+                    .eyes = {0, head + 0.06, -0.535},
+                    .eye_half = 0.11,
+                    .face_depth = 0.24,
+                    .neck = {0, spine + 0.13, -0.24},
+                    .neck_x = 0.155,
+                    .neck_z = 0.165,
+                    .back = {0, spine + 0.16, 0.0},
+                    .body_radius = 0.26,
+                    .body_depth = 0.55};
     return model;
 }
 
@@ -153,17 +153,17 @@ Model make_cat(Random& random) {
         s.push_back(capsule(from, to, 0.052, 0.052, Main));
         from = to;
     }
-    model.anchor = {{0, 0.885, -0.01},
-                    0.21,
-                    {0, 0.735, -0.23},
-                    0.12,
-                    0.23,
-                    {0, 0.53, 0.03},
-                    0.155,
-                    0.155,
-                    {0, 0.4, 0.24},
-                    0.33,
-                    0.32};
+    model.anchor = {.top = {0, 0.925, -0.01},
+                    .head_radius = 0.21,
+                    .eyes = {0, 0.735, -0.23},
+                    .eye_half = 0.12,
+                    .face_depth = 0.23,
+                    .neck = {0, 0.53, 0.03},
+                    .neck_x = 0.155,
+                    .neck_z = 0.155,
+                    .back = {0, 0.4, 0.24},
+                    .body_radius = 0.33,
+                    .body_depth = 0.32};
     return model;
 }
 
@@ -191,17 +191,17 @@ Model make_duck(Random& random) {
         s.push_back(wing);
         s.push_back(ellipsoid({side * 0.12, 0.03, -0.18}, {0.1, 0.035, 0.15}, beak));
     }
-    model.anchor = {{0, head + 0.205, -0.19},
-                    0.2,
-                    {0, head + 0.07, -0.405},
-                    0.115,
-                    0.24,
-                    {0, head - 0.22, -0.19},
-                    0.165,
-                    0.165,
-                    {0, 0.5, 0.12},
-                    0.33,
-                    0.45};
+    model.anchor = {.top = {0, head + 0.215, -0.19},
+                    .head_radius = 0.2,
+                    .eyes = {0, head + 0.07, -0.405},
+                    .eye_half = 0.115,
+                    .face_depth = 0.24,
+                    .neck = {0, head - 0.22, -0.19},
+                    .neck_x = 0.165,
+                    .neck_z = 0.165,
+                    .back = {0, 0.5, 0.12},
+                    .body_radius = 0.33,
+                    .body_depth = 0.45};
     return model;
 }
 
@@ -232,8 +232,17 @@ Model make_statue(Random& random) {
     mouth.density = 2;
     s.push_back(mouth);
     if (beard) s.push_back(ellipsoid({0, 0.61, -0.12}, {0.12, 0.1, 0.09}, Deep));
-    model.anchor = {{0, 1.03, 0.03}, 0.2,   {0, 0.815, -0.215}, 0.095, 0.22, {0, 0.57, 0},
-                    0.125,           0.125, {0, 0.48, 0.16},    0.36,  0.24};
+    model.anchor = {.top = {0, 1.04, 0.03},
+                    .head_radius = 0.2,
+                    .eyes = {0, 0.815, -0.215},
+                    .eye_half = 0.105,
+                    .face_depth = 0.22,
+                    .neck = {0, 0.57, 0},
+                    .neck_x = 0.125,
+                    .neck_z = 0.125,
+                    .back = {0, 0.48, 0.16},
+                    .body_radius = 0.36,
+                    .body_depth = 0.24};
     return model;
 }
 

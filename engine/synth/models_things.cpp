@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "engine/base/check.h"
+#include "engine/synth/materials.h"
 #include "engine/synth/models.h"
 
 namespace gse::synth {
@@ -23,7 +24,7 @@ Shape dense(Shape shape, double density) {
 }  // namespace
 
 Model make_ball(Random& random) {
-    const double r = random.uniform(0.4, 0.45);
+    const double r = random.uniform(0.44, 0.49);
     const double tilt = random.uniform(0.25, 0.6);
     Model model;
     Shape ball = ellipsoid({0, r, 0}, {r, r, r}, Main);
@@ -32,17 +33,17 @@ Model make_ball(Random& random) {
         return std::abs(point.v - 0.5) < 0.055 ? Paint{Slot::Pale} : Paint{Slot::Main};
     };
     model.shapes.push_back(ball);
-    model.anchor = {{0, 2 * r - 0.015, 0},
-                    0.26,
-                    {0, 1.3 * r, -0.95 * r},
-                    0.135,
-                    0.34,
-                    {0, 0.62 * r, 0},
-                    0.92 * r,
-                    0.92 * r,
-                    {0, 1.1 * r, r * 0.95},
-                    r,
-                    r};
+    model.anchor = {.top = {0, 2 * r - 0.01, 0},
+                    .head_radius = 0.26,
+                    .eyes = {0, 1.25 * r, -0.97 * r},
+                    .eye_half = 0.145,
+                    .face_depth = 0.34,
+                    .neck = {0, 0.58 * r, 0},
+                    .neck_x = 0.9 * r,
+                    .neck_z = 0.9 * r,
+                    .back = {0, 1.1 * r, r * 0.95},
+                    .body_radius = r,
+                    .body_depth = r};
     return model;
 }
 
@@ -80,8 +81,17 @@ Model make_vase(Random& random) {
             handle.rotation = rotation_x(1.5707963);
             model.shapes.push_back(handle);
         }
-    model.anchor = {{0, 0.95, 0}, 0.21,        {0, 0.6, -(neck + belly) * 0.52}, 0.12,  0.26, {0, 0.745, 0},
-                    neck + 0.01,  neck + 0.01, {0, 0.55, belly * 0.8},           belly, belly};
+    model.anchor = {.top = {0, 0.97, 0},
+                    .head_radius = 0.21,
+                    .eyes = {0, 0.6, -(neck + belly) * 0.52},
+                    .eye_half = 0.12,
+                    .face_depth = 0.26,
+                    .neck = {0, 0.745, 0},
+                    .neck_x = neck + 0.01,
+                    .neck_z = neck + 0.01,
+                    .back = {0, 0.55, belly * 0.8},
+                    .body_radius = belly,
+                    .body_depth = belly};
     return model;
 }
 
@@ -115,8 +125,17 @@ Model make_mushroom(Random& random) {
         spot.rotation = rotation_to(normalized({direction.x / cap, direction.y / 0.44, direction.z / cap}));
         s.push_back(dense(spot, 1.5));
     }
-    model.anchor = {{0, 0.93, 0}, 0.24, {0, 0.68, -cap * 0.93}, 0.135, 0.3, {0, 0.38, 0},
-                    stem,         stem, {0, 0.6, cap * 0.9},    cap,   cap};
+    model.anchor = {.top = {0, 0.945, 0},
+                    .head_radius = 0.24,
+                    .eyes = {0, 0.68, -cap * 0.93},
+                    .eye_half = 0.135,
+                    .face_depth = 0.3,
+                    .neck = {0, 0.31, 0},
+                    .neck_x = stem + 0.01,
+                    .neck_z = stem + 0.01,
+                    .back = {0, 0.6, cap * 0.9},
+                    .body_radius = cap,
+                    .body_depth = cap};
     return model;
 }
 
@@ -140,17 +159,17 @@ Model make_chair(Random& random) {
     } else {
         s.push_back(box({0, 0.74, w - Leg}, {w, 0.26, 0.035}, Main));
     }
-    model.anchor = {{0, 1.0, w - Leg},
-                    0.2,
-                    {0, 0.82, w - 2 * Leg - 0.01},
-                    0.125,
-                    0.12,
-                    {0, 0.62, w - Leg},
-                    w + 0.01,
-                    0.06,
-                    {0, 0.68, w},
-                    w + 0.03,
-                    w + 0.03};
+    model.anchor = {.top = {0, 1.03, w - Leg},
+                    .head_radius = 0.22,
+                    .eyes = {0, 0.82, w - 2 * Leg - 0.01},
+                    .eye_half = 0.125,
+                    .face_depth = 0.12,
+                    .neck = {0, 0.66, w - Leg},
+                    .neck_x = w + 0.01,
+                    .neck_z = 0.06,
+                    .back = {0, 0.72, w},
+                    .body_radius = w + 0.03,
+                    .body_depth = w + 0.03};
     return model;
 }
 
@@ -187,17 +206,17 @@ Model make_car(Random& random) {
     }
     s.push_back(box({0, 0.19, -half - 0.05}, {w + 0.01, 0.035, 0.035}, {Slot::Fixed, {0.6, 0.61, 0.63}}));
     s.push_back(box({0, 0.19, half + 0.02}, {w + 0.01, 0.035, 0.03}, {Slot::Fixed, {0.6, 0.61, 0.63}}));
-    model.anchor = {{0, roof, middle},
-                    0.24,
-                    {0, 0.5, cabin_front - 0.02},
-                    0.13,
-                    0.2,
-                    {0, 0.4, middle},
-                    w + 0.005,
-                    length_half + 0.01,
-                    {0, 0.45, middle + 0.1},
-                    w + 0.05,
-                    half};
+    model.anchor = {.top = {0, roof + 0.055, middle},
+                    .head_radius = 0.24,
+                    .eyes = {0, 0.5, cabin_front - 0.02},
+                    .eye_half = 0.13,
+                    .face_depth = 0.2,
+                    .neck = {0, 0.44, middle},
+                    .neck_x = w + 0.005,
+                    .neck_z = length_half + 0.01,
+                    .back = {0, 0.5, middle + 0.1},
+                    .body_radius = w + 0.05,
+                    .body_depth = half};
     return model;
 }
 
@@ -236,38 +255,57 @@ Model make_house(Random& random) {
     s.push_back(dense(box({0, 0.16, -d - 0.012}, {0.085, 0.16, 0.015}, door), 2));
     s.push_back(dense(box({0, wall * 0.62, d + 0.005}, {0.1, 0.08, 0.012}, window), 2));
     s.push_back(box({chimney_side * w * 0.55, 0.86, 0.12}, {0.055, 0.15, 0.055}, Main));
-    model.anchor = {
-        {0, ridge, -0.02}, 0.25,     {0, wall * 0.86, -d - 0.03}, 0.14,     0.3,     {0, wall * 0.32, 0},
-        w + 0.01,          d + 0.02, {0, wall * 0.9, d + 0.05},   w + 0.05, d + 0.05};
+    model.anchor = {.top = {0, ridge + 0.075, -0.02},
+                    .head_radius = 0.25,
+                    .eyes = {0, wall * 0.9, -d - 0.03},
+                    .eye_half = 0.15,
+                    .face_depth = 0.3,
+                    .neck = {0, wall * 0.78, 0},
+                    .neck_x = w + 0.0,
+                    .neck_z = d + 0.0,
+                    .back = {0, wall * 0.95, d + 0.05},
+                    .body_radius = w + 0.05,
+                    .body_depth = d + 0.05};
     return model;
 }
 
 Model make_tree(Random& random) {
-    const double wide = random.uniform(0.36, 0.43);
-    const double trunk = random.uniform(0.16, 0.24);
+    const double trunk = random.uniform(0.32, 0.4);
+    const double wide = random.uniform(0.25, 0.29);
+    const double turn = random.uniform(0, 6.2831853);
+    const Vec3 offset{random.uniform(0, 40), 0, random.uniform(0, 40)};
+    const auto leaves = [offset](const SurfacePoint& point) {
+        const double dapple = value_noise((point.position + offset) * 9.0);
+        return dapple > 0.7 ? Pale : dapple < 0.32 ? Deep : Main;
+    };
     Model model;
     auto& s = model.shapes;
-    s.push_back(cone({0, 0, 0}, {0, trunk + 0.1, 0}, 0.1, 0.075, Bark));
-    const double step = (1.04 - trunk) / 3.9;
-    double bottom = trunk;
-    for (const double part : {1.0, 0.78, 0.55}) {
-        const double top = bottom + step * 1.9;
-        s.push_back(cone({0, bottom, 0}, {0, top, 0}, wide * part, 0.015, Main));
-        s.back().paint_at = [](const SurfacePoint& point) { return point.v < 0.38 ? Deep : Main; };
-        bottom += step;
+    s.push_back(cone({0, 0, 0}, {0, trunk + 0.15, 0}, 0.11, 0.075, Bark));
+    s.push_back(capsule({0.03, trunk - 0.1, 0}, {0.2, trunk + 0.12, -0.05}, 0.045, 0.04, Bark));
+    const auto add_leaves = [&](const Vec3& centre, double radius) {
+        s.push_back(ellipsoid(centre, {radius, radius * 0.88, radius}));
+        s.back().paint_at = leaves;
+    };
+    constexpr int Around = 5;
+    const double low = trunk + 0.2;
+    for (int i = 0; i < Around; ++i) {
+        const double angle = turn + 6.2831853 * i / Around;
+        const double lift = i % 2 == 0 ? 0.0 : 0.07;
+        add_leaves({wide * 0.88 * std::cos(angle), low + lift, wide * 0.88 * std::sin(angle)}, 0.2);
     }
-    const double tip = bottom + step * 0.9;
-    model.anchor = {{0, tip - 0.1, 0},
-                    0.19,
-                    {0, trunk + step * 1.35, -wide * 0.62},
-                    0.12,
-                    0.22,
-                    {0, trunk + 0.98 * step, 0},
-                    wide * 0.5,
-                    wide * 0.5,
-                    {0, 0.55, wide * 0.45},
-                    wide,
-                    wide};
+    add_leaves({0, low + 0.15, 0}, 0.27);
+    add_leaves({0.02, 0.88, -0.02}, 0.185);
+    model.anchor = {.top = {0, 1.04, 0},
+                    .head_radius = 0.2,
+                    .eyes = {0, low + 0.12, -wide * 0.88 - 0.15},
+                    .eye_half = 0.135,
+                    .face_depth = 0.25,
+                    .neck = {0, trunk - 0.04, 0},
+                    .neck_x = 0.085,
+                    .neck_z = 0.085,
+                    .back = {0, low + 0.1, wide * 0.88 + 0.1},
+                    .body_radius = wide + 0.16,
+                    .body_depth = wide + 0.16};
     return model;
 }
 

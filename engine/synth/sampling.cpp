@@ -9,8 +9,9 @@
 namespace gse::synth {
 namespace {
 
-constexpr int Columns = 18;  // along u; a multiple of 6, the faces of a box
-constexpr int Rows = 14;     // along v
+constexpr double EdgeMargin = 0.5;  // times the spacing: distance of a disc from a sharp edge
+constexpr int Columns = 24;         // along u; a multiple of 6, the faces of a box
+constexpr int Rows = 14;            // along v
 
 /// Area of the cells of a grid over (u, v), as cumulative sums, so that uniform numbers become points of even
 /// density.
@@ -67,11 +68,12 @@ double invert(const std::array<double, Size>& sums, double fraction, std::size_t
     return (static_cast<double>(cell) + t) / static_cast<double>(Size - 1);
 }
 
-SurfacePoint table_point(const Shape& shape, const AreaTable& table, double a, double b) {
+SurfacePoint table_point(const Shape& shape, const AreaTable& table, double a, double b, double margin) {
     std::size_t row = 0;
     std::size_t column = 0;
-    const double v = invert(table.rows, a, row);
-    const double u = invert(table.columns[row], b, column);
+    double v = invert(table.rows, a, row);
+    double u = invert(table.columns[row], b, column);
+    shape.keep_from_edges(u, v, margin);
     return shape.at(u, v);
 }
 
@@ -124,9 +126,10 @@ std::vector<SurfacePoint> sample_surface(std::span<const Shape> shapes, std::spa
         Sequence sequence(random);
         int seen = 0;
         for (int i = 0; i < Probes; ++i, sequence.step())
-            seen += hidden(table_point(shape, tables.back(), sequence.a, sequence.b).position, &shape, solids)
-                        ? 0
-                        : 1;
+            seen +=
+                hidden(table_point(shape, tables.back(), sequence.a, sequence.b, 0).position, &shape, solids)
+                    ? 0
+                    : 1;
         weighted_area += tables.back().area() * shape.density * seen / Probes;
     }
     const double cell = weighted_area / std::max(target, 1);  // area per point at density 1
@@ -137,7 +140,8 @@ std::vector<SurfacePoint> sample_surface(std::span<const Shape> shapes, std::spa
         const double spacing = std::sqrt(tables[s].area() / count);
         Sequence sequence(random);
         for (int i = 0; i < count; ++i, sequence.step()) {
-            SurfacePoint point = table_point(shapes[s], tables[s], sequence.a, sequence.b);
+            SurfacePoint point =
+                table_point(shapes[s], tables[s], sequence.a, sequence.b, EdgeMargin * spacing);
             if (hidden(point.position, &shapes[s], solids)) continue;
             point.spacing = spacing;
             point.shape = static_cast<std::uint32_t>(s);

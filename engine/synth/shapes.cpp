@@ -10,6 +10,8 @@ namespace gse::synth {
 namespace {
 
 constexpr double Tau = 2 * std::numbers::pi;
+constexpr double SoftBend =
+    0.75;                       // cosine of the angle between normals up to which a profile counts as smooth
 constexpr double Hair = 0.002;  // model units; keeps touching surfaces from culling each other
 
 Vec3 multiply(const Vec3& a, const Vec3& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
@@ -58,7 +60,6 @@ ProfilePoint corner_normal(const std::vector<ProfilePoint>& profile, std::size_t
     const ProfilePoint own = segment_normal(profile, segment);
     if (at_end ? segment + 2 >= profile.size() : segment == 0) return own;
     const ProfilePoint other = segment_normal(profile, at_end ? segment + 1 : segment - 1);
-    constexpr double SoftBend = 0.75;  // cosine
     if (own.radius * other.radius + own.height * other.height < SoftBend) return own;
     return {own.radius + other.radius, own.height + other.height};
 }
@@ -124,6 +125,38 @@ SurfacePoint Shape::at(double u, double v) const {
     result.position = centre + rotation * multiply(unit.position, scale);
     result.normal = normalized(rotation * divide(unit.normal, scale));
     return result;
+}
+
+void Shape::keep_from_edges(double& u, double& v, double margin) const {
+    constexpr double Most = 0.4;  // of the extent: something is left in the middle
+    const auto squeeze = [&](double t, double low, double high) {
+        low = std::min(low, Most);
+        high = std::min(high, Most);
+        return low + t * (1 - low - high);
+    };
+    if (kind == Kind::Cube) {
+        const int face = std::min(static_cast<int>(u * 6), 5);
+        const double extent_a = 2 * (face / 2 == 0 ? scale.y : scale.x);
+        const double extent_b = 2 * (face / 2 == 2 ? scale.y : scale.z);
+        u = (face + squeeze(u * 6 - face, margin / extent_a, margin / extent_a)) / 6;
+        v = squeeze(v, margin / extent_b, margin / extent_b);
+    } else if (kind == Kind::Revolution) {
+        const auto segments = static_cast<double>(profile.size() - 1);
+        const auto segment = static_cast<std::size_t>(std::clamp(v, 0.0, 1.0 - 1e-12) * segments);
+        const auto& p = profile[segment];
+        const auto& q = profile[segment + 1];
+        const double extent = std::max(std::hypot(q.radius - p.radius, q.height - p.height), 1e-9);
+        const auto sharp = [&](std::size_t corner) {
+            if (corner == 0 || corner + 1 >= profile.size()) return false;
+            const ProfilePoint before = segment_normal(profile, corner - 1);
+            const ProfilePoint after = segment_normal(profile, corner);
+            return before.radius * after.radius + before.height * after.height < SoftBend;
+        };
+        const double t = v * segments - static_cast<double>(segment);
+        const double low = sharp(segment) ? margin / extent : 0;
+        const double high = sharp(segment + 1) ? margin / extent : 0;
+        v = (static_cast<double>(segment) + squeeze(t, low, high)) / segments;
+    }
 }
 
 bool Shape::contains(const Vec3& point) const {

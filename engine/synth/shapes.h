@@ -61,6 +61,9 @@ struct Shape {
 
     /// Position and outward unit normal at (u, v).
     SurfacePoint at(double u, double v) const;
+    /// Parameters moved inwards so that the point keeps `margin` (model units) from sharp edges: a disc put
+    /// there does not stick out over the edge.
+    void keep_from_edges(double& u, double& v, double margin) const;
     /// True for points more than a hair inside the solid.
     bool contains(const Vec3& point) const;
     /// Radius of a sphere around `centre` that holds a solid shape.
