@@ -40,7 +40,7 @@ Shot make_shot(std::uint64_t seed, std::uint64_t index) {
     // Front views oversampled: faces and accessories are seen there.
     shot.azimuth = random.uniform() < 0.55 ? random.uniform(-1.2, 1.2) : random.uniform(-std::numbers::pi, std::numbers::pi);
     shot.elevation = random.uniform(0.05, 0.75);
-    shot.zoom = random.uniform(0.75, 1.6);
+    shot.zoom = random.uniform(0.8, 1.6);
     shot.background = random_background(random);
     const bool second = index % 2 == 1;
     if (second && !shot.spec.accessory.empty()) {
@@ -51,7 +51,7 @@ Shot make_shot(std::uint64_t seed, std::uint64_t index) {
     } else if (second) {
         shot.azimuth += random.uniform(0.6, std::numbers::pi);
         shot.elevation = random.uniform(0.05, 0.75);
-        shot.zoom = random.uniform(0.75, 1.6);
+        shot.zoom = random.uniform(0.8, 1.6);
     }
     return shot;
 }

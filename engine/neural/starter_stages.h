@@ -29,18 +29,27 @@ struct StarterLatents {
 StarterLatents encode_pictures(AutoencoderKl& vae, const StarterTrainParameters& parameters,
                                const StarterPictures& pictures);
 
-/// Trains text encoder and UNet (v-prediction) with the attention losses and leaves the averaged weights in them.
 struct StarterNetworks {
     ClipTextEncoder text{nullptr};
     UNet unet{nullptr};
 };
-void train_unet(StarterNetworks& networks, const StarterConfigs& configs, const StarterTrainParameters& parameters,
-                const StarterPictures& pictures, const StarterLatents& latents, const StarterSource& source,
-                const StarterVocabulary& vocabulary, const std::filesystem::path& work, const JobControl& job);
+/// What the UNet stage works on. `preview`, if set, receives the averaged networks at every checkpoint.
+struct UNetTraining {
+    const StarterConfigs& configs;
+    const StarterTrainParameters& parameters;
+    const StarterPictures& pictures;
+    const StarterLatents& latents;
+    const StarterSource& source;
+    const StarterVocabulary& vocabulary;
+    std::function<void(StarterNetworks& networks)> preview;
+};
+
+/// Trains text encoder and UNet (v-prediction) with the attention losses and leaves the averaged weights in them.
+void train_unet(StarterNetworks& networks, const UNetTraining& training, const std::filesystem::path& work,
+                const JobControl& job);
 
 /// Writes the diffusers folder in fp16.
-void export_starter(const StarterConfigs& configs, const StarterVocabulary& vocabulary, AutoencoderKl& vae,
-                    StarterNetworks& networks, const StarterTrainParameters& parameters, const StarterSource& source,
+void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNetworks& networks,
                     const std::filesystem::path& output);
 
 }  // namespace gse::neural

@@ -31,11 +31,11 @@ StarterConfigs starter_configs(const StarterTrainParameters& parameters, const S
     const int u = parameters.unet_channels;
     configs.unet.sample_size = parameters.image_size / 4;
     configs.unet.in_channels = configs.unet.out_channels = 4;
-    configs.unet.block_out_channels = {u, u * 8 / 5, u * 12 / 5};
+    configs.unet.block_out_channels = {u, u * 8 / 5, u * 2};
     configs.unet.layers_per_block = 1;
     configs.unet.down_block_types = {"CrossAttnDownBlock2D", "CrossAttnDownBlock2D", "DownBlock2D"};
     configs.unet.up_block_types = {"UpBlock2D", "CrossAttnUpBlock2D", "CrossAttnUpBlock2D"};
-    configs.unet.attention_head_dim = {u / 40, u * 8 / 5 / 32, u * 12 / 5 / 32};  // numbers of heads
+    configs.unet.heads = {u / 40, u / 20, u / 16};
     configs.unet.cross_attention_dim = parameters.text_width;
     configs.unet.norm_num_groups = 16;
     return configs;
@@ -62,8 +62,11 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
     trained.vae.scaling_factor = 1.0 / latents.deviation;
     torch::manual_seed(parameters.seed + 1);
     StarterNetworks networks{ClipTextEncoder(configs.text), UNet(configs.unet)};
-    train_unet(networks, trained, parameters, pictures, latents, source, vocabulary, work, job);
-    export_starter(trained, vocabulary, vae, networks, parameters, source, output);
+    UNetTraining training{trained, parameters, pictures, latents, source, vocabulary, {}};
+    // The unfinished model can be tried while the training goes on.
+    training.preview = [&](StarterNetworks& averaged) { export_starter(training, vae, averaged, work / "preview"); };
+    train_unet(networks, training, work, job);
+    export_starter(training, vae, networks, output);
     log::info("the model is in {}", output.string());
 }
 

@@ -201,7 +201,7 @@ struct Team {
         }
         if (finished || stopped || clock.seconds() - last_checkpoint > CheckpointSeconds) {
             save();
-            if (stage.checkpoint) stage.checkpoint(state.step);
+            if (stage.checkpoint) stage.checkpoint(ema.values());
         }
     }
 };
@@ -245,8 +245,7 @@ void Ema::update(const Parameters& parameters) {
     for (std::size_t i = 0; i < values_.size(); ++i) values_[i].lerp_(parameters[i].detach(), 1 - decay);
 }
 
-void run_stage(Stage& stage, StageClock clock, const StarterTrainParameters&, const std::filesystem::path& work,
-               const JobControl& job) {
+void run_stage(Stage& stage, StageClock clock, const std::filesystem::path& work, const JobControl& job) {
     Team team(stage, clock, job, work);
     if (load_checkpoint(team.checkpoint_path(), stage, team.optimizer, team.ema, team.state))
         log::info("{}: resuming at step {}", stage.name, team.state.step);

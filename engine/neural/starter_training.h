@@ -62,13 +62,12 @@ struct Stage {
     double ema_limit = 0.999;
     std::function<std::pair<torch::Tensor, std::vector<double>>(std::size_t replica, std::int64_t step)> loss;
     std::vector<std::string> columns;   // names of the numbers
-    /// Called with the averaged weights now and then (samples, checks); may be empty.
-    std::function<void(std::int64_t step)> checkpoint;
+    /// Called with the averaged weights whenever a checkpoint has been written; may be empty.
+    std::function<void(const Parameters& averaged)> checkpoint;
 };
 
 /// Runs the stage to its end, resuming from work/<name>.ckpt; leaves the EMA weights in replica 0.
-void run_stage(Stage& stage, StageClock clock, const StarterTrainParameters& parameters,
-               const std::filesystem::path& work, const JobControl& job);
+void run_stage(Stage& stage, StageClock clock, const std::filesystem::path& work, const JobControl& job);
 
 
 }  // namespace gse::neural

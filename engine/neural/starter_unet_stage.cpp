@@ -18,8 +18,6 @@ namespace gse::neural {
 namespace {
 
 constexpr int TrainTimesteps = 1000;
-constexpr double BetaStart = 0.00085;
-constexpr double BetaEnd = 0.012;
 
 /// Splits a caption as the tokenizer does: words and commas.
 std::vector<std::string> split_caption(const std::string& text) {
@@ -75,9 +73,12 @@ struct Batch {
 
 class BatchMaker {
 public:
-    BatchMaker(const StarterTrainParameters& parameters, const StarterPictures& pictures, const StarterLatents& latents,
-               const StarterSource& source, const StarterVocabulary& vocabulary)
-        : parameters_(parameters), pictures_(pictures), latents_(latents), source_(source), table_(vocabulary) {}
+    explicit BatchMaker(const UNetTraining& training)
+        : parameters_(training.parameters),
+          pictures_(training.pictures),
+          latents_(training.latents),
+          source_(training.source),
+          table_(training.vocabulary) {}
 
     Batch make(Random& random) const {
         const std::int64_t size = parameters_.unet_batch;
@@ -225,12 +226,13 @@ Parameters trainable(StarterNetworks& networks) {
 
 }  // namespace
 
-void train_unet(StarterNetworks& networks, const StarterConfigs& configs, const StarterTrainParameters& parameters,
-                const StarterPictures& pictures, const StarterLatents& latents, const StarterSource& source,
-                const StarterVocabulary& vocabulary, const std::filesystem::path& work, const JobControl& job) {
+void train_unet(StarterNetworks& networks, const UNetTraining& training, const std::filesystem::path& work,
+                const JobControl& job) {
+    const auto& configs = training.configs;
+    const auto& parameters = training.parameters;
     const torch::Device device(parameters.device);
-    const auto alphas_cumprod = scaled_linear_alphas_cumprod(TrainTimesteps, BetaStart, BetaEnd).to(device);
-    const BatchMaker batches(parameters, pictures, latents, source, vocabulary);
+    const auto alphas_cumprod = NoiseSchedule(SchedulerConfig{}).alphas_cumprod().to(device);
+    const BatchMaker batches(training);
     std::vector<StarterNetworks> replicas{networks};
     for (int r = 1; r < parameters.threads; ++r)
         replicas.push_back({ClipTextEncoder(configs.text), UNet(configs.unet)});
@@ -243,13 +245,19 @@ void train_unet(StarterNetworks& networks, const StarterConfigs& configs, const 
         replica.unet->to(device);
         stage.replicas.push_back(trainable(replica));
     }
+    StarterNetworks averaged{ClipTextEncoder(configs.text), UNet(configs.unet)};
+    auto averaged_parameters = trainable(averaged);
+    stage.checkpoint = [&](const Parameters& values) {
+        copy_parameters(values, averaged_parameters);
+        if (training.preview) training.preview(averaged);
+    };
     stage.loss = [&](std::size_t r, std::int64_t step) {
         Random random = Random::stream(parameters.seed * 3 + 2, static_cast<std::uint64_t>(step) * replicas.size() + r);
         Batch batch = batches.make(random);
         move_to(batch, device);
         return batch_loss(replicas[r], batch, alphas_cumprod, parameters);
     };
-    run_stage(stage, StageClock(parameters.unet_steps, parameters.unet_minutes), parameters, work, job);
+    run_stage(stage, StageClock(parameters.unet_steps, parameters.unet_minutes), work, job);
 }
 
 }  // namespace gse::neural

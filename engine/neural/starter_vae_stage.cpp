@@ -66,7 +66,7 @@ void train_vae(AutoencoderKl& vae, const StarterTrainParameters& parameters, con
         const double psnr = -10 * std::log10(std::max(mse.item<double>() / 4, 1e-12));
         return std::pair{loss, std::vector<double>{loss.item<double>(), psnr, kl.item<double>()}};
     };
-    run_stage(stage, StageClock(parameters.vae_steps, parameters.vae_minutes), parameters, work, job);
+    run_stage(stage, StageClock(parameters.vae_steps, parameters.vae_minutes), work, job);
 }
 
 StarterLatents encode_pictures(AutoencoderKl& vae, const StarterTrainParameters& parameters,
@@ -89,7 +89,7 @@ StarterLatents encode_pictures(AutoencoderKl& vae, const StarterTrainParameters&
                                 .sub_(1.0)
                                 .contiguous()
                                 .to(device);
-        latents.mean.slice(0, begin, begin + size).copy_(vae->encode_moments(images).first);
+        latents.mean.slice(0, begin, begin + size).copy_(vae->encode_moments(images).mean);
     }
     latents.deviation = latents.mean.std().item<double>();
     return latents;

@@ -1,0 +1,214 @@
+// gseditpro info, convert, render, turntable, synth.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "app/cli.h"
+#include "app/scene_tools.h"
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/io/cameras.h"
+#include "engine/io/image_file.h"
+#include "engine/io/scene_io.h"
+#include "engine/synth/synth.h"
+
+namespace gse::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
+
+Json info_json(const Scene& scene, const std::filesystem::path& path, std::size_t cameras) {
+    const SceneStatistics statistics = compute_statistics(scene.gaussians);
+    Json json;
+    json["file"] = path.string();
+    json["format"] = scene.info.format;
+    json["splats"] = scene.gaussians.size();
+    json["sh_degree"] = scene.gaussians.sh_degree();
+    json["attribute_mb"] = static_cast<double>(scene.gaussians.byte_size()) / 1e6;
+    json["cameras"] = cameras;
+    json["up"] = to_json(scene.info.up);
+    json["up_known"] = scene.info.up_known;
+    json["antialiased"] = scene.info.antialiased;
+    json["mean_opacity"] = statistics.mean_opacity;
+    json["bounds"] = {{"low", to_json(statistics.bounds_low)}, {"high", to_json(statistics.bounds_high)}};
+    json["robust_bounds"] = {{"low", to_json(statistics.robust_low)}, {"high", to_json(statistics.robust_high)}};
+    json["lint"] = {{"nan", statistics.nan_rows},
+                    {"infinite", statistics.infinite_rows},
+                    {"giant", statistics.giant_rows},
+                    {"invisible", statistics.invisible_rows},
+                    {"zero_quaternion", statistics.zero_quaternion_rows}};
+    json["labels"] = Json::array();
+    for (const auto& label : scene.labels.labels) json["labels"].push_back(label.name);
+    json["warnings"] = scene.info.warnings;
+    return json;
+}
+
+void print_info(const Json& json) {
+    const auto number = [&](const char* key) { return json["lint"][key].get<std::size_t>(); };
+    fmt::print("{}\n", json["file"].get<std::string>());
+    fmt::print("  format        {}, SH degree {}\n", json["format"].get<std::string>(), json["sh_degree"].get<int>());
+    fmt::print("  splats        {} ({:.1f} MB of attributes)\n", json["splats"].get<std::size_t>(),
+               json["attribute_mb"].get<double>());
+    fmt::print("  cameras       {}\n", json["cameras"].get<std::size_t>());
+    fmt::print("  bounds        {} to {}\n", json["bounds"]["low"].dump(), json["bounds"]["high"].dump());
+    fmt::print("  robust bounds {} to {}\n", json["robust_bounds"]["low"].dump(), json["robust_bounds"]["high"].dump());
+    fmt::print("  up            {}{}\n", json["up"].dump(), json["up_known"].get<bool>() ? "" : " (assumed)");
+    fmt::print("  lint          {} NaN, {} infinite, {} giant, {} invisible, {} zero quaternions\n", number("nan"),
+               number("infinite"), number("giant"), number("invisible"), number("zero_quaternion"));
+    for (const auto& label : json["labels"]) fmt::print("  label         {}\n", label.get<std::string>());
+    for (const auto& warning : json["warnings"]) fmt::print("  warning       {}\n", warning.get<std::string>());
+}
+
+struct SceneOptions {
+    std::filesystem::path input, output;
+    RenderParameters render;
+    TurntableParameters turn;
+    std::string format;
+    bool labels = false;
+    bool drop = false;
+    bool json = false;
+};
+
+void add_info(CLI::App& app, CommandContext&) {
+    auto options = std::make_shared<SceneOptions>();
+    auto* command = app.add_subcommand("info", "Print what a scene holds and what may be wrong with it");
+    command->add_option("scene", options->input, "Scene file or folder")->required();
+    command->add_flag("--json", options->json, "Print JSON");
+    command->callback([options] {
+        const Scene scene = load_scene(options->input);
+        const Json json = info_json(scene, options->input, scene_cameras(options->input, "").size());
+        if (options->json) fmt::print("{}\n", json.dump(2));
+        else print_info(json);
+    });
+}
+
+void add_convert(CLI::App& app, CommandContext&) {
+    auto options = std::make_shared<SceneOptions>();
+    auto* command = app.add_subcommand("convert", "Write a scene in another format");
+    command->add_option("input", options->input, "Scene file or folder")->required();
+    command->add_option("output", options->output, "New file: .ply, .compressed.ply, .splat or .spz")->required();
+    command->add_option("--format", options->format, "ply, compressed.ply, splat or spz; from the name when left out");
+    command->add_flag("--labels", options->labels, "Keep label columns (PLY only)");
+    command->add_flag("--drop-unusable", options->drop, "Leave out splats with NaN or illegal infinities");
+    command->callback([options] {
+        Scene scene = load_scene(options->input);
+        if (options->drop) {
+            const std::size_t before = scene.gaussians.size();
+            scene.gaussians = drop_unusable(scene.gaussians);
+            if (scene.gaussians.size() != before) scene.labels = {};
+            log::info("{} unusable splats were dropped", before - scene.gaussians.size());
+        }
+        SaveOptions save;
+        save.format = options->format;
+        if (options->labels && !scene.labels.labels.empty()) save.from_label = &scene.labels.labels.front();
+        save_scene(options->output, scene, save);
+        fmt::print("{} splats written to {}\n", scene.gaussians.size(), options->output.string());
+    });
+}
+
+void add_render(CLI::App& app, CommandContext&) {
+    auto options = std::make_shared<SceneOptions>();
+    auto* command = app.add_subcommand("render", "Take a picture of a scene");
+    command->add_option("scene", options->input, "Scene file or folder")->required();
+    command->add_option("output", options->output, "PNG to write")->required();
+    bind_fields(*command, options->render, "Picture");
+    command->callback([options] {
+        const Scene scene = load_scene(options->input);
+        Painter painter;
+        const Camera camera = choose_camera(scene, options->input, options->render);
+        const auto& output =
+            painter.paint(scene.gaussians.spans(), camera, raster_settings(options->render, scene.info));
+        write_png(options->output, output.colour,
+                      {{"Software", "GSEditPro"}, {"Recipe", fields_to_json(options->render).dump()}});
+        fmt::print("{}\n", options->output.string());
+    });
+}
+
+void add_turntable(CLI::App& app, CommandContext& context) {
+    auto options = std::make_shared<SceneOptions>();
+    auto before = std::make_shared<std::filesystem::path>();
+    auto* command = app.add_subcommand("turntable", "Film a turn around a scene");
+    command->add_option("scene", options->input, "Scene file or folder")->required();
+    command->add_option("output", options->output, "Film (.mp4), or a folder for PNG frames")->required();
+    command->add_option("--before", *before, "Another scene to show in the left half");
+    bind_fields(*command, options->render, "Picture");
+    bind_fields(*command, options->turn, "Turn");
+    command->callback([options, before, &context] {
+        const Scene scene = load_scene(options->input);
+        if (before->empty()) {
+            write_turntable(options->output, scene, nullptr, options->render, options->turn, context.job());
+        } else {
+            const Scene source = load_scene(*before);
+            write_turntable(options->output, source, &scene, options->render, options->turn, context.job());
+        }
+        fmt::print("{}\n", options->output.string());
+    });
+}
+
+void check_word(const std::string& word, const std::vector<std::string>& words, const char* kind, bool may_be_empty) {
+    if (word.empty() && may_be_empty) return;
+    if (std::find(words.begin(), words.end(), word) != words.end()) return;
+    std::string list;
+    for (const auto& known : words) list += (list.empty() ? "" : ", ") + known;
+    throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" is not {} of the synthetic world", word, kind),
+                "choose from " + list);
+}
+
+void add_synth(CLI::App& app, CommandContext&) {
+    struct SynthOptions {
+        synth::SceneSpec spec;
+        std::filesystem::path output;
+        std::string edit;
+        bool labels = true;
+    };
+    auto options = std::make_shared<SynthOptions>();
+    auto& spec = options->spec;
+    auto* command = app.add_subcommand("synth", "Generate a scene of the synthetic world, parts labelled");
+    command->add_option("output", options->output, "Scene file to write")->required();
+    command->add_option("--object", spec.object, "Main object")->capture_default_str();
+    command->add_option("--material", spec.material, "Colour or material of the object")->capture_default_str();
+    command->add_option("--accessory", spec.accessory, "What the object wears; empty = nothing");
+    command->add_option("--accessory-colour", spec.accessory_colour, "Colour of the accessory; empty = its own");
+    command->add_option("--ground", spec.ground, "What the object stands on")->capture_default_str();
+    command->add_option("--seed", spec.seed, "Shape, pose, texture and light")->capture_default_str();
+    command->add_option("--splats", spec.gaussian_budget, "About this many splats")
+        ->capture_default_str()
+        ->check(CLI::Range(500, 5000000));
+    command->add_option("--edit", options->edit, "Sentence of an edit: writes the true edited scene instead");
+    command->callback([options] {
+        auto& wanted = options->spec;
+        check_word(wanted.object, synth::object_words(), "an object", false);
+        check_word(wanted.material, synth::material_words(), "a material", false);
+        check_word(wanted.accessory, synth::accessory_words(), "an accessory", true);
+        check_word(wanted.ground, synth::ground_words(), "a ground", false);
+        const auto final_spec = options->edit.empty() ? wanted : synth::apply_edit(wanted, options->edit);
+        synth::SynthScene result = synth::generate(final_spec);
+        std::vector<float> parts(result.parts.size());
+        std::transform(result.parts.begin(), result.parts.end(), parts.begin(),
+                       [](synth::Part part) { return static_cast<float>(part); });
+        SaveOptions save;
+        const auto is_ply = options->output.extension() == ".ply" && options->output.stem().extension() != ".compressed";
+        if (is_ply) {
+            result.scene.labels.labels.push_back(make_label("part", std::move(parts), 0.5f));
+            save.from_label = &result.scene.labels.labels.front();
+        }
+        save_scene(options->output, result.scene, save);
+        fmt::print("{}: {}\n", options->output.string(), synth::full_caption(final_spec).text);
+    });
+}
+
+}  // namespace
+
+void add_scene_commands(CLI::App& app, CommandContext& context) {
+    add_info(app, context);
+    add_convert(app, context);
+    add_render(app, context);
+    add_turntable(app, context);
+    add_synth(app, context);
+}
+
+}  // namespace gse::app

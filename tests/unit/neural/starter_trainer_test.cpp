@@ -1,0 +1,138 @@
+// The starter's trainer on a toy world: it learns, resumes to the same bits, and writes a folder that can be read.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <fstream>
+#include <sstream>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/random.h"
+#include "engine/neural/starter_data.h"
+#include "engine/neural/starter_trainer.h"
+#include "tests/test_paths.h"
+
+namespace {
+
+using namespace gse::neural;
+
+/// Coloured squares on grey.
+class ToySource : public StarterSource {
+public:
+    StarterPicture picture(std::uint64_t index, int size) const override {
+        const Layout layout(index, size);
+        StarterPicture picture;
+        picture.rgb.assign(static_cast<std::size_t>(size * size * 3), 40);
+        const int cells = size / 4;
+        picture.coverage.assign(static_cast<std::size_t>(3 * cells * cells), 0);
+        for (int y = layout.y; y < layout.y + size / 2; ++y)
+            for (int x = layout.x; x < layout.x + size / 2; ++x) {
+                picture.rgb[static_cast<std::size_t>((y * size + x) * 3 + layout.colour)] = 230;
+                picture.coverage[static_cast<std::size_t>(cells * cells + (y / 4) * cells + x / 4)] = 255;
+            }
+        return picture;
+    }
+    StarterCaption caption(std::uint64_t index, std::uint64_t, bool) const override {
+        static const char* const names[] = {"red", "green", "blue"};
+        const std::string colour = names[Layout(index, 32).colour];
+        return {"a " + colour + " square, front view",
+                {{colour, 0, StarterPart::Object}, {"square", 0, StarterPart::Object}}};
+    }
+    std::vector<std::string> vocabulary() const override {
+        return {"a", "red", "green", "blue", "square", "front", "view"};
+    }
+    std::string identity() const override { return "toy"; }
+
+private:
+    struct Layout {
+        int colour, x, y;
+        Layout(std::uint64_t index, int size) {
+            gse::Random random = gse::Random::stream(5, index);
+            colour = static_cast<int>(random.below(3));
+            x = static_cast<int>(random.below(static_cast<std::uint64_t>(size / 8))) * 4;
+            y = static_cast<int>(random.below(static_cast<std::uint64_t>(size / 8))) * 4;
+        }
+    };
+};
+
+StarterTrainParameters toy_parameters() {
+    StarterTrainParameters parameters;
+    parameters.image_size = 32;
+    parameters.pictures = 32;
+    parameters.threads = 2;
+    parameters.vae_steps = 6;
+    parameters.unet_steps = 6;
+    parameters.vae_batch = 2;
+    parameters.unet_batch = 2;
+    parameters.vae_channels = 8;
+    parameters.unet_channels = 80;
+    parameters.text_width = 32;
+    return parameters;
+}
+
+std::vector<double> column(const std::filesystem::path& log, std::size_t index) {
+    std::ifstream stream(log);
+    std::string line;
+    std::getline(stream, line);
+    std::vector<double> values;
+    while (std::getline(stream, line)) {
+        std::istringstream cells(line);
+        std::string cell;
+        for (std::size_t i = 0; i <= index; ++i) std::getline(cells, cell, '\t');
+        values.push_back(std::stod(cell));
+    }
+    return values;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("an interrupted training run resumes to the same weights") {
+    const ToySource source;
+    const gse::test::ScratchFolder scratch;
+    const auto straight = scratch.path() / "straight";
+    train_starter(toy_parameters(), source, scratch.path() / "work1", straight, {});
+
+    // Stopped twice, in either stage, and started again with the same command.
+    for (const int stop_at : {500, 500}) {
+        std::stop_source stop;
+        gse::JobControl job;
+        job.stop = stop.get_token();
+        const bool in_unet = std::filesystem::exists(scratch.path() / "work2/vae.ckpt");
+        job.progress = [&](std::string_view stage, int step, int) {
+            if (stage == (in_unet ? "training unet" : "training vae") && step >= stop_at) stop.request_stop();
+        };
+        DOCTEST_CHECK_THROWS_AS(
+            train_starter(toy_parameters(), source, scratch.path() / "work2", scratch.path() / "resumed", job),
+            gse::Error);
+    }
+    train_starter(toy_parameters(), source, scratch.path() / "work2", scratch.path() / "resumed", {});
+    for (const char* file : {"vae/diffusion_pytorch_model.safetensors", "unet/diffusion_pytorch_model.safetensors",
+                             "text_encoder/model.safetensors", "gseditpro.json", "tokenizer/vocab.json"})
+        DOCTEST_CHECK_MESSAGE(gse::read_file(straight / file) == gse::read_file(scratch.path() / "resumed" / file), file);
+}
+
+DOCTEST_TEST_CASE("training lowers every loss on the toy world") {
+    const ToySource source;
+    const gse::test::ScratchFolder scratch;
+    auto parameters = toy_parameters();
+    parameters.vae_steps = 150;
+    parameters.unet_steps = 200;
+    parameters.vae_batch = parameters.unet_batch = 8;
+    train_starter(parameters, source, scratch.path() / "work", scratch.path() / "model", {});
+    const auto psnr = column(scratch.path() / "work/vae.tsv", 5);
+    DOCTEST_CHECK(psnr.back() > psnr.front() + 3);   // decibels; a flat picture gains nothing
+    for (const std::size_t loss : {5u, 6u}) {         // diffusion, place
+        const auto values = column(scratch.path() / "work/unet.tsv", loss);
+        DOCTEST_CHECK(values.back() < 0.8 * values.front());
+    }
+}
+
+DOCTEST_TEST_CASE("every word of a vocabulary becomes one token") {
+    const auto vocabulary = build_vocabulary({"bear", "beard", "ear", "a", "golden", "gold", "old", "wearing"});
+    const auto json = nlohmann::json::parse(vocabulary.vocab_json);
+    for (const char* word : {"bear</w>", "beard</w>", "ear</w>", "a</w>", "golden</w>", "gold</w>", "old</w>"})
+        DOCTEST_CHECK_MESSAGE(json.contains(word), word);
+    DOCTEST_CHECK(static_cast<int>(json.size()) == vocabulary.size);
+    DOCTEST_CHECK(json["<|endoftext|>"] == vocabulary.eos);
+}
