@@ -69,7 +69,7 @@ ShapeList make_crown(const Anchor& anchor, Random& random) {
         const double gem = radius * 1.03 + 0.01;
         Shape stone =
             ellipsoid(base + Vec3{gem * std::cos(between), 0.085, gem * std::sin(between)},
-                      {0.042, 0.04, 0.042}, {Slot::Trim, Gems[static_cast<std::size_t>(i) % Gems.size()]});
+                      {0.042, 0.04, 0.042}, {Slot::Fixed, Gems[static_cast<std::size_t>(i) % Gems.size()]});
         stone.density = 2;
         shapes.push_back(stone);
     }
@@ -107,12 +107,11 @@ ShapeList make_scarf(const Anchor& anchor, Random& random) {
     const double thick = random.uniform(0.085, 0.1);
     const double side = random.uniform() < 0.5 ? -1 : 1;
     const double hang = random.uniform(0.3, 0.38);
-    const double rx = anchor.neck_x + thick * 0.5;
+    const double rx = std::max(anchor.neck_x + thick * 0.5, 0.19);
     const double rz = anchor.neck_z + thick * 0.5;
     ShapeList shapes;
-    Shape ring = torus(anchor.neck, 1, thick, Main);
     // A ring of its own width and depth whose tube stays round: the profile is bent in model space.
-    ring = sheet(
+    Shape ring = sheet(
         anchor.neck,
         [=](double u, double v) {
             const double a = Tau * u;

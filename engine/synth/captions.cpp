@@ -56,7 +56,8 @@ private:
 };
 
 bool plural(const std::string& accessory) {
-    return accessory == "sunglasses" || accessory == "flames" || accessory == "wings";
+    return accessory == "sunglasses" || accessory == "glasses" || accessory == "flames" ||
+           accessory == "wings";
 }
 
 /// A noun with its adjective ("" = none) and article.
@@ -130,6 +131,9 @@ struct EditReader {
     bool known = false;
 
     void read(const std::string& word) {
+        static const std::vector<std::string> joints{"on",  "in",      "with",    "wearing",
+                                                     "and", "without", "standing"};
+        if (contains(joints, word)) finish();  // "made of gold on ...": no noun follows the adjective
         if (word == "without" || word == "remove" || word == "no") {
             removing = true;
         } else if (contains(material_words(), word)) {
@@ -148,7 +152,11 @@ struct EditReader {
     }
     void finish() {
         if (adjective.empty()) return;
-        (accessory_last ? spec.accessory_colour : spec.material) = adjective;
+        if (!accessory_last)
+            spec.material = adjective;
+        else if (!accessory_colour_words(spec.accessory).empty())
+            spec.accessory_colour = adjective;
+        adjective.clear();
     }
 
 private:
@@ -166,7 +174,7 @@ private:
         }
         if (spec.accessory != word) spec.accessory_colour.clear();
         spec.accessory = word;
-        if (!adjective.empty()) spec.accessory_colour = adjective;
+        if (!adjective.empty() && !accessory_colour_words(word).empty()) spec.accessory_colour = adjective;
         noun(true);
     }
 };
@@ -192,10 +200,13 @@ Caption random_caption(const SceneSpec& spec, double azimuth, Random& random) {
     const bool only_accessory = accessory && kind < 0.06;
     const bool only_object = kind >= 0.06 && kind < 0.16;
     if (only_accessory) {
+        if (chance(random, 0.2)) writer.say("add");
         noun_phrase(writer, chance(random, 0.85) ? spec.accessory_colour : "", spec.accessory,
                     Part::Accessory);
     } else {
-        if (chance(random, 0.12)) writer.say(chance(random, 0.5) ? "a photo of" : "a picture of");
+        const double opening = random.uniform();
+        if (opening < 0.12) writer.say(opening < 0.06 ? "a photo of" : "a picture of");
+        if (opening > 0.96) writer.say(opening > 0.98 ? "make it" : "turn it into");
         object_phrase(writer, spec, chance(random, 0.85), random);
         if (accessory && !only_object && chance(random, 0.88))
             accessory_phrase(writer, spec, chance(random, 0.85), random);

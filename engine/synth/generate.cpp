@@ -31,6 +31,9 @@ enum Stream : std::uint64_t {
     SampleStream = 500
 };
 
+/// Half a turn about z: model space (y up) to world space (y down); the front stays at -z.
+Vec3 to_world(const Vec3& model) { return {-model.x, -model.y, model.z}; }
+
 /// Turn and size of the object (and its accessory) in the scene.
 struct Pose {
     Mat3 turn = Mat3::identity();
@@ -80,9 +83,8 @@ public:
 private:
     void add_one(const SurfacePoint& point, const Vec3& colour, Part part, Random& random) {
         constexpr double Wide = 0.72, Narrow = 0.62, Thin = 0.10;  // standard deviations over the spacing
-        // Half a turn about z: model space (y up) to world space (y down); the front stays at -z.
-        const Vec3 position{-point.position.x, -point.position.y, point.position.z};
-        const Vec3 normal{-point.normal.x, -point.normal.y, point.normal.z};
+        const Vec3 position = to_world(point.position);
+        const Vec3 normal = to_world(point.normal);
         const Quat turn = quaternion(rotation_to(normal));  // local y is the thin axis
         const double opacity = random.uniform(0.92, 0.97);
         for (const double value : {position.x, position.y, position.z})
@@ -111,6 +113,25 @@ LabelSet labels_of(const std::vector<Part>& parts) {
         set.labels.push_back(make_label(name, std::move(weight), 0.5f));
     }
     return set;
+}
+
+constexpr double TargetHeight = 0.59;  // a little above the middle of the figure: room for a hat
+
+struct Frame {
+    double zoom = 1;
+    int width = 0, height = 0;
+};
+
+Camera camera_at(const Vec3& target, double azimuth, double elevation, const Frame& frame) {
+    constexpr double Fov = std::numbers::pi / 4;
+    constexpr double Distance = 2.1;  // a figure of 1 unit fills about 60 % of the frame
+    OrbitParameters orbit;
+    orbit.centre = target;
+    orbit.radius = Distance / std::max(frame.zoom, 1e-3);
+    orbit.elevation = elevation;
+    const double aspect = static_cast<double>(frame.width) / std::max(frame.height, 1);
+    orbit.fov_x = 2 * std::atan(std::tan(0.5 * Fov) * std::max(aspect, 1.0));
+    return orbit_camera(orbit, azimuth, frame.width, frame.height);
 }
 
 }  // namespace
@@ -150,6 +171,8 @@ SynthScene generate(const SceneSpec& spec) {
         writer.add(worn, colours_of(own_worn, worn, shapes, dye, light), Part::Accessory,
                    stream(OpacityStream + 2));
     }
+    const Vec3 face = (model.anchor.top * 2 + model.anchor.eyes) / 3;
+    result.head = to_world(pose.turn * face * pose.size + pose.shift);
     result.scene.gaussians = GaussianSet(writer.take());
     result.scene.info.format = "synthetic";
     result.scene.info.up_known = true;
@@ -158,16 +181,12 @@ SynthScene generate(const SceneSpec& spec) {
 }
 
 Camera scene_camera(const SynthScene&, double azimuth, double elevation, double zoom, int width, int height) {
-    constexpr double Fov = std::numbers::pi / 4;
-    constexpr double Distance = 2.05;      // a figure of 1 unit fills about 60 % of the frame
-    constexpr double TargetHeight = 0.56;  // a little above the middle: room for a hat
-    OrbitParameters orbit;
-    orbit.centre = {0, -TargetHeight, 0};
-    orbit.radius = Distance / std::max(zoom, 1e-3);
-    orbit.elevation = elevation;
-    const double aspect = static_cast<double>(width) / std::max(height, 1);
-    orbit.fov_x = 2 * std::atan(std::tan(0.5 * Fov) * std::max(aspect, 1.0));
-    return orbit_camera(orbit, azimuth, width, height);
+    return camera_at({0, -TargetHeight, 0}, azimuth, elevation, {zoom, width, height});
+}
+
+Camera head_camera(const SynthScene& scene, double azimuth, double elevation, double zoom, int width,
+                   int height) {
+    return camera_at(scene.head, azimuth, elevation, {zoom, width, height});
 }
 
 }  // namespace gse::synth

@@ -74,9 +74,9 @@ Vec3 gold(const Material& material, const Light& light, const SurfacePoint& poin
                     value_noise(q + Vec3{0, 57, 0}) - 0.5};
     const Vec3 n = normalized(point.normal + dent * 0.7);
     const double towards = dot(n, light.key);
-    Vec3 colour = mix({0.42, 0.23, 0.02}, {0.90, 0.64, 0.10}, smooth_step(-0.9, 0.45, n.y + 0.4 * towards));
+    Vec3 colour = mix({0.36, 0.19, 0.01}, {0.88, 0.61, 0.08}, smooth_step(-0.8, 0.55, n.y + 0.4 * towards));
     colour = mix(colour, {0.30, 0.15, 0.01}, 0.8 * bell(n.y, -0.42, 0.2) + 0.35 * bell(n.y, 0.14, 0.07));
-    colour = mix(colour, {1.0, 0.95, 0.62}, 0.95 * bell(towards, 0.93, 0.16) + 0.5 * bell(n.y, 0.38, 0.12));
+    colour = mix(colour, {1.0, 0.95, 0.62}, 0.95 * bell(towards, 0.93, 0.16) + 0.3 * bell(n.y, 0.38, 0.1));
     return colour;
 }
 
@@ -166,7 +166,11 @@ Vec3 shade(const Paint& paint, const Material& material, const Light& light, con
         }
         const double brightness = (colour.x + colour.y + colour.z) / 3;
         if (paint.slot == Slot::Pale)
-            colour = brightness > 0.9 ? colour * 0.72 : mix(colour, {1, 1, 1}, plain ? 0.5 : 0.25);
+            colour = brightness > 0.9 ? colour * 0.72
+                                      : mix(colour, {1, 1, 1},
+                                            plain   ? 0.5
+                                            : metal ? 0.08
+                                                    : 0.25);
         if (paint.slot == Slot::Deep)
             colour = brightness < 0.12 ? mix(colour, {1, 1, 1}, 0.25) : colour * 0.58;
     }

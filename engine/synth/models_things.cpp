@@ -276,7 +276,7 @@ Model make_tree(Random& random) {
     const Vec3 offset{random.uniform(0, 40), 0, random.uniform(0, 40)};
     const auto leaves = [offset](const SurfacePoint& point) {
         const double dapple = value_noise((point.position + offset) * 9.0);
-        return dapple > 0.7 ? Pale : dapple < 0.32 ? Deep : Main;
+        return dapple < 0.38 ? Deep : Main;
     };
     Model model;
     auto& s = model.shapes;

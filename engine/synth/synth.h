@@ -16,13 +16,13 @@ enum class Part : std::uint8_t { Ground = 0, Object = 1, Accessory = 2 };
 
 /// Everything that defines a scene in words and numbers; the same spec gives the same scene, bit for bit.
 struct SceneSpec {
-    std::string object = "bear";   // see object_words()
-    std::string material = "red";  // see material_words(); colour or material of the object
-    std::string accessory;         // see accessory_words(); empty = none
-    std::string accessory_colour;  // colour of the accessory; empty = its natural look
-    std::string ground = "grass";  // see ground_words()
-    std::uint64_t seed = 0;        // shape, pose, texture and light variation
-    int gaussian_budget = 6000;    // about this many Gaussians in all
+    std::string object = "bear";     // see object_words()
+    std::string material = "red";    // see material_words(); colour or material of the object
+    std::string accessory{};         // see accessory_words(); empty = none
+    std::string accessory_colour{};  // colour of the accessory; empty = its natural look
+    std::string ground = "grass";    // see ground_words()
+    std::uint64_t seed = 0;          // shape, pose, texture and light variation
+    int gaussian_budget = 6000;      // about this many Gaussians in all
 };
 
 /// A generated scene: up is -y as in COLMAP worlds, object standing on y = 0, front towards -z, about 1 unit
@@ -31,6 +31,7 @@ struct SynthScene {
     SceneSpec spec;
     Scene scene;
     std::vector<Part> parts;  // [N]
+    Vec3 head{};              // world position where hats and sunglasses belong: middle of the "face"
 };
 
 const std::vector<std::string>& object_words();     // at least 8
@@ -65,6 +66,10 @@ SceneSpec held_out_spec(Random& random, double with_accessory = 0.5);
 /// depends on the angles only, so that a scene and its edited twin are seen by the same camera.
 Camera scene_camera(const SynthScene& scene, double azimuth, double elevation, double zoom, int width,
                     int height);
+
+/// The same, aimed at the head: for close-ups of small accessories (zoom about 1.5 to 2).
+Camera head_camera(const SynthScene& scene, double azimuth, double elevation, double zoom, int width,
+                   int height);
 
 /// "front view", "side view" or "back view" of an azimuth.
 std::string view_words(double azimuth);
