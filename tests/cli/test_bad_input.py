@@ -1,0 +1,161 @@
+"""Bad input gets one clear sentence, an exit code that is not 0, and leaves nothing behind."""
+import os
+import pathlib
+import unittest
+
+from program import ProgramTest, grid_rows, ply_bytes, run
+
+ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
+
+
+class BadScenes(ProgramTest):
+    def refuse(self, path, *words):
+        """Neither info nor convert accept the file, and convert writes nothing."""
+        self.assert_one_sentence(run("info", path), *words)
+        before = self.folder_listing()
+        self.assert_one_sentence(run("convert", path, self.folder / "out/new.ply"))
+        self.assertEqual(self.folder_listing(), before)
+
+    def test_missing_file(self):
+        self.refuse(self.folder / "none.ply", "none.ply")
+
+    def test_empty_file(self):
+        for name in ["a.ply", "a.splat", "a.spz", "a.sog"]:
+            self.refuse(self.write(name, b""), name)
+
+    def test_truncated(self):
+        whole = ply_bytes(grid_rows())
+        self.refuse(self.write("cut.ply", whole[: len(whole) // 2]), "cut.ply")
+        self.refuse(self.write("cut_header.ply", whole[:60]), "cut_header.ply")
+        self.refuse(self.write("cut.splat", b"\0" * 33), "cut.splat")
+
+    def test_wrong_magic(self):
+        self.refuse(self.write("text.ply", b"this is not a scene\n" * 10), "text.ply")
+        self.refuse(self.write("noise.spz", bytes(range(256)) * 4), "noise.spz")
+        self.refuse(self.write("noise.sog", bytes(range(256)) * 4), "noise.sog")
+
+    def test_wrong_and_huge_counts(self):
+        self.refuse(self.write("more.ply", ply_bytes(grid_rows(), count=100000)), "more.ply")
+        self.refuse(self.write("huge.ply", ply_bytes(grid_rows(), count=10**18)), "huge.ply")
+        self.refuse(self.write("negative.ply", ply_bytes(grid_rows(), count=-5)), "negative.ply")
+
+    def test_no_gaussians(self):
+        self.refuse(self.write("points.ply", ply_bytes([(0, 0, 0)], names=["x", "y", "z"])), "points.ply")
+
+    def test_nan_filled_opens_and_is_counted(self):
+        nan = float("nan")
+        path = self.write("nan.ply", ply_bytes([(nan,) * 17] * 50))
+        self.assertEqual(self.info(path)["lint"]["nan"], 50)
+        process = run("edit", path, "--prompt", "a red bear", "--source", "bear", "--target", "red", "--out",
+                      self.folder / "out")
+        self.assert_one_sentence(process)
+        self.assertFalse((self.folder / "out").exists())
+
+
+class BadOptions(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("scene.ply", ply_bytes(grid_rows()))
+
+    def edit(self, *arguments):
+        return run("edit", self.scene, "--out", self.folder / "out", *arguments)
+
+    def refuse_edit(self, arguments, *words):
+        self.assert_one_sentence(self.edit(*arguments), *words)
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_prompt_without_target_word(self):
+        self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "golden"], "golden")
+
+    def test_missing_model(self):
+        self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "red", "--model",
+                          self.folder / "no_model"], "no_model")
+
+    def test_unwritable_output(self):
+        blocker = self.write("file", b"x")
+        process = run("convert", self.scene, blocker / "new.ply")
+        self.assert_one_sentence(process, "file")
+        process = run("edit", self.scene, "--source", "bear", "--prompt", "a red bear", "--target", "red", "--out",
+                      blocker / "out")
+        self.assert_one_sentence(process, "file")
+
+    def test_unknown_option_values(self):
+        for arguments in [["render", self.scene, self.folder / "p.png", "--background", "pinkish"],
+                          ["render", self.scene, self.folder / "p.png", "--up", "w"],
+                          ["render", self.scene, self.folder / "p.png", "--view", 5],
+                          ["convert", self.scene, self.folder / "p.xyz"],
+                          ["synth", self.folder / "p.ply", "--object", "dragonfly"]]:
+            self.assert_one_sentence(run(*arguments))
+        self.assertEqual(self.folder_listing(), ["scene.ply"])
+
+    def test_usage_errors_exit_2(self):
+        for arguments in [["frobnicate"], ["render"], ["render", self.scene, "p.png", "--width", "-4"]]:
+            self.assertEqual(run(*arguments).returncode, 2)
+
+
+@unittest.skipUnless((ASSETS / "models/starter/model_index.json").exists(), "[skip] the starter model is not there")
+class BadModels(ProgramTest):
+    def copy_model(self):
+        target = self.folder / "model"
+        source = ASSETS / "models/starter"
+        for path in source.rglob("*"):
+            if path.is_file():
+                copy = target / path.relative_to(source)
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                os.symlink(path, copy)
+        return target
+
+    def refuse_model(self, model, *words):
+        scene = self.write("scene.ply", ply_bytes(grid_rows()))
+        process = run("edit", scene, "--source", "bear", "--prompt", "a red bear", "--target", "red", "--model", model,
+                      "--out", self.folder / "out")
+        self.assert_one_sentence(process, *words)
+        self.assertFalse((self.folder / "out").exists())
+
+    def change_header(self, model, change):
+        import json
+        import struct
+        path = model / "text_encoder/model.safetensors"
+        data = path.read_bytes()
+        path.unlink()
+        length = struct.unpack("<Q", data[:8])[0]
+        header = json.loads(data[8:8 + length])
+        body = change(header, data[8 + length:])
+        text = json.dumps(header).encode()
+        path.write_bytes(struct.pack("<Q", len(text)) + text + body)
+
+    def test_missing_tensor(self):
+        model = self.copy_model()
+
+        def drop_last(header, body):
+            name = max((key for key in header if key != "__metadata__"), key=lambda key: header[key]["data_offsets"][1])
+            begin = header.pop(name)["data_offsets"][0]
+            self.dropped = name
+            return body[:begin]
+
+        self.change_header(model, drop_last)
+        self.refuse_model(model, self.dropped)
+
+    def test_misshaped_tensor(self):
+        model = self.copy_model()
+
+        def reshape(header, body):
+            name = next(key for key in header if key != "__metadata__" and len(header[key]["shape"]) == 2)
+            header[name]["shape"] = header[name]["shape"][::-1]
+            if header[name]["shape"][0] == header[name]["shape"][1]:
+                header[name]["shape"] = [1, header[name]["shape"][0] * header[name]["shape"][1]]
+            self.reshaped = name
+            return body
+
+        self.change_header(model, reshape)
+        self.refuse_model(model, self.reshaped)
+
+    def test_missing_folder_and_pickle(self):
+        model = self.copy_model()
+        (model / "unet/diffusion_pytorch_model.safetensors").unlink()
+        self.refuse_model(model, "unet")
+        self.refuse_model(self.write("model.ckpt", b"\x80\x02}q\x00."), "safetensors")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,81 @@
+"""info, convert, render, turntable, synth and bench do what their help says."""
+import json
+import unittest
+
+from program import SHARED, ProgramTest, grid_rows, ply_bytes, run
+
+
+class Commands(ProgramTest):
+    def test_version_and_help(self):
+        self.assertRegex(run("--version").stdout, r"gseditpro \d+\.\d+")
+        for command in ["info", "convert", "render", "turntable", "locate", "edit", "synth", "train-starter", "bench"]:
+            process = run(command, "--help")
+            self.assertEqual(process.returncode, 0)
+            for line in process.stdout.splitlines():
+                if line.startswith("  --"):  # every option says what it does
+                    self.assertGreater(len(line.split()), 2, f"{command}: {line}")
+
+    def test_info_counts_and_lints(self):
+        rows = grid_rows(4)
+        rows[0] = (float("nan"),) + rows[0][1:]
+        rows[1] = rows[1][:13] + (0, 0, 0, 0)
+        rows[2] = rows[2][:9] + (-20.0,) + rows[2][10:]
+        found = self.info(self.write("scene.ply", ply_bytes(rows)))
+        self.assertEqual(found["splats"], 64)
+        self.assertEqual(found["lint"]["nan"], 1)
+        self.assertEqual(found["lint"]["zero_quaternion"], 1)
+        self.assertEqual(found["lint"]["invisible"], 1)
+
+    def test_convert_there_and_back(self):
+        source = self.write("scene.ply", ply_bytes(grid_rows()))
+        for name in ["a.compressed.ply", "b.splat", "c.spz"]:
+            process = run("convert", source, self.folder / name)
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertEqual(self.info(self.folder / name)["splats"], 216)
+        process = run("convert", source, self.folder / "copy.ply")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        body = lambda path: path.read_bytes().split(b"end_header\n", 1)[1]
+        self.assertEqual(body(self.folder / "copy.ply"), body(source))
+
+    def test_synth_is_reproducible_and_labelled(self):
+        for name in ["one.ply", "two.ply"]:
+            process = run("synth", self.folder / name, "--object", "bear", "--accessory", "hat", "--seed", 7)
+            self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual((self.folder / "one.ply").read_bytes(), (self.folder / "two.ply").read_bytes())
+        self.assertTrue(self.info(self.folder / "one.ply")["labels"])
+        process = run("synth", self.folder / "edited.ply", "--object", "bear", "--seed", 7, "--edit", "a blue bear")
+        self.assertIn("blue bear", process.stdout)
+
+    def test_render_and_turntable(self):
+        scene = self.write("scene.ply", ply_bytes(grid_rows()))
+        process = run("render", scene, self.folder / "picture.png", "--width", 96, "--height", 64)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual((self.folder / "picture.png").read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        process = run("turntable", scene, self.folder / "turn.mp4", "--width", 96, "--height", 64, "--frames", 6)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn(b"ftyp", (self.folder / "turn.mp4").read_bytes()[:16])
+        process = run("turntable", scene, self.folder / "frames", "--width", 96, "--height", 64, "--frames", 3)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual(len(list((self.folder / "frames").glob("*.png"))), 3)
+
+    def test_bench_raster_prints_json(self):
+        scene = self.write("scene.ply", ply_bytes(grid_rows()))
+        process = run("bench", "raster", scene, "--width", 64, "--height", 64, "--repetitions", 2)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        figures = json.loads(process.stdout)
+        for key in ["forward_ms", "backward_ms", "ns_per_pair", "peak_rss_mb"]:
+            self.assertGreater(figures[key], 0, key)
+
+    @unittest.skipUnless((SHARED / "data/scenes").is_dir(), "[skip] the shared scenes are not there")
+    def test_every_shared_scene_opens(self):
+        scenes = [path for path in sorted((SHARED / "data/scenes").iterdir()) if path.is_file() or path.name.endswith("sog")]
+        self.assertGreater(len(scenes), 5)
+        for path in scenes:
+            if path.suffix == ".txt":
+                continue
+            with self.subTest(path.name):
+                self.assertGreater(self.info(path)["splats"], 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
