@@ -1,5 +1,6 @@
-// Differentiable Gaussian rasterizer: the 3DGS image formation (Kerbl et al. 2023, EWA splatting), forward, backward
-// and per-Gaussian contributions. Double-precision truth and fast float versions behind one interface.
+// Differentiable Gaussian rasterizer: the 3DGS image formation (Kerbl et al. 2023, EWA splatting), forward,
+// backward and per-Gaussian contributions. Double-precision truth and fast float versions behind one
+// interface.
 #pragma once
 
 #include <array>
@@ -21,19 +22,20 @@ namespace gse::raster {
 struct Settings {
     float near_plane = 0.2f;
     float far_plane = 1e10f;
-    float blur_px2 = 0.3f;                        // added to the diagonal of the projected covariance
-    bool antialiased = false;                     // opacity compensation sqrt(det / det_blurred)
-    int sh_degree = 3;                            // highest degree used; the scene's own if lower
-    float negative_colour_slope = 0.0f;           // gradient of the clamp at 0 below 0 (0 = exact; 0.01 in training)
+    float blur_px2 = 0.3f;               // added to the diagonal of the projected covariance
+    bool antialiased = false;            // opacity compensation sqrt(det / det_blurred)
+    int sh_degree = 3;                   // highest degree used; the scene's own if lower
+    float negative_colour_slope = 0.0f;  // gradient of the clamp at 0 below 0 (0 = exact; 0.01 in training)
     std::array<float, 3> background{0, 0, 0};
 };
 
 struct ForwardOutput {
-    Image colour;   // [H,W,3]
-    Image alpha;    // [H,W,1] 1 - final transmittance
-    Image depth;    // [H,W,1] sum of alpha T z, not normalised
+    Image colour;                       // [H,W,3]
+    Image alpha;                        // [H,W,1] 1 - final transmittance
+    Image depth;                        // [H,W,1] sum of alpha T z, not normalised
     std::vector<std::int32_t> blended;  // [H*W] Gaussians blended in the pixel
     std::size_t pairs = 0;              // tile-Gaussian pairs looked at (work, not result)
+    std::size_t dropped_rows = 0;  // not drawn because a value is NaN or infinite where that means nothing
 };
 
 /// Gradients of the rows [first_row, N): index 0 of every array belongs to first_row.
@@ -43,12 +45,13 @@ struct Gradients {
     std::vector<float> rotation;       // [M,4] through the normalisation
     std::vector<float> opacity_logit;  // [M]
     std::vector<float> sh;             // [M,K,3]
-    std::vector<float> mean2d_norm;    // [M] |dL/d(mean2d)| in NDC units (pixel gradient x W/2, H/2), for densification
-    std::vector<std::uint8_t> visible; // [M] 1 where the row was blended into at least one pixel
+    std::vector<float>
+        mean2d_norm;  // [M] |dL/d(mean2d)| in NDC units (pixel gradient x W/2, H/2), for densification
+    std::vector<std::uint8_t> visible;  // [M] 1 where the row was blended into at least one pixel
 };
 
-/// A rasterizer keeps its scratch memory between calls: one object per thread of use, no allocation once warm.
-/// Results are bit-identical for every number of threads.
+/// A rasterizer keeps its scratch memory between calls: one object per thread of use, no allocation once
+/// warm. Results are bit-identical for every number of threads.
 class Rasterizer {
 public:
     virtual ~Rasterizer() = default;
@@ -57,18 +60,21 @@ public:
     virtual void forward(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                          ForwardOutput& output) = 0;
 
-    /// Gradient of sum(colour * d_colour) + sum(alpha * d_alpha) of the last forward(), for rows >= first_row.
-    /// d_alpha may be empty. Rows that were not drawn get exact zeros.
-    virtual void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row, Gradients& output) = 0;
+    /// Gradient of sum(colour * d_colour) + sum(alpha * d_alpha) of the last forward(), for rows >=
+    /// first_row. d_alpha may be empty. Rows that were not drawn get exact zeros.
+    virtual void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row,
+                          Gradients& output) = 0;
 
-    /// Adds to masked[i] the sum over pixels of alpha T mask, to total[i] the sum of alpha T (double accumulators of
-    /// length N), for one view. `mask` is [H,W,1]. Used for back-projection (method S5, variant B).
+    /// Adds to masked[i] the sum over pixels of alpha T mask, to total[i] the sum of alpha T (double
+    /// accumulators of length N), for one view. `mask` is [H,W,1]. Used for back-projection (method S5,
+    /// variant B).
     virtual void contributions(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                                const Image& mask, std::span<double> masked, std::span<double> total) = 0;
 
-    /// Composites one value per Gaussian instead of its colour: [H,W,1] sum of alpha T value (label and part renders).
-    virtual void forward_values(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
-                                std::span<const float> values, Image& output) = 0;
+    /// Composites one value per Gaussian instead of its colour: [H,W,1] sum of alpha T value (label and part
+    /// renders).
+    virtual void forward_values(const GaussianSpans& gaussians, const Camera& camera,
+                                const Settings& settings, std::span<const float> values, Image& output) = 0;
 
     /// "plain", "scalar", "avx2" or "avx512".
     virtual std::string name() const = 0;
