@@ -1,0 +1,60 @@
+// Figures of merit of a localization and an edit: overlap, picture error in and outside a mask, leak and drift.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "engine/base/image.h"
+#include "engine/scene/gaussian_set.h"
+
+namespace gse::evaluate {
+
+/// Overlap of two sets.
+struct Overlap {
+    double iou = 1;         // intersection / union; 1 when both are empty
+    double precision = 1;   // 1 when nothing was predicted
+    double recall = 1;      // 1 when nothing was true
+    double f1 = 1;
+};
+
+/// Rows: nonzero = in the set. `weights` (empty = all 1) makes a row count as much as it is seen, e.g. the sum of
+/// alpha T over all views (method 6.2), so that a huge faint splat does not weigh like a surface one.
+Overlap row_overlap(std::span<const std::uint8_t> predicted, std::span<const std::uint8_t> truth,
+                    std::span<const double> weights = {});
+
+/// Pixels of two masks of the same size.
+Overlap mask_overlap(const Mask& predicted, const Mask& truth);
+
+/// F1 of the two outlines: an outline pixel counts as matched when the other outline is at most `tolerance_px` away.
+double boundary_f(const Mask& predicted, const Mask& truth, double tolerance_px = 2);
+
+/// Which pixels a picture measure looks at: those where the mask equals `inside`; all of them without a mask.
+struct Region {
+    const Mask* mask = nullptr;
+    bool inside = true;
+    bool contains(std::size_t pixel) const { return mask == nullptr || (mask->data[pixel] != 0) == inside; }
+};
+
+/// Highest value psnr_db returns, for equal pictures.
+inline constexpr double PsnrLimitDb = 100;
+
+/// 10 log10(1 / mean squared error) over the region's pixels and channels, at most PsnrLimitDb.
+double psnr_db(const Image& a, const Image& b, const Region& region = {});
+
+/// Mean absolute difference over the region.
+double mean_absolute_error(const Image& a, const Image& b, const Region& region = {});
+
+/// Mean over the region of the SSIM map (11x11 Gaussian window, sigma 1.5, C1 = 1e-4, C2 = 9e-4, zero padding).
+double ssim(const Image& a, const Image& b, const Region& region = {});
+
+/// Share of the region's pixels whose largest channel difference exceeds `threshold` (2/255).
+double leak_rate(const Image& a, const Image& b, const Region& region, double threshold = 2.0 / 255);
+
+/// |mean colour of a - mean colour of b| over the region (Euclidean), the colour error of a recolouring.
+double mean_colour_error(const Image& a, const Image& b, const Region& region = {});
+
+/// Number of rows with equal index whose bits differ in any attribute, among rows with counted[row] != 0.
+/// Both sets must have the same SH degree; rows beyond the shorter set count as different.
+std::size_t changed_rows(const GaussianSet& before, const GaussianSet& after, std::span<const std::uint8_t> counted);
+
+}  // namespace gse::evaluate

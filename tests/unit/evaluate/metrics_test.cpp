@@ -1,0 +1,90 @@
+// The figures of merit on cases whose answer is known.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "engine/base/random.h"
+#include "engine/evaluate/metrics.h"
+
+namespace {
+
+using namespace gse;
+using namespace gse::evaluate;
+
+constexpr double Rounding = 1e-6;   // pictures are float
+
+Image noise(std::uint64_t seed) {
+    Random random(seed);
+    Image image(32, 24, 3);
+    for (auto& value : image.data) value = static_cast<float>(random.uniform());
+    return image;
+}
+
+Mask disc(int cx, int cy, int radius) {
+    Mask mask(32, 24);
+    for (int y = 0; y < 24; ++y)
+        for (int x = 0; x < 32; ++x)
+            mask.at(x, y) = (x - cx) * (x - cx) + (y - cy) * (y - cy) <= radius * radius ? 1 : 0;
+    return mask;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("row overlap, plain and weighted") {
+    const std::vector<std::uint8_t> found{1, 1, 0, 0}, truth{1, 0, 1, 0};
+    const auto plain = row_overlap(found, truth);
+    DOCTEST_CHECK(plain.iou == doctest::Approx(1.0 / 3));
+    DOCTEST_CHECK(plain.precision == doctest::Approx(0.5));
+    const auto weighted = row_overlap(found, truth, std::vector<double>{8, 1, 1, 5});
+    DOCTEST_CHECK(weighted.iou == doctest::Approx(0.8));
+    DOCTEST_CHECK(weighted.recall == doctest::Approx(8.0 / 9));
+    const std::vector<std::uint8_t> none{0, 0, 0, 0};
+    DOCTEST_CHECK(row_overlap(none, none).iou == 1);
+    DOCTEST_CHECK(row_overlap(none, truth).iou == 0);
+}
+
+DOCTEST_TEST_CASE("boundary F forgives a shift within its tolerance and no more") {
+    DOCTEST_CHECK(boundary_f(disc(15, 12, 6), disc(15, 12, 6)) == 1);
+    DOCTEST_CHECK(boundary_f(disc(15, 12, 6), disc(16, 12, 6)) == 1);
+    DOCTEST_CHECK(boundary_f(disc(8, 12, 5), disc(24, 12, 5)) == 0);
+    DOCTEST_CHECK(boundary_f(Mask(32, 24), disc(15, 12, 6)) == 0);
+    DOCTEST_CHECK(boundary_f(Mask(32, 24), Mask(32, 24)) == 1);
+}
+
+DOCTEST_TEST_CASE("PSNR and leak look at their region only") {
+    const Image a = noise(1);
+    Image b = a;
+    const Mask mask = disc(15, 12, 6);
+    for (std::size_t pixel = 0; pixel < b.pixel_count(); ++pixel)
+        if (mask.data[pixel] != 0)
+            for (std::size_t c = 0; c < 3; ++c) b.data[pixel * 3 + c] += 0.1f;
+    DOCTEST_CHECK(psnr_db(a, b, {&mask, true}) == doctest::Approx(20).epsilon(1e-4));
+    DOCTEST_CHECK(psnr_db(a, b, {&mask, false}) == PsnrLimitDb);
+    DOCTEST_CHECK(leak_rate(a, b, {&mask, false}) == 0);
+    DOCTEST_CHECK(leak_rate(a, b, {&mask, true}) == 1);
+    DOCTEST_CHECK(mean_absolute_error(a, b, {&mask, true}) == doctest::Approx(0.1).epsilon(1e-4));
+    DOCTEST_CHECK(mean_colour_error(a, b, {&mask, true}) == doctest::Approx(0.1 * std::sqrt(3.0)).epsilon(1e-4));
+}
+
+DOCTEST_TEST_CASE("SSIM is 1 for equal pictures, symmetric, and falls with noise") {
+    const Image a = noise(1), b = noise(2);
+    DOCTEST_CHECK(std::abs(ssim(a, a) - 1) < Rounding);
+    DOCTEST_CHECK(std::abs(ssim(a, b) - ssim(b, a)) < Rounding);
+    DOCTEST_CHECK(ssim(a, b) < 0.3);
+    // A constant picture against a shifted constant has a closed form away from the border.
+    const Image dark(32, 24, 3, 0.2f), light(32, 24, 3, 0.4f);
+    const Mask middle = disc(15, 12, 4);
+    const double expected = (2 * 0.2 * 0.4 + 1e-4) / (0.2 * 0.2 + 0.4 * 0.4 + 1e-4);
+    DOCTEST_CHECK(ssim(dark, light, {&middle, true}) == doctest::Approx(expected).epsilon(1e-4));
+}
+
+DOCTEST_TEST_CASE("a changed bit of a counted row is seen") {
+    GaussianData data;
+    data.resize(4);
+    const GaussianSet before(data);
+    data.rotation[2 * 4 + 1] = -0.0f;   // equal as a number, not as bits
+    const GaussianSet after(data);
+    DOCTEST_CHECK(changed_rows(before, after, std::vector<std::uint8_t>{1, 1, 1, 1}) == 1);
+    DOCTEST_CHECK(changed_rows(before, after, std::vector<std::uint8_t>{1, 1, 0, 1}) == 0);
+}
