@@ -104,7 +104,7 @@ struct Colour {
 
 Colour colour_of(const Inputs& in, std::size_t row, const View& view) {
     Colour result;
-    const Vec3 offset = position_of(in, row) - view.camera.centre();
+    const Vec3 offset = position_of(in, row) - view.eye;
     result.distance = length(offset);
     result.direction = normalized(offset);
     result.degree = std::clamp(view.settings.sh_degree, 0, in.sh_degree);

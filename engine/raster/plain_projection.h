@@ -54,10 +54,12 @@ struct RowGradient {
 struct View {
     const Camera& camera;
     const Settings& settings;
-    // The goldens need more digits than the settings have.
+    // The goldens need more digits than the settings have, and the eye of a matrix that is a rotation to 1e-8
+    // only.
     double blur_px2 = static_cast<double>(settings.blur_px2);
     std::array<double, 3> background = {settings.background[0], settings.background[1],
                                         settings.background[2]};
+    Vec3 eye = camera.centre();
 };
 
 Fate project(const Inputs& inputs, std::size_t row, const View& view, Splat& splat);

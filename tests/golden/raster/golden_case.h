@@ -88,7 +88,15 @@ struct GoldenCase {
     }
     raster::plain::View view() const {
         const auto& b = tensors["background"];
-        return {camera, settings, tensors.number("eps2d"), {b[0], b[1], b[2]}};
+        return {camera, settings, tensors.number("eps2d"), {b[0], b[1], b[2]}, eye()};
+    }
+    /// Inverse of the view matrix applied to the origin; its rotation is rounded to float, so not exactly
+    /// orthogonal.
+    Vec3 eye() const {
+        const Mat3& r = camera.rotation;
+        const Vec3 a{r(0, 0), r(0, 1), r(0, 2)}, b{r(1, 0), r(1, 1), r(1, 2)}, c{r(2, 0), r(2, 1), r(2, 2)};
+        const Vec3& t = camera.translation;
+        return (cross(b, c) * t.x + cross(c, a) * t.y + cross(a, b) * t.z) / -dot(a, cross(b, c));
     }
     std::vector<float> narrow(const std::string& name) const {
         return {tensors[name].begin(), tensors[name].end()};
