@@ -1,0 +1,309 @@
+// 3DGS PLY: columns found by name, any type, order and encoding; raw values kept bit for bit.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <charconv>
+#include <cstdlib>
+#include <optional>
+
+#include "engine/base/error.h"
+#include "engine/io/byte_reader.h"
+#include "engine/io/encoding.h"
+#include "engine/io/formats.h"
+#include "engine/io/ply_body.h"
+
+namespace gse::io {
+namespace {
+
+constexpr int Absent = -1;
+constexpr std::size_t BlockRows = 128;       // rows gathered at a time: 128 x 248 bytes stay in the cache
+constexpr float SurfelLogScale = -13.8155f;  // third axis of a 2DGS surfel: 1e-6 units
+constexpr std::size_t RestOfDegree4 = 24;
+
+/// The attributes of a row; each is a list of property indices of the vertex element (Absent = fill with
+/// `missing`).
+struct Attribute {
+    std::vector<int> columns;
+    std::vector<float>* target = nullptr;
+    float missing = 0;
+};
+
+struct Layout {
+    int sh_degree = 0;
+    bool byte_colours = false;  // red, green, blue instead of f_dc
+    std::vector<int> position, log_scale, rotation, opacity, sh, label, label_weight;
+};
+
+/// "f_rest_7" -> 7
+std::optional<std::size_t> rest_index(std::string_view name) {
+    constexpr std::string_view prefix = "f_rest_";
+    if (name.substr(0, prefix.size()) != prefix) return std::nullopt;
+    std::size_t index = 0;
+    const auto [end, failure] =
+        std::from_chars(name.data() + prefix.size(), name.data() + name.size(), index);
+    if (failure != std::errc{} || end != name.data() + name.size()) return std::nullopt;
+    return index;
+}
+
+[[noreturn]] void throw_not_gaussian(const PlyHeader& header, const PlyElement& vertex,
+                                     const std::string& lacking) {
+    const bool mesh = header.find("face") != nullptr && header.find("face")->count > 0;
+    const bool coloured = vertex.find("red") >= 0 || vertex.find("diffuse_red") >= 0;
+    const char* kind = mesh ? "a mesh" : coloured ? "a coloured point cloud" : "a point cloud";
+    throw Error(ErrorCode::Unsupported,
+                fmt::format("this PLY file is {}, not a Gaussian splatting scene: its vertices have no {}",
+                            kind, lacking),
+                "train a 3DGS model from it first, or choose the point_cloud.ply of a trained one");
+}
+
+std::vector<int> find_columns(const PlyElement& vertex, std::initializer_list<const char*> names) {
+    std::vector<int> columns;
+    for (const char* name : names) {
+        const int index = vertex.find(name);
+        const bool usable = index >= 0 && !vertex.properties[static_cast<std::size_t>(index)].is_list;
+        columns.push_back(usable ? index : Absent);
+    }
+    return columns;
+}
+
+bool complete(const std::vector<int>& columns) {
+    return std::find(columns.begin(), columns.end(), Absent) == columns.end();
+}
+
+/// Columns of the SH coefficients beyond DC, coefficient-major; the file has all of red first, then green,
+/// then blue.
+std::vector<int> rest_columns(const PlyElement& vertex, Layout& layout, std::vector<std::string>& warnings) {
+    std::vector<int> by_index;
+    for (std::size_t i = 0; i < vertex.properties.size(); ++i) {
+        const auto index = rest_index(vertex.properties[i].name);
+        if (!index) continue;
+        if (*index >= vertex.properties.size() || vertex.properties[i].is_list)
+            throw Error(ErrorCode::Malformed, "the PLY header numbers its f_rest properties with gaps");
+        if (by_index.size() <= *index) by_index.resize(*index + 1, Absent);
+        by_index[*index] = static_cast<int>(i);
+    }
+    const std::size_t per_channel = by_index.size() / 3;
+    int degree = degree_of_rest(per_channel);
+    if (per_channel == RestOfDegree4) {
+        degree = MaxShDegree;
+        warnings.push_back("spherical harmonics of degree 4 are cut to degree 3");
+    }
+    if (by_index.size() % 3 != 0 || degree < 0 || !complete(by_index))
+        throw Error(ErrorCode::Malformed,
+                    fmt::format("the PLY header has {} f_rest properties; a 3DGS file has 0, 9, 24, 45 or 72",
+                                by_index.size()));
+    layout.sh_degree = degree;
+    std::vector<int> columns;
+    for (std::size_t k = 0; k < rest_of_degree(degree); ++k)
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            columns.push_back(by_index[channel * per_channel + k]);
+    return columns;
+}
+
+Layout find_layout(const PlyHeader& header, const PlyElement& vertex, std::vector<std::string>& warnings) {
+    Layout layout;
+    layout.position = find_columns(vertex, {"x", "y", "z"});
+    layout.sh = find_columns(vertex, {"f_dc_0", "f_dc_1", "f_dc_2"});
+    layout.opacity = find_columns(vertex, {"opacity"});
+    layout.log_scale = find_columns(vertex, {"scale_0", "scale_1", "scale_2"});
+    layout.rotation = find_columns(vertex, {"rot_0", "rot_1", "rot_2", "rot_3"});
+    layout.label = find_columns(vertex, {"label"});
+    layout.label_weight = find_columns(vertex, {"label_weight"});
+    if (!complete(layout.position)) throw_not_gaussian(header, vertex, "x, y and z");
+    if (!complete(layout.opacity)) throw_not_gaussian(header, vertex, "opacity");
+    if (!complete(layout.rotation)) throw_not_gaussian(header, vertex, "rot_0 to rot_3");
+    if (layout.log_scale[0] == Absent || layout.log_scale[1] == Absent)
+        throw_not_gaussian(header, vertex, "scale_0 to scale_2");
+    if (layout.log_scale[2] == Absent)
+        warnings.push_back("scale_2 is missing: flat 2DGS surfels get a thickness of 1e-6");
+    if (!complete(layout.sh)) {
+        layout.sh = find_columns(vertex, {"red", "green", "blue"});
+        layout.byte_colours = true;
+        if (!complete(layout.sh)) throw_not_gaussian(header, vertex, "f_dc_0 to f_dc_2");
+    }
+    const std::vector<int> rest = rest_columns(vertex, layout, warnings);
+    layout.sh.insert(layout.sh.end(), rest.begin(), rest.end());
+    return layout;
+}
+
+/// Gathers binary rows without lists, block by block, so that each destination is written once.
+void read_fixed_rows(PlyBody& body, const PlyHeader& header, const PlyElement& vertex,
+                     std::span<const Attribute> attributes) {
+    struct Column {
+        std::size_t offset = 0;
+        PlyType type = PlyType::Float32;
+        bool absent = false;
+    };
+    const bool big_endian = header.encoding == PlyEncoding::BigEndian;
+    const std::span<const std::byte> rows = body.take_rows(vertex);
+    const std::size_t stride = vertex.row_bytes();
+    std::vector<std::size_t> offsets;
+    for (std::size_t offset = 0; const PlyProperty& property : vertex.properties) {
+        offsets.push_back(offset);
+        offset += ply_type_size(property.type);
+    }
+    std::vector<std::vector<Column>> plan;
+    std::vector<bool> plain;
+    for (const Attribute& attribute : attributes) {
+        std::vector<Column> columns;
+        for (const int index : attribute.columns) {
+            const auto i = static_cast<std::size_t>(std::max(index, 0));
+            columns.push_back({offsets[i], vertex.properties[i].type, index == Absent});
+        }
+        plain.push_back(!big_endian && std::all_of(columns.begin(), columns.end(), [](const Column& c) {
+            return !c.absent && c.type == PlyType::Float32;
+        }));
+        plan.push_back(std::move(columns));
+    }
+    std::vector<float> block;
+    const auto count = static_cast<std::size_t>(vertex.count);
+    for (std::size_t begin = 0; begin < count; begin += BlockRows) {
+        const std::size_t end = std::min(count, begin + BlockRows);
+        for (std::size_t a = 0; a < attributes.size(); ++a) {
+            const std::vector<Column>& columns = plan[a];
+            block.resize((end - begin) * columns.size());
+            float* out = block.data();
+            for (std::size_t row = begin; row < end; ++row) {
+                const std::byte* source = rows.data() + row * stride;
+                if (plain[a])
+                    for (const Column& column : columns) *out++ = load_scalar<float>(source + column.offset);
+                else
+                    for (const Column& column : columns)
+                        *out++ = column.absent
+                                     ? attributes[a].missing
+                                     : load_ply_scalar(source + column.offset, column.type, big_endian);
+            }
+            attributes[a].target->insert(attributes[a].target->end(), block.begin(), block.end());
+        }
+    }
+}
+
+void read_walked_rows(PlyBody& body, const PlyElement& vertex, std::span<const Attribute> attributes) {
+    std::vector<float> row(vertex.properties.size());
+    for (std::uint64_t i = 0; i < vertex.count; ++i) {
+        body.read_row(vertex, row);
+        for (const Attribute& attribute : attributes)
+            for (const int column : attribute.columns)
+                attribute.target->push_back(column == Absent ? attribute.missing
+                                                             : row[static_cast<std::size_t>(column)]);
+    }
+}
+
+void colours_to_sh(GaussianData& data, bool integers) {
+    const float scale = integers ? 1.0f / 255 : 1.0f;
+    for (std::size_t row = 0; row < data.size(); ++row)
+        for (std::size_t c = 0; c < 3; ++c) {
+            float& value = data.sh[row * data.sh_stride() + c];
+            value = static_cast<float>(sh_from_colour(static_cast<double>(value * scale)));
+        }
+}
+
+std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& letter : result) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    return result;
+}
+
+/// Text after `key` when the comment begins with it, in any case; blanks around it removed.
+std::optional<std::string> comment_value(const std::string& comment, std::string_view key) {
+    if (lower(comment).substr(0, key.size()) != key) return std::nullopt;
+    std::string value = comment.substr(key.size());
+    value.erase(0, value.find_first_not_of(" \t:"));
+    return value;
+}
+
+/// Brush writes "Vertical axis" and means the negative axis by a bare letter; nerfstudio writes "Vertical
+/// Axis: z" for its world with +z up. Three numbers are taken literally.
+std::optional<Vec3> vertical_axis(const std::string& comment) {
+    const auto value = comment_value(comment, "vertical axis");
+    if (!value) return std::nullopt;
+    const double sign = comment.find("Axis") != std::string::npos ? 1 : -1;
+    const std::string axis = lower(*value);
+    if (axis == "x") return Vec3{sign, 0, 0};
+    if (axis == "y") return Vec3{0, sign, 0};
+    if (axis == "z") return Vec3{0, 0, sign};
+    Vec3 up;
+    const char* cursor = axis.c_str();
+    for (int i = 0; i < 3; ++i) {
+        char* end = nullptr;
+        up[i] = std::strtod(cursor, &end);
+        if (end == cursor || !std::isfinite(up[i])) return std::nullopt;
+        cursor = end;
+    }
+    if (length(up) == 0) return std::nullopt;
+    return normalized(up);
+}
+
+void read_comments(const PlyHeader& header, SceneInfo& info, std::string& label_name) {
+    for (const std::string& comment : header.comments) {
+        if (const auto up = vertical_axis(comment)) {
+            info.up = *up;
+            info.up_known = true;
+        }
+        if (const auto mode = comment_value(comment, "splatrendermode")) {
+            info.antialiased = lower(*mode) == "mip";
+            if (lower(*mode) == "2dgs")
+                info.warnings.push_back("the file asks for 2DGS rendering; it is drawn as 3DGS");
+        }
+        if (const auto flag = comment_value(comment, "antialiased")) info.antialiased = *flag == "1";
+        if (const auto name = comment_value(comment, "label name")) label_name = *name;
+    }
+}
+
+void add_label(Scene& scene, std::vector<float> bits, std::vector<float> weights, const std::string& name) {
+    if (bits.empty() && weights.empty()) return;
+    if (bits.empty()) bits = weights;
+    Label label = make_label(name, std::move(bits), 0.5f);
+    if (!weights.empty()) label.weight = std::make_shared<const std::vector<float>>(std::move(weights));
+    scene.labels.labels.push_back(std::move(label));
+}
+
+}  // namespace
+
+bool detect_ply(Bytes bytes, std::string_view) { return is_ply(bytes); }
+
+Scene parse_gaussian_ply(Bytes bytes) {
+    const PlyHeader header = parse_ply_header(bytes);
+    const PlyElement* vertex = header.find("vertex");
+    if (vertex == nullptr) throw Error(ErrorCode::Malformed, "the PLY header has no vertex element");
+    Scene scene;
+    scene.info.format = "ply";
+    std::string label_name = "label";
+    read_comments(header, scene.info, label_name);
+    const Layout layout = find_layout(header, *vertex, scene.info.warnings);
+    if (vertex->count == 0) throw Error(ErrorCode::Malformed, "the PLY file holds no splats");
+    PlyBody body(bytes, header);
+    body.seek(*vertex);
+
+    GaussianData data;
+    data.sh_degree = layout.sh_degree;
+    std::vector<float> label, label_weight;
+    std::vector<Attribute> attributes = {{layout.position, &data.position},
+                                         {layout.log_scale, &data.log_scale, SurfelLogScale},
+                                         {layout.rotation, &data.rotation},
+                                         {layout.opacity, &data.opacity_logit},
+                                         {layout.sh, &data.sh}};
+    if (complete(layout.label)) attributes.push_back({layout.label, &label});
+    if (complete(layout.label_weight)) attributes.push_back({layout.label_weight, &label_weight});
+    for (const Attribute& attribute : attributes)
+        attribute.target->reserve(static_cast<std::size_t>(vertex->count) * attribute.columns.size());
+    if (header.encoding == PlyEncoding::Ascii || vertex->has_list())
+        read_walked_rows(body, *vertex, attributes);
+    else
+        read_fixed_rows(body, header, *vertex, attributes);
+
+    if (layout.byte_colours) {
+        const PlyType type = vertex->properties[static_cast<std::size_t>(layout.sh[0])].type;
+        colours_to_sh(data, type != PlyType::Float32 && type != PlyType::Float64);
+    }
+    if (&header.elements.back() == vertex && body.has_rest())
+        scene.info.warnings.push_back(fmt::format("{} bytes after the last of the {} splats are ignored",
+                                                  body.remaining(), vertex->count));
+    scene.gaussians = GaussianSet(std::move(data));
+    add_label(scene, std::move(label), std::move(label_weight), label_name);
+    return scene;
+}
+
+}  // namespace gse::io

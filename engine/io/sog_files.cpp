@@ -1,0 +1,113 @@
+// libzip and libwebp behind the SOG reader.
+#include "engine/io/sog_files.h"
+
+#include <fmt/core.h>
+#include <webp/decode.h>
+#include <zip.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+
+namespace gse::io {
+namespace {
+
+constexpr std::size_t PieceBytes = std::size_t{1} << 20;
+constexpr std::uint64_t LargestPart = std::uint64_t{1} << 32;  // bytes of one unpacked file
+/// A texture may claim this many texels freely; beyond it, at most this many per compressed byte.
+constexpr std::uint64_t FreeTexels = std::uint64_t{1} << 24;
+constexpr std::uint64_t TexelsPerByte = 1000;
+
+class Folder final : public SogFiles {
+public:
+    explicit Folder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    std::vector<std::byte> read(const std::string& name) const override {
+        const std::filesystem::path relative(name);
+        if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end())
+            throw Error(ErrorCode::Malformed, "the SOG scene names a file outside of its folder", "",
+                        folder_ / "meta.json");
+        const MappedFile file(folder_ / relative);
+        return {file.bytes().begin(), file.bytes().end()};
+    }
+
+private:
+    std::filesystem::path folder_;
+};
+
+class Archive final : public SogFiles {
+public:
+    explicit Archive(std::span<const std::byte> bytes) : zip_(nullptr, zip_discard) {
+        zip_error_t error;
+        zip_error_init(&error);
+        zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
+        zip_t* zip = source != nullptr ? zip_open_from_source(source, ZIP_RDONLY, &error) : nullptr;
+        if (zip == nullptr) {
+            if (source != nullptr) zip_source_free(source);
+            zip_error_fini(&error);
+            throw Error(ErrorCode::Malformed, "the SOG file is not a readable zip archive",
+                        "the file is cut off or damaged; get it again");
+        }
+        zip_error_fini(&error);
+        zip_.reset(zip);
+    }
+
+    std::vector<std::byte> read(const std::string& name) const override {
+        const zip_int64_t index = zip_name_locate(zip_.get(), name.c_str(), ZIP_FL_NODIR);
+        if (index < 0)
+            throw Error(ErrorCode::Malformed, fmt::format("the SOG archive holds no file \"{}\"", name),
+                        "the file is damaged or not a SOG scene");
+        const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
+            zip_fopen_index(zip_.get(), static_cast<zip_uint64_t>(index), 0), zip_fclose);
+        std::vector<std::byte> content;
+        while (file != nullptr) {
+            const std::size_t filled = content.size();
+            content.resize(filled + PieceBytes);
+            const zip_int64_t got = zip_fread(file.get(), content.data() + filled, PieceBytes);
+            content.resize(filled + static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
+            if (got == 0) return content;
+            if (got < 0 || content.size() > LargestPart) break;
+        }
+        throw Error(ErrorCode::Malformed,
+                    fmt::format("the file \"{}\" of the SOG archive cannot be unpacked", name),
+                    "the file is cut off or damaged; get it again");
+    }
+
+private:
+    std::unique_ptr<zip_t, void (*)(zip_t*)> zip_;
+};
+
+}  // namespace
+
+std::unique_ptr<SogFiles> open_sog_folder(const std::filesystem::path& folder) {
+    return std::make_unique<Folder>(folder);
+}
+
+std::unique_ptr<SogFiles> open_sog_archive(std::span<const std::byte> bytes) {
+    return std::make_unique<Archive>(bytes);
+}
+
+Texture decode_webp(std::span<const std::byte> bytes, const std::string& name) {
+    const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+    int width = 0, height = 0;
+    const auto fail = [&](const char* what) {
+        throw Error(ErrorCode::Malformed, fmt::format("the texture \"{}\" {}", name, what),
+                    "the file is cut off or damaged; get it again");
+    };
+    if (WebPGetInfo(data, bytes.size(), &width, &height) == 0) fail("is not a WebP picture");
+    const std::uint64_t texels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
+    if (texels > FreeTexels && texels / TexelsPerByte > bytes.size())
+        fail("is larger than its bytes can describe");
+    Texture texture;
+    texture.width = static_cast<std::size_t>(width);
+    texture.height = static_cast<std::size_t>(height);
+    texture.rgba.resize(static_cast<std::size_t>(texels) * 4);
+    if (WebPDecodeRGBAInto(data, bytes.size(), texture.rgba.data(), texture.rgba.size(), width * 4) ==
+        nullptr)
+        fail("cannot be decoded");
+    return texture;
+}
+
+}  // namespace gse::io

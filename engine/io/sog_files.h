@@ -1,0 +1,38 @@
+// The parts of a SOG scene by name, from a folder or a zip archive, and its WebP textures as bytes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace gse::io {
+
+/// Gives the bytes of the file `name` of a scene. Throws Error when it is missing or broken.
+class SogFiles {
+public:
+    virtual ~SogFiles() = default;
+    virtual std::vector<std::byte> read(const std::string& name) const = 0;
+};
+
+std::unique_ptr<SogFiles> open_sog_folder(const std::filesystem::path& folder);
+/// The archive's bytes must outlive the result.
+std::unique_ptr<SogFiles> open_sog_archive(std::span<const std::byte> bytes);
+
+/// RGBA texture, row-major; texel i belongs to splat i.
+struct Texture {
+    std::size_t width = 0;
+    std::size_t height = 0;
+    std::vector<std::uint8_t> rgba;  // [height * width, 4]
+
+    std::size_t texel_count() const { return width * height; }
+    const std::uint8_t* texel(std::size_t index) const { return rgba.data() + index * 4; }
+};
+
+/// Decodes a WebP picture. `name` is for messages. Throws Error (Malformed).
+Texture decode_webp(std::span<const std::byte> bytes, const std::string& name);
+
+}  // namespace gse::io

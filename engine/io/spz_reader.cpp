@@ -1,0 +1,277 @@
+// Niantic .spz: v1-v3 are one gzip stream (or that stream bare), v4 a header, a table and one zstd frame per
+// attribute.
+//
+// Frame: the format's document says the stored axes are right, up, back. Both pairs of the same scene in .spz
+// and .ply that were measured (a v3 and a v4 file) follow it, so y and z are negated on loading unless the
+// extension SPZ_ADOBE_coordinate_system names another frame.
+#include <fmt/core.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/io/byte_reader.h"
+#include "engine/io/encoding.h"
+#include "engine/io/formats.h"
+#include "engine/io/half.h"
+#include "engine/io/inflate.h"
+
+namespace gse::io {
+namespace {
+
+constexpr std::uint32_t Magic = 0x5053474e;  // "NGSP"
+constexpr std::size_t HeaderBytes = 16;
+constexpr std::size_t HeaderBytesV4 = 32;
+constexpr int HighestDegree = 4;
+constexpr std::uint8_t FlagAntialiased = 1;
+constexpr std::uint8_t FlagExtensions = 2;
+constexpr std::uint32_t CoordinateSystemExtension = 0xadbe0003;
+constexpr std::uint32_t RightUpBack = 4;
+constexpr std::uint32_t LastAxisFlip = 8;  // later values also exchange axes
+constexpr std::uint64_t LargestExtensions = 1 << 20;
+constexpr std::uint64_t HighestDeflateRatio = 1040;  // deflate cannot do better than 1032
+constexpr double ColourScale = 0.15;                 // not ShC0: the format keeps a wider range
+
+struct Header {
+    std::uint32_t version = 0;
+    std::uint64_t count = 0;
+    int degree = 0;
+    int fractional_bits = 0;
+    std::uint8_t flags = 0;
+    std::uint8_t streams = 0;  // v4
+
+    std::uint64_t position_bytes() const { return version == 1 ? 6 : 9; }
+    std::uint64_t rotation_bytes() const { return version >= 3 ? 4 : 3; }
+    std::uint64_t sh_bytes() const { return static_cast<std::uint64_t>((degree + 1) * (degree + 1) - 1) * 3; }
+    std::uint64_t row_bytes() const { return position_bytes() + 1 + 3 + 3 + rotation_bytes() + sh_bytes(); }
+};
+
+/// The attribute arrays, wherever they came from.
+struct Arrays {
+    Bytes position, alpha, colour, scale, rotation, sh;
+};
+
+[[noreturn]] void throw_malformed(const std::string& what) {
+    throw Error(ErrorCode::Malformed, "the SPZ file " + what, "the file is cut off or damaged; get it again");
+}
+
+Header parse_header(Bytes bytes) {
+    if (bytes.size() < HeaderBytes) throw_malformed("ends inside its header");
+    if (load_scalar<std::uint32_t>(bytes.data()) != Magic) throw_malformed("does not begin with NGSP");
+    Header header;
+    header.version = load_scalar<std::uint32_t>(bytes.data() + 4);
+    header.count = load_scalar<std::uint32_t>(bytes.data() + 8);
+    header.degree = std::to_integer<int>(bytes[12]);
+    header.fractional_bits = std::to_integer<int>(bytes[13]);
+    header.flags = std::to_integer<std::uint8_t>(bytes[14]);
+    header.streams = std::to_integer<std::uint8_t>(bytes[15]);
+    if (header.version < 1 || header.version > 4)
+        throw Error(ErrorCode::Unsupported,
+                    fmt::format("SPZ version {} is not known; 1 to 4 are", header.version));
+    if (header.degree > HighestDegree) throw_malformed(fmt::format("claims SH degree {}", header.degree));
+    if (header.fractional_bits > 23)
+        throw_malformed(fmt::format("claims {} fractional bits", header.fractional_bits));
+    if (header.count == 0) throw_malformed("holds no splats");
+    return header;
+}
+
+Arrays split_arrays(const Header& header, Bytes body) {
+    ByteReader reader(body, "the SPZ file");
+    Arrays arrays;
+    arrays.position = reader.take(header.count * header.position_bytes());
+    arrays.alpha = reader.take(header.count);
+    arrays.colour = reader.take(header.count * 3);
+    arrays.scale = reader.take(header.count * 3);
+    arrays.rotation = reader.take(header.count * header.rotation_bytes());
+    arrays.sh = reader.take(header.count * header.sh_bytes());
+    return arrays;
+}
+
+/// Records of [u32 type][u32 length][payload]; returns the coordinate system when one names it.
+std::optional<std::uint32_t> parse_extensions(Bytes bytes) {
+    std::optional<std::uint32_t> frame;
+    ByteReader reader(bytes, "the extension list of the SPZ file");
+    while (reader.remaining() >= 8) {
+        const auto type = reader.read<std::uint32_t>();
+        const auto length = reader.read<std::uint32_t>();
+        const Bytes payload = reader.take(length);
+        if (type == CoordinateSystemExtension && payload.size() >= 4)
+            frame = load_scalar<std::uint32_t>(payload.data());
+        else
+            log::debug("the SPZ extension {:#x} is skipped", type);
+    }
+    return frame;
+}
+
+void unpack_positions(const Header& header, Bytes bytes, std::vector<float>& out) {
+    const double step = std::ldexp(1.0, -header.fractional_bits);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        if (header.version == 1) {
+            out[i] = half_to_float(load_scalar<std::uint16_t>(bytes.data() + 2 * i));
+            continue;
+        }
+        const std::byte* source = bytes.data() + 3 * i;
+        const std::uint32_t word = (static_cast<std::uint32_t>(source[0]) << 8) |
+                                   (static_cast<std::uint32_t>(source[1]) << 16) |
+                                   (static_cast<std::uint32_t>(source[2]) << 24);
+        out[i] = static_cast<float>((std::bit_cast<std::int32_t>(word) >> 8) * step);
+    }
+}
+
+/// x, y, z as bytes; w >= 0 follows.
+std::array<double, 4> unpack_rotation_bytes(const std::byte* source) {
+    std::array<double, 4> xyzw{};
+    double rest = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+        xyzw[i] = std::to_integer<int>(source[i]) / 127.5 - 1;
+        rest -= xyzw[i] * xyzw[i];
+    }
+    xyzw[3] = std::sqrt(std::max(0.0, rest));
+    return xyzw;
+}
+
+/// Two bits name the largest of (x,y,z,w); the other three follow from high to low, a sign and nine bits
+/// each.
+std::array<double, 4> unpack_rotation_word(std::uint32_t word) {
+    std::array<double, 4> xyzw{};
+    const std::size_t largest = word >> 30;
+    double rest = 1;
+    int shift = 20;
+    for (std::size_t i = 0; i < 4; ++i) {
+        if (i == largest) continue;
+        const std::uint32_t field = (word >> shift) & 1023;
+        const double magnitude = (field & 511) / 511.0 / std::numbers::sqrt2;
+        xyzw[i] = (field & 512) != 0 ? -magnitude : magnitude;
+        rest -= magnitude * magnitude;
+        shift -= 10;
+    }
+    xyzw[largest] = std::sqrt(std::max(0.0, rest));
+    return xyzw;
+}
+
+void unpack_rotations(const Header& header, Bytes bytes, std::vector<float>& out) {
+    for (std::size_t row = 0; row < out.size() / 4; ++row) {
+        const std::byte* source = bytes.data() + row * header.rotation_bytes();
+        const std::array<double, 4> q = header.version >= 3
+                                            ? unpack_rotation_word(load_scalar<std::uint32_t>(source))
+                                            : unpack_rotation_bytes(source);
+        for (std::size_t i = 0; i < 4; ++i) out[row * 4 + i] = static_cast<float>(q[(i + 3) % 4]);
+    }
+}
+
+GaussianData unpack(const Header& header, const Arrays& arrays) {
+    GaussianData data;
+    data.sh_degree = std::min(header.degree, MaxShDegree);
+    data.resize(static_cast<std::size_t>(header.count));
+    unpack_positions(header, arrays.position, data.position);
+    unpack_rotations(header, arrays.rotation, data.rotation);
+    const std::size_t kept = rest_of_degree(data.sh_degree) * 3;
+    for (std::size_t row = 0; row < data.size(); ++row) {
+        data.opacity_logit[row] = byte_logits()[std::to_integer<unsigned>(arrays.alpha[row])];
+        float* sh = data.sh.data() + row * data.sh_stride();
+        for (std::size_t i = 0; i < 3; ++i) {
+            data.log_scale[row * 3 + i] =
+                static_cast<float>(std::to_integer<int>(arrays.scale[row * 3 + i])) / 16 - 10;
+            sh[i] = static_cast<float>((std::to_integer<int>(arrays.colour[row * 3 + i]) / 255.0 - 0.5) /
+                                       ColourScale);
+        }
+        const std::byte* rest = arrays.sh.data() + row * header.sh_bytes();
+        for (std::size_t i = 0; i < kept; ++i)
+            sh[3 + i] = static_cast<float>(std::to_integer<int>(rest[i]) - 128) / 128;
+    }
+    return data;
+}
+
+/// Signs that take the stored frame to right, down, forward. Values 1 to 8 are right, up, front bits plus
+/// one.
+AxisSigns signs_of_frame(std::optional<std::uint32_t> frame, std::vector<std::string>& warnings) {
+    if (frame && (*frame == 0 || *frame > LastAxisFlip)) {
+        warnings.push_back(
+            "the SPZ file states a coordinate system that is not handled; it is shown as stored");
+        return {};
+    }
+    const std::uint32_t bits = frame.value_or(RightUpBack) - 1;
+    return {(bits & 1) != 0 ? 1 : -1, (bits & 2) != 0 ? -1 : 1, (bits & 4) != 0 ? 1 : -1};
+}
+
+Scene make_scene(const Header& header, const Arrays& arrays, std::optional<std::uint32_t> frame) {
+    Scene scene;
+    scene.info.format = "spz";
+    scene.info.antialiased = (header.flags & FlagAntialiased) != 0;
+    if (header.degree > MaxShDegree)
+        scene.info.warnings.push_back("spherical harmonics of degree 4 are cut to degree 3");
+    GaussianData data = unpack(header, arrays);
+    flip_axes(data, signs_of_frame(frame, scene.info.warnings));
+    scene.gaussians = GaussianSet(std::move(data));
+    return scene;
+}
+
+/// v1-v3, already out of its gzip stream.
+Scene parse_flat(Bytes bytes) {
+    const Header header = parse_header(bytes);
+    if (header.version == 4) throw_malformed("of version 4 lies inside a gzip stream");
+    const Bytes body = bytes.subspan(HeaderBytes);
+    const Arrays arrays = split_arrays(header, body);
+    const Bytes rest = body.subspan(static_cast<std::size_t>(header.count * header.row_bytes()));
+    return make_scene(header, arrays,
+                      (header.flags & FlagExtensions) != 0 ? parse_extensions(rest) : std::nullopt);
+}
+
+Scene parse_gzip(Bytes bytes) {
+    const std::vector<std::byte> start = inflate_gzip(bytes, HeaderBytes);
+    const Header header = parse_header(start);
+    const std::uint64_t size = HeaderBytes + header.count * header.row_bytes();
+    if (size / HighestDeflateRatio > bytes.size())
+        throw_malformed(
+            fmt::format("promises {} splats but holds {} bytes only", header.count, bytes.size()));
+    return parse_flat(inflate_gzip(bytes, size + LargestExtensions));
+}
+
+Scene parse_streams(Bytes bytes) {
+    const Header header = parse_header(bytes);
+    if (bytes.size() < HeaderBytesV4) throw_malformed("ends inside its header");
+    const std::uint64_t table = load_scalar<std::uint32_t>(bytes.data() + HeaderBytes);
+    if (table < HeaderBytesV4 || table > bytes.size()) throw_malformed("places its table outside of itself");
+    const std::array<std::uint64_t, 6> row_bytes = {header.position_bytes(), 1, 3, 3, header.rotation_bytes(),
+                                                    header.sh_bytes()};
+    std::array<std::vector<std::byte>, 6> streams;
+    ByteReader toc(bytes.subspan(static_cast<std::size_t>(table)), "the SPZ file");
+    ByteReader frames = toc;
+    frames.skip(std::uint64_t{16} * header.streams);
+    std::size_t used = 0;
+    for (std::size_t i = 0; i < row_bytes.size(); ++i) {
+        if (row_bytes[i] == 0) continue;
+        if (used++ >= header.streams) throw_malformed("lacks some of its streams");
+        const auto compressed = toc.read<std::uint64_t>();
+        const auto raw = toc.read<std::uint64_t>();
+        if (raw != header.count * row_bytes[i])
+            throw_malformed(fmt::format("has a stream of {} bytes where {} splats need {}", raw, header.count,
+                                        header.count * row_bytes[i]));
+        streams[i] = decompress_zstd(frames.take(compressed), raw);
+    }
+    const Bytes extensions = bytes.subspan(HeaderBytesV4, static_cast<std::size_t>(table) - HeaderBytesV4);
+    return make_scene(header, {streams[0], streams[1], streams[2], streams[3], streams[4], streams[5]},
+                      parse_extensions(extensions));
+}
+
+bool is_gzip(Bytes bytes) {
+    return bytes.size() >= 2 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b};
+}
+
+bool is_bare(Bytes bytes) { return bytes.size() >= 4 && load_scalar<std::uint32_t>(bytes.data()) == Magic; }
+
+}  // namespace
+
+bool detect_spz(Bytes bytes, std::string_view) { return is_gzip(bytes) || is_bare(bytes); }
+
+Scene parse_spz(Bytes bytes) {
+    if (is_gzip(bytes)) return parse_gzip(bytes);
+    const bool streams = bytes.size() >= 8 && load_scalar<std::uint32_t>(bytes.data() + 4) >= 4;
+    return streams ? parse_streams(bytes) : parse_flat(bytes);
+}
+
+}  // namespace gse::io
