@@ -1,0 +1,41 @@
+// What every camera reader refuses: focal lengths, sizes and poses that no camera has.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <string>
+
+#include "engine/base/error.h"
+#include "engine/math/camera.h"
+
+namespace gse::io {
+
+inline constexpr int LargestImageSide = 100000;  // pixels
+
+inline void check_intrinsics(const Camera& camera, const std::string& which) {
+    if (camera.width < 1 || camera.height < 1 || camera.width > LargestImageSide ||
+        camera.height > LargestImageSide)
+        throw Error(ErrorCode::Malformed, fmt::format("the camera {} has an image size of {} x {}", which,
+                                                      camera.width, camera.height));
+    const bool valid = std::isfinite(camera.fx) && std::isfinite(camera.fy) && camera.fx > 0 &&
+                       camera.fy > 0 && std::isfinite(camera.cx) && std::isfinite(camera.cy);
+    if (!valid)
+        throw Error(ErrorCode::Malformed,
+                    fmt::format("the camera {} has focal lengths {} and {} and centre ({}, {})", which,
+                                camera.fx, camera.fy, camera.cx, camera.cy));
+}
+
+/// Rotation orthonormal within a hundredth and everything finite.
+inline void check_pose(const Camera& camera, const std::string& which) {
+    const Vec3& t = camera.translation;
+    bool valid = std::isfinite(t.x) && std::isfinite(t.y) && std::isfinite(t.z);
+    const Mat3 product = camera.rotation * camera.rotation.transposed();
+    for (int i = 0; i < 9; ++i)
+        valid = valid && std::abs(product.m[static_cast<std::size_t>(i)] - (i % 4 == 0 ? 1 : 0)) < 0.01;
+    if (!valid)
+        throw Error(ErrorCode::Malformed,
+                    fmt::format("the camera \"{}\" has no valid rotation and position", which));
+}
+
+}  // namespace gse::io

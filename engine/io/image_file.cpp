@@ -1,0 +1,118 @@
+// Image files: PNG is written here, everything is read through OpenCV.
+#include "engine/io/image_file.h"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <vector>
+
+#include "engine/base/check.h"
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/io/encoding.h"
+#include "engine/io/png.h"
+
+#ifdef GSE_HAVE_OPENCV
+#include <opencv2/imgcodecs.hpp>
+#endif
+
+namespace gse {
+
+#ifdef GSE_HAVE_OPENCV
+namespace {
+
+/// OpenCV's blue-green-red rows to red-green-blue floats.
+template <class T>
+void copy_pixels(const cv::Mat& from, double scale, Image& to) {
+    const int channels = to.channels;
+    float* out = to.data.data();
+    for (int y = 0; y < to.height; ++y) {
+        const T* row = from.ptr<T>(y);
+        for (int x = 0; x < to.width; ++x, row += channels)
+            for (int c = 0; c < channels; ++c) {
+                const int source = channels >= 3 && c < 3 ? 2 - c : c;
+                *out++ = static_cast<float>(static_cast<double>(row[source]) * scale);
+            }
+    }
+}
+
+cv::Mat decode(const std::filesystem::path& path) {
+    const MappedFile file(path);
+    if (file.bytes().empty()) throw Error(ErrorCode::Malformed, "the image file is empty", "", path);
+    try {
+        const cv::Mat raw(1, static_cast<int>(file.bytes().size()), CV_8U,
+                          const_cast<std::byte*>(file.bytes().data()));
+        return cv::imdecode(raw, cv::IMREAD_UNCHANGED);
+    } catch (const cv::Exception& failure) {
+        throw Error(ErrorCode::Malformed, "the image cannot be decoded (" + failure.err + ")", "", path);
+    }
+}
+
+}  // namespace
+
+Image read_image(const std::filesystem::path& path) {
+    const cv::Mat pixels = decode(path);
+    if (pixels.empty()) throw Error(ErrorCode::Malformed, "the file is no image that can be read", "", path);
+    const int channels = pixels.channels();
+    if (channels == 2 || channels > 4)
+        throw Error(ErrorCode::Unsupported, fmt::format("an image of {} channels is not handled", channels),
+                    "", path);
+    Image image(pixels.cols, pixels.rows, channels);
+    switch (pixels.depth()) {
+        case CV_8U:
+            copy_pixels<std::uint8_t>(pixels, 1.0 / 255, image);
+            break;
+        case CV_16U:
+            copy_pixels<std::uint16_t>(pixels, 1.0 / 65535, image);
+            break;
+        case CV_32F:
+            copy_pixels<float>(pixels, 1, image);
+            break;
+        default:
+            throw Error(ErrorCode::Unsupported, "the pixel type of the image is not handled", "", path);
+    }
+    return image;
+}
+#else
+Image read_image(const std::filesystem::path& path) {
+    throw Error(ErrorCode::Unsupported, "this build reads no image files", "build it with GSE_OPENCV=ON",
+                path);
+}
+#endif
+
+void write_png(const std::filesystem::path& path, const Image& image, const PngText& text) {
+    GSE_CHECK(image.channels == 1 || image.channels == 3 || image.channels == 4);
+    std::vector<std::uint8_t> bytes(image.data.size());
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+        bytes[i] = io::to_byte(static_cast<double>(image.data[i]) * 255);
+    write_file(path, io::encode_png({image.width, image.height, image.channels, bytes}, text));
+}
+
+void write_mask_png(const std::filesystem::path& path, const Mask& mask) {
+    std::vector<std::uint8_t> bytes(mask.data.size());
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = mask.data[i] != 0 ? 255 : 0;
+    write_file(path, io::encode_png({mask.width, mask.height, 1, bytes}, {}));
+}
+
+Mask read_mask(const std::filesystem::path& path) {
+    const Image image = read_image(path);
+    Mask mask(image.width, image.height);
+    const int colours = image.channels >= 3 ? 3 : 1;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            float sum = 0;
+            for (int c = 0; c < colours; ++c) sum += image.at(x, y, c);
+            mask.at(x, y) = sum > 0.5f * static_cast<float>(colours) ? 1 : 0;
+        }
+    return mask;
+}
+
+PngText read_png_text(const std::filesystem::path& path) {
+    return io::parse_png_text(MappedFile(path).bytes());
+}
+
+std::optional<ImageSize> read_image_size(const std::filesystem::path& path) {
+    return io::parse_image_size(MappedFile(path).bytes());
+}
+
+}  // namespace gse

@@ -1,0 +1,130 @@
+// MP4 through OpenCV's FFmpeg: H.264 where the system can encode it, MPEG-4 elsewhere.
+#include "engine/io/video.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <array>
+
+#include "engine/base/check.h"
+#include "engine/base/error.h"
+#include "engine/io/encoding.h"
+
+#ifdef GSE_HAVE_OPENCV
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/videoio.hpp>
+#endif
+
+namespace gse {
+
+#ifdef GSE_HAVE_OPENCV
+
+struct VideoWriter::State {
+    std::filesystem::path path, temporary;
+    int width = 0, height = 0;  // of the frames handed in
+    cv::VideoWriter writer;
+    cv::Mat picture;  // even size, blue-green-red
+    std::string codec;
+    bool finished = false;
+};
+
+namespace {
+
+/// Tries the codecs in order; OpenCV says on stderr what it misses, which is no news to the user.
+bool open_any_codec(cv::VideoWriter& writer, const std::filesystem::path& file, double rate, cv::Size size,
+                    std::string& codec) {
+    const auto level = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+    bool opened = false;
+    for (const char* name : {"avc1", "mp4v"}) {
+        try {
+            opened =
+                writer.open(file.string(), cv::CAP_FFMPEG,
+                            cv::VideoWriter::fourcc(name[0], name[1], name[2], name[3]), rate, size, true);
+        } catch (const cv::Exception&) {
+            opened = false;
+        }
+        codec = name;
+        if (opened) break;
+    }
+    cv::utils::logging::setLogLevel(level);
+    return opened;
+}
+
+}  // namespace
+
+VideoWriter::VideoWriter(const std::filesystem::path& path, int width, int height, double frames_per_second)
+    : state_(std::make_unique<State>()) {
+    if (width < 2 || height < 2 || !(frames_per_second > 0))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("a film of {} x {} pixels at {} frames per second cannot be made", width,
+                                height, frames_per_second));
+    std::error_code failure;
+    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failure);
+    if (failure)
+        throw Error(ErrorCode::Unwritable, "the folder cannot be made (" + failure.message() + ")", "",
+                    path.parent_path());
+    state_->path = path;
+    state_->temporary =
+        path.parent_path() / ("." + path.stem().string() + ".part" + std::to_string(getpid()) + ".mp4");
+    state_->width = width;
+    state_->height = height;
+    const cv::Size size(width / 2 * 2, height / 2 * 2);
+    state_->picture.create(size, CV_8UC3);
+    if (!open_any_codec(state_->writer, state_->temporary, frames_per_second, size, state_->codec)) {
+        std::filesystem::remove(state_->temporary, failure);
+        throw Error(ErrorCode::Unwritable, "the film cannot be written: no MP4 codec opens this file",
+                    "check the rights of the folder and that OpenCV has FFmpeg", path);
+    }
+}
+
+VideoWriter::~VideoWriter() {
+    if (state_ == nullptr || state_->finished) return;
+    state_->writer.release();
+    std::error_code ignored;
+    std::filesystem::remove(state_->temporary, ignored);
+}
+
+void VideoWriter::add(const Image& frame) {
+    GSE_CHECK(!state_->finished);
+    GSE_CHECK_EQ(frame.width, state_->width);
+    GSE_CHECK_EQ(frame.height, state_->height);
+    const int colours = frame.channels >= 3 ? 3 : 1;
+    for (int y = 0; y < state_->picture.rows; ++y) {
+        std::uint8_t* out = state_->picture.ptr<std::uint8_t>(y);
+        for (int x = 0; x < state_->picture.cols; ++x)
+            for (int c = 2; c >= 0; --c)
+                *out++ = io::to_byte(static_cast<double>(frame.at(x, y, colours == 3 ? c : 0)) * 255);
+    }
+    state_->writer.write(state_->picture);
+}
+
+void VideoWriter::finish() {
+    GSE_CHECK(!state_->finished);
+    state_->writer.release();
+    std::error_code failure;
+    std::filesystem::rename(state_->temporary, state_->path, failure);
+    if (failure)
+        throw Error(ErrorCode::Unwritable, "the film cannot be written (" + failure.message() + ")",
+                    "check the free space and the rights of the folder", state_->path);
+    state_->finished = true;
+}
+
+const std::string& VideoWriter::codec() const { return state_->codec; }
+
+#else
+
+struct VideoWriter::State {
+    std::string codec;
+};
+
+VideoWriter::VideoWriter(const std::filesystem::path& path, int, int, double) {
+    throw Error(ErrorCode::Unsupported, "this build writes no films", "build it with GSE_OPENCV=ON", path);
+}
+VideoWriter::~VideoWriter() = default;
+void VideoWriter::add(const Image&) {}
+void VideoWriter::finish() {}
+const std::string& VideoWriter::codec() const { return state_->codec; }
+
+#endif
+
+}  // namespace gse
