@@ -20,7 +20,7 @@ constexpr std::size_t SectionHeaderBytes = 1024;
 constexpr float UsualShRange = 1.5f;
 
 struct Header {
-    std::uint32_t max_sections = 0, sections = 0;
+    std::uint32_t max_sections = 0;
     std::uint16_t level = 0;  // 0 floats, 1 halves, 2 bytes for SH
     float sh_low = 0, sh_high = 0;
 };
@@ -49,14 +49,12 @@ Header parse_header(Bytes bytes) {
         throw Error(ErrorCode::Unsupported, "this is not a .ksplat file of version 0.1");
     Header header;
     header.max_sections = load_scalar<std::uint32_t>(source + 4);
-    header.sections = load_scalar<std::uint32_t>(source + 8);
     header.level = load_scalar<std::uint16_t>(source + 20);
     header.sh_low = load_scalar<float>(source + 36);
     header.sh_high = load_scalar<float>(source + 40);
     if (header.sh_low == 0) header.sh_low = -UsualShRange;
     if (header.sh_high == 0) header.sh_high = UsualShRange;
     if (header.level > 2) throw_malformed(fmt::format("claims compression level {}", header.level));
-    if (header.sections > header.max_sections) throw_malformed("has more sections than it says it may");
     return header;
 }
 
@@ -182,7 +180,8 @@ Scene parse_ksplat(Bytes bytes) {
     const Bytes headers = reader.take(saturating_product(header.max_sections, SectionHeaderBytes));
     std::vector<Section> sections;
     GaussianData data;
-    for (std::size_t i = 0; i < header.sections; ++i) {
+    for (std::size_t i = 0; i < header.max_sections;
+         ++i) {  // unused ones are zero; some writers leave `sections` 0
         sections.push_back(parse_section(headers.subspan(i * SectionHeaderBytes, SectionHeaderBytes)));
         data.sh_degree = std::max(data.sh_degree, sections.back().degree);
     }

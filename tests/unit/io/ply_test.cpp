@@ -1,0 +1,316 @@
+// 3DGS PLY: any header that says the same thing gives the same splats; what is written is read back bit for bit.
+#include <algorithm>
+#include <bit>
+#include <cinttypes>
+#include <functional>
+#include <limits>
+
+#include "engine/io/formats.h"
+#include "tests/unit/io/io_helpers.h"
+
+using namespace gse;
+using namespace gse::test;
+
+namespace {
+
+enum class Encoding { Ascii, Little, Big };
+
+/// One column of a made-up PLY: its name, its type and its value for a row.
+struct Column {
+    std::string name;
+    std::string type = "float";
+    std::function<double(std::size_t)> value;
+};
+
+template <class T>
+void append_scalar(std::string& out, T value, bool big_endian) {
+    std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+    if (big_endian) std::reverse(bytes.begin(), bytes.end());
+    out += bytes;
+}
+
+void append_value(std::string& out, const std::string& type, double value, Encoding encoding) {
+    const bool big = encoding == Encoding::Big;
+    char text[64];
+    if (encoding == Encoding::Ascii) {
+        std::snprintf(text, sizeof text, type == "double" ? "%.17g " : "%.9g ", value);
+        out += text;
+    } else if (type == "float" || type == "float32") {
+        append_scalar(out, static_cast<float>(value), big);
+    } else if (type == "double" || type == "float64") {
+        append_scalar(out, value, big);
+    } else if (type == "uchar" || type == "uint8") {
+        append_scalar(out, static_cast<std::uint8_t>(value), big);
+    } else if (type == "short" || type == "int16") {
+        append_scalar(out, static_cast<std::int16_t>(value), big);
+    } else {
+        append_scalar(out, static_cast<std::int32_t>(value), big);
+    }
+}
+
+/// The columns of these splats in the Inria order.
+std::vector<Column> columns_of(const GaussianData& data) {
+    std::vector<Column> columns;
+    const auto add = [&](const std::string& name, const std::vector<float>& values, std::size_t stride, std::size_t offset) {
+        columns.push_back({name, "float", [&values, stride, offset](std::size_t row) {
+                               return static_cast<double>(values[row * stride + offset]);
+                           }});
+    };
+    for (std::size_t i = 0; i < 3; ++i) add(std::string(1, "xyz"[i]), data.position, 3, i);
+    for (std::size_t i = 0; i < 3; ++i) add("f_dc_" + std::to_string(i), data.sh, data.sh_stride(), i);
+    const std::size_t rest = data.sh_stride() / 3 - 1;
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t k = 0; k < rest; ++k)
+            add("f_rest_" + std::to_string(c * rest + k), data.sh, data.sh_stride(), (k + 1) * 3 + c);
+    add("opacity", data.opacity_logit, 1, 0);
+    for (std::size_t i = 0; i < 3; ++i) add("scale_" + std::to_string(i), data.log_scale, 3, i);
+    for (std::size_t i = 0; i < 4; ++i) add("rot_" + std::to_string(i), data.rotation, 4, i);
+    return columns;
+}
+
+struct FileShape {
+    Encoding encoding = Encoding::Little;
+    std::string line_end = "\n";
+    bool face_first = false;    // a face element with lists before the vertices
+    bool list_inside = false;   // a list property among the vertex's
+    bool trailing_element = false;
+    bool padded = false;
+};
+
+std::string make_ply(const std::vector<Column>& columns, std::size_t count, const FileShape& shape) {
+    const char* names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+    std::string out = "ply" + shape.line_end;
+    const auto line = [&](const std::string& text) { out += text + (shape.padded ? " \t" : "") + shape.line_end; };
+    line(std::string("format ") + names[static_cast<int>(shape.encoding)] + " 1.0");
+    line("comment made for a test");
+    line("obj_info nothing");
+    if (shape.face_first) {
+        line("element face 2");
+        line("property list uchar int vertex_indices");
+        line("property float area");
+    }
+    line("element vertex " + std::string(shape.padded ? "   " : "") + std::to_string(count));
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        if (shape.list_inside && i == columns.size() / 2) line("property list uchar short extra_list");
+        line("property " + columns[i].type + " " + columns[i].name);
+    }
+    if (shape.trailing_element) {
+        line("element note 1");
+        line("property uchar mark");
+    }
+    out += "end_header" + shape.line_end;
+    const auto put = [&](const std::string& type, double value) { append_value(out, type, value, shape.encoding); };
+    if (shape.face_first)
+        for (int face = 0; face < 2; ++face) {
+            put("uchar", 3 - face);
+            for (int i = 0; i < 3 - face; ++i) put("int", i);
+            put("float", 1.5);
+            if (shape.encoding == Encoding::Ascii) out += "\n";
+        }
+    for (std::size_t row = 0; row < count; ++row) {
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            if (shape.list_inside && i == columns.size() / 2) {
+                put("uchar", static_cast<double>(row % 3));
+                for (std::size_t item = 0; item < row % 3; ++item) put("short", -7);
+            }
+            put(columns[i].type, columns[i].value(row));
+        }
+        if (shape.encoding == Encoding::Ascii) out += shape.line_end;
+    }
+    if (shape.trailing_element) put("uchar", 7);
+    return out;
+}
+
+void shuffle(std::vector<Column>& columns, Random& random) {
+    for (std::size_t i = columns.size(); i > 1; --i) std::swap(columns[i - 1], columns[random.below(i)]);
+}
+
+void add_strange_columns(std::vector<Column>& columns, Random& random) {
+    const char* types[] = {"uchar", "double", "short", "int", "float", "uint8", "float64", "int32"};
+    const auto extra = random.below(4);
+    for (std::uint64_t i = 0; i < extra; ++i)
+        columns.push_back({"extra_" + std::to_string(i), types[random.below(8)],
+                           [](std::size_t row) { return static_cast<double>(row % 100); }});
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("any order, encoding, line end and company of columns gives the same splats") {
+    for (std::uint64_t seed = 0; seed < 120; ++seed) {
+        Random random(seed);
+        const int degree = static_cast<int>(random.below(4));
+        const std::size_t count = 1 + random.below(300);
+        const GaussianData data = random_gaussians(count, degree, seed);
+        std::vector<Column> columns = columns_of(data);
+        add_strange_columns(columns, random);
+        shuffle(columns, random);
+        for (Column& column : columns)
+            if (column.type == "float" && random.below(8) == 0) column.type = random.below(2) == 0 ? "double" : "float32";
+        FileShape shape;
+        shape.encoding = static_cast<Encoding>(random.below(3));
+        shape.line_end = random.below(3) == 0 ? "\r\n" : "\n";
+        shape.face_first = random.below(3) == 0;
+        shape.list_inside = random.below(4) == 0;
+        shape.trailing_element = random.below(3) == 0;
+        shape.padded = random.below(3) == 0;
+        DOCTEST_CAPTURE(seed);
+        const std::string file = make_ply(columns, count, shape);
+        const Scene scene = parse_scene(as_bytes(file), "x.ply");
+        DOCTEST_CHECK(same_bits(scene.gaussians, GaussianSet(data)));
+        DOCTEST_CHECK(scene.info.warnings.empty());
+    }
+}
+
+DOCTEST_TEST_CASE("a scene written as PLY comes back bit for bit") {
+    ScratchFolder scratch;
+    for (int degree = 0; degree <= 3; ++degree) {
+        GaussianData data = random_gaussians(321, degree, 7 + static_cast<std::uint64_t>(degree));
+        data.position[3] = std::numeric_limits<float>::quiet_NaN();
+        data.opacity_logit[5] = std::numeric_limits<float>::infinity();
+        data.log_scale[6] = -std::numeric_limits<float>::infinity();
+        data.sh[9] = std::bit_cast<float>(0x7fa12345u);  // a signalling NaN with a payload
+        data.sh[10] = -0.0f;
+        Scene scene;
+        scene.gaussians = GaussianSet(data);
+        const auto path = scratch.path() / "scene.ply";
+        save_scene(path, scene);
+        const Scene again = load_scene(path);
+        DOCTEST_CHECK(same_bits(again.gaussians, scene.gaussians));
+        DOCTEST_CHECK(again.labels.labels.empty());
+        save_scene(scratch.path() / "again.ply", again);
+        DOCTEST_CHECK(read_file(path) == read_file(scratch.path() / "again.ply"));
+    }
+}
+
+DOCTEST_TEST_CASE("the plain layout is Inria's: 62 floats for degree 3, normals zero") {
+    ScratchFolder scratch;
+    const Scene scene = random_scene(2, 3, 5);
+    save_scene(scratch.path() / "a.ply", scene);
+    const std::string bytes = read_file(scratch.path() / "a.ply");
+    const std::size_t body = bytes.find("end_header\n") + 11;
+    DOCTEST_CHECK(bytes.size() - body == 2 * 62 * 4);
+    float row[62];
+    std::memcpy(row, bytes.data() + body, sizeof row);
+    DOCTEST_CHECK(row[3] == 0.0f);
+    DOCTEST_CHECK(row[9] == scene.gaussians.sh()[3]);        // f_rest_0: red of coefficient 1
+    DOCTEST_CHECK(row[9 + 15] == scene.gaussians.sh()[4]);   // f_rest_15: green of coefficient 1
+    DOCTEST_CHECK(row[54] == scene.gaussians.opacity_logit()[0]);
+    DOCTEST_CHECK(row[58] == scene.gaussians.rotation()[0]);
+}
+
+DOCTEST_TEST_CASE("labels travel in a PLY") {
+    ScratchFolder scratch;
+    Scene scene = random_scene(10, 1, 3);
+    std::vector<float> weight(10);
+    for (std::size_t i = 0; i < 10; ++i) weight[i] = static_cast<float>(i) / 10;
+    const Label label = make_label("a red hat", weight, 0.45f);
+    SaveOptions options;
+    options.from_label = &label;
+    save_scene(scratch.path() / "a.ply", scene, options);
+    const Scene again = load_scene(scratch.path() / "a.ply");
+    DOCTEST_CHECK(same_bits(again.gaussians, scene.gaussians));
+    DOCTEST_REQUIRE(again.labels.labels.size() == 1);
+    DOCTEST_CHECK(again.labels.labels[0].name == "a red hat");
+    DOCTEST_CHECK(*again.labels.labels[0].weight == weight);
+    DOCTEST_CHECK(*again.labels.labels[0].bits == *label.bits);
+
+    SaveOptions bits_only;
+    const std::vector<float> bits = {0, 1, 0, 1, 1, 0, 0, 0, 0, 1};
+    bits_only.label = bits;
+    save_scene(scratch.path() / "b.ply", scene, bits_only);
+    const Scene plain = load_scene(scratch.path() / "b.ply");
+    DOCTEST_REQUIRE(plain.labels.labels.size() == 1);
+    DOCTEST_CHECK(*plain.labels.labels[0].weight == bits);
+    DOCTEST_CHECK(plain.labels.labels[0].bits->at(3) == 1);
+
+    const auto wrong_size = error_of([&] {
+        SaveOptions short_options;
+        short_options.label = std::span<const float>(bits).first(4);
+        save_scene(scratch.path() / "c.ply", scene, short_options);
+    });
+    DOCTEST_CHECK(wrong_size.has_value());
+    DOCTEST_CHECK(error_of([&] { save_scene(scratch.path() / "c.spz", scene, bits_only); }).has_value());
+    DOCTEST_CHECK(!std::filesystem::exists(scratch.path() / "c.ply"));
+    DOCTEST_CHECK(!std::filesystem::exists(scratch.path() / "c.spz"));
+}
+
+DOCTEST_TEST_CASE("header comments are honoured, the last one wins") {
+    const GaussianData data = random_gaussians(1, 0, 1);
+    const std::string plain = make_ply(columns_of(data), 1, {});
+    const auto with_comments = [&](const std::string& comments) {
+        std::string text = plain;
+        text.insert(text.find("element"), comments);
+        return parse_scene(as_bytes(text), "x.ply").info;
+    };
+    DOCTEST_CHECK(with_comments("").up_known == false);
+    DOCTEST_CHECK(with_comments("comment Vertical axis: y\n").up == Vec3{0, -1, 0});
+    DOCTEST_CHECK(with_comments("comment VERTICAL axis: z\n").up == Vec3{0, 0, -1});
+    DOCTEST_CHECK(with_comments("comment Vertical Axis: z\n").up == Vec3{0, 0, 1});  // nerfstudio's spelling
+    DOCTEST_CHECK(with_comments("comment Vertical axis: y\ncomment Vertical axis: 0 0 2\n").up == Vec3{0, 0, 1});
+    DOCTEST_CHECK(with_comments("comment Vertical axis: nonsense\n").up_known == false);
+    DOCTEST_CHECK(with_comments("comment SplatRenderMode: mip\n").antialiased);
+    DOCTEST_CHECK(with_comments("comment antialiased 1\n").antialiased);
+    DOCTEST_CHECK(!with_comments("comment antialiased 1\ncomment splatrendermode: default\n").antialiased);
+}
+
+DOCTEST_TEST_CASE("comments are written back") {
+    ScratchFolder scratch;
+    Scene scene = random_scene(1, 0, 2);
+    scene.info.up = {0.6, 0, 0.8};
+    scene.info.up_known = true;
+    scene.info.antialiased = true;
+    save_scene(scratch.path() / "a.ply", scene);
+    const Scene again = load_scene(scratch.path() / "a.ply");
+    DOCTEST_CHECK(again.info.up_known);
+    DOCTEST_CHECK(length(again.info.up - scene.info.up) < 1e-12);
+    DOCTEST_CHECK(again.info.antialiased);
+}
+
+DOCTEST_TEST_CASE("surfels, byte colours and degree 4 are taken in") {
+    const GaussianData data = random_gaussians(3, 0, 4);
+    std::vector<Column> columns = columns_of(data);
+    const auto drop = [&](const std::string& name) {
+        std::erase_if(columns, [&](const Column& column) { return column.name == name; });
+    };
+    drop("scale_2");
+    const Scene surfels = parse_scene(as_bytes(make_ply(columns, 3, {})), "x.ply");
+    DOCTEST_CHECK(surfels.gaussians.log_scale()[2] < -13);
+    DOCTEST_CHECK(surfels.info.warnings.size() == 1);
+
+    for (const char* name : {"f_dc_0", "f_dc_1", "f_dc_2"}) drop(name);
+    for (const char* name : {"red", "green", "blue"})
+        columns.push_back({name, "uchar", [](std::size_t row) { return row == 0 ? 255.0 : 0.0; }});
+    const Scene coloured = parse_scene(as_bytes(make_ply(columns, 3, {})), "x.ply");
+    DOCTEST_CHECK(static_cast<double>(coloured.gaussians.sh()[0]) == doctest::Approx(sh_from_colour(1)));
+    DOCTEST_CHECK(static_cast<double>(coloured.gaussians.sh()[3]) == doctest::Approx(sh_from_colour(0)));
+
+    std::vector<Column> wide = columns_of(data);
+    for (int i = 0; i < 72; ++i)
+        wide.push_back({"f_rest_" + std::to_string(i), "float", [i](std::size_t) { return static_cast<double>(i); }});
+    const Scene cut = parse_scene(as_bytes(make_ply(wide, 3, {})), "x.ply");
+    DOCTEST_CHECK(cut.gaussians.sh_degree() == 3);
+    DOCTEST_CHECK(cut.gaussians.sh()[3] == 0.0f);   // red of the first coefficient
+    DOCTEST_CHECK(cut.gaussians.sh()[4] == 24.0f);  // green: the file has 24 per channel
+    DOCTEST_CHECK(cut.info.warnings.size() == 1);
+}
+
+DOCTEST_TEST_CASE("headers that cannot be right are refused") {
+    const GaussianData data = random_gaussians(2, 0, 9);
+    const std::string good = make_ply(columns_of(data), 2, {});
+    const auto refused = [&](std::string text, const std::string& from, const std::string& to) {
+        text.replace(text.find(from), from.size(), to);
+        const auto error = error_of([&] { parse_scene(as_bytes(text), "x.ply"); });
+        return error ? std::string(error->what()) : std::string();
+    };
+    DOCTEST_CHECK(refused(good, "property float x", "property quux x").find("unknown type") != std::string::npos);
+    DOCTEST_CHECK(refused(good, "element vertex 2", "element vertex two").find("count") != std::string::npos);
+    DOCTEST_CHECK(refused(good, "element vertex 2", "element vertex 3").find("promises 3") != std::string::npos);
+    DOCTEST_CHECK(refused(good, "element vertex 2", "element vertex 0").find("no splats") != std::string::npos);
+    DOCTEST_CHECK(refused(good, "format binary_little_endian", "format morse").find("format") != std::string::npos);
+    DOCTEST_CHECK(refused(good, "end_header", "end_headed").find("header") != std::string::npos);
+    DOCTEST_CHECK(refused(good, "float opacity", "float opaque").find("opacity") != std::string::npos);
+    DOCTEST_CHECK(refused(good, "element vertex 2\n", "element vertex 2\nproperty float f_rest_0\n").find("f_rest") !=
+                  std::string::npos);
+    DOCTEST_CHECK(refused(good, "element vertex 2\n", "element vertex 2\nproperty float f_rest_4000000000\n").find("f_rest") !=
+                  std::string::npos);
+}
