@@ -1,0 +1,34 @@
+// From one mask per view to one weight per Gaussian (GSEditPro 3.2; method S5, variant B).
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/raster/rasterizer.h"
+#include "engine/scene/scene.h"
+
+namespace gse::localize {
+
+/// What the views say about every row.
+struct LabelWeights {
+    std::vector<float> weight;     // [N] sum(alpha T M) / sum(alpha T) over the views used, in [0,1]
+    std::vector<double> evidence;  // [N] sum(alpha T) in pixels
+    int views_used = 0;
+};
+
+/// One view's vote; a failed view (nothing found in it) does not vote.
+struct MaskedView {
+    Camera camera;
+    Image mask;          // [H,W,1] in [0,1], at the camera's size
+    bool failed = false;
+};
+
+/// Throws Error when more than half of the views failed or none is left.
+LabelWeights back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
+                          const raster::Settings& settings, raster::Rasterizer& rasterizer);
+
+/// Rows with weight > tau and evidence > least_evidence_px become the label; the weights stay for display.
+Label label_from_weights(const std::string& name, const LabelWeights& weights, double tau, double least_evidence_px);
+
+}  // namespace gse::localize
