@@ -1,4 +1,5 @@
-// 3DGS PLY: any header that says the same thing gives the same splats; what is written is read back bit for bit.
+// 3DGS PLY: any header that says the same thing gives the same splats; what is written is read back bit for
+// bit.
 #include <algorithm>
 #include <bit>
 #include <cinttypes>
@@ -51,7 +52,8 @@ void append_value(std::string& out, const std::string& type, double value, Encod
 /// The columns of these splats in the Inria order.
 std::vector<Column> columns_of(const GaussianData& data) {
     std::vector<Column> columns;
-    const auto add = [&](const std::string& name, const std::vector<float>& values, std::size_t stride, std::size_t offset) {
+    const auto add = [&](const std::string& name, const std::vector<float>& values, std::size_t stride,
+                         std::size_t offset) {
         columns.push_back({name, "float", [&values, stride, offset](std::size_t row) {
                                return static_cast<double>(values[row * stride + offset]);
                            }});
@@ -71,8 +73,8 @@ std::vector<Column> columns_of(const GaussianData& data) {
 struct FileShape {
     Encoding encoding = Encoding::Little;
     std::string line_end = "\n";
-    bool face_first = false;    // a face element with lists before the vertices
-    bool list_inside = false;   // a list property among the vertex's
+    bool face_first = false;   // a face element with lists before the vertices
+    bool list_inside = false;  // a list property among the vertex's
     bool trailing_element = false;
     bool padded = false;
 };
@@ -80,7 +82,9 @@ struct FileShape {
 std::string make_ply(const std::vector<Column>& columns, std::size_t count, const FileShape& shape) {
     const char* names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
     std::string out = "ply" + shape.line_end;
-    const auto line = [&](const std::string& text) { out += text + (shape.padded ? " \t" : "") + shape.line_end; };
+    const auto line = [&](const std::string& text) {
+        out += text + (shape.padded ? " \t" : "") + shape.line_end;
+    };
     line(std::string("format ") + names[static_cast<int>(shape.encoding)] + " 1.0");
     line("comment made for a test");
     line("obj_info nothing");
@@ -99,7 +103,9 @@ std::string make_ply(const std::vector<Column>& columns, std::size_t count, cons
         line("property uchar mark");
     }
     out += "end_header" + shape.line_end;
-    const auto put = [&](const std::string& type, double value) { append_value(out, type, value, shape.encoding); };
+    const auto put = [&](const std::string& type, double value) {
+        append_value(out, type, value, shape.encoding);
+    };
     if (shape.face_first)
         for (int face = 0; face < 2; ++face) {
             put("uchar", 3 - face);
@@ -145,7 +151,8 @@ DOCTEST_TEST_CASE("any order, encoding, line end and company of columns gives th
         add_strange_columns(columns, random);
         shuffle(columns, random);
         for (Column& column : columns)
-            if (column.type == "float" && random.below(8) == 0) column.type = random.below(2) == 0 ? "double" : "float32";
+            if (column.type == "float" && random.below(8) == 0)
+                column.type = random.below(2) == 0 ? "double" : "float32";
         FileShape shape;
         shape.encoding = static_cast<Encoding>(random.below(3));
         shape.line_end = random.below(3) == 0 ? "\r\n" : "\n";
@@ -192,8 +199,8 @@ DOCTEST_TEST_CASE("the plain layout is Inria's: 62 floats for degree 3, normals 
     float row[62];
     std::memcpy(row, bytes.data() + body, sizeof row);
     DOCTEST_CHECK(row[3] == 0.0f);
-    DOCTEST_CHECK(row[9] == scene.gaussians.sh()[3]);        // f_rest_0: red of coefficient 1
-    DOCTEST_CHECK(row[9 + 15] == scene.gaussians.sh()[4]);   // f_rest_15: green of coefficient 1
+    DOCTEST_CHECK(row[9] == scene.gaussians.sh()[3]);       // f_rest_0: red of coefficient 1
+    DOCTEST_CHECK(row[9 + 15] == scene.gaussians.sh()[4]);  // f_rest_15: green of coefficient 1
     DOCTEST_CHECK(row[54] == scene.gaussians.opacity_logit()[0]);
     DOCTEST_CHECK(row[58] == scene.gaussians.rotation()[0]);
 }
@@ -246,7 +253,8 @@ DOCTEST_TEST_CASE("header comments are honoured, the last one wins") {
     DOCTEST_CHECK(with_comments("comment Vertical axis: y\n").up == Vec3{0, -1, 0});
     DOCTEST_CHECK(with_comments("comment VERTICAL axis: z\n").up == Vec3{0, 0, -1});
     DOCTEST_CHECK(with_comments("comment Vertical Axis: z\n").up == Vec3{0, 0, 1});  // nerfstudio's spelling
-    DOCTEST_CHECK(with_comments("comment Vertical axis: y\ncomment Vertical axis: 0 0 2\n").up == Vec3{0, 0, 1});
+    DOCTEST_CHECK(with_comments("comment Vertical axis: y\ncomment Vertical axis: 0 0 2\n").up ==
+                  Vec3{0, 0, 1});
     DOCTEST_CHECK(with_comments("comment Vertical axis: nonsense\n").up_known == false);
     DOCTEST_CHECK(with_comments("comment SplatRenderMode: mip\n").antialiased);
     DOCTEST_CHECK(with_comments("comment antialiased 1\n").antialiased);
@@ -286,7 +294,8 @@ DOCTEST_TEST_CASE("surfels, byte colours and degree 4 are taken in") {
 
     std::vector<Column> wide = columns_of(data);
     for (int i = 0; i < 72; ++i)
-        wide.push_back({"f_rest_" + std::to_string(i), "float", [i](std::size_t) { return static_cast<double>(i); }});
+        wide.push_back(
+            {"f_rest_" + std::to_string(i), "float", [i](std::size_t) { return static_cast<double>(i); }});
     const Scene cut = parse_scene(as_bytes(make_ply(wide, 3, {})), "x.ply");
     DOCTEST_CHECK(cut.gaussians.sh_degree() == 3);
     DOCTEST_CHECK(cut.gaussians.sh()[3] == 0.0f);   // red of the first coefficient
@@ -302,15 +311,20 @@ DOCTEST_TEST_CASE("headers that cannot be right are refused") {
         const auto error = error_of([&] { parse_scene(as_bytes(text), "x.ply"); });
         return error ? std::string(error->what()) : std::string();
     };
-    DOCTEST_CHECK(refused(good, "property float x", "property quux x").find("unknown type") != std::string::npos);
+    DOCTEST_CHECK(refused(good, "property float x", "property quux x").find("unknown type") !=
+                  std::string::npos);
     DOCTEST_CHECK(refused(good, "element vertex 2", "element vertex two").find("count") != std::string::npos);
-    DOCTEST_CHECK(refused(good, "element vertex 2", "element vertex 3").find("promises 3") != std::string::npos);
-    DOCTEST_CHECK(refused(good, "element vertex 2", "element vertex 0").find("no splats") != std::string::npos);
-    DOCTEST_CHECK(refused(good, "format binary_little_endian", "format morse").find("format") != std::string::npos);
+    DOCTEST_CHECK(refused(good, "element vertex 2", "element vertex 3").find("promises 3") !=
+                  std::string::npos);
+    DOCTEST_CHECK(refused(good, "element vertex 2", "element vertex 0").find("no splats") !=
+                  std::string::npos);
+    DOCTEST_CHECK(refused(good, "format binary_little_endian", "format morse").find("format") !=
+                  std::string::npos);
     DOCTEST_CHECK(refused(good, "end_header", "end_headed").find("header") != std::string::npos);
     DOCTEST_CHECK(refused(good, "float opacity", "float opaque").find("opacity") != std::string::npos);
-    DOCTEST_CHECK(refused(good, "element vertex 2\n", "element vertex 2\nproperty float f_rest_0\n").find("f_rest") !=
-                  std::string::npos);
-    DOCTEST_CHECK(refused(good, "element vertex 2\n", "element vertex 2\nproperty float f_rest_4000000000\n").find("f_rest") !=
-                  std::string::npos);
+    DOCTEST_CHECK(
+        refused(good, "element vertex 2\n", "element vertex 2\nproperty float f_rest_0\n").find("f_rest") !=
+        std::string::npos);
+    DOCTEST_CHECK(refused(good, "element vertex 2\n", "element vertex 2\nproperty float f_rest_4000000000\n")
+                      .find("f_rest") != std::string::npos);
 }
