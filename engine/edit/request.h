@@ -1,0 +1,192 @@
+// Everything an edit is asked to be: words, views, thresholds, losses and rates, in one list of fields.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/base/fields.h"
+
+namespace gse::edit {
+
+/// The request of an artist. Defaults suit the starter model on two processor cores; method.md section 7 has the
+/// values of the full-size method, all of which can be set here.
+struct EditRequest {
+    // Words
+    std::string source;
+    std::string prompt;
+    std::string target;
+    std::string mode = "auto";
+    std::uint64_t seed = 0;
+    // Views
+    int views = 24;
+    int image_size = 96;
+    double elevation = 12;
+    std::string background = "black";
+    bool focus = true;
+    // Localization
+    double attention_threshold = 0;
+    int attention_repeats = 3;
+    double dbscan_eps = 2;
+    int dbscan_min_samples = 4;
+    double keep_mass = 0.25;
+    int positive_points = 5;
+    int negative_points = 3;
+    double fallback_mass = 0.5;
+    double tau = 0.5;
+    double evidence_px = 0.5;
+    // Loop
+    int iterations = 400;
+    double guidance_weight = 1;
+    bool gate_guidance = true;
+    double dilate_px = 8;
+    double preserve = 10;
+    double l1 = 0.8;
+    double ssim = 0.2;
+    // Anchors with generations (method 2.3)
+    double anchor_first = 0.05;
+    double anchor_start = 0.1;
+    double anchor_growth = 1.3;
+    double anchor_cap = 10;
+    double anchor_position = 50;
+    double anchor_rotation = 50;
+    double anchor_opacity = 50;
+    double anchor_scale = 50;
+    double anchor_colour = 0;
+    // Learning rates
+    double rate_position = 4.8e-4;
+    double rate_position_end = 3.2e-5;
+    double rate_colour = 0.0375;
+    double rate_sh = 0.001875;
+    double rate_opacity = 0.1;
+    double rate_scale = 0.01;
+    double rate_rotation = 0.002;
+    double geometry_share = 0.1;
+    double colour_coupling = 0.9;
+    // Densification
+    int densify_from = 100;
+    int densify_every = 100;
+    double densify_until = 0.75;
+    double densify_percent = 0.01;
+    double densify_min_gradient = 1e-7;
+    double percent_dense = 0.01;
+    double min_opacity = 0.005;
+    double prune_scale = 0.1;
+    double max_growth = 1.5;
+    double max_aspect = 20;
+    // Adding
+    int seed_splats = 400;
+    // Running
+    int snapshot_every = 20;
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        visit_words(self, f);
+        visit_localization(self, f);
+        visit_loop(self, f);
+        visit_rates(self, f);
+        visit_growth(self, f);
+    }
+
+private:
+    template <class Self, class F>
+    static void visit_words(Self& self, F&& f) {
+        f("source", self.source, "What in the scene the edit is about, one word (\"bear\"); empty = the target word.");
+        f("prompt", self.prompt, "A sentence that describes the scene after the edit (\"a golden statue\").");
+        f("target", self.target, "The word of the prompt that is new (\"golden\", \"hat\"); empty = found by comparing.");
+        f("mode", self.mode, "modify (change what is there), add (put something new there) or auto.");
+        f("seed", self.seed, "Seed of everything random.");
+        f("views", self.views, "How many viewpoints the edit looks from.", Range{1, 512});
+        f("image_size", self.image_size, "Side of the pictures the edit works on, in pixels.", Range{16, 1024});
+        f("elevation", self.elevation, "Height of the lower ring of automatic views, degrees above the horizon.",
+          Range{-60, 80});
+        f("background", self.background, "Colour behind the scene: black, white, grey or #rrggbb.");
+        f("focus", self.focus, "Move the automatic views in on what was found and look again.");
+    }
+    template <class Self, class F>
+    static void visit_localization(Self& self, F&& f) {
+        f("attention_threshold", self.attention_threshold,
+          "Attention above this share of the maximum counts; 0 = what the model states (0.5 in the paper).", Range{0, 1});
+        f("attention_repeats", self.attention_repeats, "Attention passes per view, each with fresh noise.", Range{1, 100});
+        f("dbscan_eps", self.dbscan_eps, "DBSCAN radius in pixels of a 64-pixel map.", Range{1, 32});
+        f("dbscan_min_samples", self.dbscan_min_samples, "DBSCAN neighbours that make a core pixel.", Range{1, 1000});
+        f("keep_mass", self.keep_mass, "Clusters below this share of the largest one's attention are dropped.", Range{0, 1});
+        f("positive_points", self.positive_points, "Clicks inside for the segmenter.", Range{1, 50});
+        f("negative_points", self.negative_points, "Clicks outside for the segmenter.", Range{0, 50});
+        f("fallback_mass", self.fallback_mass,
+          "A segment that captures less of the attention than this gives way to the attention region.", Range{0, 1});
+        f("tau", self.tau, "Splats seen inside the masks for more than this share are labelled.", Range{0, 1});
+        f("evidence_px", self.evidence_px, "Splats seen over fewer pixels than this are not labelled.", Range{0, 1e6});
+    }
+    template <class Self, class F>
+    static void visit_loop(Self& self, F&& f) {
+        f("iterations", self.iterations, "Optimisation steps.", Range{0, 1e6});
+        f("guidance_weight", self.guidance_weight, "How hard the model pulls, against keeping the rest.", Range{0, 1e6});
+        f("gate_guidance", self.gate_guidance, "Let the model pull inside the dilated mask only.");
+        f("dilate_px", self.dilate_px, "Growth of the mask, in pixels of a 512-pixel picture (doubled when adding).",
+          Range{0, 256});
+        f("preserve", self.preserve, "Weight of keeping pictures outside the mask as they were (pseudo ground truth).",
+          Range{0, 1e6});
+        f("l1", self.l1, "Share of the absolute difference in it.", Range{0, 10});
+        f("ssim", self.ssim, "Share of the structural difference in it.", Range{0, 10});
+        f("anchor_first", self.anchor_first, "Anchor weight of the original splats at the start.", Range{0, 100});
+        f("anchor_start", self.anchor_start, "Anchor weight a generation gets when the next one is born.", Range{0, 100});
+        f("anchor_growth", self.anchor_growth, "Factor of all anchor weights at each densification.", Range{1, 10});
+        f("anchor_cap", self.anchor_cap, "Largest anchor weight.", Range{0, 1e4});
+        f("anchor_position", self.anchor_position, "Anchor loss weight of positions.", Range{0, 1e6});
+        f("anchor_rotation", self.anchor_rotation, "Anchor loss weight of rotations.", Range{0, 1e6});
+        f("anchor_opacity", self.anchor_opacity, "Anchor loss weight of opacities.", Range{0, 1e6});
+        f("anchor_scale", self.anchor_scale, "Anchor loss weight of scales.", Range{0, 1e6});
+        f("anchor_colour", self.anchor_colour, "Anchor loss weight of colours.", Range{0, 1e6});
+    }
+    template <class Self, class F>
+    static void visit_rates(Self& self, F&& f) {
+        f("rate_position", self.rate_position, "Learning rate of positions at the start, times the scene extent.",
+          Range{0, 1});
+        f("rate_position_end", self.rate_position_end, "The same at the end.", Range{0, 1});
+        f("rate_colour", self.rate_colour, "Learning rate of the base colour.", Range{0, 10});
+        f("rate_sh", self.rate_sh, "Learning rate of view-dependent colour.", Range{0, 10});
+        f("rate_opacity", self.rate_opacity, "Learning rate of opacities.", Range{0, 10});
+        f("rate_scale", self.rate_scale, "Learning rate of scales.", Range{0, 10});
+        f("rate_rotation", self.rate_rotation, "Learning rate of rotations.", Range{0, 10});
+        f("geometry_share", self.geometry_share,
+          "Factor of the position, scale, rotation and opacity rates of splats that were there before (modify mode).",
+          Range{0, 1});
+        f("colour_coupling", self.colour_coupling,
+          "How much of a colour change is common to the whole label, which keeps texture and shading; 0 = every splat for "
+          "itself.",
+          Range{0, 1});
+    }
+    template <class Self, class F>
+    static void visit_growth(Self& self, F&& f) {
+        f("densify_from", self.densify_from, "First iteration that may add splats.", Range{0, 1e6});
+        f("densify_every", self.densify_every, "Iterations between densifications; 0 = never.", Range{0, 1e6});
+        f("densify_until", self.densify_until, "Share of the iterations after which none are added.", Range{0, 1});
+        f("densify_percent", self.densify_percent, "Share of the labelled splats that may be cloned or split at once.",
+          Range{0, 1});
+        f("densify_min_gradient", self.densify_min_gradient, "Screen gradient below which nothing is added.", Range{0, 1});
+        f("percent_dense", self.percent_dense, "Splats smaller than this share of the extent are cloned, others split.",
+          Range{0, 1});
+        f("min_opacity", self.min_opacity, "Labelled splats fainter than this are removed.", Range{0, 1});
+        f("prune_scale", self.prune_scale, "Labelled splats that grew beyond this share of the extent are removed.",
+          Range{0, 10});
+        f("max_growth", self.max_growth, "Largest number of labelled splats, relative to the start.", Range{1, 100});
+        f("max_aspect", self.max_aspect, "Largest ratio of the axes of new splats.", Range{1, 1e6});
+        f("seed_splats", self.seed_splats, "New splats placed where something is added.", Range{10, 1e6});
+        f("snapshot_every", self.snapshot_every, "Iterations between snapshots of a running edit.", Range{1, 1e6});
+    }
+};
+
+enum class EditMode { Modify, Add };
+
+/// Lower-case words of a sentence, without punctuation.
+std::vector<std::string> words_of(const std::string& sentence);
+
+/// Fills what the request leaves open (target and source word) and checks it. Throws Error with one sentence:
+/// an empty prompt, a target that is not in the prompt, an unknown mode.
+EditRequest validated(EditRequest request);
+
+/// The mode of the request; `target_exists` decides "auto": what the scene shows already is modified, what is absent added.
+EditMode chosen_mode(const EditRequest& request, bool target_exists);
+
+}  // namespace gse::edit

@@ -1,0 +1,264 @@
+// The edit loop.
+#include "engine/edit/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numeric>
+
+#include "engine/base/check.h"
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/base/random.h"
+#include "engine/edit/preservation.h"
+#include "engine/edit/working_set.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr int CalibrationSteps = 20;        // method 2.5
+constexpr float TrainingColourSlope = 0.01f;   // leaky clamp of negative colours while training (F18)
+
+double norm(const Image& image) {
+    double sum = 0;
+    for (const float value : image.data) sum += static_cast<double>(value) * value;
+    return std::sqrt(sum);
+}
+
+bool finite(const Image& image) {
+    return std::all_of(image.data.begin(), image.data.end(), [](float value) { return std::isfinite(value); });
+}
+
+/// Draws views without replacement, cycle after cycle.
+class ViewCycle {
+public:
+    ViewCycle(std::vector<std::size_t> views, std::uint64_t seed) : views_(std::move(views)), random_(seed) {}
+    std::size_t next() {
+        if (position_ == 0)
+            for (std::size_t i = views_.size(); i > 1; --i) std::swap(views_[i - 1], views_[random_.below(i)]);
+        const std::size_t view = views_[position_];
+        position_ = (position_ + 1) % views_.size();
+        return view;
+    }
+
+private:
+    std::vector<std::size_t> views_;
+    Random random_;
+    std::size_t position_ = 0;
+};
+
+/// Everything one run keeps between iterations.
+class Loop {
+public:
+    Loop(const GaussianSet& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools)
+        : plan_(plan),
+          request_(request),
+          tools_(tools),
+          set_(base, plan.label, plan.seeds, request, camera_extent(plan.views)),
+          preservation_({request.l1, request.ssim, request.preserve}),
+          random_(Random::stream(request.seed, 17)) {
+        GSE_CHECK_EQ(plan.masks.size(), plan.views.size());
+        render_originals(base);
+        settings_.negative_colour_slope = TrainingColourSlope;
+    }
+
+    EditResult run() {
+        EditResult result;
+        ViewCycle cycle(visible_views(), request_.seed);
+        for (int iteration = 0; iteration < request_.iterations; ++iteration) {
+            if (tools_.job.stop_requested()) {
+                result.stopped = true;
+                break;
+            }
+            iterate(iteration, cycle.next(), result);
+            result.iterations = iteration + 1;
+            if (tools_.snapshot && (iteration + 1) % request_.snapshot_every == 0)
+                tools_.snapshot(std::make_shared<const GaussianSet>(set_.assemble().set), iteration + 1);
+            tools_.job.report("editing", iteration + 1, request_.iterations);
+            if (set_.labelled() == 0) break;   // everything was removed: nothing is left to do
+        }
+        finish(result);
+        return result;
+    }
+
+private:
+    void render_originals(const GaussianSet& base) {
+        settings_ = plan_.settings;
+        for (const auto& view : plan_.views) {
+            tools_.rasterizer.forward(base.spans(), view.camera, settings_, output_);
+            originals_.push_back(output_.colour);
+        }
+    }
+
+    /// Views in which at least one labelled row is drawn; the others cannot change anything (method E5).
+    std::vector<std::size_t> visible_views() {
+        const auto values = label_values();
+        std::vector<std::size_t> views;
+        Image seen;
+        for (std::size_t v = 0; v < plan_.views.size(); ++v) {
+            tools_.rasterizer.forward_values(spans(set_.rows()), plan_.views[v].camera, settings_, values, seen);
+            if (std::any_of(seen.data.begin(), seen.data.end(), [](float value) { return value > 0; })) views.push_back(v);
+        }
+        if (views.empty())
+            throw Error(ErrorCode::InvalidArgument, "no labelled splat is visible in any view",
+                        "correct the label, or choose views that show it");
+        return views;
+    }
+
+    std::vector<float> label_values() const {
+        std::vector<float> values(set_.rows().size(), 0.0f);
+        std::fill(values.begin() + static_cast<std::ptrdiff_t>(set_.first_row()), values.end(), 1.0f);
+        return values;
+    }
+
+    void iterate(int iteration, std::size_t view, EditResult& result) {
+        const GaussianSpans rows = spans(set_.rows());
+        tools_.rasterizer.forward(rows, plan_.views[view].camera, settings_, output_);
+        IterationRecord record;
+        record.iteration = iteration;
+        record.view = view;
+        gradient_.resize(output_.colour.width, output_.colour.height, 3);
+        std::fill(gradient_.data.begin(), gradient_.data.end(), 0.0f);
+        record.preservation =
+            preservation_.add_gradient(output_.colour, originals_[view], plan_.masks[view], gradient_);
+        record.preservation_norm = norm(gradient_);
+        if (!add_guidance(iteration, view, record)) ++result.skipped_steps;
+        tools_.rasterizer.backward(gradient_, {}, set_.first_row(), gradients_);
+        set_.collect(gradients_);
+        record.anchor = set_.step(gradients_, iteration, request_);
+        densify(iteration, result);
+        result.history.push_back(std::move(record));
+    }
+
+    /// Adds the gated and calibrated guidance gradient; false when it was not finite and left out.
+    bool add_guidance(int iteration, std::size_t view, IterationRecord& record) {
+        const GuidanceInput input{output_.colour, plan_.views[view], view,
+                                  plan_.view_words.empty() ? std::string() : plan_.view_words[view], iteration,
+                                  request_.iterations,
+                                  Random::stream(request_.seed, 1000 + static_cast<std::uint64_t>(iteration)).next()};
+        GuidanceOutput guidance = tools_.guidance.evaluate(input);
+        record.guidance = std::move(guidance.scalars);
+        if (!finite(guidance.gradient)) return false;
+        if (request_.gate_guidance)
+            for (std::size_t pixel = 0; pixel < plan_.masks[view].data.size(); ++pixel)
+                if (plan_.masks[view].data[pixel] == 0)
+                    std::fill_n(guidance.gradient.data.begin() + static_cast<std::ptrdiff_t>(pixel * 3), 3, 0.0f);
+        record.guidance_norm = norm(guidance.gradient);
+        const auto factor = static_cast<float>(calibrated_weight(record.guidance_norm));
+        for (std::size_t i = 0; i < gradient_.data.size(); ++i) gradient_.data[i] += factor * guidance.gradient.data[i];
+        return true;
+    }
+
+    /// Brings the guidance gradient to the norm that the preservation loss has when every pixel differs, so that neither
+    /// drowns the other whatever the model's scale is (method 2.5); averaged over the first steps, then fixed.
+    double calibrated_weight(double guidance_norm) {
+        if (calibration_count_ < CalibrationSteps && guidance_norm > 0) {
+            calibration_sum_ += guidance_norm;
+            ++calibration_count_;
+        }
+        if (calibration_count_ == 0) return request_.guidance_weight;
+        const double full = request_.preserve * request_.l1 / std::sqrt(static_cast<double>(gradient_.data.size()));
+        return request_.guidance_weight * std::max(full, 1e-6) / (calibration_sum_ / calibration_count_);
+    }
+
+    void densify(int iteration, EditResult& result) {
+        const int step = iteration + 1;
+        if (request_.densify_every == 0 || step % request_.densify_every != 0 || step < request_.densify_from) return;
+        const bool may_grow = step <= request_.densify_until * request_.iterations;
+        const auto count = set_.densify(request_, random_, may_grow);
+        result.cloned += count.cloned;
+        result.split += count.split;
+        result.pruned += count.pruned;
+    }
+
+    void finish(EditResult& result) {
+        auto assembled = set_.assemble();
+        result.set = std::move(assembled.set);
+        result.base_to_new = std::move(assembled.base_to_new);
+        result.label = std::move(assembled.label);
+        result.generation = std::move(assembled.generation);
+        result.skipped_rows = set_.skipped_rows();
+    }
+
+    const EditPlan& plan_;
+    const EditRequest& request_;
+    const EditTools& tools_;
+    WorkingSet set_;
+    Preservation preservation_;
+    Random random_;
+    raster::Settings settings_;
+    raster::ForwardOutput output_;
+    raster::Gradients gradients_;
+    std::vector<Image> originals_;
+    Image gradient_;
+    double calibration_sum_ = 0;
+    int calibration_count_ = 0;
+};
+
+bool same_row(std::span<const float> a, std::size_t row_a, std::span<const float> b, std::size_t row_b, std::size_t stride) {
+    return std::memcmp(a.data() + row_a * stride, b.data() + row_b * stride, stride * sizeof(float)) == 0;
+}
+
+/// Rows outside the label that are gone or differ in any bit.
+std::size_t count_changed_outside(const GaussianSet& base, const EditPlan& plan, const EditResult& result) {
+    const auto sh = static_cast<std::size_t>(sh_coefficient_count(base.sh_degree())) * 3;
+    std::size_t changed = 0;
+    for (std::size_t row = 0; row < base.size(); ++row) {
+        if (plan.label[row] != 0) continue;
+        const std::int64_t now = result.base_to_new[row];
+        const auto to = static_cast<std::size_t>(now);
+        const bool same = now >= 0 && same_row(base.position(), row, result.set.position(), to, 3) &&
+                          same_row(base.log_scale(), row, result.set.log_scale(), to, 3) &&
+                          same_row(base.rotation(), row, result.set.rotation(), to, 4) &&
+                          same_row(base.opacity_logit(), row, result.set.opacity_logit(), to, 1) &&
+                          same_row(base.sh(), row, result.set.sh(), to, sh);
+        changed += same ? 0 : 1;
+    }
+    return changed;
+}
+
+std::size_t count_nonfinite(const EditResult& result) {
+    const auto sh = static_cast<std::size_t>(sh_coefficient_count(result.set.sh_degree())) * 3;
+    const auto bad = [](std::span<const float> values, std::size_t row, std::size_t stride) {
+        return std::any_of(values.begin() + static_cast<std::ptrdiff_t>(row * stride),
+                           values.begin() + static_cast<std::ptrdiff_t>((row + 1) * stride),
+                           [](float value) { return !std::isfinite(value); });
+    };
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < result.set.size(); ++row)
+        if (result.label[row] != 0 &&
+            (bad(result.set.position(), row, 3) || bad(result.set.log_scale(), row, 3) ||
+             bad(result.set.rotation(), row, 4) || bad(result.set.opacity_logit(), row, 1) ||
+             bad(result.set.sh(), row, sh)))
+            ++count;
+    return count;
+}
+
+}  // namespace
+
+double camera_extent(const std::vector<View>& views) {
+    if (views.empty()) return 1;
+    Vec3 mean;
+    for (const auto& view : views) mean = mean + view.camera.centre() / static_cast<double>(views.size());
+    double largest = 0;
+    for (const auto& view : views) largest = std::max(largest, length(view.camera.centre() - mean));
+    return largest > 0 ? 1.1 * largest : 1;
+}
+
+EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools) {
+    GSE_CHECK_EQ(plan.label.size(), base.size());
+    const bool nothing = plan.seeds.size() == 0 &&
+                         std::none_of(plan.label.begin(), plan.label.end(), [](std::uint8_t bit) { return bit != 0; });
+    if (nothing)
+        throw Error(ErrorCode::InvalidArgument, "nothing is labelled, so there is nothing to edit",
+                    "name something the scene shows, or lower --tau");
+    EditResult result = Loop(base, plan, request, tools).run();
+    result.changed_outside_label = count_changed_outside(base, plan, result);
+    GSE_CHECK_EQ(result.changed_outside_label, std::size_t{0});
+    result.nonfinite = count_nonfinite(result);
+    if (result.skipped_steps > 0) log::warning("{} guidance steps were not finite and left out", result.skipped_steps);
+    return result;
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,70 @@
+// One edit from labels to result: the loop of rendering, guidance, preservation, anchors and densification
+// (GSEditPro 3.3, method S6).
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/progress.h"
+#include "engine/edit/interfaces.h"
+#include "engine/edit/request.h"
+#include "engine/raster/rasterizer.h"
+
+namespace gse::edit {
+
+/// What the loop works on.
+struct EditPlan {
+    std::vector<View> views;               // cameras at the size of the pictures
+    std::vector<std::string> view_words;   // per view, or empty
+    std::vector<Mask> masks;               // per view, dilated: 1 = the picture may change here
+    std::vector<std::uint8_t> label;       // [N] 1 = the row may change
+    GaussianData seeds;                    // new rows (add mode), may be empty
+    raster::Settings settings;
+};
+
+/// One line of the loss history.
+struct IterationRecord {
+    int iteration = 0;
+    std::size_t view = 0;
+    double preservation = 0, anchor = 0;
+    double guidance_norm = 0, preservation_norm = 0;   // norms of the gradients on the picture
+    std::map<std::string, double> guidance;            // what the guidance reports
+};
+
+struct EditResult {
+    GaussianSet set;
+    std::vector<std::int64_t> base_to_new;   // [N] row in `set` of every base row, -1 = removed
+    std::vector<std::uint8_t> label;         // [rows of set]
+    std::vector<int> generation;             // [rows of set]
+    std::vector<IterationRecord> history;
+    int iterations = 0;
+    bool stopped = false;                    // by the stop token; the result is the last good state
+    std::size_t skipped_steps = 0;           // guidance gradients that were not finite
+    std::size_t skipped_rows = 0;            // rows whose gradient was not finite, summed over the steps
+    std::size_t cloned = 0, split = 0, pruned = 0;
+    std::size_t changed_outside_label = 0;   // rows outside the label that differ from the base in any bit; always 0
+    std::size_t nonfinite = 0;               // labelled rows with a NaN or infinity in the result
+};
+
+/// Receives the state of a running edit every few iterations; the set is immutable and may be kept.
+using SnapshotCallback = std::function<void(std::shared_ptr<const GaussianSet> set, int iteration)>;
+
+/// The parts the loop calls.
+struct EditTools {
+    raster::Rasterizer& rasterizer;
+    Guidance& guidance;
+    SnapshotCallback snapshot;   // may be empty
+    JobControl job;
+};
+
+/// Runs the edit. Rows outside the label come back bit-identical (checked at the end). The same plan, request and seed
+/// give the same bytes for any number of threads. Throws Error when no labelled row is visible in any view.
+EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools);
+
+/// Extent of the views as 3DGS has it: 1.1 times the largest distance of a camera centre from their mean.
+double camera_extent(const std::vector<View>& views);
+
+}  // namespace gse::edit

@@ -1,0 +1,282 @@
+// Optimiser steps on the labelled rows, and their assembly into an edited set.
+#include "engine/edit/working_set.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/base/check.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr double Beta1 = 0.9, Beta2 = 0.999, AdamEpsilon = 1e-15;
+constexpr float LargestLogit = 12.0f;            // method F17
+constexpr double SmallestScale = 1e-6;           // of the extent
+constexpr double LargestScale = 0.5;             // of the extent
+constexpr std::size_t AffineTerms = 4;           // 1, red, green, blue
+
+bool finite_row(const std::vector<float>& values, std::size_t row, std::size_t stride) {
+    for (std::size_t i = row * stride; i < (row + 1) * stride; ++i)
+        if (!std::isfinite(values[i])) return false;
+    return true;
+}
+
+float largest(const std::vector<float>& values, std::size_t row) {
+    return std::max({values[row * 3], values[row * 3 + 1], values[row * 3 + 2]});
+}
+
+GaussianData reserve_like(const GaussianSet& base) {
+    GaussianData data;
+    data.sh_degree = base.sh_degree();
+    data.position.reserve(base.position().size());
+    data.log_scale.reserve(base.log_scale().size());
+    data.rotation.reserve(base.rotation().size());
+    data.opacity_logit.reserve(base.opacity_logit().size());
+    data.sh.reserve(base.sh().size());
+    return data;
+}
+
+}  // namespace
+
+void adam_step(std::span<float> parameters, std::span<const float> gradient, AdamMoments& moments,
+               const AdamRates& rates) {
+    GSE_CHECK_EQ(parameters.size(), gradient.size());
+    moments.first.resize(parameters.size());
+    moments.second.resize(parameters.size());
+    const double correction1 = 1 - std::pow(Beta1, rates.step), correction2 = 1 - std::pow(Beta2, rates.step);
+    const std::size_t stride = rates.rates.size();
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        const double g = gradient[i];
+        const double first = Beta1 * moments.first[i] + (1 - Beta1) * g;
+        const double second = Beta2 * moments.second[i] + (1 - Beta2) * g * g;
+        moments.first[i] = static_cast<float>(first);
+        moments.second[i] = static_cast<float>(second);
+        double rate = rates.rates[i % stride];
+        if (!rates.row_factor.empty()) rate *= rates.row_factor[i / stride];
+        parameters[i] -= static_cast<float>(rate * (first / correction1) / (std::sqrt(second / correction2) + AdamEpsilon));
+    }
+}
+
+GenerationSchedule::GenerationSchedule(const EditRequest& request)
+    : start_(request.anchor_start),
+      growth_(request.anchor_growth),
+      cap_(request.anchor_cap),
+      weights_{request.anchor_first} {}
+
+int GenerationSchedule::advance() {
+    const int born = static_cast<int>(weights_.size());
+    for (auto& weight : weights_) weight = std::min(cap_, weight * growth_);
+    if (weights_.size() > 1) weights_.back() = start_;
+    weights_.push_back(0);   // the newest generation is free
+    return born;
+}
+
+WorkingSet::WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> label, const GaussianData& seeds,
+                       const EditRequest& request, double extent)
+    : extent_(extent), base_size_(base.size()), rows_(reserve_like(base)), schedule_(request) {
+    GSE_CHECK_EQ(label.size(), base.size());
+    const GaussianData data = base.to_data();
+    for (std::size_t row = 0; row < base.size(); ++row) {
+        if (label[row] != 0) continue;
+        rows_.append_row(data, row);
+        unlabelled_.push_back(static_cast<std::uint32_t>(row));
+    }
+    first_row_ = rows_.size();
+    for (std::size_t row = 0; row < base.size(); ++row)
+        if (label[row] != 0) append(data, row, 0, static_cast<std::int64_t>(row));
+    for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, 0, -1);
+    adding_ = seeds.size() > 0;
+    start_count_ = labelled();
+    common_.assign(3 * AffineTerms, 0.0f);
+    remember_anchor();
+}
+
+void WorkingSet::append(const GaussianData& from, std::size_t row, int generation, std::int64_t origin) {
+    rows_.append_row(from, row);
+    origin_.push_back(origin);
+    generation_.push_back(generation);
+    const std::size_t stride = rows_.sh_stride();
+    birth_sh_.insert(birth_sh_.end(), from.sh.begin() + static_cast<std::ptrdiff_t>(row * stride),
+                     from.sh.begin() + static_cast<std::ptrdiff_t>((row + 1) * stride));
+    birth_scale_.push_back(largest(from.log_scale, row));
+    gradient_sum_.push_back(0);
+    gradient_count_.push_back(0);
+}
+
+void WorkingSet::remember_anchor() {
+    const auto copy = [&](const std::vector<float>& all, std::size_t stride, std::vector<float>& to) {
+        to.assign(all.begin() + static_cast<std::ptrdiff_t>(first_row_ * stride), all.end());
+    };
+    anchor_.sh_degree = rows_.sh_degree;
+    copy(rows_.position, 3, anchor_.position);
+    copy(rows_.log_scale, 3, anchor_.log_scale);
+    copy(rows_.rotation, 4, anchor_.rotation);
+    copy(rows_.opacity_logit, 1, anchor_.opacity_logit);
+    copy(rows_.sh, rows_.sh_stride(), anchor_.sh);
+    row_factor_.resize(labelled());
+}
+
+void WorkingSet::find_bad_rows(const raster::Gradients& gradients) {
+    const std::size_t count = labelled();
+    bad_.assign(count, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+        const bool good = finite_row(gradients.position, i, 3) && finite_row(gradients.log_scale, i, 3) &&
+                          finite_row(gradients.rotation, i, 4) && finite_row(gradients.opacity_logit, i, 1) &&
+                          finite_row(gradients.sh, i, rows_.sh_stride());
+        if (good) continue;
+        bad_[i] = 1;
+        ++skipped_rows_;
+    }
+}
+
+void WorkingSet::load_gradient(const std::vector<float>& gradient, std::size_t stride) {
+    gradient_.assign(gradient.begin(), gradient.end());
+    for (std::size_t i = 0; i < bad_.size(); ++i)
+        if (bad_[i] != 0)
+            std::fill_n(gradient_.begin() + static_cast<std::ptrdiff_t>(i * stride), stride, 0.0f);
+}
+
+double WorkingSet::add_anchor(std::span<const float> now, std::span<const float> anchor, double weight) {
+    if (weight == 0 || now.empty()) return 0;
+    const std::size_t stride = now.size() / labelled();
+    const double scale = weight / static_cast<double>(now.size());
+    double loss = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        const double factor = scale * schedule_.weight(generation_[i / stride]);
+        const double difference = static_cast<double>(now[i]) - anchor[i];
+        loss += factor * difference * difference;
+        gradient_[i] += static_cast<float>(2 * factor * difference);
+    }
+    return loss;
+}
+
+double WorkingSet::step(const raster::Gradients& gradients, int iteration, const EditRequest& request) {
+    if (labelled() == 0) return 0;
+    ++steps_;
+    anchor_loss_ = 0;
+    find_bad_rows(gradients);
+    step_geometry(gradients, iteration, request);
+    step_colour(gradients, request);
+    guard(request);
+    return anchor_loss_;
+}
+
+void WorkingSet::step_geometry(const raster::Gradients& gradients, int iteration, const EditRequest& request) {
+    for (std::size_t i = 0; i < labelled(); ++i)
+        row_factor_[i] = !adding_ && origin_[i] >= 0 ? static_cast<float>(request.geometry_share) : 1.0f;
+    const double progress = request.iterations > 1 ? static_cast<double>(iteration) / (request.iterations - 1) : 0;
+    const double from = std::max(request.rate_position, 1e-12), to = std::max(request.rate_position_end, 1e-12);
+    const double position_rate = extent_ * std::exp(std::log(from) * (1 - progress) + std::log(to) * progress);
+    const auto update = [&](std::vector<float>& all, const std::vector<float>& gradient, std::size_t stride,
+                            const std::vector<float>& anchor, double anchor_weight, AdamMoments& moments, double rate) {
+        load_gradient(gradient, stride);
+        const auto now = tail(all, stride);
+        anchor_loss_ += add_anchor(now, anchor, anchor_weight);
+        const std::array<double, 4> rates{rate, rate, rate, rate};
+        adam_step(now, gradient_, moments, {std::span(rates).first(stride), row_factor_, steps_});
+    };
+    update(rows_.position, gradients.position, 3, anchor_.position, request.anchor_position, position_, position_rate);
+    update(rows_.log_scale, gradients.log_scale, 3, anchor_.log_scale, request.anchor_scale, log_scale_,
+           request.rate_scale);
+    update(rows_.rotation, gradients.rotation, 4, anchor_.rotation, request.anchor_rotation, rotation_,
+           request.rate_rotation);
+    update(rows_.opacity_logit, gradients.opacity_logit, 1, anchor_.opacity_logit, request.anchor_opacity, opacity_,
+           request.rate_opacity);
+}
+
+void WorkingSet::step_colour(const raster::Gradients& gradients, const EditRequest& request) {
+    const std::size_t stride = rows_.sh_stride();
+    load_gradient(gradients.sh, stride);
+    const auto now = tail(rows_.sh, stride);
+    anchor_loss_ += add_anchor(now, anchor_.sh, request.anchor_colour);
+    if (request.colour_coupling > 0) step_common_colour(request);
+    const double own = 1 - request.colour_coupling;
+    std::array<double, 48> rates{};
+    for (std::size_t i = 0; i < stride; ++i) rates[i] = own * (i < 3 ? request.rate_colour : request.rate_sh);
+    adam_step(now, gradient_, sh_, {std::span(rates).first(stride), {}, steps_});
+}
+
+void WorkingSet::step_common_colour(const EditRequest& request) {
+    // The change common to the label is an affine map of each row's own colour, colour' = A colour + b: a low-rank
+    // change that keeps texture and shading. Its gradient is the mean over the rows.
+    const std::size_t stride = rows_.sh_stride(), count = labelled();
+    common_gradient_.assign(3 * AffineTerms, 0.0f);
+    std::array<double, 3 * AffineTerms> sum{};
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double g = gradient_[i * stride + c];
+            sum[c * AffineTerms] += g;
+            for (std::size_t k = 0; k < 3; ++k) sum[c * AffineTerms + 1 + k] += g * birth_sh_[i * stride + k];
+        }
+    for (std::size_t j = 0; j < sum.size(); ++j) common_gradient_[j] = static_cast<float>(sum[j] / static_cast<double>(count));
+    common_before_ = common_;
+    const std::array<double, 1> rate{request.rate_colour * request.colour_coupling};
+    adam_step(common_, common_gradient_, common_moments_, {rate, {}, steps_});
+    std::array<float, 3 * AffineTerms> change{};
+    for (std::size_t j = 0; j < change.size(); ++j) change[j] = common_[j] - common_before_[j];
+    float* rows = rows_.sh.data() + first_row_ * stride;
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::size_t coefficient = 0; coefficient < stride; coefficient += 3)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const float* birth = &birth_sh_[i * stride + coefficient];
+                const float* affine = &change[c * AffineTerms];
+                rows[i * stride + coefficient + c] += (coefficient == 0 ? affine[0] : 0.0f) + affine[1] * birth[0] +
+                                                      affine[2] * birth[1] + affine[3] * birth[2];
+            }
+}
+
+void WorkingSet::guard(const EditRequest& request) {
+    const auto low = static_cast<float>(std::log(SmallestScale * extent_));
+    const auto high = static_cast<float>(std::log(LargestScale * extent_));
+    const auto aspect = static_cast<float>(std::log(request.max_aspect));
+    const auto scales = tail(rows_.log_scale, 3);
+    const auto logits = tail(rows_.opacity_logit, 1);
+    for (std::size_t i = 0; i < labelled(); ++i) {
+        logits[i] = std::clamp(logits[i], -LargestLogit, LargestLogit);
+        float top = low;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            scales[i * 3 + axis] = std::clamp(scales[i * 3 + axis], low, std::max(high, birth_scale_[i]));
+            top = std::max(top, scales[i * 3 + axis]);
+        }
+        if (origin_[i] >= 0 && generation_[i] == 0) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            scales[i * 3 + axis] = std::max(scales[i * 3 + axis], top - aspect);
+    }
+}
+
+void WorkingSet::collect(const raster::Gradients& gradients) {
+    for (std::size_t i = 0; i < labelled(); ++i) {
+        if (gradients.visible[i] == 0 || !std::isfinite(gradients.mean2d_norm[i])) continue;
+        gradient_sum_[i] += gradients.mean2d_norm[i];
+        ++gradient_count_[i];
+    }
+}
+
+WorkingSet::Assembled WorkingSet::assemble() const {
+    Assembled result;
+    std::vector<std::int64_t> base_to_work(base_size_, -1);
+    for (std::size_t i = 0; i < unlabelled_.size(); ++i) base_to_work[unlabelled_[i]] = static_cast<std::int64_t>(i);
+    for (std::size_t i = 0; i < origin_.size(); ++i)
+        if (origin_[i] >= 0) base_to_work[static_cast<std::size_t>(origin_[i])] = static_cast<std::int64_t>(first_row_ + i);
+    GaussianData data;
+    data.sh_degree = rows_.sh_degree;
+    const auto add = [&](std::size_t work_row) {
+        data.append_row(rows_, work_row);
+        const bool labelled_row = work_row >= first_row_;
+        result.label.push_back(labelled_row ? 1 : 0);
+        result.generation.push_back(labelled_row ? generation_[work_row - first_row_] : 0);
+    };
+    result.base_to_new.assign(base_size_, -1);
+    for (std::size_t row = 0; row < base_size_; ++row) {
+        if (base_to_work[row] < 0) continue;
+        result.base_to_new[row] = static_cast<std::int64_t>(data.size());
+        add(static_cast<std::size_t>(base_to_work[row]));
+    }
+    for (std::size_t i = 0; i < origin_.size(); ++i)
+        if (origin_[i] < 0) add(first_row_ + i);
+    result.set = GaussianSet(std::move(data));
+    return result;
+}
+
+}  // namespace gse::edit
