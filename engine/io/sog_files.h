@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/scene/scene.h"
+
 namespace gse::io {
 
 /// Gives the bytes of the file `name` of a scene. Throws Error when it is missing or broken.
@@ -17,6 +19,9 @@ public:
     virtual ~SogFiles() = default;
     virtual std::vector<std::byte> read(const std::string& name) const = 0;
 };
+
+/// Reads the scene that the file `meta` among these describes. Throws Error.
+Scene read_sog(const SogFiles& files, const std::string& meta);
 
 std::unique_ptr<SogFiles> open_sog_folder(const std::filesystem::path& folder);
 /// The archive's bytes must outlive the result.

@@ -260,15 +260,14 @@ bool detect_sog(Bytes bytes, std::string_view) {
     return bytes.size() >= 4 && std::memcmp(bytes.data(), "PK\x03\x04", 4) == 0;
 }
 
-Scene parse_sog(Bytes bytes) {
-    const std::unique_ptr<SogFiles> files = open_sog_archive(bytes);
-    return with_json_errors([&] { return read_scene(*files, parse_json(files->read("meta.json"))); });
+Scene read_sog(const SogFiles& files, const std::string& meta) {
+    return with_json_errors([&] { return read_scene(files, parse_json(files.read(meta))); });
 }
 
+Scene parse_sog(Bytes bytes) { return read_sog(*open_sog_archive(bytes), "meta.json"); }
+
 Scene load_sog_folder(const std::filesystem::path& meta) {
-    const std::unique_ptr<SogFiles> files = open_sog_folder(meta.parent_path());
-    return with_json_errors(
-        [&] { return read_scene(*files, parse_json(files->read(meta.filename().string()))); });
+    return read_sog(*open_sog_folder(meta.parent_path()), meta.filename().string());
 }
 
 Scene load_sog_levels(const std::filesystem::path& lod_meta) {

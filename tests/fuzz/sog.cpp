@@ -1,0 +1,49 @@
+// Fuzz target: SOG, as a zip archive or as its parts laid out plainly, so that checksums do not hide the
+// readers.
+#include <map>
+#include <string>
+
+#include "engine/io/sog_files.h"
+#include "tests/fuzz/fuzz_helpers.h"
+
+namespace {
+
+using namespace gse;
+
+/// Parts as [u8 name length][name][u32 size][bytes], one after the other.
+class PlainParts final : public io::SogFiles {
+public:
+    explicit PlainParts(io::Bytes bytes) {
+        while (bytes.size() > 1) {
+            const std::size_t name_size = std::to_integer<std::size_t>(bytes[0]);
+            if (bytes.size() < 5 + name_size) return;
+            const std::string name(reinterpret_cast<const char*>(bytes.data() + 1), name_size);
+            std::uint32_t size = 0;
+            std::memcpy(&size, bytes.data() + 1 + name_size, sizeof size);
+            bytes = bytes.subspan(5 + name_size);
+            const std::size_t kept = std::min<std::size_t>(size, bytes.size());
+            parts_[name] = {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(kept)};
+            bytes = bytes.subspan(kept);
+        }
+    }
+    std::vector<std::byte> read(const std::string& name) const override {
+        const auto found = parts_.find(name);
+        if (found == parts_.end()) throw Error(ErrorCode::NotFound, "no such part");
+        return found->second;
+    }
+
+private:
+    std::map<std::string, std::vector<std::byte>> parts_;
+};
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const io::Bytes bytes = fuzz::as_bytes(data, size);
+    return fuzz::exercise([&] {
+        if (io::detect_sog(bytes, ""))
+            fuzz::exercise_scene(io::parse_sog(bytes));
+        else
+            fuzz::exercise_scene(io::read_sog(PlainParts(bytes), "meta.json"));
+    });
+}
