@@ -1,272 +1,246 @@
-// First fast version: threads over Gaussians and tiles, float blending; the derivative is still the plain
-// one.
+// The fast float rasterizer: prepared frames, tiles blended by the kernels of one instruction set, threads.
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <vector>
 
 #include "engine/base/check.h"
-#include "engine/raster/plain.h"
+#include "engine/raster/fast_frame.h"
+#include "engine/raster/kernels.h"
+#include "engine/raster/rasterizer.h"
 
 namespace gse::raster {
 namespace {
 
-constexpr int Tile = 16;
+/// Calls body(local, pixel) for the pixels of a tile that are inside the image; local is in block order.
+template <class Body>
+void for_pixels(const Frame& frame, std::size_t tile, Body&& body) {
+    const int x0 = frame.tile_x(tile), y0 = frame.tile_y(tile);
+    const int columns = std::min(TileSize, frame.width() - x0),
+              rows = std::min(TileSize, frame.height() - y0);
+    for (int y = 0; y < rows; ++y) {
+        const std::size_t line = static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(frame.width()) +
+                                 static_cast<std::size_t>(x0);
+        const int base = y / 4 * 64 + y % 4 * 4;
+        for (int x = 0; x < columns; ++x)
+            body(static_cast<std::size_t>(base + x / 4 * 16 + x % 4), line + static_cast<std::size_t>(x));
+    }
+}
 
-struct Record {
-    float x, y, a, b, c, opacity, depth, threshold;
-    float colour[3];
-    std::uint32_t row;
-};
-
-struct TileState {
-    float t[256], rgb[256][3], depth[256];
-    std::int32_t blended[256];
-    bool done[256];
-    int left;
-};
-
-class FirstFastRasterizer final : public Rasterizer {
+class FastRasterizer final : public Rasterizer {
 public:
-    explicit FirstFastRasterizer(ThreadPool& pool) : pool_(pool), plain_(make_plain_rasterizer()) {}
+    FastRasterizer(const Kernels& kernels, ThreadPool& pool)
+        : kernels_(kernels), pool_(pool), frame_(kernels, pool), side_frame_(kernels, pool) {}
 
     void forward(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                  ForwardOutput& output) override {
-        gaussians_ = gaussians;
-        camera_ = camera;
-        settings_ = settings;
-        prepare(gaussians, camera, settings, {});
+        frame_.prepare(gaussians, camera, settings, {});
+        background_ = settings.background;
         output.colour.resize(camera.width, camera.height, 3);
         output.alpha.resize(camera.width, camera.height, 1);
         output.depth.resize(camera.width, camera.height, 1);
         output.blended.resize(output.alpha.pixel_count());
-        output.pairs = pairs_.size();
-        output.dropped_rows = dropped_;
-        each_tile([&](std::size_t tile, TileState& state) {
-            blend(tile, state, [](std::size_t, int, float) {});
-            each_pixel(tile, [&](int local, std::size_t pixel) {
-                const float rest = state.t[local];
-                for (std::size_t c = 0; c < 3; ++c)
-                    output.colour.data[pixel * 3 + c] = state.rgb[local][c] + rest * settings.background[c];
-                output.alpha.data[pixel] = 1 - rest;
-                output.depth.data[pixel] = state.depth[local];
-                output.blended[pixel] = state.blended[local];
-            });
-        });
+        output.pairs = frame_.pair_count();
+        output.dropped_rows = frame_.unusable_rows();
+        output_ = &output;
+        frame_.blend(
+            [](void* self, std::size_t tile, const BlendScratch& scratch) {
+                static_cast<FastRasterizer*>(self)->write_tile(tile, scratch);
+            },
+            this);
     }
 
     void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row,
                   Gradients& output) override {
-        ForwardOutput ignored;
-        plain_->forward(gaussians_, camera_, settings_, ignored);
-        plain_->backward(d_colour, d_alpha, first_row, output);
+        GSE_CHECK(first_row <= frame_.row_count());
+        const std::size_t pixels =
+            static_cast<std::size_t>(frame_.width()) * static_cast<std::size_t>(frame_.height());
+        GSE_CHECK_EQ(d_colour.data.size(), pixels * 3);
+        GSE_CHECK(d_alpha.data.empty() || d_alpha.data.size() == pixels);
+        d_colour_ = &d_colour;
+        d_alpha_ = d_alpha.data.empty() ? nullptr : &d_alpha;
+        first_row_ = first_row;
+        gradients_ = &output;
+        resize(output, frame_.row_count() - first_row);
+        frame_.assign_slots(first_row);
+        grow_scratch();
+        frame_.for_tiles([this](std::size_t begin, std::size_t end, unsigned worker) {
+            for (std::size_t tile = begin; tile < end; ++tile) backward_tile(tile, scratch_[worker]);
+        });
+        const std::size_t first_chunk = first_row / Frame::ChunkRows;
+        pool_.parallel_for(frame_.chunk_count() - std::min(first_chunk, frame_.chunk_count()), 2,
+                           [this](std::size_t begin, std::size_t end, unsigned) {
+                               const std::size_t skipped = first_row_ / Frame::ChunkRows;
+                               for (std::size_t i = begin; i < end; ++i) gradient_chunk(skipped + i);
+                           });
     }
 
     void contributions(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                        const Image& mask, std::span<double> masked, std::span<double> total) override {
         GSE_CHECK_EQ(masked.size(), gaussians.size);
-        prepare(gaussians, camera, settings, {});
-        partial_.assign(pairs_.size() * 2, 0.0);
-        each_tile([&](std::size_t tile, TileState& state) {
-            const std::size_t width = static_cast<std::size_t>(camera.width);
-            const std::size_t x0 = tile % columns_ * Tile, y0 = tile / columns_ * Tile;
-            blend(tile, state, [&](std::size_t entry, int local, float weight) {
-                const std::size_t pixel = (y0 + static_cast<std::size_t>(local / Tile)) * width + x0 +
-                                          static_cast<std::size_t>(local % Tile);
-                partial_[entry * 2] += static_cast<double>(weight * mask.data[pixel]);
-                partial_[entry * 2 + 1] += static_cast<double>(weight);
-            });
+        GSE_CHECK_EQ(total.size(), gaussians.size);
+        GSE_CHECK(mask.width == camera.width && mask.height == camera.height && mask.channels == 1);
+        side_frame_.prepare(gaussians, camera, settings, side_values(gaussians));
+        side_frame_.assign_slots(0);
+        grow_scratch();
+        mask_ = &mask;
+        masked_ = masked;
+        total_ = total;
+        side_frame_.for_tiles([this](std::size_t begin, std::size_t end, unsigned worker) {
+            for (std::size_t tile = begin; tile < end; ++tile) contribute_tile(tile, scratch_[worker]);
         });
-        for (std::size_t entry = 0; entry < pairs_.size(); ++entry) {
-            masked[records_[pairs_[entry]].row] += partial_[entry * 2];
-            total[records_[pairs_[entry]].row] += partial_[entry * 2 + 1];
-        }
+        pool_.parallel_for(side_frame_.chunk_count(), 2,
+                           [this](std::size_t begin, std::size_t end, unsigned) {
+                               for (std::size_t chunk = begin; chunk < end; ++chunk) add_contributions(chunk);
+                           });
     }
 
     void forward_values(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                         std::span<const float> values, Image& output) override {
         GSE_CHECK_EQ(values.size(), gaussians.size);
-        prepare(gaussians, camera, settings, values);
+        side_frame_.prepare(gaussians, camera, settings, values);
         output.resize(camera.width, camera.height, 1);
-        each_tile([&](std::size_t tile, TileState& state) {
-            blend(tile, state, [](std::size_t, int, float) {});
-            each_pixel(tile, [&](int local, std::size_t pixel) { output.data[pixel] = state.rgb[local][0]; });
-        });
+        values_output_ = &output;
+        side_frame_.blend([](void* self, std::size_t tile,
+                             const BlendScratch&) { static_cast<FastRasterizer*>(self)->write_values(tile); },
+                          this);
     }
 
-    std::string name() const override { return "scalar"; }
+    std::string name() const override { return kernels_.name; }
 
 private:
-    void prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
-                 std::span<const float> values) {
-        project_rows(gaussians, {camera, settings}, values);
-        width_ = camera.width;
-        height_ = camera.height;
-        columns_ = static_cast<std::size_t>((width_ + Tile - 1) / Tile);
-        const std::size_t tiles = columns_ * static_cast<std::size_t>((height_ + Tile - 1) / Tile);
-        offsets_.assign(tiles + 1, 0);
-        const auto each_cell = [&](const Record& r, auto&& visit) {
-            const float wide = half_[r.row * 2], high = half_[r.row * 2 + 1];
-            const auto cell = [](float at, int size) {
-                return static_cast<std::size_t>(std::clamp(at, 0.0f, static_cast<float>(size - 1))) / Tile;
-            };
-            for (std::size_t y = cell(r.y - high - 1, height_); y <= cell(r.y + high + 1, height_); ++y)
-                for (std::size_t x = cell(r.x - wide - 1, width_); x <= cell(r.x + wide + 1, width_); ++x)
-                    visit(y * columns_ + x);
-        };
-        for (const Record& record : records_)
-            each_cell(record, [&](std::size_t tile) { ++offsets_[tile + 1]; });
-        for (std::size_t tile = 0; tile < tiles; ++tile) offsets_[tile + 1] += offsets_[tile];
-        cursor_.assign(offsets_.begin(), offsets_.end());
-        pairs_.resize(offsets_.back());
-        for (std::size_t i = 0; i < records_.size(); ++i)
-            each_cell(records_[i],
-                      [&](std::size_t tile) { pairs_[cursor_[tile]++] = static_cast<std::uint32_t>(i); });
+    void grow_scratch() {
+        if (scratch_.size() < pool_.thread_count()) scratch_.resize(pool_.thread_count());
     }
 
-    void project_rows(const GaussianSpans& g, const plain::View& view, std::span<const float> values) {
-        all_.resize(g.size);
-        fate_.resize(g.size);
-        half_.resize(g.size * 2);
-        pool_.parallel_for(g.size, 512, [&](std::size_t begin, std::size_t end, unsigned) {
-            const std::size_t stride = static_cast<std::size_t>(sh_coefficient_count(g.sh_degree)) * 3;
-            std::array<double, 59> wide{};
-            for (std::size_t row = begin; row < end; ++row) {
-                std::copy_n(&g.position[row * 3], 3, &wide[0]);
-                std::copy_n(&g.log_scale[row * 3], 3, &wide[3]);
-                std::copy_n(&g.rotation[row * 4], 4, &wide[6]);
-                wide[10] = g.opacity_logit[row];
-                std::copy_n(&g.sh[row * stride], stride, &wide[11]);
-                const std::span<const double> s(wide);
-                const plain::Inputs one{1,
-                                        g.sh_degree,
-                                        s.subspan(0, 3),
-                                        s.subspan(3, 3),
-                                        s.subspan(6, 4),
-                                        s.subspan(10, 1),
-                                        s.subspan(11, stride)};
-                plain::Splat p;
-                fate_[row] = plain::project(one, 0, view, p);
-                if (fate_[row] != plain::Fate::Drawn) continue;
-                const auto f = [](double v) { return static_cast<float>(v); };
-                all_[row] = {f(p.x),
-                             f(p.y),
-                             f(p.a),
-                             f(p.b),
-                             f(p.c),
-                             f(p.opacity),
-                             f(p.depth),
-                             0,
-                             {f(p.colour[0]), f(p.colour[1]), f(p.colour[2])},
-                             static_cast<std::uint32_t>(row)};
-                if (!values.empty()) all_[row].colour[0] = values[row];
-                half_[row * 2] = f(p.half_width);
-                half_[row * 2 + 1] = f(p.half_height);
+    /// Contributions need no colours: any values will do.
+    std::span<const float> side_values(const GaussianSpans& gaussians) { return gaussians.opacity_logit; }
+
+    void resize(Gradients& g, std::size_t rows) const {
+        g.position.resize(rows * 3);
+        g.log_scale.resize(rows * 3);
+        g.rotation.resize(rows * 4);
+        g.opacity_logit.resize(rows);
+        g.sh.resize(rows * frame_.source().sh_stride);
+        g.mean2d_norm.resize(rows);
+        g.visible.resize(rows);
+    }
+
+    void write_tile(std::size_t tile, const BlendScratch& scratch) {
+        const TileLight& light = frame_.light(tile);
+        for_pixels(frame_, tile, [&](std::size_t local, std::size_t pixel) {
+            const float rest = light.transmittance[local];
+            for (std::size_t channel = 0; channel < 3; ++channel)
+                output_->colour.data[pixel * 3 + channel] =
+                    light.colour[channel][local] + rest * background_[channel];
+            output_->alpha.data[pixel] = 1.0f - rest;
+            output_->depth.data[pixel] = scratch.depth[local];
+            output_->blended[pixel] = scratch.blended[local];
+        });
+    }
+
+    void write_values(std::size_t tile) {
+        const TileLight& light = side_frame_.light(tile);
+        for_pixels(side_frame_, tile, [&](std::size_t local, std::size_t pixel) {
+            values_output_->data[pixel] = light.colour[0][local];
+        });
+    }
+
+    BackwardJob tile_job(Frame& frame, std::size_t tile, BackwardScratch& scratch) const {
+        const auto list = frame.entries(tile);
+        return {frame.records(),    list.data(),        static_cast<std::uint32_t>(list.size()),
+                frame.tile_x(tile), frame.tile_y(tile), frame.width(),
+                frame.height(),     &scratch,           frame.first_active(),
+                frame.slots()->sums};
+    }
+
+    void backward_tile(std::size_t tile, BackwardScratch& scratch) {
+        const TileLight& light = frame_.light(tile);
+        std::memset(scratch.remaining, 0, sizeof scratch.remaining);
+        std::memset(scratch.d_colour, 0, sizeof scratch.d_colour);
+        for_pixels(frame_, tile, [&](std::size_t local, std::size_t pixel) {
+            const float rest = light.transmittance[local];
+            float remaining = d_alpha_ != nullptr ? -d_alpha_->data[pixel] * rest : 0.0f;
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                const float d = d_colour_->data[pixel * 3 + channel];
+                scratch.d_colour[channel][local] = d;
+                remaining += d * (light.colour[channel][local] + rest * background_[channel]);
             }
+            scratch.remaining[local] = remaining;
         });
-        records_.clear();
-        dropped_ = 0;
-        for (std::size_t row = 0; row < g.size; ++row) {
-            if (fate_[row] == plain::Fate::Drawn) records_.push_back(all_[row]);
-            if (fate_[row] == plain::Fate::Unusable) ++dropped_;
-        }
-        std::sort(records_.begin(), records_.end(), [](const Record& a, const Record& b) {
-            return a.depth != b.depth ? a.depth < b.depth : a.row < b.row;
-        });
+        kernels_.backward(tile_job(frame_, tile, scratch));
     }
 
-    template <class Body>
-    void each_tile(Body&& body) {
-        pool_.parallel_for(offsets_.size() - 1, 4, [&](std::size_t begin, std::size_t end, unsigned) {
-            TileState state;
-            for (std::size_t tile = begin; tile < end; ++tile) body(tile, state);
-        });
+    void gradient_chunk(std::size_t chunk) {
+        Gradients& g = *gradients_;
+        const std::size_t stride = frame_.source().sh_stride;
+        const std::size_t begin = std::max(chunk * Frame::ChunkRows, first_row_) - first_row_;
+        const std::size_t end = std::min((chunk + 1) * Frame::ChunkRows, frame_.row_count()) - first_row_;
+        const auto clear = [&](auto& values, std::size_t width) {
+            std::memset(values.data() + begin * width, 0, (end - begin) * width * sizeof values[0]);
+        };
+        clear(g.position, 3);
+        clear(g.log_scale, 3);
+        clear(g.rotation, 4);
+        clear(g.opacity_logit, 1);
+        clear(g.sh, stride);
+        clear(g.mean2d_norm, 1);
+        clear(g.visible, 1);
+        const auto records = frame_.active_records(chunk);
+        const GradientJob job = {
+            frame_.source(),
+            &frame_.view(),
+            records.data(),
+            records.data() + records.size(),
+            frame_.slots()->sums,
+            first_row_,
+            {g.position.data(), g.log_scale.data(), g.rotation.data(), g.opacity_logit.data(), g.sh.data(),
+             g.mean2d_norm.data(), g.visible.data()}};
+        kernels_.gradient(job);
     }
 
-    template <class Body>
-    void each_pixel(std::size_t tile, Body&& body) {
-        const int x0 = static_cast<int>(tile % columns_) * Tile,
-                  y0 = static_cast<int>(tile / columns_) * Tile;
-        for (int local = 0; local < Tile * Tile; ++local) {
-            const int x = x0 + local % Tile, y = y0 + local / Tile;
-            if (x < width_ && y < height_)
-                body(local, static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                                static_cast<std::size_t>(x));
-        }
+    void contribute_tile(std::size_t tile, BackwardScratch& scratch) {
+        std::memset(scratch.mask, 0, sizeof scratch.mask);
+        for_pixels(side_frame_, tile,
+                   [&](std::size_t local, std::size_t pixel) { scratch.mask[local] = mask_->data[pixel]; });
+        kernels_.contribute(tile_job(side_frame_, tile, scratch));
     }
 
-    template <class Visit>
-    void blend(std::size_t tile, TileState& state, Visit&& visit) {
-        std::memset(&state, 0, sizeof state);
-        std::fill(std::begin(state.t), std::end(state.t), 1.0f);
-        const int x0 = static_cast<int>(tile % columns_) * Tile,
-                  y0 = static_cast<int>(tile / columns_) * Tile;
-        state.left = std::min(Tile, width_ - x0) * std::min(Tile, height_ - y0);
-        for (std::size_t entry = offsets_[tile]; entry < offsets_[tile + 1] && state.left > 0; ++entry) {
-            const Record& r = records_[pairs_[entry]];
-            const auto low = [](float at) {
-                return std::max(0, static_cast<int>(std::floor(std::max(at, -1e3f))));
-            };
-            const auto high = [](float at, int size) {
-                return static_cast<int>(std::min(at, static_cast<float>(size - 1)));
-            };
-            const float wide = half_[r.row * 2], tall = half_[r.row * 2 + 1];
-            const int x_end = high(r.x + wide - static_cast<float>(x0), std::min(Tile, width_ - x0));
-            const int y_end = high(r.y + tall - static_cast<float>(y0), std::min(Tile, height_ - y0));
-            for (int y = low(r.y - tall - static_cast<float>(y0) - 1); y <= y_end; ++y)
-                for (int x = low(r.x - wide - static_cast<float>(x0) - 1); x <= x_end; ++x)
-                    blend_pixel(r, entry, {x, y, x0, y0}, state, visit);
+    void add_contributions(std::size_t chunk) {
+        for (const Record& record : side_frame_.active_records(chunk)) {
+            const PartialSlot* slot = side_frame_.slots() + record.partial_begin;
+            double weight = 0, masked = 0;
+            for (std::uint32_t pair = 0; pair < record.pair_count; ++pair) {
+                weight += static_cast<double>(slot[pair].sums[SumWeight]);
+                masked += static_cast<double>(slot[pair].sums[SumMasked]);
+            }
+            total_[record.row] += weight;
+            masked_[record.row] += masked;
         }
     }
 
-    struct At {
-        int x, y, x0, y0;
-    };
-
-    template <class Visit>
-    static void blend_pixel(const Record& r, std::size_t entry, const At& at, TileState& state,
-                            Visit&& visit) {
-        const int local = at.y * Tile + at.x;
-        if (state.done[local]) return;
-        const float dx = r.x - (static_cast<float>(at.x0 + at.x) + 0.5f);
-        const float dy = r.y - (static_cast<float>(at.y0 + at.y) + 0.5f);
-        const float sigma = 0.5f * (r.a * dx * dx + r.c * dy * dy) + r.b * dx * dy;
-        if (!(sigma >= 0) || sigma > 6) return;
-        const float alpha = std::min(0.99f, r.opacity * std::exp(-sigma));
-        if (alpha < 1.0f / 255.0f) return;
-        const float after = state.t[local] * (1 - alpha);
-        if (after <= 1e-4f) {
-            state.done[local] = true;
-            --state.left;
-            return;
-        }
-        const float weight = alpha * state.t[local];
-        for (int c = 0; c < 3; ++c) state.rgb[local][c] += weight * r.colour[c];
-        state.depth[local] += weight * r.depth;
-        ++state.blended[local];
-        state.t[local] = after;
-        visit(entry, local, weight);
-    }
-
+    const Kernels& kernels_;
     ThreadPool& pool_;
-    std::unique_ptr<Rasterizer> plain_;
-    GaussianSpans gaussians_;
-    Camera camera_;
-    Settings settings_;
-    std::vector<Record> all_, records_;
-    std::vector<plain::Fate> fate_;
-    std::vector<float> half_;
-    std::vector<std::size_t> offsets_, cursor_;
-    std::vector<std::uint32_t> pairs_;
-    std::vector<double> partial_;
-    std::size_t dropped_ = 0, columns_ = 0;
-    int width_ = 0, height_ = 0;
+    Frame frame_;       // of the last forward(), for backward()
+    Frame side_frame_;  // of contributions() and forward_values(), which leave forward's state alone
+    std::vector<BackwardScratch> scratch_;  // per worker
+    std::array<float, 3> background_{};
+
+    // Arguments of the call under way, here so that the loops' bodies capture one pointer and allocate
+    // nothing.
+    ForwardOutput* output_ = nullptr;
+    Image* values_output_ = nullptr;
+    const Image* d_colour_ = nullptr;
+    const Image* d_alpha_ = nullptr;
+    const Image* mask_ = nullptr;
+    std::span<double> masked_, total_;
+    Gradients* gradients_ = nullptr;
+    std::size_t first_row_ = 0;
 };
 
 }  // namespace
 
 std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool) {
-    return std::make_unique<FirstFastRasterizer>(pool);
+    return std::make_unique<FastRasterizer>(choose_kernels(), pool);
 }
 
 }  // namespace gse::raster

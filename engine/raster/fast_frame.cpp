@@ -1,0 +1,252 @@
+// Driver of the first half of the fast rasterizer: chunks of rows, depth order, counting placement into
+// tiles.
+#include "engine/raster/fast_frame.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/check.h"
+#include "engine/base/error.h"
+#include "engine/raster/conventions.h"
+
+namespace gse::raster {
+namespace {
+
+/// Grows, never shrinks: what was allocated once stays.
+template <class T>
+void at_least(std::vector<T>& values, std::size_t count) {
+    if (values.size() < count) values.resize(count);
+}
+
+constexpr std::size_t MostPairs = 1'000'000'000;
+
+void check_lengths(const GaussianSpans& g) {
+    GSE_CHECK_EQ(g.position.size(), g.size * 3);
+    GSE_CHECK_EQ(g.log_scale.size(), g.size * 3);
+    GSE_CHECK_EQ(g.rotation.size(), g.size * 4);
+    GSE_CHECK_EQ(g.opacity_logit.size(), g.size);
+    GSE_CHECK_EQ(g.sh.size(), g.size * static_cast<std::size_t>(sh_coefficient_count(g.sh_degree)) * 3);
+}
+
+}  // namespace
+
+Frame::Frame(const Kernels& kernels, ThreadPool& pool) : kernels_(kernels), pool_(pool), sort_(pool) {}
+
+void Frame::set_view(const Camera& camera, const Settings& settings, int scene_degree) {
+    std::copy_n(camera.rotation.m.begin(), 9, view_.rotation);
+    const Vec3 eye = camera.centre();
+    for (int axis = 0; axis < 3; ++axis) {
+        view_.translation[axis] = camera.translation[axis];
+        view_.eye[axis] = eye[axis];
+    }
+    view_.fx = camera.fx;
+    view_.fy = camera.fy;
+    view_.cx = camera.cx;
+    view_.cy = camera.cy;
+    const double margin_x = FrustumMargin * 0.5 * camera.width / camera.fx;
+    const double margin_y = FrustumMargin * 0.5 * camera.height / camera.fy;
+    view_.ratio_low[0] = -(camera.cx / camera.fx + margin_x);
+    view_.ratio_low[1] = -(camera.cy / camera.fy + margin_y);
+    view_.ratio_high[0] = (camera.width - camera.cx) / camera.fx + margin_x;
+    view_.ratio_high[1] = (camera.height - camera.cy) / camera.fy + margin_y;
+    view_.near_plane = std::max<double>(settings.near_plane, SmallestNear);
+    view_.far_plane = settings.far_plane;
+    view_.blur = settings.blur_px2;
+    view_.width = camera.width;
+    view_.height = camera.height;
+    view_.sh_count = sh_coefficient_count(std::clamp(settings.sh_degree, 0, scene_degree));
+    view_.negative_slope = settings.negative_colour_slope;
+    view_.antialiased = settings.antialiased;
+    tile_columns_ = static_cast<std::size_t>((camera.width + TileSize - 1) / TileSize);
+    tile_rows_ = static_cast<std::size_t>((camera.height + TileSize - 1) / TileSize);
+}
+
+void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
+                    std::span<const float> values) {
+    check_lengths(gaussians);
+    GSE_CHECK(camera.width > 0 && camera.height > 0 && camera.fx > 0 && camera.fy > 0);
+    set_view(camera, settings, gaussians.sh_degree);
+    source_ = {
+        gaussians.position.data(), gaussians.log_scale.data(),
+        gaussians.rotation.data(), gaussians.opacity_logit.data(),
+        gaussians.sh.data(),       static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3};
+    values_ = values.empty() ? nullptr : values.data();
+    rows_ = gaussians.size;
+    at_least(records_, rows_);
+    at_least(keys_, rows_);
+    at_least(chunk_drawn_, chunk_count());
+    at_least(chunk_unusable_, chunk_count());
+    at_least(chunk_first_, chunk_count());
+    at_least(scratch_, pool_.thread_count());
+    pool_.parallel_for(chunk_count(), 1, [this](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t chunk = begin; chunk < end; ++chunk) project_chunk(chunk);
+    });
+    collect_keys();
+    bin_all();
+}
+
+void Frame::project_chunk(std::size_t chunk) {
+    const std::size_t begin = chunk * ChunkRows;
+    ProjectJob job{};
+    job.source = source_;
+    job.view = &view_;
+    job.values = values_;
+    job.begin = begin;
+    job.end = std::min(begin + ChunkRows, rows_);
+    job.records = records_.data() + begin;
+    job.keys = keys_.data() + begin;
+    kernels_.project(job);
+    chunk_drawn_[chunk] = job.drawn;
+    chunk_unusable_[chunk] = job.unusable;
+}
+
+void Frame::collect_keys() {
+    drawn_ = unusable_ = 0;
+    for (std::size_t chunk = 0; chunk < chunk_count(); ++chunk) {
+        chunk_first_[chunk] = drawn_;
+        drawn_ += chunk_drawn_[chunk];
+        unusable_ += chunk_unusable_[chunk];
+    }
+    sort_.items(drawn_);
+    pool_.parallel_for(chunk_count(), 32, [this](std::size_t begin, std::size_t end, unsigned) {
+        std::vector<DepthSort::Item>& items = sort_.items(drawn_);
+        for (std::size_t chunk = begin; chunk < end; ++chunk)
+            for (std::size_t i = 0; i < chunk_drawn_[chunk]; ++i) {
+                const std::size_t record = chunk * ChunkRows + i;
+                items[chunk_first_[chunk] + i] = {keys_[record], static_cast<std::uint32_t>(record)};
+            }
+    });
+}
+
+void Frame::bin_all() {
+    constexpr std::size_t worth_a_part = 4096;
+    const std::vector<std::uint32_t>& order = sort_.sort(drawn_);
+    order_.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(drawn_));
+    at_least(pair_counts_, drawn_);
+    parts_ = std::clamp<std::size_t>(drawn_ / worth_a_part, 1, std::size_t{2} * pool_.thread_count());
+    at_least(pairs_, parts_);
+    at_least(tile_places_, parts_ * tile_count());
+    pool_.parallel_for(parts_, 1, [this](std::size_t begin, std::size_t, unsigned) { bin_part(begin); });
+    count_tiles();
+    pool_.parallel_for(parts_, 1, [this](std::size_t begin, std::size_t, unsigned) { place_part(begin); });
+}
+
+void Frame::bin_part(std::size_t part) {
+    std::vector<TilePair>& pairs = pairs_[part];
+    BinJob job{};
+    job.records = records_.data();
+    job.order = order_.data();
+    job.begin = part_begin(part);
+    job.end = part_begin(part + 1);
+    job.width = view_.width;
+    job.height = view_.height;
+    job.tile_counts = &tile_places_[part * tile_count()];
+    job.pair_counts = pair_counts_.data();
+    std::fill_n(job.tile_counts, tile_count(), 0u);
+    at_least(pairs, 4 * (job.end - job.begin));
+    for (;;) {
+        job.pairs = pairs.data();
+        job.capacity = pairs.size();
+        kernels_.bin(job);
+        if (job.begin == job.end) break;
+        at_least(pairs, 2 * pairs.size() + tile_count() + tile_rows_ + 1);  // room for any one Gaussian
+    }
+}
+
+/// Counts per part and tile -> the tiles' ranges and each part's first place in them.
+void Frame::count_tiles() {
+    offsets_.resize(tile_count() + 1);
+    std::size_t place = 0;
+    for (std::size_t tile = 0; tile < tile_count(); ++tile) {
+        offsets_[tile] = place;
+        for (std::size_t part = 0; part < parts_; ++part) {
+            std::uint32_t& entry = tile_places_[part * tile_count() + tile];
+            const std::uint32_t count = entry;
+            entry = static_cast<std::uint32_t>(place);
+            place += count;
+        }
+    }
+    offsets_[tile_count()] = place;
+    if (place > MostPairs)
+        throw Error(ErrorCode::Unsupported, "the view has too many large splats to be drawn at this size",
+                    "render a smaller image or prune the scene");
+    at_least(entries_, place);
+}
+
+void Frame::place_part(std::size_t part) {
+    std::uint32_t* places = &tile_places_[part * tile_count()];
+    const TilePair* pair = pairs_[part].data();
+    const std::size_t end = part_begin(part + 1);
+    for (std::size_t i = part_begin(part); i < end; ++i)
+        for (std::uint32_t ordinal = 0; ordinal < pair_counts_[i]; ++ordinal, ++pair)
+            entries_[places[pair->tile]++] = {order_[i], ordinal, pair->blocks};
+}
+
+std::size_t Frame::tile_chunk() const {
+    return std::clamp<std::size_t>(tile_count() / (std::size_t{16} * pool_.thread_count()), 1, 8);
+}
+
+void Frame::blend(TileDone finish, void* context) {
+    at_least(lights_, tile_count());
+    finish_ = finish;
+    finish_context_ = context;
+    for_tiles(
+        [this](std::size_t begin, std::size_t end, unsigned worker) { blend_tiles(begin, end, worker); });
+}
+
+void Frame::blend_tiles(std::size_t begin, std::size_t end, unsigned worker) {
+    BlendScratch& scratch = scratch_[worker];
+    for (std::size_t tile = begin; tile < end; ++tile) {
+        const auto list = entries(tile);
+        const BlendJob job = {records_.data(), list.data(),    static_cast<std::uint32_t>(list.size()),
+                              tile_x(tile),    tile_y(tile),   view_.width,
+                              view_.height,    &lights_[tile], &scratch};
+        kernels_.blend(job);
+        finish_(finish_context_, tile, scratch);
+    }
+}
+
+std::span<const Record> Frame::active_records(std::size_t chunk) const {
+    const std::size_t begin = chunk * ChunkRows, end = begin + chunk_drawn_[chunk];
+    const std::size_t first = std::clamp<std::size_t>(first_active_, begin, end);
+    return {records_.data() + first, end - first};
+}
+
+void Frame::assign_slots(std::size_t first_row) {
+    const std::size_t chunk = first_row / ChunkRows;
+    first_active_ = static_cast<std::uint32_t>(rows_);
+    if (chunk < chunk_count()) {
+        const Record* begin = records_.data() + chunk * ChunkRows;
+        const Record* end = begin + chunk_drawn_[chunk];
+        const Record* first = std::lower_bound(
+            begin, end, first_row, [](const Record& record, std::size_t row) { return record.row < row; });
+        first_active_ = static_cast<std::uint32_t>(first - records_.data());
+    }
+    at_least(chunk_slots_, chunk_count() + 1);
+    pool_.parallel_for(chunk_count(), 16, [this](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i) {
+            chunk_slots_[i] = 0;
+            for (const Record& record : active_records(i)) chunk_slots_[i] += record.pair_count;
+        }
+    });
+    std::size_t total = 0;
+    for (std::size_t i = 0; i < chunk_count(); ++i) {
+        const std::size_t count = chunk_slots_[i];
+        chunk_slots_[i] = total;
+        total += count;
+    }
+    pool_.parallel_for(chunk_count(), 16, [this](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i) {
+            std::size_t slot = chunk_slots_[i];
+            const auto active = active_records(i);
+            Record* record = records_.data() + (active.data() - records_.data());
+            for (std::size_t k = 0; k < active.size(); ++k) {
+                record[k].partial_begin = static_cast<std::uint32_t>(slot);
+                slot += record[k].pair_count;
+            }
+        }
+    });
+    at_least(slots_, total);
+}
+
+}  // namespace gse::raster

@@ -1,0 +1,106 @@
+// One view prepared for blending: projected records, depth order and the tiles' lists. Keeps its memory
+// between views.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/base/thread_pool.h"
+#include "engine/math/camera.h"
+#include "engine/raster/depth_sort.h"
+#include "engine/raster/kernels.h"
+#include "engine/raster/rasterizer.h"
+
+namespace gse::raster {
+
+/// Slot of partial gradients of one (tile, Gaussian).
+struct alignas(64) PartialSlot {
+    float sums[PartialStride];
+};
+
+class Frame {
+public:
+    Frame(const Kernels& kernels, ThreadPool& pool);
+
+    /// Projects, sorts and bins. `values`, if not empty, replaces the colours (in the red channel).
+    void prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
+                 std::span<const float> values);
+
+    /// Blends every tile into lights(); calls finish(tile, scratch) on the thread that did it.
+    using TileDone = void (*)(void* context, std::size_t tile, const BlendScratch& scratch);
+    void blend(TileDone finish, void* context);
+
+    /// Gives every drawn Gaussian of rows >= first_row its slots of partial sums.
+    void assign_slots(std::size_t first_row);
+
+    /// Calls body(begin, end, worker) over tiles.
+    template <class Body>
+    void for_tiles(const Body& body) {
+        pool_.parallel_for(tile_count(), tile_chunk(), body);
+    }
+
+    std::size_t tile_count() const { return tile_columns_ * tile_rows_; }
+    std::size_t tile_chunk() const;
+    int tile_x(std::size_t tile) const { return static_cast<int>(tile % tile_columns_) * TileSize; }
+    int tile_y(std::size_t tile) const { return static_cast<int>(tile / tile_columns_) * TileSize; }
+    int width() const { return view_.width; }
+    int height() const { return view_.height; }
+    std::span<const TileEntry> entries(std::size_t tile) const {
+        return {entries_.data() + offsets_[tile], offsets_[tile + 1] - offsets_[tile]};
+    }
+    std::size_t pair_count() const { return offsets_.empty() ? 0 : offsets_.back(); }
+    std::size_t unusable_rows() const { return unusable_; }
+    std::size_t drawn_rows() const { return drawn_; }
+    TileLight& light(std::size_t tile) { return lights_[tile]; }
+    const Record* records() const { return records_.data(); }
+    const Viewpoint& view() const { return view_; }
+    const Source& source() const { return source_; }
+    std::size_t row_count() const { return rows_; }
+    std::uint32_t first_active() const { return first_active_; }
+    PartialSlot* slots() { return slots_.data(); }
+
+    /// Rows are handled in chunks; a chunk's records lie densely at its first row's place.
+    static constexpr std::size_t ChunkRows = 1024;
+    std::size_t chunk_count() const { return (rows_ + ChunkRows - 1) / ChunkRows; }
+    /// The chunk's records from first_active() on.
+    std::span<const Record> active_records(std::size_t chunk) const;
+
+private:
+    void set_view(const Camera& camera, const Settings& settings, int scene_degree);
+    void project_chunk(std::size_t chunk);
+    void collect_keys();
+    void bin_part(std::size_t part);
+    void place_part(std::size_t part);
+    void count_tiles();
+    void bin_all();
+    void blend_tiles(std::size_t begin, std::size_t end, unsigned worker);
+    std::size_t part_begin(std::size_t part) const { return drawn_ * part / parts_; }
+
+    const Kernels& kernels_;
+    ThreadPool& pool_;
+    DepthSort sort_;
+    Viewpoint view_{};
+    Source source_{};
+    const float* values_ = nullptr;
+    std::size_t rows_ = 0, drawn_ = 0, unusable_ = 0, tile_columns_ = 0, tile_rows_ = 0;
+
+    std::vector<Record> records_;      // [rows], with gaps
+    std::vector<std::uint32_t> keys_;  // [rows], with the same gaps
+    std::vector<std::size_t> chunk_drawn_, chunk_unusable_, chunk_first_;
+    std::vector<std::uint32_t> order_;          // records front to back
+    std::vector<std::uint32_t> pair_counts_;    // by place in order_
+    std::size_t parts_ = 1;                     // of the depth order, binned in parallel
+    std::vector<std::vector<TilePair>> pairs_;  // per part
+    std::vector<std::uint32_t> tile_places_;    // [parts][tiles]: counts, then places
+    std::vector<std::size_t> offsets_;          // [tiles + 1] into entries_
+    std::vector<TileEntry> entries_;
+    std::vector<TileLight> lights_;
+    std::vector<BlendScratch> scratch_;  // per worker
+    TileDone finish_ = nullptr;
+    void* finish_context_ = nullptr;
+    std::uint32_t first_active_ = 0;
+    std::vector<std::size_t> chunk_slots_;
+    std::vector<PartialSlot> slots_;
+};
+
+}  // namespace gse::raster

@@ -1,0 +1,167 @@
+// Kernel part 5: the derivative of one tile's blending with respect to its records, and the weights of
+// contributions. Both walk the tile's list in forward order and write one slot of sums per (tile, Gaussian);
+// slots are added up later in a fixed order, so no result depends on which thread had which tile.
+
+/// Sums over pixels of g and w times what PartialSum names (g = dL/d ln alpha, w = alpha T).
+struct Sums {
+    F s[9];
+};
+
+/// One register of pixels of one active Gaussian; returns whether light is left. Remaining-light form of the
+/// derivative: dL/dalpha = T (c.v) - R / (1 - alpha) with R the gradient-weighted light behind the pair.
+GSE_INLINE M backward_pixels(const Record& r, int pixel, const PixelGrid& grid, BackwardScratch& scratch,
+                             Sums& sums, M& blended) {
+    const Sample s = sample(r, load(grid.x + pixel), load(grid.y + pixel));
+    const F before = load(scratch.transmittance + pixel);
+    const F after = fnma(s.alpha, before, before);
+    const M live = after > set(CutTransmittance);
+    store(scratch.transmittance + pixel, after);
+    const F weight = only(live, s.alpha * before);
+    const F red = load(scratch.d_colour[0] + pixel), green = load(scratch.d_colour[1] + pixel),
+            blue = load(scratch.d_colour[2] + pixel);
+    const F light = fma(set(r.colour[2]), blue, fma(set(r.colour[1]), green, set(r.colour[0]) * red));
+    const F lit = weight * light;
+    const F remaining = load(scratch.remaining + pixel) - lit;
+    store(scratch.remaining + pixel, remaining);
+    const F g = only(live & s.free, fnma(s.alpha * remaining, reciprocal(set(1.0f) - s.alpha), lit));
+    const F gu = g * s.u, gv = g * s.v;
+    sums.s[SumG] = sums.s[SumG] + g;
+    sums.s[SumGu] = sums.s[SumGu] + gu;
+    sums.s[SumGv] = sums.s[SumGv] + gv;
+    sums.s[SumGuu] = fma(gu, s.u, sums.s[SumGuu]);
+    sums.s[SumGuv] = fma(gu, s.v, sums.s[SumGuv]);
+    sums.s[SumGvv] = fma(gv, s.v, sums.s[SumGvv]);
+    sums.s[SumRed] = fma(weight, red, sums.s[SumRed]);
+    sums.s[SumGreen] = fma(weight, green, sums.s[SumGreen]);
+    sums.s[SumBlue] = fma(weight, blue, sums.s[SumBlue]);
+    blended = blended | (live & s.touched);
+    return live;
+}
+
+/// The same pixels of a Gaussian that wants no gradient: it only takes its light.
+GSE_INLINE M pass_pixels(const Record& r, int pixel, const PixelGrid& grid, BackwardScratch& scratch) {
+    const Sample s = sample(r, load(grid.x + pixel), load(grid.y + pixel));
+    const F before = load(scratch.transmittance + pixel);
+    const F after = fnma(s.alpha, before, before);
+    const M live = after > set(CutTransmittance);
+    store(scratch.transmittance + pixel, after);
+    const F weight = only(live, s.alpha * before);
+    const F red = load(scratch.d_colour[0] + pixel), green = load(scratch.d_colour[1] + pixel),
+            blue = load(scratch.d_colour[2] + pixel);
+    const F light = fma(set(r.colour[2]), blue, fma(set(r.colour[1]), green, set(r.colour[0]) * red));
+    store(scratch.remaining + pixel, load(scratch.remaining + pixel) - weight * light);
+    return live;
+}
+
+GSE_INLINE M weigh_pixels(const Record& r, int pixel, const PixelGrid& grid, BackwardScratch& scratch,
+                          F& total, F& masked) {
+    const Sample s = sample(r, load(grid.x + pixel), load(grid.y + pixel));
+    const F before = load(scratch.transmittance + pixel);
+    const F after = fnma(s.alpha, before, before);
+    const M live = after > set(CutTransmittance);
+    store(scratch.transmittance + pixel, after);
+    const F weight = only(live, s.alpha * before);
+    total = total + weight;
+    masked = fma(weight, load(scratch.mask + pixel), masked);
+    return live;
+}
+
+GSE_INLINE float* slot_of(const BackwardJob& job, const TileEntry& entry) {
+    const std::size_t slot =
+        static_cast<std::size_t>(job.records[entry.record].partial_begin) + entry.ordinal;
+    return job.partials + slot * PartialStride;
+}
+
+GSE_INLINE void clear_slot(float* slot) {
+    for (int k = 0; k < PartialStride; k += F::W) store(slot + k, zero());
+}
+
+/// Slots of the active entries from `begin` on, which nothing reached.
+static void clear_rest(const BackwardJob& job, std::uint32_t begin) {
+    for (std::uint32_t i = begin; i < job.count; ++i)
+        if (job.entries[i].record >= job.first_record) clear_slot(slot_of(job, job.entries[i]));
+}
+
+GSE_INLINE void prefetch_entry(const BackwardJob& job, std::uint32_t i) {
+    if (i < job.count) __builtin_prefetch(job.records + job.entries[i].record);
+}
+
+/// Blocks of `blocks` in which light is left after the active record r.
+static std::uint32_t backward_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid,
+                                     BackwardScratch& scratch, float* slot) {
+    Sums sums;
+    for (F& sum : sums.s) sum = zero();
+    M blended = none();
+    std::uint32_t finished = 0;
+    for (std::uint32_t left = blocks; left != 0; left &= left - 1) {
+        const int block = __builtin_ctz(left);
+        M live = none();
+        for (int sub = 0; sub < Subs; ++sub)
+            live = live | backward_pixels(r, block * 16 + sub * F::W, grid, scratch, sums, blended);
+        if (!any(live)) finished |= 1u << block;
+    }
+    clear_slot(slot);
+    store_sums(sums.s, slot);
+    slot[SumBlended] = any(blended) ? 1.0f : 0.0f;
+    return finished;
+}
+
+static std::uint32_t pass_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid,
+                                 BackwardScratch& scratch) {
+    std::uint32_t finished = 0;
+    for (std::uint32_t left = blocks; left != 0; left &= left - 1) {
+        const int block = __builtin_ctz(left);
+        M live = none();
+        for (int sub = 0; sub < Subs; ++sub)
+            live = live | pass_pixels(r, block * 16 + sub * F::W, grid, scratch);
+        if (!any(live)) finished |= 1u << block;
+    }
+    return finished;
+}
+
+static void backward(const BackwardJob& job) {
+    std::uint32_t end = job.count;  // nothing behind the last active entry matters
+    while (end > 0 && job.entries[end - 1].record < job.first_record) --end;
+    if (end == 0) return;
+    PixelGrid grid;
+    fill_grid(job.x, job.y, grid);
+    start_transmittance(job.width, job.height, grid, job.scratch->transmittance);
+    std::uint32_t alive = 0xffff, i = 0;
+    for (; i < end && alive != 0; ++i) {
+        prefetch_entry(job, i + 8);
+        const TileEntry& entry = job.entries[i];
+        const Record& r = job.records[entry.record];
+        const std::uint32_t blocks = entry.blocks & alive;
+        if (entry.record < job.first_record)
+            alive &= ~pass_record(r, blocks, grid, *job.scratch);
+        else if (blocks == 0)
+            clear_slot(slot_of(job, entry));
+        else
+            alive &= ~backward_record(r, blocks, grid, *job.scratch, slot_of(job, entry));
+    }
+    clear_rest(job, i);
+}
+
+static void contribute(const BackwardJob& job) {
+    PixelGrid grid;
+    fill_grid(job.x, job.y, grid);
+    start_transmittance(job.width, job.height, grid, job.scratch->transmittance);
+    std::uint32_t alive = 0xffff, i = 0;
+    for (; i < job.count && alive != 0; ++i) {
+        prefetch_entry(job, i + 8);
+        const TileEntry& entry = job.entries[i];
+        const Record& r = job.records[entry.record];
+        Sums sums;
+        for (F& sum : sums.s) sum = zero();
+        for (std::uint32_t left = entry.blocks & alive; left != 0; left &= left - 1) {
+            const int block = __builtin_ctz(left);
+            M live = none();
+            for (int sub = 0; sub < Subs; ++sub)
+                live = live | weigh_pixels(r, block * 16 + sub * F::W, grid, *job.scratch, sums.s[SumWeight],
+                                           sums.s[SumMasked]);
+            if (!any(live)) alive &= ~(1u << block);
+        }
+        store_sums(sums.s, slot_of(job, entry));
+    }
+    clear_rest(job, i);
+}

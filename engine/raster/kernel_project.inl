@@ -1,0 +1,158 @@
+// Kernel part 2: rows -> records: culling in double lanes, then the colours of what is left in float lanes.
+
+/// The drawn rows of a batch wait here for their colour.
+struct alignas(64) ColourBatch {
+    float direction[3][F::W];  // world, not normalised
+    float coefficients[48][F::W];
+    Record* record[F::W];
+    const float* sh[F::W];
+    int size;
+};
+
+/// Component-major results of one batch of rows, before they are scattered into records.
+struct alignas(64) RecordBatch {
+    float x[F::W], y[F::W], l1[F::W], l2[F::W], l3[F::W], log2_opacity[F::W], depth[F::W];
+    float half_width[F::W], half_height[F::W], lean[F::W], direction[3][F::W];
+};
+
+/// Ellipse of one half batch; returns the lanes that are drawn.
+GSE_INLINE MD finish_records(const Viewpoint& view, const Geometry& g, int at, RecordBatch& out) {
+    D opacity = g.opacity;
+    if (view.antialiased) opacity = opacity * sqrt(g.raw_determinant / g.determinant);
+    MD drawn = (g.z > setd(view.near_plane)) & (g.z < setd(view.far_plane)) &
+               (g.determinant > setd(DeterminantCut)) & (opacity >= setd(AlphaCut));
+    const D x = fma(setd(view.fx) * g.x, g.inverse_z, setd(view.cx));
+    const D y = fma(setd(view.fy) * g.y, g.inverse_z, setd(view.cy));
+    const D log2_opacity = log2_lanes(max(opacity, setd(1e-30)));
+    // alpha >= 1/255 <=> u^2 + v^2 <= log2(255 o); a little more, so that rounding can never drop a pair.
+    const D reach = fma(log2_opacity + setd(Log2Of255), setd(1.0 + 1e-4), setd(1e-4));
+    const D half_width = sqrt(max(setd(2 * Ln2) * reach * g.xx, setd(0.0)));
+    const D half_height = sqrt(max(setd(2 * Ln2) * reach * g.yy, setd(0.0)));
+    const D nought = setd(0.0);
+    drawn = drawn & (x + half_width >= nought) & (x - half_width <= setd(view.width)) &
+            (y + half_height >= nought) & (y - half_height <= setd(view.height));
+    const D l1 = sqrt(setd(0.5 * Log2E) * g.yy / g.determinant);
+    narrow(out.x + at, x);
+    narrow(out.y + at, y);
+    narrow(out.l1 + at, l1);
+    narrow(out.l2 + at, nought - l1 * g.xy / g.yy);
+    narrow(out.l3 + at, sqrt(setd(0.5 * Log2E) / g.yy));
+    narrow(out.log2_opacity + at, min(log2_opacity, nought));
+    narrow(out.depth + at, g.z);
+    narrow(out.half_width + at, half_width);
+    narrow(out.half_height + at, half_height);
+    narrow(out.lean + at, half_width * g.xy / g.xx);
+    narrow(out.direction[0] + at, g.offset.x);
+    narrow(out.direction[1] + at, g.offset.y);
+    narrow(out.direction[2] + at, g.offset.z);
+    return drawn;
+}
+
+GSE_INLINE void write_record(const RecordBatch& from, int lane, std::uint32_t row, Record& to) {
+    to.x = from.x[lane];
+    to.y = from.y[lane];
+    to.l1 = from.l1[lane];
+    to.l2 = from.l2[lane];
+    to.l3 = from.l3[lane];
+    to.log2_opacity = from.log2_opacity[lane];
+    to.depth = from.depth[lane];
+    to.half_width = from.half_width[lane];
+    to.half_height = from.half_height[lane];
+    to.lean = from.lean[lane];
+    to.row = row;
+    to.pair_count = 0;
+    to.partial_begin = 0;
+}
+
+static void colour_batch(ColourBatch& batch, int sh_count) {
+    if (batch.size == 0) return;
+    for (int lane = batch.size; lane < F::W; ++lane) {
+        batch.sh[lane] = batch.sh[0];
+        for (int k = 0; k < 3; ++k) batch.direction[k][lane] = batch.direction[k][0];
+    }
+    load_columns(batch.sh, sh_count * 3, batch.coefficients[0]);
+    const F x = load(batch.direction[0]), y = load(batch.direction[1]), z = load(batch.direction[2]);
+    const F scale = set(1.0f) / sqrt(fma(z, z, fma(y, y, x * x)));
+    F basis[16];
+    basis_lanes(x * scale, y * scale, z * scale, sh_count, basis);
+    alignas(64) float colour[3][F::W];
+    for (int channel = 0; channel < 3; ++channel) {
+        F sum = set(0.5f);
+        for (int k = 0; k < sh_count; ++k)
+            sum = fma(basis[k], load(batch.coefficients[k * 3 + channel]), sum);
+        store(colour[channel], sum);
+    }
+    for (int lane = 0; lane < batch.size; ++lane)
+        for (int channel = 0; channel < 3; ++channel)
+            batch.record[lane]->colour[channel] = colour[channel][lane];
+    batch.size = 0;
+}
+
+/// Clamps the colours at 0 and takes out the records whose colour is not finite.
+static void check_colours(ProjectJob& job) {
+    constexpr float largest = 3.40282346638528859812e38f;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < job.drawn; ++i) {
+        Record& record = job.records[i];
+        bool finite = true;
+        for (float& channel : record.colour) {
+            finite = finite && channel >= -largest && channel <= largest;
+            channel = channel > 0.0f ? channel : 0.0f;
+        }
+        if (!finite) {
+            ++job.unusable;
+            continue;
+        }
+        if (kept != i) job.records[kept] = record;
+        union {
+            float depth;
+            std::uint32_t key;
+        } pun = {record.depth};
+        job.keys[kept++] = pun.key;
+    }
+    job.drawn = kept;
+}
+
+static void project(ProjectJob& job) {
+    RawBatch raw;
+    RecordBatch found;
+    ColourBatch colours;
+    colours.size = 0;
+    job.drawn = 0;
+    job.unusable = 0;
+    for (std::size_t row = job.begin; row < job.end; row += F::W) {
+        const std::size_t left = job.end - row;
+        raw.size = left < F::W ? static_cast<int>(left) : F::W;
+        for (int lane = 0; lane < raw.size; ++lane)
+            load_row(job.source, row + static_cast<std::size_t>(lane), lane, raw);
+        fill_batch(job.source, raw);
+        unsigned drawn = 0, usable = 0;
+        for (int at = 0; at < F::W; at += D::W) {
+            Geometry g;
+            compute_geometry(raw, at, *job.view, g);
+            const unsigned good = bits(usable_lanes(raw, at));
+            drawn |= (bits(finish_records(*job.view, g, at, found)) & good) << at;
+            usable |= good << at;
+        }
+        const unsigned valid = (2u << (raw.size - 1)) - 1u;
+        drawn &= valid;
+        job.unusable += static_cast<std::size_t>(__builtin_popcount(valid & ~usable));
+        for (; drawn != 0; drawn &= drawn - 1) {
+            const int lane = __builtin_ctz(drawn);
+            const std::size_t source_row = raw.row[lane];
+            Record& record = job.records[job.drawn++];
+            write_record(found, lane, raw.row[lane], record);
+            if (job.values != nullptr) {
+                record.colour[0] = job.values[source_row];
+                record.colour[1] = record.colour[2] = 0.0f;
+                continue;
+            }
+            for (int k = 0; k < 3; ++k) colours.direction[k][colours.size] = found.direction[k][lane];
+            colours.sh[colours.size] = job.source.sh + source_row * job.source.sh_stride;
+            colours.record[colours.size] = &record;
+            if (++colours.size == F::W) colour_batch(colours, job.view->sh_count);
+        }
+    }
+    colour_batch(colours, job.view->sh_count);
+    check_colours(job);
+}

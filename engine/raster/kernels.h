@@ -1,0 +1,182 @@
+// What the driver of the fast rasterizer and its per-instruction-set kernels share: plain structs and one
+// function table. No standard containers and no inline functions here: everything that is compiled with
+// special flags must stay in the file that has them, or the linker may pick its code for all.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace gse::raster {
+
+inline constexpr int TileSize = 16;       // pixels
+inline constexpr int BlockSize = 4;       // pixels; one 16-lane register is a 4x4 block
+inline constexpr int TilePixels = 256;    // in block order: [block 16][lane 16]
+inline constexpr int PartialStride = 16;  // floats per (tile, Gaussian) in the backward pass
+inline constexpr std::uint32_t BatchEntries = 256;
+
+/// Everything the pixels need to know about one Gaussian; one cache line. The ellipse is kept as its Cholesky
+/// factor in the log2 domain: u = l1 dx + l2 dy, v = l3 dy, log2(alpha) = log2_opacity - u^2 - v^2, which
+/// cannot lose its sign for needles as A dx^2 + 2 B dx dy + C dy^2 can.
+struct alignas(64) Record {
+    float x, y;  // pixels
+    float l1, l2, l3;
+    float log2_opacity;  // <= 0
+    float colour[3];
+    float depth;
+    float half_width, half_height;  // pixels, a little more than where alpha falls below 1/255
+    float lean;                     // dy of the ellipse's rightmost point
+    std::uint32_t row;
+    std::uint32_t pair_count;     // tiles touched
+    std::uint32_t partial_begin;  // first slot of its partial gradients
+};
+static_assert(sizeof(Record) == 64);
+
+/// Raw arrays of the scene.
+struct Source {
+    const float* position;
+    const float* log_scale;
+    const float* rotation;
+    const float* opacity_logit;
+    const float* sh;
+    std::size_t sh_stride;  // floats per row
+};
+
+/// Camera and settings, widened and with derived limits.
+struct Viewpoint {
+    double rotation[9], translation[3], eye[3];
+    double fx, fy, cx, cy;
+    double ratio_low[2], ratio_high[2];  // of x/z and y/z in the Jacobian
+    double near_plane, far_plane, blur;
+    int width, height;
+    int sh_count;  // coefficients per channel in use
+    float negative_slope;
+    bool antialiased;
+};
+
+/// Rows [begin, end) -> records and sort keys, in order of rows, densely from `records` and `keys`.
+struct ProjectJob {
+    Source source;
+    const Viewpoint* view;
+    const float* values;  // if set: colour = (value, 0, 0) and no spherical harmonics
+    std::size_t begin, end;
+    Record* records;
+    std::uint32_t* keys;   // bits of the depth, which sort as unsigned numbers
+    std::size_t drawn;     // result
+    std::size_t unusable;  // result
+};
+
+struct TilePair {
+    std::uint32_t tile;
+    std::uint32_t blocks;  // bit 4 row + column of the 4x4 blocks touched
+};
+
+/// Gaussians order[begin..end) -> the tiles and blocks their ellipses touch.
+struct BinJob {
+    Record* records;
+    const std::uint32_t* order;
+    std::size_t begin, end;  // begin is advanced; stops early when `pairs` may not suffice
+    int width, height;
+    TilePair* pairs;
+    std::size_t capacity, written;
+    std::uint32_t* tile_counts;
+    std::uint32_t* pair_counts;  // of each Gaussian, by place in `order`
+};
+
+/// An entry of a tile's list, front to back.
+struct TileEntry {
+    std::uint32_t record;
+    std::uint32_t ordinal;  // which of the record's pairs this is
+    std::uint32_t blocks;
+};
+
+/// Sums of a tile's pixels.
+struct alignas(64) TileLight {
+    float transmittance[TilePixels];
+    float colour[3][TilePixels];  // without the background
+};
+
+struct alignas(64) BlendScratch {
+    float running[TilePixels];  // transmittance that goes on shrinking behind the cut
+    float depth[TilePixels];
+    std::int32_t blended[TilePixels];
+    Record records[BatchEntries];
+    std::uint16_t lists[16][BatchEntries + 16];
+};
+
+struct BlendJob {
+    const Record* records;
+    const TileEntry* entries;
+    std::uint32_t count;
+    int x, y;           // first pixel of the tile
+    int width, height;  // of the image
+    TileLight* light;
+    BlendScratch* scratch;
+};
+
+struct alignas(64) BackwardScratch {
+    float transmittance[TilePixels];
+    float remaining[TilePixels];  // gradient-weighted light behind the pair under way
+    float d_colour[3][TilePixels];
+    float mask[TilePixels];
+};
+
+struct BackwardJob {
+    const Record* records;
+    const TileEntry* entries;
+    std::uint32_t count;
+    int x, y;
+    int width, height;
+    BackwardScratch* scratch;    // remaining, d_colour (or mask) filled by the driver
+    std::uint32_t first_record;  // records from here on get gradients
+    float* partials;
+};
+
+/// Order of the sums in a slot of partial gradients. g is dL/d ln(alpha), w the weight alpha T.
+enum PartialSum : int { SumG, SumGu, SumGv, SumGuu, SumGuv, SumGvv, SumRed, SumGreen, SumBlue, SumBlended };
+/// Order in the slots of contributions.
+enum ContributionSum : int { SumWeight, SumMasked };
+
+/// Where the raw-parameter gradients go; index 0 is the job's first row.
+struct GradientArrays {
+    float* position;
+    float* log_scale;
+    float* rotation;
+    float* opacity_logit;
+    float* sh;
+    float* mean2d_norm;
+    std::uint8_t* visible;
+};
+
+/// Sums the partial gradients of records [begin, end) and applies the chain rule. The arrays were zeroed.
+struct GradientJob {
+    Source source;
+    const Viewpoint* view;
+    const Record* begin;
+    const Record* end;
+    const float* partials;
+    std::size_t first_row;
+    GradientArrays out;
+};
+
+/// The kernels of one instruction set.
+struct Kernels {
+    const char* name;
+    void (*project)(ProjectJob&);
+    void (*bin)(BinJob&);
+    void (*blend)(const BlendJob&);
+    void (*backward)(const BackwardJob&);
+    void (*contribute)(const BackwardJob&);
+    void (*gradient)(const GradientJob&);
+};
+
+extern const Kernels ScalarKernels;
+#ifdef GSE_X86
+extern const Kernels Avx2Kernels;
+extern const Kernels Avx512Kernels;
+#endif
+
+/// The table that GSE_CPU forces, else the best this processor runs. Throws Error if the forced one is
+/// unknown or cannot run here.
+const Kernels& choose_kernels();
+
+}  // namespace gse::raster

@@ -1,0 +1,10 @@
+// All kernels, in the order of use; included inside the namespace of an instruction set after its register
+// types.
+// clang-format off
+#include "engine/raster/kernel_geometry.inl"
+#include "engine/raster/kernel_project.inl"
+#include "engine/raster/kernel_bin.inl"
+#include "engine/raster/kernel_blend.inl"
+#include "engine/raster/kernel_backward.inl"
+#include "engine/raster/kernel_gradient.inl"
+// clang-format on

@@ -1,0 +1,133 @@
+// 8 lanes of float and 4 of double: AVX2 form of the register types that kernels.inl is written in. Included
+// inside a namespace, after immintrin.h.
+#pragma once
+
+#define GSE_INLINE static inline __attribute__((always_inline))
+
+struct F {
+    static constexpr int W = 8;
+    __m256 v;
+};
+struct D {
+    static constexpr int W = 4;
+    __m256d v;
+};
+struct M {
+    __m256 v;
+};
+struct MD {
+    __m256d v;
+};
+
+GSE_INLINE F set(float a) { return {_mm256_set1_ps(a)}; }
+GSE_INLINE F zero() { return {_mm256_setzero_ps()}; }
+GSE_INLINE F load(const float* p) { return {_mm256_load_ps(p)}; }
+GSE_INLINE void store(float* p, F a) { _mm256_store_ps(p, a.v); }
+GSE_INLINE F operator+(F a, F b) { return {_mm256_add_ps(a.v, b.v)}; }
+GSE_INLINE F operator-(F a, F b) { return {_mm256_sub_ps(a.v, b.v)}; }
+GSE_INLINE F operator*(F a, F b) { return {_mm256_mul_ps(a.v, b.v)}; }
+GSE_INLINE F operator/(F a, F b) { return {_mm256_div_ps(a.v, b.v)}; }
+GSE_INLINE F fma(F a, F b, F c) { return {_mm256_fmadd_ps(a.v, b.v, c.v)}; }
+GSE_INLINE F fnma(F a, F b, F c) { return {_mm256_fnmadd_ps(a.v, b.v, c.v)}; }
+GSE_INLINE F min(F a, F b) { return {_mm256_min_ps(a.v, b.v)}; }
+GSE_INLINE F max(F a, F b) { return {_mm256_max_ps(a.v, b.v)}; }
+GSE_INLINE F sqrt(F a) { return {_mm256_sqrt_ps(a.v)}; }
+GSE_INLINE F floor(F a) { return {_mm256_floor_ps(a.v)}; }
+GSE_INLINE F ceil(F a) { return {_mm256_ceil_ps(a.v)}; }
+GSE_INLINE M operator>(F a, F b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_GT_OQ)}; }
+GSE_INLINE M operator>=(F a, F b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_GE_OQ)}; }
+GSE_INLINE M operator<=(F a, F b) { return {_mm256_cmp_ps(a.v, b.v, _CMP_LE_OQ)}; }
+GSE_INLINE M operator&(M a, M b) { return {_mm256_and_ps(a.v, b.v)}; }
+GSE_INLINE M operator|(M a, M b) { return {_mm256_or_ps(a.v, b.v)}; }
+GSE_INLINE M none() { return {_mm256_setzero_ps()}; }
+GSE_INLINE F select(M m, F a, F b) { return {_mm256_blendv_ps(b.v, a.v, m.v)}; }
+GSE_INLINE F only(M m, F a) { return {_mm256_and_ps(m.v, a.v)}; }
+GSE_INLINE bool any(M m) { return _mm256_movemask_ps(m.v) != 0; }
+GSE_INLINE F reciprocal(F a) { return {_mm256_div_ps(_mm256_set1_ps(1.0f), a.v)}; }
+/// Counters; count() adds 1 in the lanes of m.
+struct I {
+    __m256i v;
+};
+GSE_INLINE I load(const std::int32_t* p) { return {_mm256_load_si256(reinterpret_cast<const __m256i*>(p))}; }
+GSE_INLINE void store(std::int32_t* p, I a) { _mm256_store_si256(reinterpret_cast<__m256i*>(p), a.v); }
+GSE_INLINE I count(I a, M m) { return {_mm256_sub_epi32(a.v, _mm256_castps_si256(m.v))}; }
+GSE_INLINE void store_int(std::int32_t* p, F a) {
+    _mm256_store_si256(reinterpret_cast<__m256i*>(p), _mm256_cvttps_epi32(a.v));
+}
+/// 2^a: degree-5 minimax polynomial on [-1/2, 1/2], relative error 7.5e-8; the power goes into the exponent
+/// field.
+GSE_INLINE F exp2_lanes(F a) {
+    const __m256 magic =
+        _mm256_set1_ps(12582912.0f);  // 1.5 * 2^23: adding it rounds to a whole number in the low bits
+    const __m256 shifted = _mm256_add_ps(a.v, magic);
+    const __m256 x = _mm256_sub_ps(a.v, _mm256_sub_ps(shifted, magic));
+    __m256 p = _mm256_set1_ps(1.3276471519718357e-3f);
+    p = _mm256_fmadd_ps(p, x, _mm256_set1_ps(9.675541330689541e-3f));
+    p = _mm256_fmadd_ps(p, x, _mm256_set1_ps(5.550713274960774e-2f));
+    p = _mm256_fmadd_ps(p, x, _mm256_set1_ps(0.24022119723933638f));
+    p = _mm256_fmadd_ps(p, x, _mm256_set1_ps(0.6931469670638641f));
+    p = _mm256_fmadd_ps(p, x, _mm256_set1_ps(1.0000000716546549f));
+    const __m256i power = _mm256_slli_epi32(_mm256_castps_si256(shifted), 23);
+    return {_mm256_castsi256_ps(_mm256_add_epi32(_mm256_castps_si256(p), power))};
+}
+
+GSE_INLINE D setd(double a) { return {_mm256_set1_pd(a)}; }
+GSE_INLINE D widen(const float* p) { return {_mm256_cvtps_pd(_mm_load_ps(p))}; }
+GSE_INLINE void narrow(float* p, D a) { _mm_store_ps(p, _mm256_cvtpd_ps(a.v)); }
+GSE_INLINE D operator+(D a, D b) { return {_mm256_add_pd(a.v, b.v)}; }
+GSE_INLINE D operator-(D a, D b) { return {_mm256_sub_pd(a.v, b.v)}; }
+GSE_INLINE D operator*(D a, D b) { return {_mm256_mul_pd(a.v, b.v)}; }
+GSE_INLINE D operator/(D a, D b) { return {_mm256_div_pd(a.v, b.v)}; }
+GSE_INLINE D fma(D a, D b, D c) { return {_mm256_fmadd_pd(a.v, b.v, c.v)}; }
+GSE_INLINE D fnma(D a, D b, D c) { return {_mm256_fnmadd_pd(a.v, b.v, c.v)}; }
+GSE_INLINE D min(D a, D b) { return {_mm256_min_pd(a.v, b.v)}; }
+GSE_INLINE D max(D a, D b) { return {_mm256_max_pd(a.v, b.v)}; }
+GSE_INLINE D sqrt(D a) { return {_mm256_sqrt_pd(a.v)}; }
+GSE_INLINE MD operator>(D a, D b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_GT_OQ)}; }
+GSE_INLINE MD operator>=(D a, D b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_GE_OQ)}; }
+GSE_INLINE MD operator<(D a, D b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_LT_OQ)}; }
+GSE_INLINE MD operator<=(D a, D b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_LE_OQ)}; }
+GSE_INLINE MD operator==(D a, D b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_EQ_OQ)}; }
+GSE_INLINE MD operator&(MD a, MD b) { return {_mm256_and_pd(a.v, b.v)}; }
+GSE_INLINE D select(MD m, D a, D b) { return {_mm256_blendv_pd(b.v, a.v, m.v)}; }
+GSE_INLINE unsigned bits(MD m) { return static_cast<unsigned>(_mm256_movemask_pd(m.v)); }
+GSE_INLINE D round_nearest(D a) {
+    return {_mm256_round_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
+}
+/// a 2^power for a whole power in [-1000, 1000].
+GSE_INLINE D scale_by_power(D a, D power) {
+    const __m256d magic = _mm256_set1_pd(6755399441055744.0);  // 1.5 * 2^52
+    const __m256i whole = _mm256_castpd_si256(_mm256_add_pd(power.v, magic));
+    return {_mm256_castsi256_pd(_mm256_add_epi64(_mm256_castpd_si256(a.v), _mm256_slli_epi64(whole, 52)))};
+}
+GSE_INLINE D exponent_of(D a) {
+    const __m256i field = _mm256_srli_epi64(_mm256_castpd_si256(a.v), 52);
+    const __m256i magic = _mm256_set1_epi64x(0x4330000000000000);  // 2^52: its low bits hold a whole number
+    const __m256d biased = _mm256_castsi256_pd(_mm256_or_si256(field, magic));
+    return {_mm256_sub_pd(biased, _mm256_set1_pd(4503599627370496.0 + 1023.0))};
+}
+GSE_INLINE D mantissa_of(D a) {
+    const __m256i low = _mm256_and_si256(_mm256_castpd_si256(a.v), _mm256_set1_epi64x(0x000fffffffffffff));
+    return {_mm256_castsi256_pd(_mm256_or_si256(low, _mm256_set1_epi64x(0x3ff0000000000000)))};
+}
+
+GSE_INLINE void load_columns(const float* const* rows, int columns, float* to) {
+    for (int row = 0; row < 8; ++row)
+        for (int k = 0; k < columns; ++k) to[k * 8 + row] = rows[row][k];
+}
+GSE_INLINE void store_columns(const float* from, int columns, float* const* rows, int row_count) {
+    for (int row = 0; row < row_count; ++row)
+        for (int k = 0; k < columns; ++k) rows[row][k] = from[k * 8 + row];
+}
+/// Sums of four registers, one per lane.
+GSE_INLINE __m128 four_sums(__m256 a, __m256 b, __m256 c, __m256 d) {
+    const __m256 abcd = _mm256_hadd_ps(_mm256_hadd_ps(a, b), _mm256_hadd_ps(c, d));
+    return _mm_add_ps(_mm256_castps256_ps128(abcd), _mm256_extractf128_ps(abcd, 1));
+}
+/// Horizontal sums of nine registers, into the first nine floats of `to`; the next three become 0.
+GSE_INLINE void store_sums(const F* a, float* to) {
+    const __m256 nought = _mm256_setzero_ps();
+    _mm_store_ps(to, four_sums(a[0].v, a[1].v, a[2].v, a[3].v));
+    _mm_store_ps(to + 4, four_sums(a[4].v, a[5].v, a[6].v, a[7].v));
+    _mm_store_ps(to + 8, four_sums(a[8].v, nought, nought, nought));
+}
