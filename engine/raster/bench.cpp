@@ -1,0 +1,160 @@
+// Benchmark of the rasterizer: wall and CPU time per view, work counts, error against the plain version.
+#include "engine/raster/bench.h"
+
+#include <sys/resource.h>
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "engine/base/check.h"
+#include "engine/base/random.h"
+#include "engine/raster/plain.h"
+#include "engine/raster/rasterizer.h"
+
+namespace gse::raster {
+namespace {
+
+double cpu_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double wall_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Sums of one repetition over its views.
+struct Round {
+    double wall = 0, cpu = 0;
+};
+
+template <class Work>
+void time_into(Round& round, const Work& work) {
+    const double wall = wall_seconds(), cpu = cpu_seconds();
+    work();
+    round.wall += wall_seconds() - wall;
+    round.cpu += cpu_seconds() - cpu;
+}
+
+BenchTimes summarize(const std::vector<Round>& rounds, std::size_t views) {
+    std::vector<double> wall, cpu;
+    for (const Round& round : rounds) {
+        wall.push_back(1e3 * round.wall / static_cast<double>(views));
+        cpu.push_back(1e3 * round.cpu / static_cast<double>(views));
+    }
+    std::sort(wall.begin(), wall.end());
+    std::sort(cpu.begin(), cpu.end());
+    return {wall[wall.size() / 2], wall.front(), cpu[cpu.size() / 2], cpu.front()};
+}
+
+/// A gradient image like a loss would send: noise of unit size.
+Image noise_image(int width, int height) {
+    Image image(width, height, 3);
+    Random random(7);
+    for (float& value : image.data) value = static_cast<float>(random.uniform(-1.0, 1.0));
+    return image;
+}
+
+double relative_error(std::span<const float> found, std::span<const float> expected) {
+    double difference = 0, size = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        const double d = static_cast<double>(found[i]) - static_cast<double>(expected[i]);
+        difference += d * d;
+        size += static_cast<double>(expected[i]) * static_cast<double>(expected[i]);
+    }
+    return size > 0 ? std::sqrt(difference / size) : std::sqrt(difference);
+}
+
+struct Case {
+    const GaussianSpans& gaussians;
+    const Camera& camera;
+    const Settings& settings;
+    const Image& d_colour;
+};
+
+void compare_with_plain(const Case& c, Rasterizer& fast, RasterBench& result) {
+    ForwardOutput image, truth;
+    Gradients found, expected;
+    fast.forward(c.gaussians, c.camera, c.settings, image);
+    fast.backward(c.d_colour, {}, 0, found);
+    const auto plain = make_plain_rasterizer();
+    plain->forward(c.gaussians, c.camera, c.settings, truth);
+    plain->backward(c.d_colour, {}, 0, expected);
+    double squares = 0;
+    for (std::size_t i = 0; i < truth.colour.data.size(); ++i) {
+        const double error =
+            std::abs(static_cast<double>(image.colour.data[i]) - static_cast<double>(truth.colour.data[i]));
+        squares += error * error;
+        // A pair that one version blends and the other cuts is a matter of the last digit, not of accuracy.
+        if (image.blended[i / 3] == truth.blended[i / 3])
+            result.max_abs_error = std::max(result.max_abs_error, error);
+    }
+    const double mean_square = squares / static_cast<double>(truth.colour.data.size());
+    result.psnr_db = -10 * std::log10(std::max(mean_square, 1e-30));
+    result.gradient_error = std::max({relative_error(found.position, expected.position),
+                                      relative_error(found.log_scale, expected.log_scale),
+                                      relative_error(found.rotation, expected.rotation),
+                                      relative_error(found.opacity_logit, expected.opacity_logit),
+                                      relative_error(found.sh, expected.sh)});
+}
+
+}  // namespace
+
+RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera> cameras,
+                         const BenchSettings& settings) {
+    GSE_CHECK(!cameras.empty() && settings.repetitions > 0);
+    ThreadPool pool(settings.threads);
+    const auto rasterizer = make_fast_rasterizer(pool);
+    std::vector<Camera> views;
+    for (const Camera& camera : cameras) views.push_back(camera.resized(settings.width, settings.height));
+    const Image d_colour = noise_image(settings.width, settings.height);
+    const Settings image_settings;
+    ForwardOutput image;
+    Gradients gradients;
+    std::vector<Round> forward, backward;
+    std::size_t pairs = 0, blended = 0;
+    for (int round = -1; round < settings.repetitions; ++round) {  // round -1 warms up
+        Round forward_round, backward_round;
+        pairs = blended = 0;
+        for (const Camera& view : views) {
+            time_into(forward_round, [&] { rasterizer->forward(gaussians, view, image_settings, image); });
+            time_into(backward_round, [&] { rasterizer->backward(d_colour, {}, 0, gradients); });
+            pairs += image.pairs;
+            for (const std::int32_t count : image.blended) blended += static_cast<std::size_t>(count);
+        }
+        if (round < 0) continue;
+        forward.push_back(forward_round);
+        backward.push_back(backward_round);
+    }
+    RasterBench result;
+    result.kernels = rasterizer->name();
+    result.threads = pool.thread_count();
+    result.splats = gaussians.size;
+    result.width = settings.width;
+    result.height = settings.height;
+    result.views = views.size();
+    result.forward = summarize(forward, views.size());
+    result.backward = summarize(backward, views.size());
+    result.forward_ms = result.forward.wall_median_ms;
+    result.backward_ms = result.backward.wall_median_ms;
+    result.forward_min_ms = result.forward.wall_min_ms;
+    result.backward_min_ms = result.backward.wall_min_ms;
+    result.pairs = pairs / views.size();
+    result.blended_pairs = blended / views.size();
+    const double per_pair = 1e6 / std::max(1.0, static_cast<double>(result.blended_pairs));
+    result.forward_ns_per_pair = result.forward.cpu_min_ms * per_pair;
+    result.backward_ns_per_pair = result.backward.cpu_min_ms * per_pair;
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    result.peak_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
+    if (settings.compare_plain)
+        compare_with_plain({gaussians, views.front(), image_settings, d_colour}, *rasterizer, result);
+    return result;
+}
+
+}  // namespace gse::raster

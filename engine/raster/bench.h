@@ -1,0 +1,52 @@
+// Times the rasterizer and measures its error against the plain double version, so that speed can be shown
+// beside error.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+
+#include "engine/math/camera.h"
+#include "engine/scene/gaussian_set.h"
+
+namespace gse::raster {
+
+/// Median and minimum over the repetitions, milliseconds per view (mean over the views of one repetition).
+struct BenchTimes {
+    double wall_median_ms = 0, wall_min_ms = 0;
+    double cpu_median_ms = 0, cpu_min_ms = 0;  // all threads together
+};
+
+struct RasterBench {
+    std::string kernels;  // "avx512", "avx2", "scalar"
+    unsigned threads = 0;
+    std::size_t splats = 0;
+    int width = 0, height = 0;
+    std::size_t views = 0;
+    double forward_ms = 0, backward_ms = 0;          // medians of the wall time
+    double forward_min_ms = 0, backward_min_ms = 0;  // minima of the wall time
+    BenchTimes forward, backward;
+    std::size_t pairs = 0;           // tile-Gaussian pairs per view (mean)
+    std::size_t blended_pairs = 0;   // pixel-Gaussian pairs blended per view (mean)
+    double forward_ns_per_pair = 0;  // CPU time over blended pairs, minimum
+    double backward_ns_per_pair = 0;
+    double peak_rss_mb = 0;  // of the process
+    // Against the plain version, first view; pixels where rounding may decide a cut otherwise are left out of
+    // the maximum but not of the PSNR.
+    double max_abs_error = 0;
+    double psnr_db = 0;
+    double gradient_error = 0;  // largest relative L2 over the tensors
+};
+
+struct BenchSettings {
+    int width = 512, height = 512;
+    int repetitions = 5;
+    unsigned threads = 0;       // 0 = one per hardware thread
+    bool compare_plain = true;  // the plain version takes seconds on large scenes
+};
+
+/// Runs the fast rasterizer on every camera (resized to the settings' size), after one round of warming up.
+RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera> cameras,
+                         const BenchSettings& settings);
+
+}  // namespace gse::raster
