@@ -1,0 +1,330 @@
+// A grid of cubes around the source: voted by the masks of all views, or placed by where such things usually sit.
+#include "engine/edit/add_region.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "engine/base/check.h"
+#include "engine/base/random.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr float InvisibleLogit = -5.5373f;   // opacity 1/255
+constexpr double BoundsTrim = 0.01;          // share of the rows cut off at either end of every axis
+
+/// Right-handed frame of the scene: x sideways, y up, z to the front.
+struct Frame {
+    Vec3 side, up, front;
+    Vec3 to_frame(const Vec3& p) const { return {dot(p, side), dot(p, up), dot(p, front)}; }
+    Vec3 to_world(const Vec3& p) const { return side * p.x + up * p.y + front * p.z; }
+};
+
+Frame make_frame(const Vec3& up_direction, const Vec3& front_direction) {
+    Frame frame;
+    frame.up = normalized(up_direction);
+    frame.front = front_direction - frame.up * dot(front_direction, frame.up);
+    if (length(frame.front) < 1e-6) {
+        const Vec3 helper = std::abs(frame.up.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+        frame.front = cross(frame.up, helper);
+    }
+    frame.front = normalized(frame.front);
+    frame.side = cross(frame.up, frame.front);
+    return frame;
+}
+
+/// Visible source rows in frame coordinates.
+std::vector<Vec3> source_points(const RegionSearch& search, const Frame& frame) {
+    std::vector<Vec3> points;
+    for (std::size_t row = 0; row < search.gaussians.size(); ++row) {
+        const auto p = search.gaussians.position().subspan(row * 3, 3);
+        const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+        if (search.source_bits[row] != 0 && finite && search.gaussians.opacity_logit()[row] > InvisibleLogit)
+            points.push_back(frame.to_frame({p[0], p[1], p[2]}));
+    }
+    return points;
+}
+
+double quantile(std::vector<double> values, double share) {
+    GSE_CHECK(!values.empty());
+    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+    std::nth_element(values.begin(), values.begin() + rank, values.end());
+    return values[static_cast<std::size_t>(rank)];
+}
+
+std::vector<double> axis_values(const std::vector<Vec3>& points, int axis) {
+    std::vector<double> values;
+    for (const auto& point : points) values.push_back(point[axis]);
+    return values;
+}
+
+struct Box {
+    Vec3 low, high;
+    Vec3 size() const { return high - low; }
+    Vec3 centre() const { return (low + high) * 0.5; }
+};
+
+Box trimmed_box(const std::vector<Vec3>& points, double trim) {
+    Box box;
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto values = axis_values(points, axis);
+        box.low[axis] = quantile(values, trim);
+        box.high[axis] = quantile(values, 1 - trim);
+    }
+    return box;
+}
+
+std::vector<Vec3> slice(const std::vector<Vec3>& points, double low, double high) {
+    std::vector<Vec3> result;
+    for (const auto& point : points)
+        if (point.y >= low && point.y <= high) result.push_back(point);
+    return result.empty() ? points : result;
+}
+
+/// Cells of a box, x fastest.
+struct Grid {
+    Box box;
+    double side = 0;
+    std::array<int, 3> count{};
+    std::size_t size() const {
+        return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]) * static_cast<std::size_t>(count[2]);
+    }
+    Vec3 centre(std::size_t cell) const {
+        const auto nx = static_cast<std::size_t>(count[0]), ny = static_cast<std::size_t>(count[1]);
+        const Vec3 index{static_cast<double>(cell % nx), static_cast<double>(cell / nx % ny),
+                         static_cast<double>(cell / (nx * ny))};
+        return box.low + (index + Vec3{0.5, 0.5, 0.5}) * side;
+    }
+};
+
+Grid make_grid(const Box& box, int cells) {
+    Grid grid;
+    grid.box = box;
+    const Vec3 size = box.size();
+    grid.side = std::max({size.x, size.y, size.z, 1e-9}) / std::max(cells, 1);
+    for (int axis = 0; axis < 3; ++axis)
+        grid.count[static_cast<std::size_t>(axis)] = std::max(1, static_cast<int>(std::ceil(size[axis] / grid.side)));
+    return grid;
+}
+
+/// What the views say about one point.
+struct Vote {
+    int counted = 0, covered = 0, seen = 0;
+};
+
+Vote vote_at(const RegionSearch& search, const Vec3& world, double side) {
+    Vote vote;
+    for (std::size_t v = 0; v < search.views.size(); ++v) {
+        const Mask& mask = search.masks[v];
+        if (mask.data.empty()) continue;
+        const Camera& camera = search.views[v].camera;
+        const Vec3 p = camera.to_camera(world);
+        if (p.z <= 0) continue;
+        const double px = camera.fx * p.x / p.z + camera.cx, py = camera.fy * p.y / p.z + camera.cy;
+        if (!(px >= 0 && py >= 0 && px < mask.width && py < mask.height)) continue;
+        const int x = static_cast<int>(px), y = static_cast<int>(py);
+        ++vote.counted;
+        vote.covered += mask.at(x, y) != 0 ? 1 : 0;
+        const double surface = search.depths.empty() ? 0 : search.depths[v].at(x, y, 0);
+        vote.seen += surface <= 0 || p.z <= surface + side ? 1 : 0;
+    }
+    return vote;
+}
+
+/// Largest set of chosen cells that touch by faces.
+std::vector<std::size_t> largest_component(const Grid& grid, const std::vector<std::uint8_t>& chosen) {
+    std::vector<std::uint8_t> done(chosen.size(), 0);
+    std::vector<std::size_t> best;
+    const auto nx = static_cast<std::size_t>(grid.count[0]), ny = static_cast<std::size_t>(grid.count[1]);
+    for (std::size_t seed = 0; seed < chosen.size(); ++seed) {
+        if (chosen[seed] == 0 || done[seed] != 0) continue;
+        std::vector<std::size_t> part{seed};
+        done[seed] = 1;
+        for (std::size_t next = 0; next < part.size(); ++next) {
+            const std::size_t cell = part[next];
+            const std::array<std::size_t, 3> at{cell % nx, cell / nx % ny, cell / (nx * ny)};
+            const std::array<std::size_t, 3> step{1, nx, nx * ny};
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const auto visit = [&](std::size_t other) {
+                    if (chosen[other] == 0 || done[other] != 0) return;
+                    done[other] = 1;
+                    part.push_back(other);
+                };
+                if (at[axis] > 0) visit(cell - step[axis]);
+                if (at[axis] + 1 < static_cast<std::size_t>(grid.count[axis])) visit(cell + step[axis]);
+            }
+        }
+        if (part.size() > best.size()) best = std::move(part);
+    }
+    std::sort(best.begin(), best.end());
+    return best;
+}
+
+AddRegion fill(const Frame& frame, const Grid& grid, const std::function<bool(const Vec3&)>& inside) {
+    AddRegion region;
+    region.side = grid.side;
+    for (std::size_t cell = 0; cell < grid.size(); ++cell)
+        if (inside(grid.centre(cell))) region.centres.push_back(frame.to_world(grid.centre(cell)));
+    return region;
+}
+
+/// A cap on the top of the source: an upright ellipsoid, its lower part around the top.
+AddRegion top_region(const Frame& frame, const std::vector<Vec3>& points, int cells) {
+    const Box all = trimmed_box(points, BoundsTrim);
+    const double height = all.size().y;
+    const auto top = slice(points, all.high.y - 0.2 * height, all.high.y);
+    const Box head = trimmed_box(top, 0.05);
+    const double radius = std::clamp(0.5 * std::max(head.size().x, head.size().z), 0.08 * height, 0.4 * height);
+    const double half_height = std::min(0.75 * radius, 0.15 * height);
+    const Vec3 centre{head.centre().x, all.high.y + 0.55 * half_height, head.centre().z};
+    const Vec3 reach{radius, half_height, radius};
+    return fill(frame, make_grid({centre - reach, centre + reach}, cells / 2), [=](const Vec3& p) {
+        const Vec3 d = p - centre;
+        return std::hypot(d.x / radius, d.y / half_height, d.z / radius) <= 1;
+    });
+}
+
+/// A thin plate before the face.
+AddRegion front_region(const Frame& frame, const std::vector<Vec3>& points, int cells) {
+    const Box all = trimmed_box(points, BoundsTrim);
+    const double height = all.size().y;
+    const auto face = slice(points, all.low.y + 0.72 * height, all.low.y + 0.88 * height);
+    const Box box = trimmed_box(face, 0.03);
+    Box plate;
+    plate.low = {box.centre().x - 0.45 * box.size().x, all.low.y + 0.74 * height, box.high.z - 0.06 * height};
+    plate.high = {box.centre().x + 0.45 * box.size().x, all.low.y + 0.86 * height, box.high.z + 0.06 * height};
+    return fill(frame, make_grid(plate, cells / 2), [](const Vec3&) { return true; });
+}
+
+/// A ring around the place between head and body.
+AddRegion neck_region(const Frame& frame, const std::vector<Vec3>& points, int cells) {
+    const Box all = trimmed_box(points, BoundsTrim);
+    const double height = all.size().y, low = all.low.y + 0.52 * height, high = all.low.y + 0.68 * height;
+    const Box box = trimmed_box(slice(points, low, high), 0.05);
+    const double radius = std::max(0.5 * std::max(box.size().x, box.size().z), 0.05 * height);
+    const Vec3 centre = box.centre();
+    const Vec3 reach{1.2 * radius, 0.5 * (high - low), 1.2 * radius};
+    const Vec3 middle{centre.x, 0.5 * (low + high), centre.z};
+    return fill(frame, make_grid({middle - reach, middle + reach}, cells), [=](const Vec3& p) {
+        const double distance = std::hypot(p.x - centre.x, p.z - centre.z);
+        return distance >= 0.8 * radius && distance <= 1.2 * radius;
+    });
+}
+
+/// A shell around the whole source, open below.
+AddRegion around_region(const Frame& frame, const std::vector<Vec3>& points, int cells) {
+    const Box all = trimmed_box(points, BoundsTrim);
+    const Vec3 centre = all.centre(), half = all.size() * 0.5;
+    const double wide = std::max(half.x, half.z);
+    const Vec3 reach{1.25 * wide, 1.3 * half.y, 1.25 * wide};
+    return fill(frame, make_grid({centre - reach, centre + reach}, cells), [=](const Vec3& p) {
+        const Vec3 d = p - centre;
+        const double distance = std::hypot(d.x / wide, d.y / half.y, d.z / wide);
+        return distance >= 0.85 && distance <= 1.25 && d.y > -half.y;
+    });
+}
+
+}  // namespace
+
+AddRegion vote_region(const RegionSearch& search, const RegionParameters& parameters) {
+    GSE_CHECK_EQ(search.masks.size(), search.views.size());
+    GSE_CHECK_EQ(search.source_bits.size(), search.gaussians.size());
+    const Frame frame = make_frame(search.up, search.front);
+    const auto points = source_points(search, frame);
+    const auto voters = std::count_if(search.masks.begin(), search.masks.end(), [](const Mask& m) { return !m.data.empty(); });
+    if (points.empty() || voters == 0) return {};
+    Box box = trimmed_box(points, BoundsTrim);
+    const Vec3 size = box.size();
+    const double wide = 0.35 * std::max({size.x, size.y, size.z});
+    box.low = box.low - Vec3{wide, 0.05 * size.y, wide};
+    box.high = box.high + Vec3{wide, 0.6 * size.y, wide};
+    const Grid grid = make_grid(box, parameters.cells);
+    std::vector<double> agreement(grid.size(), 0);
+    double best = 0;
+    for (std::size_t cell = 0; cell < grid.size(); ++cell) {
+        const Vote vote = vote_at(search, frame.to_world(grid.centre(cell)), grid.side);
+        if (vote.counted * 2 < voters || vote.seen < parameters.least_seen * vote.counted) continue;
+        agreement[cell] = static_cast<double>(vote.covered) / vote.counted;
+        best = std::max(best, agreement[cell]);
+    }
+    if (best < parameters.least_agreement) return {};
+    const double level = std::max(parameters.least_agreement, parameters.near_best * best);
+    std::vector<std::uint8_t> chosen(grid.size());
+    for (std::size_t cell = 0; cell < grid.size(); ++cell) chosen[cell] = agreement[cell] >= level ? 1 : 0;
+    const auto cells = largest_component(grid, chosen);
+    const double share = static_cast<double>(cells.size()) / static_cast<double>(grid.size());
+    if (static_cast<int>(cells.size()) < parameters.least_cells || share > parameters.most_volume) return {};
+    AddRegion region;
+    region.side = grid.side;
+    region.origin = "attention";
+    for (const std::size_t cell : cells) {
+        region.centres.push_back(frame.to_world(grid.centre(cell)));
+        region.agreement += agreement[cell] / static_cast<double>(cells.size());
+    }
+    return region;
+}
+
+AddRegion anchor_region(const RegionSearch& search, const std::string& place, int cells) {
+    const Frame frame = make_frame(search.up, search.front);
+    const auto points = source_points(search, frame);
+    if (points.empty()) return {};
+    AddRegion region = place == "front"    ? front_region(frame, points, cells)
+                       : place == "neck"   ? neck_region(frame, points, cells)
+                       : place == "around" ? around_region(frame, points, cells)
+                                           : top_region(frame, points, cells);
+    region.origin = place == "front" || place == "neck" || place == "around" ? place : "top";
+    return region;
+}
+
+std::string usual_place(const std::string& word) {
+    static const std::map<std::string, std::string> places{
+        {"sunglasses", "front"}, {"glasses", "front"}, {"moustache", "front"}, {"mask", "front"},  {"scarf", "neck"},
+        {"necklace", "neck"},    {"collar", "neck"},   {"tie", "neck"},        {"bow", "neck"},    {"flames", "around"},
+        {"fire", "around"},      {"smoke", "around"},  {"wings", "around"},    {"snow", "around"}};
+    const auto found = places.find(word);
+    return found == places.end() ? "top" : found->second;
+}
+
+GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std::uint64_t seed, double opacity) {
+    GaussianData data;
+    data.sh_degree = sh_degree;
+    if (region.empty() || count <= 0) return data;
+    data.resize(static_cast<std::size_t>(count));   // colour coefficients stay 0: neutral grey
+    constexpr double OverlapFactor = 0.55;          // standard deviation over the room of one splat
+    const double volume = static_cast<double>(region.centres.size()) * region.side * region.side * region.side;
+    const auto scale = static_cast<float>(std::log(OverlapFactor * std::cbrt(volume / count)));
+    const auto logit = static_cast<float>(std::log(opacity / (1 - opacity)));
+    Random random = Random::stream(seed, 101);
+    for (std::size_t row = 0; row < data.size(); ++row) {
+        const Vec3& cell = region.centres[random.below(region.centres.size())];
+        for (int axis = 0; axis < 3; ++axis) {
+            const std::size_t i = row * 3 + static_cast<std::size_t>(axis);
+            data.position[i] = static_cast<float>(cell[axis] + region.side * (random.uniform() - 0.5));
+            data.log_scale[i] = scale;
+        }
+        data.rotation[row * 4] = 1;
+        data.opacity_logit[row] = logit;
+    }
+    return data;
+}
+
+Mask region_mask(const AddRegion& region, const Camera& camera) {
+    Mask mask(camera.width, camera.height);
+    constexpr double Corner = 0.87;   // half the diagonal of a cube of side 1
+    for (const auto& centre : region.centres) {
+        const Vec3 p = camera.to_camera(centre);
+        if (p.z <= region.side) continue;
+        const double x = camera.fx * p.x / p.z + camera.cx, y = camera.fy * p.y / p.z + camera.cy;
+        const double radius = Corner * region.side * camera.fx / p.z;
+        const auto limit = [](double value, int size) { return static_cast<int>(std::clamp(value, 0.0, size + 0.0)); };
+        for (int v = limit(y - radius, mask.height); v < limit(y + radius + 1, mask.height); ++v)
+            for (int u = limit(x - radius, mask.width); u < limit(x + radius + 1, mask.width); ++u)
+                if (std::hypot(u + 0.5 - x, v + 0.5 - y) <= std::max(radius, 0.71)) mask.at(u, v) = 1;
+    }
+    return mask;
+}
+
+}  // namespace gse::edit
