@@ -1,0 +1,263 @@
+// Loads, locates, edits.
+#include "app/edit_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "app/neural_loader.h"
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/log.h"
+#include "engine/edit/grabcut_segmenter.h"
+#include "engine/io/scene_io.h"
+#include "engine/localize/focus.h"
+
+namespace gse::app {
+namespace {
+
+constexpr double Degree = std::numbers::pi / 180;
+constexpr int RecipeVersion = 1;
+
+double now_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// The same camera, cropped to a centred square of `side` pixels.
+Camera square_camera(const Camera& camera, int side) {
+    const double shorter = std::min(camera.width, camera.height);
+    const double scale = side / shorter;
+    Camera result = camera;
+    result.width = result.height = side;
+    result.fx *= scale;
+    result.fy *= scale;
+    result.cx = (camera.cx - 0.5 * (camera.width - shorter)) * scale;
+    result.cy = (camera.cy - 0.5 * (camera.height - shorter)) * scale;
+    return result;
+}
+
+/// Farthest-point sample of the cameras (method X9), first camera first, in the order of the file.
+std::vector<View> spread_views(const std::vector<View>& views, std::size_t count) {
+    if (views.size() <= count) return views;
+    std::vector<double> distance(views.size(), std::numeric_limits<double>::infinity());
+    std::vector<std::size_t> chosen{0};
+    while (chosen.size() < count) {
+        const Vec3 last = views[chosen.back()].camera.centre();
+        for (std::size_t i = 0; i < views.size(); ++i)
+            distance[i] = std::min(distance[i], length(views[i].camera.centre() - last));
+        chosen.push_back(
+            static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin()));
+    }
+    std::sort(chosen.begin(), chosen.end());
+    std::vector<View> result;
+    for (const auto index : chosen) result.push_back(views[index]);
+    return result;
+}
+
+std::string words_for_azimuth(double azimuth) {
+    const double turned = std::abs(std::remainder(azimuth, 2 * std::numbers::pi));
+    return turned < 50 * Degree ? "front view" : turned > 130 * Degree ? "back view" : "side view";
+}
+
+double parse_front(const std::string& text) {
+    std::size_t used = 0;
+    double value = 0;
+    try {
+        value = std::stod(text, &used);
+    } catch (const std::exception&) {
+        used = 0;
+    }
+    if (used == 0 || used != text.size() || !std::isfinite(value))
+        throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not an angle", "give --front in degrees, for example 0");
+    return value * Degree;
+}
+
+/// Levenshtein distance, for suggestions.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t above = row[j];
+            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+            diagonal = above;
+        }
+    }
+    return row[b.size()];
+}
+
+std::string join_prompt(const std::vector<std::string>& words) {
+    std::string text;
+    for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+}
+
+}  // namespace
+
+std::filesystem::path assets_path() {
+    const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    const auto installed = program / "../share/gseditpro";
+    return std::filesystem::exists(installed) ? installed : std::filesystem::path(GSE_ASSETS);
+}
+
+std::filesystem::path starter_model_path() { return assets_path() / "models/starter"; }
+
+void warn_unknown_words(const std::vector<std::string>& words, const std::vector<std::string>& known) {
+    if (known.empty()) return;
+    for (const auto& word : words) {
+        if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+        const auto nearest = *std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+            return edit_distance(a, word) < edit_distance(b, word);
+        });
+        log::warning("the model does not know the word \"{}\"; the nearest it knows is \"{}\"", word, nearest);
+    }
+}
+
+nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe) {
+    nlohmann::ordered_json json;
+    json["version"] = RecipeVersion;
+    json["job"] = fields_to_json(recipe.job);
+    json["request"] = fields_to_json(recipe.request);
+    json["guidance"] = fields_to_json(recipe.guidance);
+    return json;
+}
+
+EditRecipe read_recipe(const std::filesystem::path& path) {
+    const auto json = nlohmann::ordered_json::parse(read_file(path), nullptr, false);
+    if (!json.is_object() || json.value("version", 0) != RecipeVersion)
+        throw Error(ErrorCode::Malformed, "this is not a recipe of this version", "use the recipe.json of an edit", path);
+    EditRecipe recipe;
+    fields_from_json(recipe.job, json.value("job", nlohmann::ordered_json::object()));
+    fields_from_json(recipe.request, json.value("request", nlohmann::ordered_json::object()));
+    fields_from_json(recipe.guidance, json.value("guidance", nlohmann::ordered_json::object()));
+    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model}) {
+        if (name->empty() || *name == "none" || std::filesystem::path(*name).is_absolute()) continue;
+        *name = std::filesystem::weakly_canonical(path.parent_path() / *name).string();
+    }
+    return recipe;
+}
+
+void StageTimes::begin(const std::string& stage) {
+    open_ = stage;
+    start_ = now_seconds();
+}
+
+void StageTimes::end() {
+    const auto found = std::find_if(stages_.begin(), stages_.end(), [&](const auto& entry) { return entry.first == open_; });
+    if (found != stages_.end()) found->second += now_seconds() - start_;
+    else stages_.emplace_back(open_, now_seconds() - start_);
+}
+
+nlohmann::ordered_json StageTimes::to_json() const {
+    nlohmann::ordered_json json;
+    double total = 0;
+    for (const auto& [stage, seconds] : stages_) {
+        json[stage] = seconds;
+        total += seconds;
+    }
+    json["total"] = total;
+    return json;
+}
+
+EditJob::EditJob(EditRecipe recipe, JobControl control)
+    : recipe_(std::move(recipe)),
+      control_(std::move(control)),
+      painter_(static_cast<unsigned>(recipe_.job.threads)) {
+    recipe_.request = edit::validated(recipe_.request);
+    parse_colour(recipe_.request.background);
+    parse_up(recipe_.job.up, {});
+    if (!recipe_.job.front.empty()) parse_front(recipe_.job.front);
+    times_.begin("load_scene");
+    recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
+    scene_ = load_scene(recipe_.job.scene);
+    const auto statistics = compute_statistics(scene_.gaussians);
+    if (statistics.count <= statistics.nan_rows + statistics.invisible_rows)
+        throw Error(ErrorCode::InvalidArgument, "the scene has no splat that can be seen", "open another scene",
+                    recipe_.job.scene);
+    scene_.info.up = parse_up(recipe_.job.up, scene_.info);
+    times_.end();
+    times_.begin("load_model");
+    const auto model_path =
+        recipe_.job.model.empty() ? starter_model_path() : std::filesystem::path(recipe_.job.model);
+    neural_api().set_threads(recipe_.job.threads);
+    model_ = neural_api().load_model(model_path, recipe_.job.device);
+    times_.end();
+    auto words = edit::words_of(recipe_.request.prompt);
+    words.push_back(recipe_.request.source);
+    std::sort(words.begin(), words.end());
+    words.erase(std::unique(words.begin(), words.end()), words.end());
+    warn_unknown_words(words, model_->known_words());
+    choose_views();
+}
+
+void EditJob::choose_views() {
+    RenderParameters render;
+    render.up = recipe_.job.up;
+    render.elevation = recipe_.request.elevation;
+    orbit_ = scene_orbit(scene_, render);
+    std::vector<View> cameras;
+    if (recipe_.job.cameras != "none") cameras = scene_cameras(recipe_.job.scene, recipe_.job.cameras);
+    automatic_views_ = cameras.empty();
+    if (automatic_views_) {
+        set_orbit_views();
+        return;
+    }
+    views_ = spread_views(cameras, static_cast<std::size_t>(recipe_.request.views));
+    for (auto& view : views_) view.camera = square_camera(view.camera, recipe_.request.image_size);
+}
+
+void EditJob::set_orbit_views() {
+    const int side = recipe_.request.image_size;
+    views_ = orbit_views(orbit_, recipe_.request.views, side, side);
+    view_words_.clear();
+    if (recipe_.job.front.empty()) return;
+    const double front = parse_front(recipe_.job.front);
+    for (int i = 0; i < recipe_.request.views; ++i)
+        view_words_.push_back(words_for_azimuth(2 * std::numbers::pi * i / recipe_.request.views - front));
+}
+
+edit::LocateInput EditJob::locate_input() const {
+    raster::Settings settings;
+    settings.background = parse_colour(recipe_.request.background);
+    settings.antialiased = scene_.info.antialiased;
+    return {scene_.gaussians, views_, view_words_, recipe_.request, settings, scene_.info.up};
+}
+
+void EditJob::locate() {
+    times_.begin("locate");
+    const auto attention = model_->attention();
+    const auto segmenter = edit::make_default_segmenter();
+    const edit::LocateTools tools{painter_.rasterizer(), *attention, segmenter.get(), nullptr, control_};
+    constexpr int most_looks = 3;
+    for (int look = 0; look < most_looks; ++look) {
+        located_ = edit::locate(locate_input(), tools);
+        if (!automatic_views_ || !recipe_.request.focus || look + 1 == most_looks) break;
+        const auto& label = located_.mode == edit::EditMode::Add ? located_.source_label : located_.label;
+        auto focused = localize::focus_orbit(scene_.gaussians, *label.bits, orbit_);
+        // What is added needs room around what is there.
+        if (located_.mode == edit::EditMode::Add) focused.radius *= 1.35;
+        if (!localize::worth_refocusing(orbit_, focused)) break;
+        orbit_ = focused;
+        set_orbit_views();
+    }
+    plan_ = edit::make_plan(locate_input(), located_, painter_.rasterizer());
+    times_.end();
+    const auto labelled = std::count(located_.label.bits->begin(), located_.label.bits->end(), std::uint8_t{1});
+    log::info("mode {} ({}); {} of {} splats labelled, {} new", located_.mode == edit::EditMode::Add ? "add" : "modify",
+              located_.reason, labelled, scene_.gaussians.size(), located_.seeds.size());
+}
+
+void EditJob::run() {
+    times_.begin("edit");
+    const auto guidance = model_->guidance(join_prompt(edit::words_of(recipe_.request.prompt)), recipe_.guidance);
+    result_ = edit::run_edit(scene_.gaussians, plan_, recipe_.request, {painter_.rasterizer(), *guidance, {}, control_});
+    times_.end();
+}
+
+}  // namespace gse::app

@@ -1,0 +1,124 @@
+// One run of locate or edit from files to files: what the commands and the window both call.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/scene_tools.h"
+#include "engine/edit/locate.h"
+#include "engine/edit/session.h"
+#include "engine/neural/api.h"
+
+namespace gse::app {
+
+/// Files and machine of a run; with the request and the guidance's settings this is the whole recipe.
+struct JobParameters {
+    std::string scene;
+    std::string cameras;
+    std::string model;
+    std::string device = "cpu";
+    int threads = 2;
+    std::string up = "auto";
+    std::string front;
+    int turntable_size = 480;
+    int turntable_frames = 60;
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("scene", self.scene, "Scene file or folder.");
+        f("cameras", self.cameras,
+          "COLMAP folder, transforms.json or cameras.json; found beside the scene when empty, \"none\" for an orbit.");
+        f("model", self.model, "Diffusers folder or .safetensors checkpoint; empty = the starter model.");
+        f("device", self.device, "Where the networks run: cpu or cuda.");
+        f("threads", self.threads, "Threads of the networks; another number may round differently.", Range{1, 256});
+        f("up", self.up, "World up: auto, x, y, z, -x, -y or -z.");
+        f("front", self.front,
+          "Azimuth in degrees from which the scene shows its front; lets the model be told \"front view\" and so on.");
+        f("turntable_size", self.turntable_size, "Side of each half of the before/after film in pixels.",
+          Range{16, 4096});
+        f("turntable_frames", self.turntable_frames, "Frames of the before/after film.", Range{1, 10000});
+    }
+};
+
+/// Everything that decides the result.
+struct EditRecipe {
+    JobParameters job;
+    edit::EditRequest request;
+    neural::SdsParameters guidance;
+};
+
+/// {"version", "job", "request", "guidance"}; reading throws Error for unknown or wrong entries. A relative scene path
+/// is taken relative to the recipe's folder.
+nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe);
+EditRecipe read_recipe(const std::filesystem::path& path);
+
+/// Seconds per stage, in order of first use.
+class StageTimes {
+public:
+    void begin(const std::string& stage);
+    void end();
+    nlohmann::ordered_json to_json() const;
+
+private:
+    std::vector<std::pair<std::string, double>> stages_;
+    std::string open_;
+    double start_ = 0;
+};
+
+/// A scene with its model and views, ready to be edited.
+class EditJob {
+public:
+    /// Checks the request, reads the scene, loads the model, chooses the views. Throws Error before anything is written.
+    EditJob(EditRecipe recipe, JobControl control);
+
+    /// Looks from all views, moves in on what was found, looks again.
+    void locate();
+    /// Runs the edit loop.
+    void run();
+
+    const EditRecipe& recipe() const { return recipe_; }
+    const Scene& scene() const { return scene_; }
+    const std::vector<View>& views() const { return views_; }
+    const edit::LocateResult& located() const { return located_; }
+    const edit::EditPlan& plan() const { return plan_; }
+    const edit::EditResult& result() const { return result_; }
+    /// Orbit around what was edited, for films.
+    const OrbitParameters& orbit() const { return orbit_; }
+    neural::TextToImage& model() { return *model_; }
+    Painter& painter() { return painter_; }
+    StageTimes& times() { return times_; }
+    const JobControl& control() const { return control_; }
+
+private:
+    void choose_views();
+    void set_orbit_views();
+    edit::LocateInput locate_input() const;
+
+    EditRecipe recipe_;
+    JobControl control_;
+    StageTimes times_;
+    Painter painter_;
+    Scene scene_;
+    std::unique_ptr<neural::TextToImage> model_;
+    std::vector<View> views_;
+    std::vector<std::string> view_words_;
+    bool automatic_views_ = false;
+    OrbitParameters orbit_;
+    edit::LocateResult located_;
+    edit::EditPlan plan_;
+    edit::EditResult result_;
+};
+
+/// Where the starter model is: beside the sources, or installed.
+std::filesystem::path starter_model_path();
+std::filesystem::path assets_path();
+
+/// Warns about words the model was not trained on and suggests the nearest known ones.
+void warn_unknown_words(const std::vector<std::string>& words, const std::vector<std::string>& known);
+
+}  // namespace gse::app
