@@ -1,0 +1,119 @@
+// Results must not depend on the number of threads, on what was rendered before, or on which rows want
+// gradients.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "tests/agree/raster/scenes.h"
+
+using namespace gse;
+using namespace gse::raster;
+
+namespace {
+
+struct Results {
+    ForwardOutput image;
+    Gradients gradients;
+    std::vector<double> masked, total;
+};
+
+Results run(Rasterizer& rasterizer, const GaussianData& data, const Camera& camera, std::size_t first_row) {
+    Results results;
+    const Image d_colour = test::noise_image(camera.width, camera.height, 3, 1);
+    const Image d_alpha = test::noise_image(camera.width, camera.height, 1, 2);
+    rasterizer.forward(spans(data), camera, {}, results.image);
+    rasterizer.backward(d_colour, d_alpha, first_row, results.gradients);
+    results.masked.resize(data.size());
+    results.total.resize(data.size());
+    rasterizer.contributions(spans(data), camera, {}, d_alpha, results.masked, results.total);
+    return results;
+}
+
+bool identical(const Results& a, const Results& b) {
+    return test::identical(a.image, b.image) && test::identical(a.gradients, b.gradients) &&
+           a.masked == b.masked && a.total == b.total;
+}
+
+template <class T>
+std::vector<T> tail(const std::vector<T>& all, std::size_t begin) {
+    return {all.begin() + static_cast<std::ptrdiff_t>(begin), all.end()};
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("bit-identical for any number of threads and when repeated") {
+    // Enough rows for several chunks of rows and parts of the depth order.
+    const GaussianData data = test::random_scene({.count = 20000, .seed = 51, .log_scale = -3.8});
+    const GaussianData other = test::random_scene({.count = 700, .seed = 52});
+    const Camera camera = test::test_camera(150, 110);
+    for (const std::string& kernels : test::available_kernels()) {
+        DOCTEST_CAPTURE(kernels);
+        ThreadPool one(1);
+        const Results expected = run(*test::make_forced(kernels, one), data, camera, 0);
+        for (const unsigned threads : {2u, 3u, 8u}) {
+            DOCTEST_CAPTURE(threads);
+            ThreadPool pool(threads);
+            const auto rasterizer = test::make_forced(kernels, pool);
+            DOCTEST_CHECK(identical(run(*rasterizer, data, camera, 0), expected));
+            run(*rasterizer, other, test::test_camera(64, 48),
+                100);  // leaves other numbers in the scratch memory
+            DOCTEST_CHECK(identical(run(*rasterizer, data, camera, 0), expected));
+        }
+    }
+}
+
+DOCTEST_TEST_CASE("a restriction to rows gives exactly the tail of the full gradient") {
+    const GaussianData data = test::random_scene({.count = 5000, .seed = 61, .log_scale = -3.2});
+    const Camera camera = test::test_camera(90, 75);
+    ThreadPool pool(2);
+    std::vector<std::unique_ptr<Rasterizer>> all;
+    all.push_back(make_plain_rasterizer());
+    for (const std::string& kernels : test::available_kernels())
+        all.push_back(test::make_forced(kernels, pool));
+    for (const auto& rasterizer : all) {
+        DOCTEST_CAPTURE(rasterizer->name());
+        const Gradients full = run(*rasterizer, data, camera, 0).gradients;
+        const std::size_t stride = data.sh_stride();
+        for (const std::size_t first : {1u, 999u, 1024u, 3100u, 4999u, 5000u}) {
+            DOCTEST_CAPTURE(first);
+            const Gradients part = run(*rasterizer, data, camera, first).gradients;
+            Gradients expected;
+            expected.position = tail(full.position, first * 3);
+            expected.log_scale = tail(full.log_scale, first * 3);
+            expected.rotation = tail(full.rotation, first * 4);
+            expected.opacity_logit = tail(full.opacity_logit, first);
+            expected.sh = tail(full.sh, first * stride);
+            expected.mean2d_norm = tail(full.mean2d_norm, first);
+            expected.visible = tail(full.visible, first);
+            DOCTEST_CHECK(test::identical(part, expected));
+        }
+    }
+}
+
+DOCTEST_TEST_CASE("rows that were not drawn get exact zeros") {
+    GaussianData data = test::random_scene({.count = 300, .seed = 71});
+    for (std::size_t row = 0; row < data.size(); row += 3) data.opacity_logit[row] = -20.0f;
+    const Camera camera = test::test_camera(64, 64);
+    ThreadPool pool(2);
+    for (const std::string& kernels : test::available_kernels()) {
+        const auto rasterizer = test::make_forced(kernels, pool);
+        const Gradients g = run(*rasterizer, data, camera, 0).gradients;
+        std::size_t seen = 0;
+        for (std::size_t row = 0; row < data.size(); ++row) {
+            seen += g.visible[row];
+            if (row % 3 != 0) continue;
+            DOCTEST_CHECK(g.visible[row] == 0);
+            DOCTEST_CHECK(g.position[row * 3] == 0.0f);
+            DOCTEST_CHECK(g.opacity_logit[row] == 0.0f);
+            DOCTEST_CHECK(g.sh[row * data.sh_stride()] == 0.0f);
+        }
+        DOCTEST_CHECK(seen > 100);
+    }
+}
+
+DOCTEST_TEST_CASE("GSE_CPU forces an instruction set and refuses what it does not know") {
+    ThreadPool pool(1);
+    DOCTEST_CHECK(test::make_forced("scalar", pool)->name() == "scalar");
+    const auto names = test::available_kernels();
+    DOCTEST_CHECK(test::make_forced("", pool)->name() == names.back());  // the best is the default
+    DOCTEST_CHECK_THROWS_AS(test::make_forced("sse9", pool), Error);
+}
