@@ -9,6 +9,7 @@
 #include "engine/base/log.h"
 #include "engine/io/camera_checks.h"
 #include "engine/io/cameras.h"
+#include "engine/io/json_numbers.h"
 
 namespace gse {
 namespace {
@@ -17,12 +18,14 @@ using Json = nlohmann::json;
 
 constexpr double CentreTolerance = 0.5;  // pixels off the image centre before the loss is worth a word
 
-View parse_view(const Json& json) {
+View parse_view(const Json& json, std::size_t index) {
     View view;
     Camera& camera = view.camera;
-    view.name = json.value("img_name", fmt::format("{}", json.value("id", 0)));
-    camera.width = json.at("width").get<int>();
-    camera.height = json.at("height").get<int>();
+    view.name = json.value("img_name", fmt::format("camera_{:03}", index));
+    camera.width =
+        static_cast<int>(io::whole_number(json.at("width"), io::LargestImageSide, "width of a camera"));
+    camera.height =
+        static_cast<int>(io::whole_number(json.at("height"), io::LargestImageSide, "height of a camera"));
     camera.fx = json.at("fx").get<double>();
     camera.fy = json.at("fy").get<double>();
     camera.cx = 0.5 * camera.width;
@@ -51,7 +54,7 @@ std::vector<View> parse_cameras_json(std::string_view text) {
         const Json json = Json::parse(text.begin(), text.end());
         if (!json.is_array()) throw Error(ErrorCode::Malformed, "cameras.json is not a list of cameras");
         std::vector<View> views;
-        for (const Json& entry : json) views.push_back(parse_view(entry));
+        for (const Json& entry : json) views.push_back(parse_view(entry, views.size()));
         if (views.empty()) throw Error(ErrorCode::Malformed, "cameras.json lists no cameras");
         return views;
     } catch (const nlohmann::json::exception& failure) {

@@ -13,6 +13,7 @@
 #include "engine/base/file.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
+#include "engine/io/json_numbers.h"
 #include "engine/io/sog_files.h"
 
 namespace gse::io {
@@ -170,19 +171,18 @@ void read_palette_sh(const Source& source, const Texture& centroids, GaussianDat
 }
 
 std::size_t count_of(const Json& meta, bool version1) {
-    const auto count =
-        (version1 ? meta.at("means").at("shape").at(0) : meta.at("count")).get<std::uint64_t>();
+    const Json& stated = version1 ? meta.at("means").at("shape").at(0) : meta.at("count");
+    const std::uint64_t count = whole_number(stated, LargestCount, "number of splats of the SOG scene");
     if (count == 0) throw_malformed("holds no splats");
-    if (count > LargestCount)
-        throw_malformed(fmt::format("promises {} splats, more than its textures can hold", count));
     return static_cast<std::size_t>(count);
 }
 
 Scene read_scene(const SogFiles& files, const Json& meta) {
     const bool version1 = !meta.contains("version");
-    if (!version1 && meta.at("version").get<int>() != 2)
-        throw Error(ErrorCode::Unsupported,
-                    fmt::format("SOG version {} is not known; 1 and 2 are", meta.at("version").get<int>()));
+    const std::uint64_t version =
+        version1 ? 1 : whole_number(meta.at("version"), 1000, "version of the SOG scene");
+    if (version > 2)
+        throw Error(ErrorCode::Unsupported, fmt::format("SOG version {} is not known; 1 and 2 are", version));
     const Source source{meta, files, count_of(meta, version1), version1};
     source.splat_texture("sh0", 0);  // proves the count before anything of its size is made
     std::optional<Texture> centroids;
@@ -247,7 +247,8 @@ GaussianSet concatenate(const std::vector<GaussianSet>& parts) {
 /// Numbers of the files that a node and its children name for this level.
 void collect_files(const Json& node, const std::string& level, std::vector<std::size_t>& files) {
     if (node.contains("lods") && node.at("lods").contains(level)) {
-        const auto file = node.at("lods").at(level).at("file").get<std::size_t>();
+        const std::size_t file =
+            whole_number(node.at("lods").at(level).at("file"), LargestCount, "file number of a level");
         if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
     }
     if (!node.contains("children")) return;
