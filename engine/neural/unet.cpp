@@ -16,9 +16,8 @@ struct UNetImpl::Level {
     Upsample upsampler{nullptr};
 };
 
-namespace {
-
-struct Builder {
+/// Makes the pieces with the shapes the configuration asks for.
+struct UNetImpl::Builder {
     const UNetConfig& config;
     const WeightOptions& options;
 
@@ -40,12 +39,9 @@ struct Builder {
     }
 };
 
-}  // namespace
-
 UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : config_(config) {
     const Builder build{config_, options};
     const auto& widths = config_.block_out_channels;
-    const auto levels = widths.size();
     conv_in = register_module("conv_in", Conv2d(Conv2dImpl::Shape{config_.in_channels, widths[0]}, options));
     auto time = std::make_shared<torch::nn::Module>();
     time_linear_1 =
@@ -55,8 +51,17 @@ UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : con
     register_module("time_embedding", time);
 
     std::vector<std::int64_t> skips = {widths[0]};   // channels of the stored activations
+    build_down(build, skips);
+    build_middle(build);
+    build_up(build, skips);
+    conv_norm_out = register_module("conv_norm_out", GroupNorm(widths[0], config_.norm_num_groups, config_.norm_eps, options));
+    conv_out = register_module("conv_out", Conv2d(Conv2dImpl::Shape{widths[0], config_.out_channels}, options));
+}
+
+void UNetImpl::build_down(const Builder& build, std::vector<std::int64_t>& skips) {
+    const auto& widths = config_.block_out_channels;
     torch::nn::ModuleList downs;
-    for (std::size_t i = 0; i < levels; ++i) {
+    for (std::size_t i = 0; i < widths.size(); ++i) {
         auto block = std::make_shared<torch::nn::Module>();
         Level level;
         for (std::int64_t j = 0; j < config_.layers_per_block; ++j) {
@@ -68,8 +73,8 @@ UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : con
         }
         register_list(*block, "resnets", level.resnets);
         if (!level.attentions.empty()) register_list(*block, "attentions", level.attentions);
-        if (i + 1 < levels) {
-            level.downsampler = Downsample(widths[i], false, config_.downsample_padding, options);
+        if (i + 1 < widths.size()) {
+            level.downsampler = Downsample(widths[i], false, config_.downsample_padding, build.options);
             register_list(*block, "downsamplers", std::vector{level.downsampler});
             skips.push_back(widths[i]);
         }
@@ -77,15 +82,22 @@ UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : con
         down_.push_back(std::move(level));
     }
     register_module("down_blocks", downs);
+}
 
+void UNetImpl::build_middle(const Builder& build) {
+    const auto width = config_.block_out_channels.back();
     mid_ = std::make_unique<Level>();
     auto mid = std::make_shared<torch::nn::Module>();
     mid_->resnets = register_list(
-        *mid, "resnets", std::vector{build.resnet(widths.back(), widths.back()), build.resnet(widths.back(), widths.back())});
+        *mid, "resnets", std::vector{build.resnet(width, width), build.resnet(width, width)});
     mid_->attentions = register_list(
-        *mid, "attentions", std::vector{build.attention(widths.back(), config_.heads.back(), "mid_block.attentions.0")});
+        *mid, "attentions", std::vector{build.attention(width, config_.heads.back(), "mid_block.attentions.0")});
     register_module("mid_block", mid);
+}
 
+void UNetImpl::build_up(const Builder& build, std::vector<std::int64_t>& skips) {
+    const auto& widths = config_.block_out_channels;
+    const auto levels = widths.size();
     torch::nn::ModuleList ups;
     auto channels = widths.back();
     for (std::size_t i = 0; i < levels; ++i) {
@@ -104,15 +116,13 @@ UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : con
         register_list(*block, "resnets", level.resnets);
         if (!level.attentions.empty()) register_list(*block, "attentions", level.attentions);
         if (i + 1 < levels) {
-            level.upsampler = Upsample(width, options);
+            level.upsampler = Upsample(width, build.options);
             register_list(*block, "upsamplers", std::vector{level.upsampler});
         }
         ups->push_back(block);
         up_.push_back(std::move(level));
     }
     register_module("up_blocks", ups);
-    conv_norm_out = register_module("conv_norm_out", GroupNorm(widths[0], config_.norm_num_groups, config_.norm_eps, options));
-    conv_out = register_module("conv_out", Conv2d(Conv2dImpl::Shape{widths[0], config_.out_channels}, options));
 }
 
 UNetImpl::~UNetImpl() = default;
@@ -132,7 +142,7 @@ torch::Tensor UNetImpl::time_embedding(const torch::Tensor& projection) const {
 }
 
 torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
-                                const torch::Tensor& context, AttentionCapture* capture) {
+                                const torch::Tensor& context, AttentionCapture* capture) const {
     GSE_CHECK_EQ(sample.dim(), std::int64_t{4});
     const auto time = apply_silu(time_embedding(time_projection(timesteps, sample.size(0)).to(sample.scalar_type())));
     auto x = conv_in->forward(sample.contiguous(torch::MemoryFormat::ChannelsLast));

@@ -36,7 +36,7 @@ public:
     /// sample [B,C,h,w]; timesteps [B] or a scalar, integer or float; context [B,T,D]. All of the weights' dtype
     /// (timesteps excepted). Returns the prediction [B,out,h,w].
     torch::Tensor forward(const torch::Tensor& sample, const torch::Tensor& timesteps, const torch::Tensor& context,
-                          AttentionCapture* capture = nullptr);
+                          AttentionCapture* capture = nullptr) const;
 
     /// Sinusoid [B,C0] in fp32, and what the two linear layers make of it (for tests).
     torch::Tensor time_projection(const torch::Tensor& timesteps, std::int64_t batch) const;
@@ -46,6 +46,11 @@ public:
 
 private:
     struct Level;
+    struct Builder;
+    void build_down(const Builder& build, std::vector<std::int64_t>& skips);
+    void build_middle(const Builder& build);
+    void build_up(const Builder& build, std::vector<std::int64_t>& skips);
+
     UNetConfig config_;
     Conv2d conv_in{nullptr}, conv_out{nullptr};
     Linear time_linear_1{nullptr}, time_linear_2{nullptr};

@@ -1,0 +1,302 @@
+// Finding, checking and loading the parts of a text-to-image model.
+#include "engine/neural/model_bundle.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/neural/key_map.h"
+#include "engine/neural/torch_errors.h"
+
+namespace gse::neural {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Everything about a model except its weights.
+struct Parts {
+    bool single_file = false;
+    fs::path root;
+    fs::path unet_file, vae_file, text_file;   // the same file for a single-file checkpoint
+    SingleFileText text_layout = SingleFileText::Transformers;
+    UNetConfig unet;
+    VaeConfig vae;
+    TextEncoderConfig text;
+    SchedulerConfig scheduler;
+    fs::path tokenizer;
+    std::string pad_token;
+    ModelFacts facts;
+};
+
+constexpr const char* FolderHint =
+    "a model folder has model_index.json, tokenizer, text_encoder, unet, vae and scheduler, as diffusers writes it";
+
+[[noreturn]] void refuse_pickle(const fs::path& path) {
+    throw Error(ErrorCode::Unsupported, "pickled weights can run code when they are read and are not opened",
+                "convert once in Python: safetensors.torch.save_file(torch.load(FILE, weights_only=True)[\"state_dict\"], "
+                "\"model.safetensors\")",
+                path);
+}
+
+bool is_pickle(const fs::path& path) {
+    const auto extension = path.extension().string();
+    return extension == ".ckpt" || extension == ".pt" || extension == ".pth" || extension == ".bin";
+}
+
+fs::path find_weights(const fs::path& folder, const char* stem) {
+    if (!fs::is_directory(folder)) throw Error(ErrorCode::NotFound, "the model folder is incomplete", FolderHint, folder);
+    for (const char* variant : {"", ".fp16", ".non_ema"}) {
+        const auto path = folder / fmt::format("{}{}.safetensors", stem, variant);
+        if (fs::exists(path)) return path;
+    }
+    if (fs::exists(folder / fmt::format("{}.safetensors.index.json", stem)))
+        throw Error(ErrorCode::Unsupported, "weights in several shards cannot be loaded", "merge them into one file", folder);
+    const auto pickle = folder / fmt::format("{}.bin", std::string(stem) == "model" ? "pytorch_model" : stem);
+    if (fs::exists(pickle)) refuse_pickle(pickle);
+    throw Error(ErrorCode::NotFound, "the model has no weights here", FolderHint, folder / fmt::format("{}.safetensors", stem));
+}
+
+Json config_of(const fs::path& path) {
+    if (!fs::exists(path)) throw Error(ErrorCode::NotFound, "the model folder is incomplete", FolderHint, path);
+    return read_json_file(path);
+}
+
+Parts folder_parts(const fs::path& root) {
+    Parts parts;
+    parts.root = root;
+    const auto index = config_of(root / "model_index.json");
+    if (index.is_object() && index.contains("text_encoder_2"))
+        throw Error(ErrorCode::Unsupported, "the model has two text encoders (SDXL or later)",
+                    "only Stable Diffusion 1.x and 2.x can be used", root / "model_index.json");
+    parts.unet_file = find_weights(root / "unet", "diffusion_pytorch_model");
+    parts.vae_file = find_weights(root / "vae", "diffusion_pytorch_model");
+    parts.text_file = find_weights(root / "text_encoder", "model");
+    parts.unet = UNetConfig::from_json(config_of(root / "unet/config.json"), root / "unet/config.json");
+    parts.vae = VaeConfig::from_json(config_of(root / "vae/config.json"), root / "vae/config.json");
+    parts.text = TextEncoderConfig::from_json(config_of(root / "text_encoder/config.json"), root / "text_encoder/config.json");
+    const auto scheduler = root / "scheduler/scheduler_config.json";
+    parts.scheduler = SchedulerConfig::from_json(config_of(scheduler), scheduler);
+    parts.tokenizer = root / "tokenizer";
+    if (fs::exists(root / "gseditpro.json"))
+        parts.facts = ModelFacts::from_json(read_json_file(root / "gseditpro.json"), root / "gseditpro.json");
+    return parts;
+}
+
+/// Where the merges of CLIP's tokenizer are: beside the checkpoint, or among the program's assets.
+fs::path find_tokenizer(const fs::path& beside) {
+    const char* assets = std::getenv("GSE_ASSETS");
+    const std::array<fs::path, 3> candidates{beside / "tokenizer", beside,
+                                             fs::path(assets != nullptr ? assets : GSE_ASSETS) / "tokenizer"};
+    for (const auto& candidate : candidates)
+        if (fs::exists(candidate / "merges.txt")) return candidate;
+    throw Error(ErrorCode::NotFound, "a single-file checkpoint has no tokenizer and none was found",
+                "put CLIP's merges.txt into a folder named tokenizer beside it", candidates[0]);
+}
+
+/// A configuration beside the checkpoint (unet_config.json, ...), else what the tensors' shapes tell.
+template <class Config, class Infer>
+Config beside_or(const fs::path& path, Infer infer) {
+    return fs::exists(path) ? Config::from_json(read_json_file(path), path) : infer();
+}
+
+Parts single_file_parts(const fs::path& path) {
+    Parts parts;
+    parts.single_file = true;
+    parts.root = path;
+    parts.unet_file = parts.vae_file = parts.text_file = path;
+    const SafetensorsFile file(path);
+    if (!is_single_file(file))
+        throw Error(ErrorCode::Model, "the file is not a Stable Diffusion checkpoint",
+                    "single parts (a VAE, a LoRA, an embedding) cannot be used as a model", path);
+    parts.text_layout = single_file_text_layout(file);
+    const auto beside = path.parent_path();
+    const bool second = parts.text_layout == SingleFileText::OpenClip;
+    parts.unet = beside_or<UNetConfig>(beside / "unet_config.json", [&] { return infer_unet_config(file, parts.text_layout); });
+    parts.vae = beside_or<VaeConfig>(beside / "vae_config.json", [&] { return infer_vae_config(file); });
+    parts.text = beside_or<TextEncoderConfig>(beside / "text_encoder_config.json",
+                                              [&] { return infer_text_config(file, parts.text_layout); });
+    parts.scheduler = beside_or<SchedulerConfig>(beside / "scheduler_config.json", [&] {
+        SchedulerConfig scheduler;
+        if (second) {
+            // Nothing in the file tells the 768-v models from the 512 base ones.
+            scheduler.prediction_type = "v_prediction";
+            log::warning("{}: taken for a velocity model (SD 2.x, 768); put a scheduler_config.json beside it if it "
+                         "predicts noise (SD 2.x base)", path.filename().string());
+        }
+        return scheduler;
+    });
+    parts.tokenizer = find_tokenizer(beside);
+    if (second) parts.pad_token = "!";
+    return parts;
+}
+
+Parts find_parts(const fs::path& path) {
+    std::error_code ignored;
+    if (!fs::exists(path, ignored))
+        throw Error(ErrorCode::NotFound, "there is no model here", "name a diffusers folder or a .safetensors checkpoint", path);
+    auto parts = [&] {
+        if (fs::is_directory(path)) return folder_parts(path);
+        if (is_pickle(path)) refuse_pickle(path);
+        if (path.extension() != ".safetensors")
+            throw Error(ErrorCode::Unsupported, "this is not a model", "name a diffusers folder or a .safetensors checkpoint", path);
+        return single_file_parts(path);
+    }();
+    // The projection is not part of the conditioning and is often missing.
+    parts.text.with_projection = false;
+    if (parts.facts.image_size == 0) parts.facts.image_size = parts.unet.sample_size * parts.vae.factor();
+    if (parts.facts.name.empty()) parts.facts.name = path.stem().string();
+    if (parts.unet.in_channels != parts.vae.latent_channels || parts.unet.out_channels != parts.vae.latent_channels)
+        throw Error(ErrorCode::Unsupported,
+                    fmt::format("the UNet takes {} channels but the VAE has {}", parts.unet.in_channels, parts.vae.latent_channels),
+                    "inpainting, depth and instruction models cannot be used", path);
+    if (parts.unet.cross_attention_dim != parts.text.hidden_size)
+        throw Error(ErrorCode::Model,
+                    fmt::format("the UNet expects text of width {} but the text encoder gives {}",
+                                parts.unet.cross_attention_dim, parts.text.hidden_size), {}, path);
+    if (parts.facts.image_size % parts.vae.factor() != 0)
+        throw Error(ErrorCode::Model, "the model's image size is not a multiple of the VAE's factor", {}, path);
+    return parts;
+}
+
+struct Plans {
+    LoadPlan unet, vae, text;
+};
+
+Plans plans_of(const Parts& parts, const SafetensorsFile& vae_file) {
+    if (parts.single_file)
+        return {single_file_unet_plan(parts.unet), single_file_vae_plan(parts.vae),
+                single_file_text_plan(parts.text, parts.text_layout)};
+    return {unet_plan(), vae_plan(vae_file), text_encoder_plan()};
+}
+
+void check_tokenizer(const Tokenizer& tokenizer, const Parts& parts) {
+    if (tokenizer.vocabulary_size() > parts.text.vocab_size)
+        throw Error(ErrorCode::Model,
+                    fmt::format("the tokenizer has {} tokens but the text encoder only {}", tokenizer.vocabulary_size(),
+                                parts.text.vocab_size), {}, parts.tokenizer);
+}
+
+std::int64_t count_parameters(const torch::nn::Module& module) {
+    std::int64_t count = 0;
+    for (const auto& parameter : module.parameters()) count += parameter.numel();
+    return count;
+}
+
+template <class Holder>
+void freeze(Holder& module, const torch::Device& device) {
+    for (auto& parameter : module->parameters()) parameter.set_requires_grad(false);
+    module->to(device);
+    module->eval();
+}
+
+}  // namespace
+
+ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& path) {
+    ModelFacts facts;
+    const auto get = [&](const char* key, auto& value) {
+        if (!json.contains(key) || json[key].is_null()) return;
+        try {
+            json[key].get_to(value);
+        } catch (const nlohmann::json::exception&) {
+            throw Error(ErrorCode::Malformed, fmt::format("\"{}\" has the wrong type", key), {}, path);
+        }
+    };
+    if (!json.is_object()) throw Error(ErrorCode::Malformed, "the model's facts are not a JSON object", {}, path);
+    get("name", facts.name);
+    get("image_size", facts.image_size);
+    get("attention_threshold", facts.attention_threshold);
+    if (json.contains("attention_layers") && json["attention_layers"].is_string())
+        facts.attention_layers = {json["attention_layers"].get<std::string>()};
+    else
+        get("attention_layers", facts.attention_layers);
+    get("attention_sizes", facts.attention_sizes);
+    get("attention_timesteps", facts.attention_timesteps);
+    get("attention_absent_timesteps", facts.attention_absent_timesteps);
+    get("vocabulary", facts.vocabulary);
+    if (facts.image_size < 0 || facts.image_size > 8192)
+        throw Error(ErrorCode::Malformed, "\"image_size\" is outside 0..8192", {}, path);
+    return facts;
+}
+
+std::int64_t ModelBundle::token_count() const {
+    return std::min(tokenizer.max_length(), text_encoder->config().max_position_embeddings);
+}
+
+torch::Tensor ModelBundle::token_ids(const std::vector<std::string>& prompts) const {
+    std::vector<torch::Tensor> rows;
+    for (const auto& prompt : prompts) {
+        const auto encoding = tokenizer.encode(prompt, token_count());
+        rows.push_back(torch::tensor(encoding.ids, torch::kInt64));
+    }
+    return torch::stack(rows).to(device);
+}
+
+torch::Tensor ModelBundle::encode_prompts(const std::vector<std::string>& prompts) const {
+    const torch::NoGradGuard no_grad;
+    return text_encoder->forward(token_ids(prompts)).last_hidden;
+}
+
+ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device) {
+    const auto parts = find_parts(path);
+    return guard_torch("loading the model", [&] {
+        const WeightOptions empty{torch::kCPU, torch::kFloat32, false};
+        ModelBundle bundle{path,
+                           Tokenizer(parts.tokenizer, parts.pad_token),
+                           ClipTextEncoder(parts.text, empty),
+                           UNet(parts.unet, empty),
+                           AutoencoderKl(parts.vae, empty),
+                           NoiseSchedule(parts.scheduler),
+                           parts.facts,
+                           device};
+        check_tokenizer(bundle.tokenizer, parts);
+        const SafetensorsFile unet_file(parts.unet_file), vae_file(parts.vae_file), text_file(parts.text_file);
+        const auto plans = plans_of(parts, vae_file);
+        load_weights(*bundle.text_encoder, text_file, plans.text);
+        load_weights(*bundle.unet, unet_file, plans.unet);
+        load_weights(*bundle.vae, vae_file, plans.vae);
+        freeze(bundle.text_encoder, device);
+        freeze(bundle.unet, device);
+        freeze(bundle.vae, device);
+        return bundle;
+    });
+}
+
+ModelDescription describe_model(const std::filesystem::path& path) {
+    const auto parts = find_parts(path);
+    return guard_torch("describing the model", [&] {
+        const WeightOptions described{torch::kMeta, torch::kFloat32, false};
+        const UNet unet(parts.unet, described);
+        const AutoencoderKl vae(parts.vae, described);
+        const ClipTextEncoder text(parts.text, described);
+        const SafetensorsFile unet_file(parts.unet_file), vae_file(parts.vae_file), text_file(parts.text_file);
+        const auto plans = plans_of(parts, vae_file);
+        check_weights(*text, key_shapes(text_file), plans.text, parts.text_file);
+        check_weights(*unet, key_shapes(unet_file), plans.unet, parts.unet_file);
+        check_weights(*vae, key_shapes(vae_file), plans.vae, parts.vae_file);
+        return ModelDescription{parts.facts.name,
+                                parts.single_file ? "single file" : "diffusers folder",
+                                parts.facts.image_size,
+                                count_parameters(*unet) + count_parameters(*vae) + count_parameters(*text),
+                                parts.scheduler.prediction_type,
+                                parts.facts.vocabulary};
+    });
+}
+
+torch::Device parse_device(const std::string& name) {
+    if (name == "cpu") return torch::kCPU;
+    const bool numbered = name.starts_with("cuda:") && name.size() > 5 && name.size() < 8 &&
+                          name.find_first_not_of("0123456789", 5) == std::string::npos;
+    if (name != "cuda" && !numbered)
+        throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" is not a device", name), "use cpu, cuda or cuda:1");
+    const int index = numbered ? std::stoi(name.substr(5)) : 0;
+    if (!torch::cuda::is_available() || index >= static_cast<int>(torch::cuda::device_count()))
+        throw Error(ErrorCode::InvalidArgument, fmt::format("there is no device \"{}\" here", name),
+                    "this libtorch sees no such GPU; use cpu");
+    return torch::Device(torch::kCUDA, static_cast<c10::DeviceIndex>(index));
+}
+
+}  // namespace gse::neural

@@ -1,0 +1,70 @@
+// A whole text-to-image model: tokenizer, text encoder, UNet, VAE, noise schedule, and what the model says about itself.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/neural/schedulers.h"
+#include "engine/neural/text_encoder.h"
+#include "engine/neural/tokenizer.h"
+#include "engine/neural/unet.h"
+#include "engine/neural/vae.h"
+
+namespace gse::neural {
+
+/// gseditpro.json beside model_index.json; every key may be missing.
+struct ModelFacts {
+    std::string name;
+    std::int64_t image_size = 0;                     // 0 = UNet's sample_size times the VAE's factor
+    double attention_threshold = 0.5;                // the paper's value
+    std::vector<std::string> attention_layers;       // beginnings of layer names; empty = "down_blocks" and "up_blocks"
+    std::vector<std::int64_t> attention_sizes;       // map heights; empty = latent size, a half and a quarter of it
+    std::vector<double> attention_timesteps;         // shares of the schedule probed; empty = {0.3, 0.5, 0.7}
+    std::vector<double> attention_absent_timesteps;  // the same for what is not there yet; empty = {0.8, 0.85, 0.9}
+    std::vector<std::string> vocabulary;             // words the model was trained on; empty = open
+
+    static ModelFacts from_json(const Json& json, const std::filesystem::path& path);
+};
+
+/// What a model is, read from its small files and headers only.
+struct ModelDescription {
+    std::string name;
+    std::string layout;                 // "diffusers folder" or "single file"
+    std::int64_t image_size = 0;
+    std::int64_t parameters = 0;
+    std::string prediction;             // "epsilon" or "v_prediction"
+    std::vector<std::string> vocabulary;
+};
+
+struct ModelBundle {
+    std::filesystem::path path;
+    Tokenizer tokenizer;
+    ClipTextEncoder text_encoder;
+    UNet unet;
+    AutoencoderKl vae;
+    NoiseSchedule schedule;
+    ModelFacts facts;
+    torch::Device device = torch::kCPU;
+
+    /// Tokens of a prompt: the tokenizer's length, at most what the text encoder can take.
+    std::int64_t token_count() const;
+    std::int64_t image_size() const { return facts.image_size; }
+    std::int64_t latent_size() const { return facts.image_size / vae->config().factor(); }
+    double scaling_factor() const { return vae->config().scaling_factor; }
+    /// Token ids [B,T] and conditioning [B,T,D] of some prompts, without a graph.
+    torch::Tensor token_ids(const std::vector<std::string>& prompts) const;
+    torch::Tensor encode_prompts(const std::vector<std::string>& prompts) const;
+};
+
+/// Loads a diffusers folder or a single-file checkpoint (.safetensors). All weights are fp32 and frozen. Throws Error
+/// (NotFound, Malformed, Model, Unsupported) with one sentence.
+ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device = torch::kCPU);
+
+/// Checks that every file is there and every tensor has the right name and shape, without reading any weight.
+ModelDescription describe_model(const std::filesystem::path& path);
+
+/// "cpu", "cuda", "cuda:1". Throws Error (InvalidArgument) for others, or when there is no such device.
+torch::Device parse_device(const std::string& name);
+
+}  // namespace gse::neural
