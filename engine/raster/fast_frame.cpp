@@ -246,7 +246,7 @@ void Frame::assign_slots(std::size_t first_row) {
             }
         }
     });
-    at_least(slots_, total);
+    at_least(slots_, std::max<std::size_t>(total, 1));
 }
 
 }  // namespace gse::raster

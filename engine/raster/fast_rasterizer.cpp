@@ -175,6 +175,7 @@ private:
         const std::size_t stride = frame_.source().sh_stride;
         const std::size_t begin = std::max(chunk * Frame::ChunkRows, first_row_) - first_row_;
         const std::size_t end = std::min((chunk + 1) * Frame::ChunkRows, frame_.row_count()) - first_row_;
+        if (begin >= end) return;
         const auto clear = [&](auto& values, std::size_t width) {
             std::memset(values.data() + begin * width, 0, (end - begin) * width * sizeof values[0]);
         };
