@@ -1,4 +1,4 @@
-// L1 and structural similarity with hand-written gradients, in double.
+// L1 and structural similarity with hand-written gradients, on the part of the picture that differs.
 #include "engine/edit/preservation.h"
 
 #include <algorithm>
@@ -11,91 +11,141 @@ namespace gse::edit {
 namespace {
 
 constexpr int WindowRadius = 5;
-constexpr double SsimC1 = 1e-4, SsimC2 = 9e-4;
+constexpr float SsimC1 = 1e-4f, SsimC2 = 9e-4f;
 
-std::array<double, 2 * WindowRadius + 1> make_window() {
+std::array<float, 2 * WindowRadius + 1> make_window() {
     std::array<double, 2 * WindowRadius + 1> window{};
     double sum = 0;
     for (int i = -WindowRadius; i <= WindowRadius; ++i)
         sum += window[static_cast<std::size_t>(i + WindowRadius)] = std::exp(-i * i / (2 * 1.5 * 1.5));
-    for (auto& weight : window) weight /= sum;
-    return window;
+    std::array<float, 2 * WindowRadius + 1> result{};
+    for (std::size_t i = 0; i < result.size(); ++i) result[i] = static_cast<float>(window[i] / sum);
+    return result;
 }
 
-/// One pass of the separable blur: `count` lines of `length` samples, `stride` apart.
-void blur_lines(const std::vector<double>& from, std::vector<double>& to, std::array<int, 4> shape) {
+/// Adds `weight` times `from` to `to`, `count` values: the inner loop of both passes of the blur.
+void add_scaled(float* to, const float* from, float weight, int count) {
+    for (int i = 0; i < count; ++i) to[i] += weight * from[i];
+}
+
+/// Blurs a plane [height,width] with the 11-tap Gaussian window of SSIM (sigma 1.5), zero padding; in place.
+void blur(std::vector<float>& plane, std::vector<float>& scratch, int width, int height) {
     static const auto window = make_window();
-    const auto [lines, length, line_stride, stride] = shape;
-    for (int line = 0; line < lines; ++line)
-        for (int i = 0; i < length; ++i) {
-            const int first = std::max(-WindowRadius, -i), last = std::min(WindowRadius, length - 1 - i);
-            double sum = 0;
-            for (int k = first; k <= last; ++k)
-                sum += window[static_cast<std::size_t>(k + WindowRadius)] *
-                       from[static_cast<std::size_t>(line * line_stride + (i + k) * stride)];
-            to[static_cast<std::size_t>(line * line_stride + i * stride)] = sum;
+    scratch.assign(plane.size(), 0.0f);
+    for (int y = 0; y < height; ++y)
+        for (int k = -WindowRadius; k <= WindowRadius; ++k) {
+            const int begin = std::max(0, -k), end = std::min(width, width - k);
+            const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(y) * width;
+            add_scaled(scratch.data() + row + begin, plane.data() + row + begin + k,
+                       window[static_cast<std::size_t>(k + WindowRadius)], std::max(0, end - begin));
+        }
+    std::fill(plane.begin(), plane.end(), 0.0f);
+    for (int y = 0; y < height; ++y)
+        for (int k = -WindowRadius; k <= WindowRadius; ++k) {
+            if (y + k < 0 || y + k >= height) continue;
+            add_scaled(plane.data() + static_cast<std::ptrdiff_t>(y) * width,
+                       scratch.data() + static_cast<std::ptrdiff_t>(y + k) * width,
+                       window[static_cast<std::size_t>(k + WindowRadius)], width);
         }
 }
 
 }  // namespace
 
-void ssim_blur(std::vector<double>& plane, std::vector<double>& scratch, int width, int height) {
-    scratch.resize(plane.size());
-    blur_lines(plane, scratch, {height, width, width, 1});
-    blur_lines(scratch, plane, {width, height, 1, width});
+Preservation::Box Preservation::grown(const Box& box, int by, const Image& image) {
+    return {std::max(0, box.x0 - by), std::max(0, box.y0 - by), std::min(image.width, box.x1 + by),
+            std::min(image.height, box.y1 + by)};
 }
 
 double Preservation::add_gradient(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient) {
     GSE_CHECK_EQ(rendered.data.size(), original.data.size());
     GSE_CHECK_EQ(rendered.data.size(), gradient.data.size());
     GSE_CHECK_EQ(may_change.data.size(), rendered.pixel_count());
-    target_.resize(rendered.width, rendered.height, 3);
-    const double count = static_cast<double>(rendered.data.size());
-    const double l1_scale = weights_.multiplier * weights_.l1 / count;
     double loss = 0;
-    for (std::size_t pixel = 0; pixel < rendered.pixel_count(); ++pixel)
-        for (std::size_t i = pixel * 3; i < pixel * 3 + 3; ++i) {
-            const bool free = may_change.data[pixel] != 0;
-            target_.data[i] = free ? rendered.data[i] : original.data[i];
-            const double difference = static_cast<double>(rendered.data[i]) - target_.data[i];
-            loss += l1_scale * std::abs(difference);
-            gradient.data[i] += static_cast<float>(difference > 0 ? l1_scale : difference < 0 ? -l1_scale : 0);
-        }
-    if (weights_.ssim > 0)
-        for (int channel = 0; channel < 3; ++channel)
-            ssim_gradient(rendered, channel, weights_.multiplier * weights_.ssim / count, gradient, loss);
+    const Box changed = add_l1(rendered, original, may_change, gradient, loss);
+    const double scale = weights_.multiplier * weights_.ssim / static_cast<double>(rendered.data.size());
+    if (scale > 0 && !changed.empty()) ssim_gradient(rendered, changed, scale, gradient, loss);
     return loss;
 }
 
-void Preservation::ssim_gradient(const Image& rendered, int channel, double scale, Image& gradient, double& loss) {
-    const std::size_t count = rendered.pixel_count();
+/// Fills target_ and returns the box of the pixels where it differs from the render.
+Preservation::Box Preservation::add_l1(const Image& rendered, const Image& original, const Mask& may_change,
+                                       Image& gradient, double& loss) {
+    target_.resize(rendered.width, rendered.height, 3);
+    const double scale = weights_.multiplier * weights_.l1 / static_cast<double>(rendered.data.size());
+    const auto push = static_cast<float>(scale);
+    Box box{rendered.width, rendered.height, 0, 0};
+    for (int y = 0; y < rendered.height; ++y)
+        for (int x = 0; x < rendered.width; ++x) {
+            const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(rendered.width) + static_cast<std::size_t>(x);
+            const Image& source = may_change.data[pixel] != 0 ? rendered : original;
+            bool differs = false;
+            for (std::size_t i = pixel * 3; i < pixel * 3 + 3; ++i) {
+                target_.data[i] = source.data[i];
+                const float difference = rendered.data[i] - target_.data[i];
+                if (difference == 0) continue;
+                differs = true;
+                loss += scale * std::abs(static_cast<double>(difference));
+                gradient.data[i] += difference > 0 ? push : -push;
+            }
+            if (differs) box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1), std::max(box.y1, y + 1)};
+        }
+    return box;
+}
+
+void Preservation::load(const Image& rendered, const Box& work, std::size_t channel) {
+    const auto count = static_cast<std::size_t>(work.width()) * static_cast<std::size_t>(work.height());
     for (auto* plane : {&x_, &y_, &xx_, &yy_, &xy_}) plane->resize(count);
-    const auto at = [channel](std::size_t pixel) { return pixel * 3 + static_cast<std::size_t>(channel); };
-    for (std::size_t i = 0; i < count; ++i) {
-        const double x = rendered.data[at(i)], y = target_.data[at(i)];
-        x_[i] = x;
-        y_[i] = y;
-        xx_[i] = x * x;
-        yy_[i] = y * y;
-        xy_[i] = x * y;
-    }
-    for (auto* plane : {&x_, &y_, &xx_, &yy_, &xy_}) ssim_blur(*plane, scratch_, rendered.width, rendered.height);
-    // From here x_, xx_, xy_ hold the derivative of the summed SSIM map by E[x], E[x^2] and E[xy].
-    for (std::size_t i = 0; i < count; ++i) {
-        const double mx = x_[i], my = y_[i];
-        const double a1 = 2 * mx * my + SsimC1, a2 = 2 * (xy_[i] - mx * my) + SsimC2;
-        const double b1 = mx * mx + my * my + SsimC1, b2 = xx_[i] - mx * mx + yy_[i] - my * my + SsimC2;
-        const double value = a1 * a2 / (b1 * b2);
-        loss += scale * (1 - value);
-        const double by_xy = 2 * a1 / (b1 * b2), by_xx = -value / b2;
-        x_[i] = 2 * my * a2 / (b1 * b2) - 2 * mx * value / b1 - my * by_xy - 2 * mx * by_xx;
-        xx_[i] = by_xx;
-        xy_[i] = by_xy;
-    }
-    for (auto* plane : {&x_, &xx_, &xy_}) ssim_blur(*plane, scratch_, rendered.width, rendered.height);
-    for (std::size_t i = 0; i < count; ++i) {
-        const double x = rendered.data[at(i)], y = target_.data[at(i)];
-        gradient.data[at(i)] -= static_cast<float>(scale * (x_[i] + 2 * x * xx_[i] + y * xy_[i]));
+    std::size_t i = 0;
+    for (int v = work.y0; v < work.y1; ++v)
+        for (int u = work.x0; u < work.x1; ++u, ++i) {
+            const float x = rendered.at(u, v, static_cast<int>(channel)), y = target_.at(u, v, static_cast<int>(channel));
+            x_[i] = x;
+            y_[i] = y;
+            xx_[i] = x * x;
+            yy_[i] = y * y;
+            xy_[i] = x * y;
+        }
+    for (auto* plane : {&x_, &y_, &xx_, &yy_, &xy_}) blur(*plane, scratch_, work.width(), work.height());
+}
+
+/// Turns x_, xx_, xy_ into the derivative of the summed SSIM map by E[x], E[x^2] and E[xy]; returns sum(1 - SSIM).
+double Preservation::differentiate(const Box& work, const Box& live) {
+    double loss = 0;
+    std::size_t i = 0;
+    for (int v = work.y0; v < work.y1; ++v)
+        for (int u = work.x0; u < work.x1; ++u, ++i) {
+            if (u < live.x0 || u >= live.x1 || v < live.y0 || v >= live.y1) {
+                x_[i] = xx_[i] = xy_[i] = 0;   // the pictures are equal in the whole window: SSIM is 1 and flat
+                continue;
+            }
+            const float mx = x_[i], my = y_[i];
+            const float a1 = 2 * mx * my + SsimC1, a2 = 2 * (xy_[i] - mx * my) + SsimC2;
+            const float b1 = mx * mx + my * my + SsimC1, b2 = xx_[i] - mx * mx + yy_[i] - my * my + SsimC2;
+            const float value = a1 * a2 / (b1 * b2);
+            loss += 1 - static_cast<double>(value);
+            const float by_xy = 2 * a1 / (b1 * b2), by_xx = -value / b2;
+            x_[i] = 2 * my * a2 / (b1 * b2) - 2 * mx * value / b1 - my * by_xy - 2 * mx * by_xx;
+            xx_[i] = by_xx;
+            xy_[i] = by_xy;
+        }
+    return loss;
+}
+
+/// Outside `changed` the pictures are equal, so SSIM differs from 1 only within a window of it, and its gradient from 0
+/// only within two (method E3): the rest of the picture is skipped.
+void Preservation::ssim_gradient(const Image& rendered, const Box& changed, double scale, Image& gradient, double& loss) {
+    const Box live = grown(changed, WindowRadius, rendered), work = grown(changed, 2 * WindowRadius, rendered);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        load(rendered, work, channel);
+        loss += scale * differentiate(work, live);
+        for (auto* plane : {&x_, &xx_, &xy_}) blur(*plane, scratch_, work.width(), work.height());
+        std::size_t i = 0;
+        for (int v = work.y0; v < work.y1; ++v)
+            for (int u = work.x0; u < work.x1; ++u, ++i) {
+                const int c = static_cast<int>(channel);
+                const float x = rendered.at(u, v, c), y = target_.at(u, v, c);
+                gradient.at(u, v, c) -= static_cast<float>(scale) * (x_[i] + 2 * x * xx_[i] + y * xy_[i]);
+            }
     }
 }
 

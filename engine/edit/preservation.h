@@ -1,6 +1,7 @@
 // The loss that keeps a picture as it was outside a mask: L1 and D-SSIM against a pseudo ground truth (GSEditPro 3.3).
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "engine/base/image.h"
@@ -24,14 +25,22 @@ public:
     double add_gradient(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient);
 
 private:
-    void ssim_gradient(const Image& rendered, int channel, double scale, Image& gradient, double& loss);
+    /// Pixels [x0,x1) x [y0,y1).
+    struct Box {
+        int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+        bool empty() const { return x0 >= x1 || y0 >= y1; }
+        int width() const { return x1 - x0; }
+        int height() const { return y1 - y0; }
+    };
+    static Box grown(const Box& box, int by, const Image& image);
+    Box add_l1(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient, double& loss);
+    void load(const Image& rendered, const Box& work, std::size_t channel);
+    double differentiate(const Box& work, const Box& live);
+    void ssim_gradient(const Image& rendered, const Box& changed, double scale, Image& gradient, double& loss);
 
     PreservationWeights weights_;
     Image target_;
-    std::vector<double> x_, y_, xx_, yy_, xy_, scratch_;
+    std::vector<float> x_, y_, xx_, yy_, xy_, scratch_;
 };
-
-/// Blurs a plane [height,width] with the 11-tap Gaussian window of SSIM (sigma 1.5), zero padding; in place.
-void ssim_blur(std::vector<double>& plane, std::vector<double>& scratch, int width, int height);
 
 }  // namespace gse::edit

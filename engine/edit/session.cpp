@@ -2,6 +2,7 @@
 #include "engine/edit/session.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -17,7 +18,7 @@
 namespace gse::edit {
 namespace {
 
-constexpr int CalibrationSteps = 20;        // method 2.5
+constexpr std::size_t CalibrationSteps = 20;        // method 2.5
 constexpr float TrainingColourSlope = 0.01f;   // leaky clamp of negative colours while training (F18)
 
 double norm(const Image& image) {
@@ -48,6 +49,24 @@ private:
     std::size_t position_ = 0;
 };
 
+/// Adds the time it lives to a stage.
+class StageTimer {
+public:
+    explicit StageTimer(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
+    ~StageTimer() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+    StageTimer(const StageTimer&) = delete;
+    StageTimer& operator=(const StageTimer&) = delete;
+
+private:
+    double& seconds_;
+    std::chrono::steady_clock::time_point start_;
+};
+
+/// Seconds per stage of the loop.
+struct StageSeconds {
+    double originals = 0, render = 0, preserve = 0, guidance = 0, backward = 0, optimise = 0, densify = 0, snapshot = 0;
+};
+
 /// Everything one run keeps between iterations.
 class Loop {
 public:
@@ -67,14 +86,15 @@ public:
         EditResult result;
         ViewCycle cycle(visible_views(), request_.seed);
         for (int iteration = 0; iteration < request_.iterations; ++iteration) {
-            if (tools_.job.stop_requested()) {
+            if (tools_.job.stop_requested() || !iterate(iteration, cycle.next(), result)) {
                 result.stopped = true;
                 break;
             }
-            iterate(iteration, cycle.next(), result);
             result.iterations = iteration + 1;
-            if (tools_.snapshot && (iteration + 1) % request_.snapshot_every == 0)
+            if (tools_.snapshot && (iteration + 1) % request_.snapshot_every == 0) {
+                const StageTimer timer(seconds_.snapshot);
                 tools_.snapshot(std::make_shared<const GaussianSet>(set_.assemble().set), iteration + 1);
+            }
             tools_.job.report("editing", iteration + 1, request_.iterations);
             if (set_.labelled() == 0) break;   // everything was removed: nothing is left to do
         }
@@ -84,6 +104,7 @@ public:
 
 private:
     void render_originals(const GaussianSet& base) {
+        const StageTimer timer(seconds_.originals);
         settings_ = plan_.settings;
         for (const auto& view : plan_.views) {
             tools_.rasterizer.forward(base.spans(), view.camera, settings_, output_);
@@ -112,59 +133,91 @@ private:
         return values;
     }
 
-    void iterate(int iteration, std::size_t view, EditResult& result) {
-        const GaussianSpans rows = spans(set_.rows());
-        tools_.rasterizer.forward(rows, plan_.views[view].camera, settings_, output_);
+    /// One step; false when the guidance was stopped, with everything as before.
+    bool iterate(int iteration, std::size_t view, EditResult& result) {
+        {
+            const StageTimer timer(seconds_.render);
+            tools_.rasterizer.forward(spans(set_.rows()), plan_.views[view].camera, settings_, output_);
+        }
         IterationRecord record;
         record.iteration = iteration;
         record.view = view;
-        gradient_.resize(output_.colour.width, output_.colour.height, 3);
-        std::fill(gradient_.data.begin(), gradient_.data.end(), 0.0f);
-        record.preservation =
-            preservation_.add_gradient(output_.colour, originals_[view], plan_.masks[view], gradient_);
-        record.preservation_norm = norm(gradient_);
-        if (!add_guidance(iteration, view, record)) ++result.skipped_steps;
-        tools_.rasterizer.backward(gradient_, {}, set_.first_row(), gradients_);
-        set_.collect(gradients_);
-        record.anchor = set_.step(gradients_, iteration, request_);
+        {
+            const StageTimer timer(seconds_.preserve);
+            gradient_.resize(output_.colour.width, output_.colour.height, 3);
+            std::fill(gradient_.data.begin(), gradient_.data.end(), 0.0f);
+            record.preservation =
+                preservation_.add_gradient(output_.colour, originals_[view], plan_.masks[view], gradient_);
+            record.preservation_norm = norm(gradient_);
+        }
+        try {
+            const StageTimer timer(seconds_.guidance);
+            if (!add_guidance(iteration, view, record)) ++result.skipped_steps;
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::Cancelled) throw;
+            return false;
+        }
+        {
+            const StageTimer timer(seconds_.backward);
+            tools_.rasterizer.backward(gradient_, {}, set_.first_row(), gradients_);
+        }
+        {
+            const StageTimer timer(seconds_.optimise);
+            set_.collect(gradients_);
+            record.anchor = set_.step(gradients_, iteration, request_);
+        }
         densify(iteration, result);
         result.history.push_back(std::move(record));
+        return true;
     }
 
     /// Adds the gated and calibrated guidance gradient; false when it was not finite and left out.
     bool add_guidance(int iteration, std::size_t view, IterationRecord& record) {
-        const GuidanceInput input{output_.colour, plan_.views[view], view,
+        shown_.resize(output_.colour.width, output_.colour.height, 3);   // networks expect pictures in [0,1]
+        for (std::size_t i = 0; i < shown_.data.size(); ++i) shown_.data[i] = std::clamp(output_.colour.data[i], 0.0f, 1.0f);
+        const GuidanceInput input{shown_, plan_.views[view], view,
                                   plan_.view_words.empty() ? std::string() : plan_.view_words[view], iteration,
                                   request_.iterations,
                                   Random::stream(request_.seed, 1000 + static_cast<std::uint64_t>(iteration)).next()};
         GuidanceOutput guidance = tools_.guidance.evaluate(input);
         record.guidance = std::move(guidance.scalars);
+        GSE_CHECK_EQ(guidance.gradient.data.size(), gradient_.data.size());
         if (!finite(guidance.gradient)) return false;
-        if (request_.gate_guidance)
-            for (std::size_t pixel = 0; pixel < plan_.masks[view].data.size(); ++pixel)
-                if (plan_.masks[view].data[pixel] == 0)
-                    std::fill_n(guidance.gradient.data.begin() + static_cast<std::ptrdiff_t>(pixel * 3), 3, 0.0f);
+        gate(view, guidance.gradient);
         record.guidance_norm = norm(guidance.gradient);
         const auto factor = static_cast<float>(calibrated_weight(record.guidance_norm));
         for (std::size_t i = 0; i < gradient_.data.size(); ++i) gradient_.data[i] += factor * guidance.gradient.data[i];
         return true;
     }
 
-    /// Brings the guidance gradient to the norm that the preservation loss has when every pixel differs, so that neither
-    /// drowns the other whatever the model's scale is (method 2.5); averaged over the first steps, then fixed.
-    double calibrated_weight(double guidance_norm) {
-        if (calibration_count_ < CalibrationSteps && guidance_norm > 0) {
-            calibration_sum_ += guidance_norm;
-            ++calibration_count_;
+    /// Takes away what would act outside the mask, and what would push a colour further beyond [0,1].
+    void gate(std::size_t view, Image& gradient) const {
+        for (std::size_t i = 0; i < gradient.data.size(); ++i) {
+            const bool outside = request_.gate_guidance && plan_.masks[view].data[i / 3] == 0;
+            const bool beyond = (output_.colour.data[i] > 1 && gradient.data[i] < 0) ||
+                                (output_.colour.data[i] < 0 && gradient.data[i] > 0);
+            if (outside || beyond) gradient.data[i] = 0;
         }
-        if (calibration_count_ == 0) return request_.guidance_weight;
-        const double full = request_.preserve * request_.l1 / std::sqrt(static_cast<double>(gradient_.data.size()));
-        return request_.guidance_weight * std::max(full, 1e-6) / (calibration_sum_ / calibration_count_);
+    }
+
+    /// Brings the guidance gradient to the norm that the preservation loss has when every pixel differs, so that neither
+    /// drowns the other whatever the model's scale is (method 2.5). The median of the first steps, then fixed: one
+    /// outlier must not decide.
+    double calibrated_weight(double guidance_norm) {
+        if (calibration_.size() < CalibrationSteps && guidance_norm > 0) {
+            calibration_.push_back(guidance_norm);
+            std::vector<double> sorted = calibration_;
+            std::sort(sorted.begin(), sorted.end());
+            const double full = request_.preserve * request_.l1 / std::sqrt(static_cast<double>(gradient_.data.size()));
+            guidance_scale_ = request_.guidance_weight * std::max(full, 1e-6) / sorted[sorted.size() / 2];
+        }
+        return guidance_scale_;
     }
 
     void densify(int iteration, EditResult& result) {
         const int step = iteration + 1;
         if (request_.densify_every == 0 || step % request_.densify_every != 0 || step < request_.densify_from) return;
+        const StageTimer timer(seconds_.densify);
         const bool may_grow = step <= request_.densify_until * request_.iterations;
         const auto count = set_.densify(request_, random_, may_grow);
         result.cloned += count.cloned;
@@ -179,6 +232,10 @@ private:
         result.label = std::move(assembled.label);
         result.generation = std::move(assembled.generation);
         result.skipped_rows = set_.skipped_rows();
+        result.guidance_scale = guidance_scale_;
+        result.seconds = {{"originals", seconds_.originals}, {"render", seconds_.render},     {"preserve", seconds_.preserve},
+                          {"guidance", seconds_.guidance},   {"backward", seconds_.backward}, {"optimise", seconds_.optimise},
+                          {"densify", seconds_.densify},     {"snapshot", seconds_.snapshot}};
     }
 
     const EditPlan& plan_;
@@ -192,8 +249,10 @@ private:
     raster::Gradients gradients_;
     std::vector<Image> originals_;
     Image gradient_;
-    double calibration_sum_ = 0;
-    int calibration_count_ = 0;
+    Image shown_;
+    std::vector<double> calibration_;   // norms of the first guidance gradients
+    double guidance_scale_ = 0;
+    StageSeconds seconds_;
 };
 
 bool same_row(std::span<const float> a, std::size_t row_a, std::span<const float> b, std::size_t row_b, std::size_t stride) {

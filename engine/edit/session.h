@@ -47,6 +47,8 @@ struct EditResult {
     std::size_t cloned = 0, split = 0, pruned = 0;
     std::size_t changed_outside_label = 0;   // rows outside the label that differ from the base in any bit; always 0
     std::size_t nonfinite = 0;               // labelled rows with a NaN or infinity in the result
+    double guidance_scale = 0;               // factor the calibration gave the guidance's gradient
+    std::map<std::string, double> seconds;   // per stage: "render", "preserve", "guidance", "backward", "optimise", ...
 };
 
 /// Receives the state of a running edit every few iterations; the set is immutable and may be kept.

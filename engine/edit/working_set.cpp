@@ -10,16 +10,20 @@
 namespace gse::edit {
 namespace {
 
-constexpr double Beta1 = 0.9, Beta2 = 0.999, AdamEpsilon = 1e-15;
 constexpr float LargestLogit = 12.0f;            // method F17
 constexpr double SmallestScale = 1e-6;           // of the extent
 constexpr double LargestScale = 0.5;             // of the extent
-constexpr std::size_t AffineTerms = 4;           // 1, red, green, blue
+constexpr std::size_t AffineTerms = 4;           // constant, red, green, blue
+constexpr double ConstantShare = 0.5;            // of the common colour change: low, so that black stays black
+constexpr double CommonRate = 2;                  // times the colour's rate: makes both kinds of change equally fast
+constexpr double DarkestLabel = 0.1;             // darker labels count as this bright in the common change
+constexpr float LargestGradient = 1e15f;         // larger ones overflow Adam's second moment
 
-bool finite_row(const std::vector<float>& values, std::size_t row, std::size_t stride) {
-    for (std::size_t i = row * stride; i < (row + 1) * stride; ++i)
-        if (!std::isfinite(values[i])) return false;
-    return true;
+/// True when all values of the row are finite and of a size that can be worked with.
+bool usable_row(const std::vector<float>& values, std::size_t row, std::size_t stride) {
+    bool usable = true;
+    for (std::size_t i = row * stride; i < (row + 1) * stride; ++i) usable &= std::abs(values[i]) <= LargestGradient;
+    return usable;
 }
 
 float largest(const std::vector<float>& values, std::size_t row) {
@@ -38,25 +42,6 @@ GaussianData reserve_like(const GaussianSet& base) {
 }
 
 }  // namespace
-
-void adam_step(std::span<float> parameters, std::span<const float> gradient, AdamMoments& moments,
-               const AdamRates& rates) {
-    GSE_CHECK_EQ(parameters.size(), gradient.size());
-    moments.first.resize(parameters.size());
-    moments.second.resize(parameters.size());
-    const double correction1 = 1 - std::pow(Beta1, rates.step), correction2 = 1 - std::pow(Beta2, rates.step);
-    const std::size_t stride = rates.rates.size();
-    for (std::size_t i = 0; i < parameters.size(); ++i) {
-        const double g = gradient[i];
-        const double first = Beta1 * moments.first[i] + (1 - Beta1) * g;
-        const double second = Beta2 * moments.second[i] + (1 - Beta2) * g * g;
-        moments.first[i] = static_cast<float>(first);
-        moments.second[i] = static_cast<float>(second);
-        double rate = rates.rates[i % stride];
-        if (!rates.row_factor.empty()) rate *= rates.row_factor[i / stride];
-        parameters[i] -= static_cast<float>(rate * (first / correction1) / (std::sqrt(second / correction2) + AdamEpsilon));
-    }
-}
 
 GenerationSchedule::GenerationSchedule(const EditRequest& request)
     : start_(request.anchor_start),
@@ -85,10 +70,12 @@ WorkingSet::WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> la
     first_row_ = rows_.size();
     for (std::size_t row = 0; row < base.size(); ++row)
         if (label[row] != 0) append(data, row, 0, static_cast<std::int64_t>(row));
-    for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, 0, -1);
     adding_ = seeds.size() > 0;
+    const int seed_generation = adding_ ? schedule_.advance() : 0;
+    for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, seed_generation, -1);
     start_count_ = labelled();
     common_.assign(3 * AffineTerms, 0.0f);
+    measure_colour();
     remember_anchor();
 }
 
@@ -121,9 +108,9 @@ void WorkingSet::find_bad_rows(const raster::Gradients& gradients) {
     const std::size_t count = labelled();
     bad_.assign(count, 0);
     for (std::size_t i = 0; i < count; ++i) {
-        const bool good = finite_row(gradients.position, i, 3) && finite_row(gradients.log_scale, i, 3) &&
-                          finite_row(gradients.rotation, i, 4) && finite_row(gradients.opacity_logit, i, 1) &&
-                          finite_row(gradients.sh, i, rows_.sh_stride());
+        const bool good = usable_row(gradients.position, i, 3) && usable_row(gradients.log_scale, i, 3) &&
+                          usable_row(gradients.rotation, i, 4) && usable_row(gradients.opacity_logit, i, 1) &&
+                          usable_row(gradients.sh, i, rows_.sh_stride());
         if (good) continue;
         bad_[i] = 1;
         ++skipped_rows_;
@@ -142,11 +129,13 @@ double WorkingSet::add_anchor(std::span<const float> now, std::span<const float>
     const std::size_t stride = now.size() / labelled();
     const double scale = weight / static_cast<double>(now.size());
     double loss = 0;
-    for (std::size_t i = 0; i < now.size(); ++i) {
-        const double factor = scale * schedule_.weight(generation_[i / stride]);
-        const double difference = static_cast<double>(now[i]) - anchor[i];
-        loss += factor * difference * difference;
-        gradient_[i] += static_cast<float>(2 * factor * difference);
+    for (std::size_t row = 0; row < labelled(); ++row) {
+        const double factor = scale * schedule_.weight(generation_[row]);
+        for (std::size_t i = row * stride; i < (row + 1) * stride; ++i) {
+            const double difference = static_cast<double>(now[i]) - anchor[i];
+            loss += factor * difference * difference;
+            gradient_[i] += static_cast<float>(2 * factor * difference);
+        }
     }
     return loss;
 }
@@ -197,33 +186,55 @@ void WorkingSet::step_colour(const raster::Gradients& gradients, const EditReque
     adam_step(now, gradient_, sh_, {std::span(rates).first(stride), {}, steps_});
 }
 
+void WorkingSet::measure_colour() {
+    const std::size_t stride = rows_.sh_stride();
+    double sum = 0;
+    for (std::size_t i = 0; i < labelled(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) sum += std::pow(colour_from_sh(birth_sh_[i * stride + c]), 2);
+    const double mean = labelled() > 0 ? sum / static_cast<double>(labelled()) : 1;
+    colour_size_ = std::isfinite(mean) ? std::max(std::sqrt(mean), DarkestLabel) : 1;
+}
+
 void WorkingSet::step_common_colour(const EditRequest& request) {
     // The change common to the label is an affine map of each row's own colour, colour' = A colour + b: a low-rank
-    // change that keeps texture and shading. Its gradient is the mean over the rows.
+    // change that keeps texture, shading and black. Its gradient is the mean over the rows.
     const std::size_t stride = rows_.sh_stride(), count = labelled();
     common_gradient_.assign(3 * AffineTerms, 0.0f);
     std::array<double, 3 * AffineTerms> sum{};
-    for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double g = gradient_[i * stride + c];
-            sum[c * AffineTerms] += g;
-            for (std::size_t k = 0; k < 3; ++k) sum[c * AffineTerms + 1 + k] += g * birth_sh_[i * stride + k];
-        }
+    const auto terms = [&](std::size_t i) {
+        const float* birth = &birth_sh_[i * stride];
+        std::array<double, AffineTerms> result{ConstantShare, 0, 0, 0};
+        for (std::size_t k = 0; k < 3; ++k) result[k + 1] = colour_from_sh(birth[k]) / colour_size_;
+        return result;
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto own = terms(i);
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t k = 0; k < AffineTerms; ++k) sum[c * AffineTerms + k] += gradient_[i * stride + c] * own[k];
+    }
     for (std::size_t j = 0; j < sum.size(); ++j) common_gradient_[j] = static_cast<float>(sum[j] / static_cast<double>(count));
     common_before_ = common_;
-    const std::array<double, 1> rate{request.rate_colour * request.colour_coupling};
+    const std::array<double, 1> rate{CommonRate * request.rate_colour * request.colour_coupling};
     adam_step(common_, common_gradient_, common_moments_, {rate, {}, steps_});
-    std::array<float, 3 * AffineTerms> change{};
-    for (std::size_t j = 0; j < change.size(); ++j) change[j] = common_[j] - common_before_[j];
-    float* rows = rows_.sh.data() + first_row_ * stride;
-    for (std::size_t i = 0; i < count; ++i)
-        for (std::size_t coefficient = 0; coefficient < stride; coefficient += 3)
-            for (std::size_t c = 0; c < 3; ++c) {
-                const float* birth = &birth_sh_[i * stride + coefficient];
-                const float* affine = &change[c * AffineTerms];
-                rows[i * stride + coefficient + c] += (coefficient == 0 ? affine[0] : 0.0f) + affine[1] * birth[0] +
-                                                      affine[2] * birth[1] + affine[3] * birth[2];
-            }
+    std::array<double, 3 * AffineTerms> change{};
+    for (std::size_t j = 0; j < change.size(); ++j) change[j] = static_cast<double>(common_[j]) - common_before_[j];
+    // View-dependent coefficients are colours without the constant: the same A applies to them.
+    std::array<float, 9> rest{};
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t k = 0; k < 3; ++k)
+            rest[c * 3 + k] = static_cast<float>(change[c * AffineTerms + 1 + k] * ShC0 / colour_size_);
+    for (std::size_t i = 0; i < count; ++i) {
+        float* row = rows_.sh.data() + (first_row_ + i) * stride;
+        const float* birth = &birth_sh_[i * stride];
+        const auto own = terms(i);
+        for (std::size_t c = 0; c < 3; ++c)
+            for (std::size_t k = 0; k < AffineTerms; ++k) row[c] += static_cast<float>(change[c * AffineTerms + k] * own[k]);
+        for (std::size_t coefficient = 3; coefficient < stride; coefficient += 3) {
+            const float* b = birth + coefficient;
+            for (std::size_t c = 0; c < 3; ++c)
+                row[coefficient + c] += rest[c * 3] * b[0] + rest[c * 3 + 1] * b[1] + rest[c * 3 + 2] * b[2];
+        }
+    }
 }
 
 void WorkingSet::guard(const EditRequest& request) {

@@ -7,27 +7,12 @@
 #include <vector>
 
 #include "engine/base/random.h"
+#include "engine/edit/adam.h"
 #include "engine/edit/request.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/scene/gaussian_set.h"
 
 namespace gse::edit {
-
-/// First and second moments of Adam (Kingma and Ba 2015) for one attribute of the labelled rows.
-struct AdamMoments {
-    std::vector<float> first, second;
-};
-
-/// Learning rates of one Adam step: `rates` are those of the components of a row (repeated for every row), `row_factor`
-/// (may be empty) multiplies them per row. `step` counts from 1.
-struct AdamRates {
-    std::span<const double> rates;
-    std::span<const float> row_factor;
-    int step = 1;
-};
-
-/// One Adam step; beta 0.9 / 0.999, eps 1e-15 as in 3DGS. Dense: rows with zero gradient still follow their momentum.
-void adam_step(std::span<float> parameters, std::span<const float> gradient, AdamMoments& moments, const AdamRates& rates);
 
 /// Anchor weights per generation (GSEditPro eq. 6; GaussianEditor's schedule, method 2.3).
 class GenerationSchedule {
@@ -50,8 +35,8 @@ struct DensifyCount {
 
 class WorkingSet {
 public:
-    /// `label` [N] bits of the base set; `seeds` (may be empty) are appended as labelled rows of generation 0 with
-    /// origin -1, free of anchors until the first densification.
+    /// `label` [N] bits of the base set; `seeds` (may be empty) are appended as labelled rows of generation 1 with
+    /// origin -1: as if born in a densification, so free of anchors until the next (method A14).
     WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> label, const GaussianData& seeds,
                const EditRequest& request, double extent);
 
@@ -93,6 +78,7 @@ private:
     void step_geometry(const raster::Gradients& gradients, int iteration, const EditRequest& request);
     void step_colour(const raster::Gradients& gradients, const EditRequest& request);
     void step_common_colour(const EditRequest& request);
+    void measure_colour();
     void load_gradient(const std::vector<float>& gradient, std::size_t stride);
     void guard(const EditRequest& request);
     bool prunable(std::size_t index, const EditRequest& request) const;
@@ -116,6 +102,7 @@ private:
     AdamMoments position_, log_scale_, rotation_, opacity_, sh_;
     std::vector<float> common_, common_gradient_, common_before_;   // 3 channels x 4 affine coefficients
     AdamMoments common_moments_;
+    double colour_size_ = 1;               // root mean square of the birth colours: common changes are relative to it
     std::vector<double> gradient_sum_;
     std::vector<std::uint32_t> gradient_count_;
     std::size_t skipped_rows_ = 0;

@@ -1,0 +1,109 @@
+// The field list of a request, its JSON form, and what is refused.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <set>
+#include <string>
+
+#include "engine/edit/locate.h"
+#include "engine/edit/request.h"
+
+namespace {
+
+using namespace gse;
+using edit::EditRequest;
+
+EditRequest bear(const std::string& source, const std::string& prompt, const std::string& target) {
+    EditRequest request;
+    request.source = source;
+    request.prompt = prompt;
+    request.target = target;
+    return request;
+}
+
+edit::EditMode mode_of(const std::string& source, const std::string& prompt, const std::string& target) {
+    return edit::decide_mode(edit::validated(bear(source, prompt, target)), std::nullopt).first;
+}
+
+/// Another value that the field's range allows.
+template <class T>
+T changed(const T& value) {
+    if constexpr (std::is_same_v<T, bool>)
+        return !value;
+    else if constexpr (std::is_same_v<T, std::string>)
+        return value + "x";
+    else if constexpr (std::is_floating_point_v<T>)
+        return value > 0 ? value * T(0.9) : T(0.25);
+    else
+        return value + 1;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("every field survives JSON, has a help text and a name of its own") {
+    EditRequest request;
+    std::set<std::string> names;
+    EditRequest::visit_fields(request, [&](const char* name, auto& value, const char* help, auto...) {
+        value = changed(value);
+        DOCTEST_CHECK(names.insert(name).second);
+        DOCTEST_CHECK(std::string(help).size() > 10);
+    });
+    const auto json = fields_to_json(request);
+    DOCTEST_CHECK(json.size() == names.size());
+    EditRequest copy;
+    fields_from_json(copy, json);
+    DOCTEST_CHECK(fields_to_json(copy) == json);
+    DOCTEST_CHECK(fields_to_json(EditRequest{}) != json);
+    // Every member is in the list: the struct is no larger than its listed members and padding.
+    std::size_t listed = 0;
+    EditRequest::visit_fields(request, [&](const char*, auto& value, const char*, auto...) { listed += sizeof(value); });
+    DOCTEST_CHECK(sizeof(EditRequest) - listed < 8 * names.size());
+}
+
+DOCTEST_TEST_CASE("JSON with an unknown name, a wrong type or a value out of range is refused") {
+    EditRequest request;
+    DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"no_such_field", 1}}), Error);
+    DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"iterations", "many"}}), Error);
+    DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"tau", 1.5}}), Error);
+}
+
+DOCTEST_TEST_CASE("a request is checked in one sentence") {
+    DOCTEST_CHECK_THROWS_AS(edit::validated(bear("bear", "", "hat")), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::validated(bear("bear", "a blue bear", "hat")), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::validated(bear("", "a blue bear", "")), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::validated(bear("bear", "a bluebear", "blue")), Error);   // whole words only
+    EditRequest request = bear("bear", "a blue bear", "blue");
+    request.mode = "guess";
+    DOCTEST_CHECK_THROWS_AS(edit::validated(request), Error);
+    try {
+        edit::validated(bear("bear", "a blue bear", "hat"));
+    } catch (const Error& error) {
+        DOCTEST_CHECK(error.code() == ErrorCode::InvalidArgument);
+        DOCTEST_CHECK(error.message().find("hat") != std::string::npos);
+        DOCTEST_CHECK(std::string(error.what()).find('\n') == std::string::npos);
+    }
+    const auto good = edit::validated(bear("Bear", "A BLUE bear.", "Blue"));
+    DOCTEST_CHECK(good.source == "bear");
+    DOCTEST_CHECK(good.target == "blue");
+    DOCTEST_CHECK(edit::validated(bear("", "a golden statue", "golden")).source == "golden");
+}
+
+DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") {
+    using edit::EditMode;
+    DOCTEST_CHECK(mode_of("statue", "a golden statue", "golden") == EditMode::Modify);
+    DOCTEST_CHECK(mode_of("bear", "a bear made of stone", "stone") == EditMode::Modify);
+    DOCTEST_CHECK(mode_of("bear", "turn the bear into a wooden dog", "dog") == EditMode::Modify);
+    DOCTEST_CHECK(mode_of("bear", "a blue dog on the grass", "dog") == EditMode::Modify);
+    DOCTEST_CHECK(mode_of("bear", "a red bear wearing a blue hat", "hat") == EditMode::Add);
+    DOCTEST_CHECK(mode_of("bear", "a bear with flames", "flames") == EditMode::Add);
+    DOCTEST_CHECK(mode_of("bear", "add a hat to the bear", "hat") == EditMode::Add);
+    DOCTEST_CHECK(mode_of("bear", "a hat on the bear", "hat") == EditMode::Add);
+    auto request = bear("bear", "a red bear wearing a blue hat", "hat");
+    DOCTEST_CHECK(edit::decide_mode(request, 0.8).first == EditMode::Modify);   // the detector sees one already
+    DOCTEST_CHECK(edit::decide_mode(request, 0.1).first == EditMode::Add);
+    request.mode = "modify";
+    DOCTEST_CHECK(edit::decide_mode(request, 0.0).first == EditMode::Modify);
+    request = bear("bear", "a blue bear", "blue");
+    request.mode = "add";
+    DOCTEST_CHECK(edit::decide_mode(request, 1.0).first == EditMode::Add);
+}

@@ -1,0 +1,254 @@
+// Promises of the edit loop: nothing outside the label changes, the same seed gives the same bytes, a stop keeps the
+// last state, hostile guidance does no harm.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "tests/unit/edit/edit_scenes.h"
+
+namespace {
+
+using namespace gse;
+
+edit::EditRequest short_request() {
+    edit::EditRequest request;
+    request.prompt = "a blue ball";
+    request.source = "ball";
+    request.target = "blue";
+    request.iterations = 40;
+    request.densify_from = 10;
+    request.densify_every = 10;
+    request.densify_percent = 0.1;
+    request.snapshot_every = 10;
+    request.seed = 5;
+    return request;
+}
+
+struct Run {
+    unsigned threads = 1;
+    edit::SnapshotCallback snapshot{};
+    JobControl job{};
+};
+
+edit::EditResult run(const test::BallScene& scene, const edit::EditRequest& request, edit::Guidance& guidance,
+                     const Run& how = {}) {
+    ThreadPool pool(how.threads);
+    const auto rasterizer = raster::make_fast_rasterizer(pool);
+    const auto plan = test::ball_plan(scene, *rasterizer);
+    return edit::run_edit(scene.set, plan, request, {*rasterizer, guidance, how.snapshot, how.job});
+}
+
+/// Mean base colour of the rows with a bit.
+Vec3 mean_colour(const GaussianSet& set, const std::vector<std::uint8_t>& bits) {
+    Vec3 sum;
+    double count = 0;
+    const std::size_t stride = set.sh().size() / std::max<std::size_t>(set.size(), 1);
+    for (std::size_t row = 0; row < set.size(); ++row) {
+        if (bits[row] == 0) continue;
+        for (int c = 0; c < 3; ++c) sum[c] += colour_from_sh(set.sh()[row * stride + static_cast<std::size_t>(c)]);
+        count += 1;
+    }
+    return sum / std::max(count, 1.0);
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("labelled rows follow the guidance, all others keep every bit, rows keep their order") {
+    for (const int degree : {0, 3}) {
+        const auto scene = test::ball_scene(120, degree);
+        auto guidance = test::towards({0.1, 0.1, 0.9});
+        auto request = short_request();
+        const auto result = run(scene, request, guidance);
+        DOCTEST_CHECK(result.changed_outside_label == 0);
+        DOCTEST_CHECK(result.nonfinite == 0);
+        DOCTEST_CHECK(result.history.size() == 40);
+        DOCTEST_CHECK(result.cloned + result.split > 0);
+        DOCTEST_CHECK(result.set.size() == result.label.size());
+        DOCTEST_CHECK(result.set.size() == result.generation.size());
+        const Vec3 before = mean_colour(scene.set, scene.first), after = mean_colour(result.set, result.label);
+        DOCTEST_CHECK(after.z > before.z + 0.1);
+        DOCTEST_CHECK(after.x < before.x - 0.1);
+        std::int64_t last = -1;
+        for (std::size_t row = 0; row < scene.set.size(); ++row) {
+            const std::int64_t now = result.base_to_new[row];
+            DOCTEST_CHECK((now < 0 || now > last));
+            if (now < 0) {
+                DOCTEST_CHECK(scene.first[row] != 0);   // only labelled rows may go
+                continue;
+            }
+            last = now;
+            DOCTEST_CHECK(result.label[static_cast<std::size_t>(now)] == scene.first[row]);
+            if (scene.first[row] != 0) continue;
+            DOCTEST_CHECK(test::same_bytes(scene.set.position().subspan(row * 3, 3),
+                                           result.set.position().subspan(static_cast<std::size_t>(now) * 3, 3)));
+            DOCTEST_CHECK(result.generation[static_cast<std::size_t>(now)] == 0);
+        }
+        for (std::size_t row = static_cast<std::size_t>(last) + 1; row < result.set.size(); ++row) {
+            DOCTEST_CHECK(result.label[row] == 1);       // new rows come last
+            DOCTEST_CHECK(result.generation[row] > 0);
+        }
+    }
+}
+
+DOCTEST_TEST_CASE("one and two threads give the same bytes, another seed gives others") {
+    const auto scene = test::ball_scene();
+    auto guidance = test::towards({0.1, 0.1, 0.9});
+    auto request = short_request();
+    const auto one = run(scene, request, guidance, {1});
+    const auto two = run(scene, request, guidance, {2});
+    DOCTEST_CHECK(test::same_bytes(one.set, two.set));
+    DOCTEST_CHECK(one.label == two.label);
+    request.seed = 6;
+    DOCTEST_CHECK_FALSE(test::same_bytes(one.set, run(scene, request, guidance).set));
+}
+
+DOCTEST_TEST_CASE("a stop in the middle returns the last state, equal to a shorter history") {
+    const auto scene = test::ball_scene();
+    std::stop_source stop;
+    int calls = 0;
+    test::FunctionGuidance guidance([&](const edit::GuidanceInput& input) {
+        if (++calls == 25) stop.request_stop();
+        return test::towards({0.1, 0.1, 0.9}).evaluate(input);
+    });
+    std::shared_ptr<const GaussianSet> snapshot;
+    Run how;
+    how.snapshot = [&](std::shared_ptr<const GaussianSet> set, int iteration) {
+        DOCTEST_CHECK(iteration % 10 == 0);
+        snapshot = std::move(set);
+    };
+    how.job.stop = stop.get_token();
+    const auto result = run(scene, short_request(), guidance, how);
+    DOCTEST_CHECK(result.stopped);
+    DOCTEST_CHECK(result.iterations == 25);
+    DOCTEST_CHECK(result.changed_outside_label == 0);
+    DOCTEST_CHECK(result.nonfinite == 0);
+    DOCTEST_REQUIRE(snapshot != nullptr);
+    DOCTEST_CHECK_FALSE(test::same_bytes(*snapshot, scene.set));
+}
+
+DOCTEST_TEST_CASE("snapshots are the states of the run and stay as they were") {
+    const auto scene = test::ball_scene();
+    auto guidance = test::towards({0.1, 0.1, 0.9});
+    std::vector<std::shared_ptr<const GaussianSet>> snapshots;
+    Run how;
+    how.snapshot = [&](std::shared_ptr<const GaussianSet> set, int) { snapshots.push_back(std::move(set)); };
+    const auto result = run(scene, short_request(), guidance, how);
+    DOCTEST_REQUIRE(snapshots.size() == 4);
+    DOCTEST_CHECK(test::same_bytes(*snapshots.back(), result.set));
+    DOCTEST_CHECK_FALSE(test::same_bytes(*snapshots[0], *snapshots[1]));
+}
+
+DOCTEST_TEST_CASE("guidance that is not finite is left out and counted") {
+    const auto scene = test::ball_scene();
+    int calls = 0;
+    test::FunctionGuidance guidance([&](const edit::GuidanceInput& input) {
+        auto output = test::towards({0.1, 0.1, 0.9}).evaluate(input);
+        ++calls;
+        if (calls % 4 == 0) output.gradient.data[7] = std::numeric_limits<float>::quiet_NaN();
+        if (calls % 4 == 1) output.gradient.data[11] = -std::numeric_limits<float>::infinity();
+        return output;
+    });
+    log::set_level(log::Level::Off);
+    const auto result = run(scene, short_request(), guidance);
+    log::set_level(log::Level::Info);
+    DOCTEST_CHECK(result.skipped_steps == 20);
+    DOCTEST_CHECK(result.nonfinite == 0);
+    DOCTEST_CHECK(mean_colour(result.set, result.label).z > mean_colour(scene.set, scene.first).z + 0.05);
+}
+
+DOCTEST_TEST_CASE("one enormous first gradient does not silence the guidance") {
+    const auto scene = test::ball_scene();
+    int calls = 0;
+    test::FunctionGuidance guidance([&](const edit::GuidanceInput& input) {
+        auto output = test::towards({0.1, 0.1, 0.9}).evaluate(input);
+        if (++calls == 1)
+            for (auto& value : output.gradient.data) value *= 1e25f;
+        return output;
+    });
+    const auto result = run(scene, short_request(), guidance);
+    DOCTEST_CHECK(result.nonfinite == 0);
+    DOCTEST_CHECK(mean_colour(result.set, result.label).z > mean_colour(scene.set, scene.first).z + 0.05);
+}
+
+DOCTEST_TEST_CASE("no label, and a label nobody sees, are refused in one sentence") {
+    const auto scene = test::ball_scene();
+    const auto rasterizer = raster::make_plain_rasterizer();
+    auto guidance = test::towards({0, 0, 1});
+    auto plan = test::ball_plan(scene, *rasterizer, 3, 16);
+    plan.label.assign(plan.label.size(), 0);
+    DOCTEST_CHECK_THROWS_AS(edit::run_edit(scene.set, plan, short_request(), {*rasterizer, guidance, {}, {}}), Error);
+    GaussianData data = scene.set.to_data();
+    for (std::size_t row = 0; row < data.size(); ++row) data.opacity_logit[row] = -20;
+    plan.label = scene.first;
+    DOCTEST_CHECK_THROWS_AS(edit::run_edit(GaussianSet(std::move(data)), plan, short_request(), {*rasterizer, guidance, {}, {}}),
+                            Error);
+}
+
+DOCTEST_TEST_CASE("seeds are new rows of a later generation, the scene itself stays") {
+    const auto scene = test::ball_scene();
+    ThreadPool pool(1);
+    const auto rasterizer = raster::make_fast_rasterizer(pool);
+    auto plan = test::ball_plan(scene, *rasterizer);
+    plan.label.assign(plan.label.size(), 0);
+    edit::AddRegion region;
+    region.side = 0.2;
+    region.centres = {{-0.55, -0.6, 0}, {-0.55, -0.8, 0}};
+    plan.seeds = edit::seed_splats(region, 60, 0, 1);
+    auto guidance = test::towards({0.1, 0.1, 0.9});
+    const auto result = edit::run_edit(scene.set, plan, short_request(), {*rasterizer, guidance, {}, {}});
+    DOCTEST_CHECK(result.set.size() > scene.set.size());
+    for (std::size_t row = 0; row < scene.set.size(); ++row) DOCTEST_CHECK(result.base_to_new[row] == static_cast<std::int64_t>(row));
+    DOCTEST_CHECK(test::same_bytes(scene.set.sh(), result.set.sh().first(scene.set.sh().size())));
+    for (std::size_t row = scene.set.size(); row < result.set.size(); ++row) {
+        DOCTEST_CHECK(result.label[row] == 1);
+        DOCTEST_CHECK(result.generation[row] >= 1);
+    }
+}
+
+DOCTEST_TEST_CASE("growth is capped") {
+    const auto scene = test::ball_scene();
+    auto guidance = test::towards({0.1, 0.1, 0.9});
+    auto request = short_request();
+    request.densify_percent = 1;
+    request.max_growth = 1.2;
+    request.iterations = 60;
+    const auto result = run(scene, request, guidance);
+    const auto labelled = static_cast<double>(std::count(result.label.begin(), result.label.end(), 1));
+    DOCTEST_CHECK(labelled <= 1.2 * 150);
+}
+
+DOCTEST_TEST_CASE("a full colour coupling shifts all rows alike, none lets each go its own way") {
+    auto scene = test::ball_scene();
+    GaussianData data = scene.set.to_data();
+    for (std::size_t i = 0; i < data.sh.size(); ++i) data.sh[i] = static_cast<float>(sh_from_colour(i % 3 == 0 ? 0.8 : 0.3));
+    scene.set = GaussianSet(std::move(data));   // of one colour, so that a common change has nothing to tell rows apart by
+    test::FunctionGuidance guidance([](const edit::GuidanceInput& input) {   // upper half blue, lower half yellow
+        edit::GuidanceOutput output;
+        output.gradient = Image(input.rendered.width, input.rendered.height, 3);
+        for (int y = 0; y < input.rendered.height; ++y)
+            for (int x = 0; x < input.rendered.width; ++x)
+                for (int c = 0; c < 3; ++c) {
+                    const bool upper = y < input.rendered.height / 2;
+                    output.gradient.at(x, y, c) = input.rendered.at(x, y, c) - ((c == 2) == upper ? 0.9f : 0.1f);
+                }
+        return output;
+    });
+    auto request = short_request();
+    request.densify_every = 0;
+    const auto contrast = [&](double coupling) {
+        request.colour_coupling = coupling;
+        const auto result = run(scene, request, guidance);
+        double upper = 0, lower = 0;
+        for (std::size_t row = 0; row < 60; ++row) {   // rows go from y = +0.4 (below, as -y is up) to -0.4
+            lower += result.set.sh()[row * 3 + 2] - scene.set.sh()[row * 3 + 2];
+            upper += result.set.sh()[(90 + row) * 3 + 2] - scene.set.sh()[(90 + row) * 3 + 2];
+        }
+        return (upper - lower) / 60;
+    };
+    constexpr double SameForAll = 1e-4;   // float rounding of forty steps
+    DOCTEST_CHECK(std::abs(contrast(1)) < SameForAll);
+    DOCTEST_CHECK(contrast(0) > 0.3);
+}
