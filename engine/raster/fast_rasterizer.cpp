@@ -79,7 +79,7 @@ public:
         GSE_CHECK_EQ(masked.size(), gaussians.size);
         GSE_CHECK_EQ(total.size(), gaussians.size);
         GSE_CHECK(mask.width == camera.width && mask.height == camera.height && mask.channels == 1);
-        side_frame_.prepare(gaussians, camera, settings, side_values(gaussians));
+        side_frame_.prepare(gaussians, camera, settings, {});
         side_frame_.assign_slots(0);
         grow_scratch();
         mask_ = &mask;
@@ -111,9 +111,6 @@ private:
     void grow_scratch() {
         if (scratch_.size() < pool_.thread_count()) scratch_.resize(pool_.thread_count());
     }
-
-    /// Contributions need no colours: any values will do.
-    std::span<const float> side_values(const GaussianSpans& gaussians) { return gaussians.opacity_logit; }
 
     void resize(Gradients& g, std::size_t rows) const {
         g.position.resize(rows * 3);

@@ -49,12 +49,12 @@ GSE_INLINE std::uint64_t window_bits(std::int32_t first, std::int32_t last, std:
 
 /// Emits the tiles of one row of tiles from its four bands.
 GSE_INLINE void emit_row(const Bands& bands, int at, std::uint32_t row_base, BinJob& job) {
-    std::int32_t first = 1 << 28, last = -1;
-    for (int k = at; k < at + 4; ++k)
-        if (bands.first[k] <= bands.last[k]) {
-            first = bands.first[k] < first ? bands.first[k] : first;
-            last = bands.last[k] > last ? bands.last[k] : last;
-        }
+    // Missed bands have first = all columns and last = -1, which no minimum or maximum notices.
+    std::int32_t first = bands.first[at], last = bands.last[at];
+    for (int k = at + 1; k < at + 4; ++k) {
+        first = bands.first[k] < first ? bands.first[k] : first;
+        last = bands.last[k] > last ? bands.last[k] : last;
+    }
     if (first > last) return;
     std::int32_t tile = first / 4;
     const std::int32_t end = last / 4 + 1;
@@ -80,12 +80,11 @@ GSE_INLINE float clamp_to(float value, float high) {
 }
 
 static void bin(BinJob& job) {
-    const int block_columns = (job.width + BlockSize - 1) / BlockSize,
-              block_rows = (job.height + BlockSize - 1) / BlockSize;
+    const int block_columns = (job.width + BlockSize - 1) / BlockSize;
     const std::uint32_t tile_columns = static_cast<std::uint32_t>((job.width + TileSize - 1) / TileSize);
     Bands bands;
     for (; job.begin < job.end; ++job.begin) {
-        if (job.begin + 8 < job.end) __builtin_prefetch(job.records + job.order[job.begin + 8], 1);
+        if (job.begin + 16 < job.end) __builtin_prefetch(job.records + job.order[job.begin + 16], 1);
         Record& record = job.records[job.order[job.begin]];
         const float reach = (record.log2_opacity + static_cast<float>(Log2Of255)) * (1.0f + 1e-4f) + 1e-4f;
         const float inverse_l1 = 1.0f / record.l1;
@@ -106,7 +105,7 @@ static void bin(BinJob& job) {
         const std::size_t before = job.written;
         for (int band = top & ~3; band <= bottom; band += BandLanes) {
             cut_bands(ellipse, band, block_columns, bands);
-            for (int at = 0; at < BandLanes && band + at < block_rows; at += 4)
+            for (int at = 0; at < BandLanes && band + at <= bottom; at += 4)
                 emit_row(bands, at, static_cast<std::uint32_t>((band + at) / 4) * tile_columns, job);
         }
         record.pair_count = static_cast<std::uint32_t>(job.written - before);

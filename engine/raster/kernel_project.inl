@@ -88,7 +88,8 @@ static void colour_batch(ColourBatch& batch, int sh_count) {
     batch.size = 0;
 }
 
-/// Clamps the colours at 0 and takes out the records whose colour is not finite.
+/// Clamps the colours at 0 and takes out the records whose colour is not finite (so that what is drawn is the
+/// same whether colours or values are composited).
 static void check_colours(ProjectJob& job) {
     constexpr float largest = 3.40282346638528859812e38f;
     std::size_t kept = 0;
@@ -102,6 +103,10 @@ static void check_colours(ProjectJob& job) {
         if (!finite) {
             ++job.unusable;
             continue;
+        }
+        if (job.values != nullptr) {
+            record.colour[0] = job.values[record.row];
+            record.colour[1] = record.colour[2] = 0.0f;
         }
         if (kept != i) job.records[kept] = record;
         union {
@@ -142,11 +147,6 @@ static void project(ProjectJob& job) {
             const std::size_t source_row = raw.row[lane];
             Record& record = job.records[job.drawn++];
             write_record(found, lane, raw.row[lane], record);
-            if (job.values != nullptr) {
-                record.colour[0] = job.values[source_row];
-                record.colour[1] = record.colour[2] = 0.0f;
-                continue;
-            }
             for (int k = 0; k < 3; ++k) colours.direction[k][colours.size] = found.direction[k][lane];
             colours.sh[colours.size] = job.source.sh + source_row * job.source.sh_stride;
             colours.record[colours.size] = &record;

@@ -57,7 +57,7 @@ struct Viewpoint {
 struct ProjectJob {
     Source source;
     const Viewpoint* view;
-    const float* values;  // if set: colour = (value, 0, 0) and no spherical harmonics
+    const float* values;  // if set: colour = (value, 0, 0)
     std::size_t begin, end;
     Record* records;
     std::uint32_t* keys;   // bits of the depth, which sort as unsigned numbers

@@ -25,7 +25,9 @@ void* operator new(std::size_t size) { return take(size == 0 ? 16 : size, 16); }
 void* operator new(std::size_t size, std::align_val_t alignment) {
     return take(size, static_cast<std::size_t>(alignment));
 }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return take(size == 0 ? 16 : size, 16); }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    return take(size == 0 ? 16 : size, 16);
+}
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
