@@ -10,6 +10,7 @@
 #include "engine/base/fields.h"
 #include "engine/base/progress.h"
 #include "engine/edit/interfaces.h"
+#include "engine/neural/attention_parameters.h"
 #include "engine/neural/sds_parameters.h"
 #include "engine/neural/starter_trainer.h"
 
@@ -29,7 +30,8 @@ struct SampleRequest {
 class TextToImage {
 public:
     virtual ~TextToImage() = default;
-    virtual std::unique_ptr<edit::AttentionSource> attention() = 0;
+    virtual std::unique_ptr<edit::AttentionSource> attention(const AttentionParameters& parameters) = 0;
+    std::unique_ptr<edit::AttentionSource> attention() { return attention(AttentionParameters{}); }
     virtual std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const SdsParameters& parameters) = 0;
     /// Words the model was trained on; empty = an open vocabulary.
     virtual std::vector<std::string> known_words() const = 0;

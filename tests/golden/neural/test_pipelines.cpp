@@ -192,7 +192,8 @@ DOCTEST_TEST_CASE("sds: through the bilinear resize of a render") {
     const auto size = io.tensor("render.resized").size(2);
     const auto resized = torch::upsample_bilinear2d(render, {size, size}, false);
     margins.near("resized", resized, io.tensor("render.resized"), OutputTolerance);
-    const auto latents = bundle.vae->encode_moments(resized * 2 - 1).mean * bundle.scaling_factor();
+    const auto moments = bundle.vae->encode_moments(resized * 2 - 1);
+    const auto latents = moments.sample(io.tensor("posterior_eps")) * bundle.scaling_factor();
     margins.near("latents", latents, io.tensor("render.latents"), OutputTolerance);
     const auto result =
         sds_gradient(bundle, latents, {io.tensor("noise"), 421, 7.5, torch::cat({io.tensor("uncond"), io.tensor("cond")})});

@@ -1,0 +1,183 @@
+// Attention maps: single-step probes (method.md X1) or the paper's image-to-image run (method.md, S3 in detail).
+#include "engine/neural/attention_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "engine/base/error.h"
+#include "engine/neural/images.h"
+#include "engine/neural/torch_errors.h"
+
+namespace gse::neural {
+namespace {
+
+// Noise levels as shares of the schedule, unless the model states its own (method.md X1; starter.md iv for absent things).
+const std::vector<double> PresentLevels{0.3, 0.5, 0.7};
+const std::vector<double> AbsentLevels{0.8, 0.85, 0.9};
+constexpr double AbsentStrength = 0.9;          // img2img must begin at least this noisy for an absent thing ...
+constexpr double AbsentLowestLevel = 0.75;      // ... and only steps above this level are looked at
+constexpr std::int64_t BatchPixels = 64 * 64;   // latent cells per UNet call: one SD image, 16 of the starter's
+
+bool any_prefix(std::string_view name, const std::vector<std::string>& prefixes) {
+    return std::any_of(prefixes.begin(), prefixes.end(), [&](const auto& prefix) { return name.starts_with(prefix); });
+}
+
+/// Mean over the word's tokens [k,s,s], at the image's size, divided by its maximum.
+Image word_map(const torch::Tensor& tokens, int width, int height) {
+    auto map = tokens.mean(0).unsqueeze(0).unsqueeze(0);
+    map = torch::upsample_bicubic2d(map, {height, width}, false).clamp_min(0);
+    const float highest = map.max().item<float>();
+    return to_image(highest > 0 ? map / highest : map);
+}
+
+}  // namespace
+
+std::string with_view_words(const std::string& prompt, const std::string& view_words) {
+    return view_words.empty() ? prompt : prompt + ", " + view_words;
+}
+
+AttentionAccumulator::AttentionAccumulator(std::int64_t size, std::int64_t columns)
+    : sum_(torch::zeros({columns, size, size}, torch::kFloat32)) {}
+
+void AttentionAccumulator::take(std::vector<AttentionCapture::Map>& maps) {
+    for (const auto& map : maps) {
+        auto mean = map.probabilities.to(torch::kCPU, torch::kFloat32).mean(torch::IntArrayRef{0, 1});   // [hw,k]
+        mean = mean.t().reshape({1, sum_.size(0), map.height, map.width});
+        if (map.height != sum_.size(1) || map.width != sum_.size(2))
+            mean = torch::upsample_bicubic2d(mean, {sum_.size(1), sum_.size(2)}, false).clamp_min(0);
+        sum_ += mean[0];
+        ++count_;
+    }
+    maps.clear();
+}
+
+torch::Tensor AttentionAccumulator::mean() const { return sum_ / std::max<std::int64_t>(count_, 1); }
+
+BundleAttentionSource::BundleAttentionSource(std::shared_ptr<const ModelBundle> bundle, AttentionParameters parameters)
+    : bundle_(std::move(bundle)), parameters_(std::move(parameters)) {
+    if (parameters_.method != "probes" && parameters_.method != "img2img")
+        throw Error(ErrorCode::InvalidArgument, fmt::format("there is no attention method \"{}\"", parameters_.method),
+                    "use probes or img2img");
+}
+
+AttentionCapture BundleAttentionSource::make_capture() const {
+    const auto& facts = bundle_->facts;
+    auto layers = facts.attention_layers;
+    if (layers.empty()) layers = {"down_blocks", "up_blocks"};   // DAAM leaves out the middle ...
+    auto sizes = facts.attention_sizes;
+    const auto latent = bundle_->latent_size();
+    if (sizes.empty()) sizes = {latent, latent / 2, latent / 4};   // ... and every map of 8x8 at 64x64
+    AttentionCapture capture;
+    capture.wants = [layers, sizes](std::string_view layer, std::int64_t height, std::int64_t) {
+        return any_prefix(layer, layers) && std::find(sizes.begin(), sizes.end(), height) != sizes.end();
+    };
+    return capture;
+}
+
+void BundleAttentionSource::probe(const edit::AttentionQuery& query, const torch::Tensor& latents,
+                                  const torch::Tensor& context, AttentionCapture& capture,
+                                  AttentionAccumulator& sum) const {
+    const auto& facts = bundle_->facts;
+    auto levels = query.absent ? facts.attention_absent_timesteps : facts.attention_timesteps;
+    if (levels.empty()) levels = query.absent ? AbsentLevels : PresentLevels;
+    std::vector<torch::Tensor> noises;
+    std::vector<std::int64_t> timesteps;
+    const auto last = bundle_->schedule.steps() - 1;
+    for (int repeat = 0; repeat < std::max(1, query.repeats); ++repeat)
+        for (const double level : levels) {
+            const auto t = static_cast<std::int64_t>(level * static_cast<double>(bundle_->schedule.steps()));
+            timesteps.push_back(std::clamp<std::int64_t>(t, 0, last));
+            noises.push_back(seeded_noise(latents.sizes(), Random::stream(query.seed, timesteps.size()).next()));
+        }
+    const auto count = static_cast<std::int64_t>(timesteps.size());
+    const auto batch = std::max<std::int64_t>(1, BatchPixels / (latents.size(2) * latents.size(3)));
+    const auto all_noise = torch::cat(noises).to(latents.device());
+    const auto all_t = torch::tensor(timesteps, torch::kInt64);
+    for (std::int64_t first = 0; first < count; first += batch) {
+        const auto size = std::min(batch, count - first);
+        const auto t = all_t.narrow(0, first, size);
+        const auto start = latents.expand({size, -1, -1, -1});
+        const auto noisy = bundle_->schedule.add_noise(start, all_noise.narrow(0, first, size), t);
+        bundle_->unet->forward(noisy, t, context.expand({size, -1, -1}), &capture);
+        // Equal weight for every pass: a smaller last batch must not count as much as a full one.
+        for (auto& map : capture.maps)
+            for (std::int64_t row = 0; row < size; ++row) {
+                std::vector<AttentionCapture::Map> one = {{map.layer, map.height, map.width, map.probabilities.narrow(0, row, 1)}};
+                sum.take(one);
+            }
+        capture.maps.clear();
+    }
+}
+
+void BundleAttentionSource::run_img2img(const edit::AttentionQuery& query, const torch::Tensor& latents,
+                                        const torch::Tensor& context, AttentionCapture& capture,
+                                        AttentionAccumulator& sum) const {
+    const auto& schedule = bundle_->schedule;
+    const auto negative = bundle_->encode_prompts({""});
+    const double lowest = query.absent ? AbsentLowestLevel * static_cast<double>(schedule.steps()) : 0;
+    for (int repeat = 0; repeat < std::max(1, query.repeats); ++repeat) {
+        const auto sampler = make_sampler(SamplerKind::Ddim, schedule, parameters_.steps);
+        const auto seed = Random::stream(query.seed, static_cast<std::uint64_t>(repeat)).next();
+        DenoiseJob job;
+        job.sampler = sampler.get();
+        job.first = first_step(sampler->step_count(),
+                               query.absent ? std::max(AbsentStrength, parameters_.strength) : parameters_.strength);
+        job.guidance_scale = parameters_.guidance_scale;
+        job.context = torch::cat({negative, context});
+        job.seed = seed;
+        job.capture = &capture;
+        capture.conditional_half_only = job.guidance_scale != 1.0;
+        job.after_step = [&](std::int64_t step, const torch::Tensor&) {
+            if (sampler->timestep(step) < lowest) capture.maps.clear();
+            sum.take(capture.maps);
+        };
+        const auto noise = seeded_noise(latents.sizes(), seed).to(latents.device());
+        denoise(*bundle_, sampler->start_from(latents, noise, job.first), job);
+    }
+}
+
+std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& query) {
+    const auto prompt = with_view_words(query.prompt, query.view_words);
+    std::vector<std::vector<std::int64_t>> columns;
+    AttentionCapture capture = make_capture();
+    for (const auto& word : query.words) {
+        columns.push_back(bundle_->tokenizer.find_word(prompt, word, bundle_->token_count()));
+        capture.columns.insert(capture.columns.end(), columns.back().begin(), columns.back().end());
+    }
+    if (columns.empty()) return {};
+    return guard_torch("finding the words in the image", [&] {
+        const torch::NoGradGuard no_grad;
+        const auto image = resize_square(to_tensor(query.image, bundle_->device), bundle_->image_size());
+        const auto latents = image_to_latents(*bundle_, image);
+        const auto context = bundle_->encode_prompts({prompt});
+        AttentionAccumulator sum(latents.size(2), static_cast<std::int64_t>(capture.columns.size()));
+        if (parameters_.method == "probes")
+            probe(query, latents, context, capture, sum);
+        else
+            run_img2img(query, latents, context, capture, sum);
+        const auto mean = checked_mean(sum);
+        std::vector<Image> images;
+        std::int64_t column = 0;
+        for (const auto& tokens : columns) {
+            const auto count = static_cast<std::int64_t>(tokens.size());
+            images.push_back(word_map(mean.narrow(0, column, count), query.image.width, query.image.height));
+            column += count;
+        }
+        return images;
+    });
+}
+
+torch::Tensor BundleAttentionSource::checked_mean(const AttentionAccumulator& sum) const {
+    if (sum.count() == 0)
+        throw Error(ErrorCode::Model, "the model has no cross-attention layer of the kind that its facts name",
+                    "correct attention_layers and attention_sizes in gseditpro.json", bundle_->path);
+    auto mean = sum.mean();
+    if (!torch::isfinite(mean).all().item<bool>())
+        throw Error(ErrorCode::Model, "the attention maps hold values that are not finite numbers",
+                    "the model's weights are damaged or the image holds non-finite pixels", bundle_->path);
+    return mean;
+}
+
+}  // namespace gse::neural

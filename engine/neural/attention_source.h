@@ -1,0 +1,50 @@
+// Where the words of a prompt land in an image: cross-attention averaged over layers, heads, noise levels and repeats.
+#pragma once
+
+#include <memory>
+
+#include "engine/edit/interfaces.h"
+#include "engine/neural/attention_parameters.h"
+#include "engine/neural/pipelines.h"
+
+namespace gse::neural {
+
+/// Sums captured maps at latent resolution, so that memory does not grow with the number of passes.
+class AttentionAccumulator {
+public:
+    AttentionAccumulator(std::int64_t size, std::int64_t columns);
+    /// Adds the mean over batch and heads of every map, bicubic to size x size, negative overshoot cut; clears `maps`.
+    void take(std::vector<AttentionCapture::Map>& maps);
+    /// Mean over everything taken, [k,size,size].
+    torch::Tensor mean() const;
+    std::int64_t count() const { return count_; }
+
+private:
+    torch::Tensor sum_;
+    std::int64_t count_ = 0;
+};
+
+/// The maps of the query's words from a loaded model.
+class BundleAttentionSource final : public edit::AttentionSource {
+public:
+    BundleAttentionSource(std::shared_ptr<const ModelBundle> bundle, AttentionParameters parameters);
+    std::vector<Image> locate(const edit::AttentionQuery& query) override;
+    double threshold() const override { return bundle_->facts.attention_threshold; }
+    int image_size() const override { return static_cast<int>(bundle_->image_size()); }
+
+private:
+    AttentionCapture make_capture() const;
+    torch::Tensor checked_mean(const AttentionAccumulator& sum) const;
+    void probe(const edit::AttentionQuery& query, const torch::Tensor& latents, const torch::Tensor& context,
+               AttentionCapture& capture, AttentionAccumulator& sum) const;
+    void run_img2img(const edit::AttentionQuery& query, const torch::Tensor& latents, const torch::Tensor& context,
+                     AttentionCapture& capture, AttentionAccumulator& sum) const;
+
+    std::shared_ptr<const ModelBundle> bundle_;
+    AttentionParameters parameters_;
+};
+
+/// "a bear" and "front view" to "a bear, front view".
+std::string with_view_words(const std::string& prompt, const std::string& view_words);
+
+}  // namespace gse::neural

@@ -1,0 +1,214 @@
+// Attention maps, score distillation and sampling on a tiny random model: properties that hold for any weights.
+#include <cmath>
+
+#include "engine/neural/attention_source.h"
+#include "engine/neural/images.h"
+#include "engine/neural/model.h"
+#include "engine/neural/sds_guidance.h"
+#include "tests/unit/neural/tiny_model.h"
+
+using namespace gse;
+using namespace gse::neural;
+using namespace gse::test;
+
+namespace {
+
+Image gradient_image(int width, int height) {
+    Image image(width, height, 3);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c) image.at(x, y, c) = static_cast<float>((x * (c + 1) + y * 2) % 17) / 17.0f;
+    return image;
+}
+
+std::shared_ptr<const ModelBundle> load_shared(const TinyModel& model) {
+    return std::make_shared<const ModelBundle>(load_bundle(model.path()));
+}
+
+edit::GuidanceInput input_at(const Image& image, const View& view, int iteration) {
+    edit::GuidanceInput input{image, view};
+    input.iteration = iteration;
+    input.iteration_count = 10;
+    input.seed = 99;
+    return input;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("attention source: one map per word, at the image's size, divided by its maximum, repeatable") {
+    const TinyModel model;
+    const Image image = gradient_image(50, 40);
+    for (const char* method : {"probes", "img2img"}) {
+        AttentionParameters parameters;
+        parameters.method = method;
+        parameters.steps = 4;
+        BundleAttentionSource source(load_shared(model), parameters);
+        edit::AttentionQuery query{image, "a red bear", {"bear", "red", "red bear"}};
+        query.view_words = "front view";
+        query.repeats = 2;
+        const auto maps = source.locate(query);
+        DOCTEST_REQUIRE(maps.size() == 3);
+        for (const auto& map : maps) {
+            DOCTEST_CHECK(map.width == image.width);
+            DOCTEST_CHECK(map.height == image.height);
+            DOCTEST_CHECK(*std::min_element(map.data.begin(), map.data.end()) >= 0.0f);
+            DOCTEST_CHECK(*std::max_element(map.data.begin(), map.data.end()) == doctest::Approx(1.0f));
+        }
+        DOCTEST_CHECK(source.locate(query)[0].data == maps[0].data);
+        query.seed = 1;
+        DOCTEST_CHECK(source.locate(query)[0].data != maps[0].data);
+        query.absent = true;
+        DOCTEST_CHECK(source.locate(query).size() == 3);
+        query.words = {"hat"};
+        DOCTEST_CHECK(contains(message_of([&] { source.locate(query); }), "hat"));
+    }
+}
+
+DOCTEST_TEST_CASE("attention accumulator: a hand-made map comes back") {
+    AttentionAccumulator sum(4, 2);
+    auto probabilities = torch::zeros({1, 2, 16, 2});   // heads 2, 4x4, two columns
+    probabilities.index_put_({0, 0, 5, 0}, 1.0);
+    probabilities.index_put_({0, 1, 5, 0}, 0.5);
+    probabilities.index_put_({0, torch::indexing::Slice(), 10, 1}, 0.25);
+    std::vector<AttentionCapture::Map> maps = {{"a", 4, 4, probabilities}, {"b", 2, 2, torch::full({1, 2, 4, 2}, 0.5)}};
+    sum.take(maps);
+    DOCTEST_CHECK(maps.empty());
+    const auto mean = sum.mean();
+    DOCTEST_CHECK(mean[0][1][1].item<float>() == doctest::Approx((0.75 + 0.5) / 2));
+    DOCTEST_CHECK(mean[1][2][2].item<float>() == doctest::Approx((0.25 + 0.5) / 2));
+    DOCTEST_CHECK(mean[0][3][3].item<float>() == doctest::Approx(0.25));
+}
+
+DOCTEST_TEST_CASE("sds guidance: repeatable gradient at the render's size, silent when nothing is asked") {
+    for (const char* prediction : {"epsilon", "v_prediction"}) {
+        const TinyModel model(prediction);
+        const auto bundle = load_shared(model);
+        const Image image = gradient_image(48, 40);
+        const View view;
+        SdsParameters parameters;
+        SdsGuidance guidance(bundle, "a red bear", parameters);
+        const auto first = guidance.evaluate(input_at(image, view, 3));
+        DOCTEST_CHECK(first.gradient.width == 48);
+        DOCTEST_CHECK(first.gradient.height == 40);
+        DOCTEST_CHECK(first.scalars.at("gradient_norm") > 0);
+        DOCTEST_CHECK(std::all_of(first.gradient.data.begin(), first.gradient.data.end(), [](float v) { return std::isfinite(v); }));
+        DOCTEST_CHECK(guidance.evaluate(input_at(image, view, 3)).gradient.data == first.gradient.data);
+        parameters.weight = 0;
+        DOCTEST_CHECK(SdsGuidance(bundle, "a red bear", parameters).evaluate(input_at(image, view, 3)).scalars.at("gradient_norm") == 0);
+    }
+}
+
+DOCTEST_TEST_CASE("sds guidance: the gradient is that of the latents, back through resize and encoder") {
+    const TinyModel model;
+    const auto bundle = load_shared(model);
+    SdsParameters parameters;
+    parameters.sample_posterior = false;
+    parameters.t_min = parameters.t_max_start = parameters.t_max_end = 0.4;
+    parameters.clamp = 0;
+    const Image image = gradient_image(32, 32);
+    const View view;
+    const auto output = SdsGuidance(bundle, "a red bear", parameters).evaluate(input_at(image, view, 0));
+    DOCTEST_CHECK(output.scalars.at("timestep") == 400);
+    // Directional derivative of sum(latents * g / n) by central differences in double precision.
+    const auto& vae = bundle->vae;
+    vae->to(torch::kFloat64);
+    const auto x = to_tensor(image, torch::kCPU).to(torch::kFloat64);
+    torch::manual_seed(3);
+    const auto direction = torch::randn_like(x);
+    const torch::NoGradGuard no_grad;
+    const auto latents_at = [&](double step) {
+        return vae->encode_moments((x + step * direction) * 2 - 1).mean * bundle->scaling_factor();
+    };
+    constexpr double Step = 1e-4, Tolerance = 1e-3;   // of the value; fp32 gradient against fp64 differences
+    Random random(99);
+    draw_timestep(parameters, 0, bundle->schedule.steps(), random);
+    const auto noise = seeded_noise(latents_at(0).sizes(), random.next());
+    const auto g = sds_gradient(*bundle, latents_at(0).to(torch::kFloat32),
+                                {noise, 400, parameters.guidance_scale, bundle->encode_prompts({"", "a red bear"})}).gradient;
+    const double expected = ((latents_at(Step) - latents_at(-Step)) / (2 * Step) * g).sum().item<double>() / static_cast<double>(g.numel());
+    const double actual = (to_tensor(output.gradient, torch::kCPU) * direction).sum().item<double>();
+    DOCTEST_CHECK(std::abs(actual - expected) <= Tolerance * std::abs(expected));
+}
+
+DOCTEST_TEST_CASE("sds guidance: timesteps stay within the annealed range") {
+    SdsParameters parameters;
+    parameters.t_min = 0.1;
+    parameters.t_max_start = 0.9;
+    parameters.t_max_end = 0.3;
+    Random random(5);
+    for (const double progress : {0.0, 0.5, 1.0}) {
+        const auto high = static_cast<std::int64_t>(std::llround((0.9 - 0.6 * progress) * 1000));
+        std::int64_t lowest = 1000, highest = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const auto t = draw_timestep(parameters, progress, 1000, random);
+            lowest = std::min(lowest, t);
+            highest = std::max(highest, t);
+        }
+        DOCTEST_CHECK(lowest >= 100);
+        DOCTEST_CHECK(highest <= high);
+        DOCTEST_CHECK(highest > high - 20);   // 2000 draws reach the last 2 %
+    }
+    parameters.t_max_end = 0.01;              // below t_min: the range collapses to t_min
+    DOCTEST_CHECK(draw_timestep(parameters, 1, 1000, random) == 100);
+}
+
+DOCTEST_TEST_CASE("samplers: image to image with strength 0.75 of 50 steps starts at 721 and has 37 steps") {
+    const NoiseSchedule schedule{SchedulerConfig{}};
+    const auto sampler = make_sampler(SamplerKind::Ddim, schedule, 50);
+    const auto first = first_step(sampler->step_count(), 0.75);
+    DOCTEST_CHECK(sampler->step_count() - first == 37);
+    DOCTEST_CHECK(sampler->timestep(first) == 721);
+    DOCTEST_CHECK(sampler->timestep(sampler->step_count() - 1) == 1);
+}
+
+DOCTEST_TEST_CASE("samplers: with an oracle that knows the clean sample, every sampler ends there") {
+    const NoiseSchedule schedule{SchedulerConfig{}};
+    const auto target = torch::randn({1, 4, 4, 4});
+    using enum SamplerKind;
+    for (const auto kind : {Ddim, Euler, EulerAncestral, Pndm, DpmSolverPp2M, Ddpm}) {
+        const auto sampler = make_sampler(kind, schedule, 20);
+        auto x = torch::randn({1, 4, 4, 4}) * sampler->initial_sigma();
+        for (std::int64_t i = 0; i < sampler->step_count(); ++i) {
+            const auto t = torch::full({1}, static_cast<std::int64_t>(sampler->timestep(i)), torch::kInt64);
+            const auto in = sampler->scale_input(x, i);
+            const double a = schedule.alpha_cumprod(t.item<std::int64_t>());
+            const auto epsilon = (in - std::sqrt(a) * target) / std::sqrt(1 - a);
+            x = sampler->step(epsilon, x, i, torch::randn_like(x));
+        }
+        // DDIM and PNDM end at alphas_cumprod[0], DDPM at its last step: a little noise is left over.
+        constexpr double Leftover = 0.2;
+        DOCTEST_CHECK((x - target).abs().max().item<double>() < Leftover);
+    }
+}
+
+DOCTEST_TEST_CASE("images: resizing keeps the mean and flows gradient to every pixel") {
+    for (const auto& [width, height] : {std::pair(64, 64), std::pair(16, 16), std::pair(100, 24), std::pair(32, 32)}) {
+        const auto image = to_tensor(gradient_image(width, height), torch::kCPU).requires_grad_(true);
+        const auto resized = resize_square(image, 32);
+        DOCTEST_CHECK(resized.size(2) == 32);
+        DOCTEST_CHECK(resized.size(3) == 32);
+        DOCTEST_CHECK(resized.mean().item<float>() == doctest::Approx(image.mean().item<float>()).epsilon(0.02));
+        const auto gradient = torch::autograd::grad({resized.sum()}, {image})[0];
+        DOCTEST_CHECK(gradient.min().item<float>() > 0);
+    }
+    const Image image = gradient_image(5, 7);
+    DOCTEST_CHECK(to_image(to_tensor(image, torch::kCPU)).data == image.data);
+}
+
+DOCTEST_TEST_CASE("model: samples are repeatable images in [0,1]; weak img2img stays near the decoded image") {
+    const TinyModel model;
+    const auto loaded = load_model(model.path(), "cpu");
+    SampleRequest request;
+    request.prompt = "a red bear";
+    request.steps = 3;
+    const auto sample = loaded->sample(request);
+    DOCTEST_CHECK(sample.width == loaded->image_size());
+    DOCTEST_CHECK(loaded->sample(request).data == sample.data);
+    DOCTEST_CHECK(std::all_of(sample.data.begin(), sample.data.end(), [](float v) { return v >= 0 && v <= 1; }));
+    request.seed = 1;
+    DOCTEST_CHECK(loaded->sample(request).data != sample.data);
+    const Image image = gradient_image(32, 32);
+    request.strength = 0.34;
+    DOCTEST_CHECK(loaded->img2img(image, request).width == loaded->image_size());
+    DOCTEST_CHECK(loaded->known_words().size() == 2);
+}
