@@ -26,6 +26,16 @@ bool usable_row(const std::vector<float>& values, std::size_t row, std::size_t s
     return usable;
 }
 
+/// False for rows that cannot be drawn (NaN, infinite place or colour): they are left as they are, like unlabelled ones.
+/// Infinite opacity logits and flat axes are legal.
+bool editable_row(const GaussianData& data, std::size_t row) {
+    const auto legal_scale = [](float value) { return !std::isnan(value) && value < LargestGradient; };
+    return usable_row(data.position, row, 3) && usable_row(data.rotation, row, 4) &&
+           usable_row(data.sh, row, data.sh_stride()) && !std::isnan(data.opacity_logit[row]) &&
+           legal_scale(data.log_scale[row * 3]) && legal_scale(data.log_scale[row * 3 + 1]) &&
+           legal_scale(data.log_scale[row * 3 + 2]);
+}
+
 float largest(const std::vector<float>& values, std::size_t row) {
     return std::max({values[row * 3], values[row * 3 + 1], values[row * 3 + 2]});
 }
@@ -63,13 +73,13 @@ WorkingSet::WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> la
     GSE_CHECK_EQ(label.size(), base.size());
     const GaussianData data = base.to_data();
     for (std::size_t row = 0; row < base.size(); ++row) {
-        if (label[row] != 0) continue;
+        if (label[row] != 0 && editable_row(data, row)) continue;
         rows_.append_row(data, row);
         unlabelled_.push_back(static_cast<std::uint32_t>(row));
     }
     first_row_ = rows_.size();
     for (std::size_t row = 0; row < base.size(); ++row)
-        if (label[row] != 0) append(data, row, 0, static_cast<std::int64_t>(row));
+        if (label[row] != 0 && editable_row(data, row)) append(data, row, 0, static_cast<std::int64_t>(row));
     adding_ = seeds.size() > 0;
     const int seed_generation = adding_ ? schedule_.advance() : 0;
     for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, seed_generation, -1);
@@ -87,8 +97,17 @@ void WorkingSet::append(const GaussianData& from, std::size_t row, int generatio
     birth_sh_.insert(birth_sh_.end(), from.sh.begin() + static_cast<std::ptrdiff_t>(row * stride),
                      from.sh.begin() + static_cast<std::ptrdiff_t>((row + 1) * stride));
     birth_scale_.push_back(largest(from.log_scale, row));
+    make_finite(origin_.size() - 1);
     gradient_sum_.push_back(0);
     gradient_count_.push_back(0);
+}
+
+void WorkingSet::make_finite(std::size_t index) {
+    const std::size_t row = first_row_ + index;
+    float& logit = rows_.opacity_logit[row];
+    if (!std::isfinite(logit)) logit = logit > 0 ? LargestLogit : -LargestLogit;
+    for (std::size_t i = row * 3; i < row * 3 + 3; ++i)
+        if (!std::isfinite(rows_.log_scale[i])) rows_.log_scale[i] = static_cast<float>(std::log(SmallestScale * extent_));
 }
 
 void WorkingSet::remember_anchor() {

@@ -68,6 +68,8 @@ public:
 
 private:
     void append(const GaussianData& from, std::size_t row, int generation, std::int64_t origin);
+    /// Replaces the infinities that are legal in a file (opacity 0 or 1, flat axes) by the guards' limits.
+    void make_finite(std::size_t index);
     void keep_rows(const std::vector<std::uint8_t>& keep);
     void remember_anchor();
     /// Adds the anchor's gradient to gradient_; returns its loss.

@@ -1,0 +1,129 @@
+// Where new things go: votes of masks, anchors, seeds.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "tests/unit/edit/edit_scenes.h"
+
+namespace {
+
+using namespace gse;
+
+constexpr int Side = 64;
+
+/// Views of the two balls with their depths; masks are those of a small sphere at `centre`.
+struct Search {
+    test::BallScene scene = test::ball_scene(200);
+    std::vector<View> views = test::ball_views(12, Side);
+    std::vector<Mask> masks;
+    std::vector<Image> depths;
+
+    explicit Search(const Vec3& centre, double radius) {
+        const auto rasterizer = raster::make_plain_rasterizer();
+        raster::ForwardOutput output;
+        for (const auto& view : views) {
+            rasterizer->forward(scene.set.spans(), view.camera, {}, output);
+            for (std::size_t i = 0; i < output.depth.data.size(); ++i)
+                output.depth.data[i] = output.alpha.data[i] > 0.5f ? output.depth.data[i] / output.alpha.data[i] : 0;
+            depths.push_back(output.depth);
+            Mask mask(Side, Side);
+            const Vec3 p = view.camera.to_camera(centre);
+            for (int y = 0; y < Side; ++y)
+                for (int x = 0; x < Side; ++x) {
+                    const double dx = x + 0.5 - (view.camera.fx * p.x / p.z + view.camera.cx);
+                    const double dy = y + 0.5 - (view.camera.fy * p.y / p.z + view.camera.cy);
+                    mask.at(x, y) = std::hypot(dx, dy) < radius * view.camera.fx / p.z ? 1 : 0;
+                }
+            masks.push_back(std::move(mask));
+        }
+    }
+    edit::RegionSearch search() const { return {scene.set, scene.first, views, masks, depths, {0, -1, 0}, {0, 0, -1}}; }
+};
+
+}  // namespace
+
+DOCTEST_TEST_CASE("masks of one place vote for that place") {
+    const Vec3 centre{-0.55, -0.55, 0.05};
+    const Search setup(centre, 0.2);
+    const auto region = edit::vote_region(setup.search());
+    DOCTEST_REQUIRE_FALSE(region.empty());
+    DOCTEST_CHECK(region.origin == "attention");
+    DOCTEST_CHECK(region.agreement > 0.8);
+    Vec3 mean;
+    for (const auto& cell : region.centres) {
+        mean = mean + cell / static_cast<double>(region.centres.size());
+        DOCTEST_CHECK(length(cell - centre) < 0.2 * 1.6);   // the hull of twelve discs bulges a little
+    }
+    DOCTEST_CHECK(length(mean - centre) < 0.08);
+    // Its picture covers the masks it came from.
+    for (std::size_t v = 0; v < setup.views.size(); ++v) {
+        const Mask seen = edit::region_mask(region, setup.views[v].camera);
+        std::size_t both = 0;
+        for (std::size_t i = 0; i < seen.data.size(); ++i) both += seen.data[i] != 0 && setup.masks[v].data[i] != 0 ? 1 : 0;
+        DOCTEST_CHECK(static_cast<double>(both) > 0.7 * static_cast<double>(setup.masks[v].count()));
+    }
+}
+
+DOCTEST_TEST_CASE("masks that disagree, cover everything or are hidden inside give no region") {
+    Search apart({-0.55, -0.55, 0}, 0.2);
+    for (std::size_t v = 0; v < apart.masks.size(); ++v) {   // one quarter of the picture each, going round
+        apart.masks[v] = Mask(Side, Side);
+        for (int y = 0; y < Side / 2; ++y)
+            for (int x = 0; x < Side / 2; ++x)
+                apart.masks[v].at(x + (v % 2 == 1 ? Side / 2 : 0), y + (v / 2 % 2 == 1 ? Side / 2 : 0)) = 1;
+    }
+    DOCTEST_CHECK(edit::vote_region(apart.search()).empty());
+    Search all({-0.55, -0.55, 0}, 0.2);
+    for (auto& mask : all.masks) mask = Mask(Side, Side, 1);
+    DOCTEST_CHECK(edit::vote_region(all.search()).empty());
+    const Search inside({-0.55, 0, 0}, 0.12);   // within the opaque ball: nobody could see it
+    DOCTEST_CHECK(edit::vote_region(inside.search()).empty());
+    Search blind({-0.55, -0.55, 0}, 0.2);
+    for (auto& mask : blind.masks) mask = Mask();
+    DOCTEST_CHECK(edit::vote_region(blind.search()).empty());
+}
+
+DOCTEST_TEST_CASE("anchors lie where their names say") {
+    const Search setup({-0.55, -0.55, 0}, 0.2);
+    const auto search = setup.search();
+    for (const auto& cell : edit::anchor_region(search, "top").centres) DOCTEST_CHECK(cell.y < -0.25);
+    for (const auto& cell : edit::anchor_region(search, "front").centres) DOCTEST_CHECK(cell.z < 0);
+    for (const auto& cell : edit::anchor_region(search, "neck").centres) {
+        DOCTEST_CHECK(std::hypot(cell.x + 0.55, cell.z) > 0.2);
+        DOCTEST_CHECK(std::abs(cell.y) < 0.3);
+    }
+    for (const auto& cell : edit::anchor_region(search, "around").centres) DOCTEST_CHECK(length(cell - Vec3{-0.55, 0, 0}) > 0.3);
+    for (const char* place : {"top", "front", "neck", "around"}) {
+        const auto region = edit::anchor_region(search, place);
+        DOCTEST_CHECK(region.centres.size() > 20);
+        DOCTEST_CHECK(region.origin == place);
+        DOCTEST_CHECK(region.side > 0);
+    }
+    DOCTEST_CHECK(edit::usual_place("hat") == "top");
+    DOCTEST_CHECK(edit::usual_place("sunglasses") == "front");
+    DOCTEST_CHECK(edit::usual_place("scarf") == "neck");
+    DOCTEST_CHECK(edit::usual_place("flames") == "around");
+}
+
+DOCTEST_TEST_CASE("seeds lie in the region, are finite and repeatable") {
+    edit::AddRegion region;
+    region.side = 0.1;
+    region.centres = {{0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}};
+    const auto seeds = edit::seed_splats(region, 350, 2, 9, 0.1);
+    DOCTEST_REQUIRE(seeds.size() == 350);
+    DOCTEST_CHECK(seeds.sh.size() == 350 * 27);
+    for (std::size_t row = 0; row < seeds.size(); ++row) {
+        bool inside = false;
+        for (const auto& centre : region.centres) {
+            bool here = true;
+            for (int axis = 0; axis < 3; ++axis)
+                here &= std::abs(seeds.position[row * 3 + static_cast<std::size_t>(axis)] - centre[axis]) <= 0.0501;
+            inside |= here;
+        }
+        DOCTEST_CHECK(inside);
+        DOCTEST_CHECK(1 / (1 + std::exp(-seeds.opacity_logit[row])) == doctest::Approx(0.1).epsilon(1e-4));
+        DOCTEST_CHECK(std::isfinite(seeds.log_scale[row * 3]));
+    }
+    DOCTEST_CHECK(edit::seed_splats(region, 350, 2, 9, 0.1).position == seeds.position);
+    DOCTEST_CHECK(edit::seed_splats(region, 350, 2, 10, 0.1).position != seeds.position);
+    DOCTEST_CHECK(edit::seed_splats({}, 350, 0, 9).size() == 0);
+}

@@ -1,0 +1,235 @@
+// Words to labels with stand-ins for the networks: blurred true masks as attention.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/edit/grabcut_segmenter.h"
+#include "tests/unit/edit/edit_scenes.h"
+
+namespace {
+
+using namespace gse;
+
+constexpr double LeastIou = 0.9;    // blurred attention, clicks and twelve views at 48 px
+constexpr double LeastIouUnrefined = 0.65;   // a blurred map above one half covers less than the thing
+constexpr int Side = 48;
+
+double iou(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+    double both = 0, either = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        both += a[i] != 0 && b[i] != 0 ? 1 : 0;
+        either += a[i] != 0 || b[i] != 0 ? 1 : 0;
+    }
+    return either > 0 ? both / either : 0;
+}
+
+/// Attention from colours: "ball" is drawn to red pixels, "hat" to a spot above the red ball.
+class ColourAttention : public edit::AttentionSource {
+public:
+    std::vector<Image> locate(const edit::AttentionQuery& query) override {
+        queries.push_back({query.prompt, query.words.front(), query.absent, query.seed});
+        Image map(query.image.width, query.image.height, 1);
+        const bool blind = calls++ % 12 < blind_views;
+        for (int y = 0; y < map.height && !blind; ++y)
+            for (int x = 0; x < map.width; ++x) {
+                const int source = query.absent ? y + hat_shift : y;   // absent things are drawn above the red
+                if (source < map.height) map.at(x, y, 0) = redness(query.image, x, source);
+            }
+        return {localize::resize_image(localize::resize_image(map, 16, 16), map.width, map.height)};
+    }
+    int image_size() const override { return Side; }
+
+    struct Query {
+        std::string prompt, word;
+        bool absent;
+        std::uint64_t seed;
+    };
+    std::vector<Query> queries;
+    int blind_views = 0;
+    int hat_shift = 10;
+
+private:
+    static float redness(const Image& image, int x, int y) {
+        return std::max(0.0f, image.at(x, y, 0) - image.at(x, y, 1));
+    }
+    int calls = 0;
+};
+
+/// Finds red things when asked for a ball, nothing else.
+class RedDetector : public edit::TextSegmenter {
+public:
+    std::pair<Mask, double> segment(const Image& image, const std::string& noun) override {
+        Mask mask(image.width, image.height);
+        if (noun != "ball") return {mask, 0.0};
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x) mask.at(x, y) = image.at(x, y, 0) - image.at(x, y, 1) > 0.2f ? 1 : 0;
+        return {mask, 0.9};
+    }
+};
+
+edit::EditRequest request_for(const std::string& prompt, const std::string& target) {
+    edit::EditRequest request;
+    request.source = "ball";
+    request.prompt = prompt;
+    request.target = target;
+    request.seed = 3;
+    return edit::validated(request);
+}
+
+struct Fixture {
+    test::BallScene scene = test::ball_scene(200);
+    std::vector<View> views = test::ball_views(12, Side);
+    std::vector<std::string> words;
+    ThreadPool pool{1};
+    std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(pool);
+    ColourAttention attention;
+
+    edit::LocateInput input(const edit::EditRequest& request) const { return {scene.set, views, words, request, {}, {0, -1, 0}}; }
+    edit::LocateTools tools(edit::Segmenter* segmenter = nullptr, edit::TextSegmenter* text = nullptr) {
+        return {*rasterizer, attention, segmenter, text, {}};
+    }
+};
+
+struct Quiet {
+    Quiet() { log::set_level(log::Level::Off); }
+    ~Quiet() { log::set_level(log::Level::Info); }
+};
+
+}  // namespace
+
+DOCTEST_TEST_CASE("an object word labels its splats, with every segmenter and without") {
+    const Quiet quiet;
+    const auto request = request_for("a blue ball", "blue");
+    for (const bool segmented : {false, true}) {
+        Fixture fixture;
+        const auto segmenter = edit::make_default_segmenter();
+        const auto found = edit::locate(fixture.input(request), fixture.tools(segmented ? segmenter.get() : nullptr));
+        DOCTEST_CHECK(found.mode == edit::EditMode::Modify);
+        DOCTEST_CHECK(found.word == "ball");
+        DOCTEST_CHECK(found.failed_views == 0);
+        DOCTEST_INFO("segmenter " << segmented << " iou " << iou(*found.label.bits, fixture.scene.first));
+        DOCTEST_CHECK(iou(*found.label.bits, fixture.scene.first) > (segmented && edit::grabcut_available() ? LeastIou : LeastIouUnrefined));
+        DOCTEST_CHECK(found.seeds.size() == 0);
+        int by_points = 0;
+        for (const auto& view : found.views) {
+            DOCTEST_CHECK(view.mask.count() > 0);
+            DOCTEST_CHECK(view.captured > 0.4);
+            by_points += view.branch == "points" ? 1 : 0;
+            const auto inside = std::count_if(view.points.begin(), view.points.end(), [](const auto& p) { return p.positive; });
+            DOCTEST_CHECK(inside >= 1);
+            DOCTEST_CHECK(inside <= 5);
+        }
+        DOCTEST_CHECK((by_points > 6) == segmented);
+        const auto plan = edit::make_plan(fixture.input(request), found, *fixture.rasterizer);
+        DOCTEST_CHECK(plan.label == *found.label.bits);
+        for (std::size_t v = 0; v < plan.masks.size(); ++v)
+            DOCTEST_CHECK(plan.masks[v].count() >= found.views[v].mask.count());
+    }
+}
+
+DOCTEST_TEST_CASE("the same seed asks and answers the same; views get seeds of their own") {
+    const Quiet quiet;
+    const auto request = request_for("a blue ball", "blue");
+    Fixture one, two;
+    const auto a = edit::locate(one.input(request), one.tools());
+    const auto b = edit::locate(two.input(request), two.tools());
+    DOCTEST_CHECK(*a.label.bits == *b.label.bits);
+    DOCTEST_CHECK(*a.label.weight == *b.label.weight);
+    DOCTEST_REQUIRE(one.attention.queries.size() == 12);
+    for (std::size_t v = 0; v < 12; ++v) {
+        DOCTEST_CHECK(one.attention.queries[v].seed == two.attention.queries[v].seed);
+        DOCTEST_CHECK(one.attention.queries[v].prompt == "a blue ball");
+        if (v > 0) DOCTEST_CHECK(one.attention.queries[v].seed != one.attention.queries[0].seed);
+    }
+}
+
+DOCTEST_TEST_CASE("a word that the sentence replaces is looked for in a sentence of its own") {
+    const Quiet quiet;
+    Fixture fixture;
+    const auto request = request_for("a wooden dog", "dog");
+    const auto found = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(found.mode == edit::EditMode::Modify);
+    DOCTEST_CHECK(fixture.attention.queries.front().prompt == "a ball");
+    DOCTEST_CHECK(fixture.attention.queries.front().word == "ball");
+}
+
+DOCTEST_TEST_CASE("views in which nothing is found do not vote; too many of them are an error") {
+    const Quiet quiet;
+    const auto request = request_for("a blue ball", "blue");
+    Fixture some;
+    some.attention.blind_views = 5;
+    const auto found = edit::locate(some.input(request), some.tools());
+    DOCTEST_CHECK(found.failed_views == 5);
+    DOCTEST_CHECK(iou(*found.label.bits, some.scene.first) > 0.6);
+    for (const auto& view : found.views)
+        if (view.failed) DOCTEST_CHECK((view.branch == "none" && view.mask.count() == 0));
+    Fixture most;
+    most.attention.blind_views = 7;
+    DOCTEST_CHECK_THROWS_AS(edit::locate(most.input(request), most.tools()), Error);
+}
+
+DOCTEST_TEST_CASE("a text segmenter that agrees with the attention is believed") {
+    const Quiet quiet;
+    Fixture fixture;
+    RedDetector detector;
+    const auto request = request_for("a blue ball", "blue");
+    const auto found = edit::locate(fixture.input(request), fixture.tools(nullptr, &detector));
+    for (const auto& view : found.views) DOCTEST_CHECK(view.branch == "text");
+    DOCTEST_CHECK(iou(*found.label.bits, fixture.scene.first) > LeastIou);
+}
+
+DOCTEST_TEST_CASE("an added thing gets seeds where the attention of all views meets") {
+    const Quiet quiet;
+    Fixture fixture;
+    const auto request = request_for("a ball with a hat", "hat");
+    const auto found = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(found.mode == edit::EditMode::Add);
+    DOCTEST_CHECK(found.region.origin == "attention");
+    DOCTEST_CHECK(std::count(found.label.bits->begin(), found.label.bits->end(), 1) == 0);
+    DOCTEST_CHECK(iou(*found.source_label.bits, fixture.scene.first) > 0.6);
+    DOCTEST_REQUIRE(found.seeds.size() == static_cast<std::size_t>(request.seed_splats));
+    Vec3 mean;
+    for (std::size_t row = 0; row < found.seeds.size(); ++row)
+        for (int axis = 0; axis < 3; ++axis)
+            mean[axis] += found.seeds.position[row * 3 + static_cast<std::size_t>(axis)] / static_cast<double>(found.seeds.size());
+    DOCTEST_CHECK(length(mean - Vec3{-0.55, -0.5, 0}) < 0.35);   // above the red ball; up is -y
+    const auto plan = edit::make_plan(fixture.input(request), found, *fixture.rasterizer);
+    DOCTEST_CHECK(plan.seeds.size() == found.seeds.size());
+    for (const auto& mask : plan.masks) DOCTEST_CHECK(mask.count() > 0);
+}
+
+DOCTEST_TEST_CASE("without agreement an added thing goes to its usual place") {
+    const Quiet quiet;
+    Fixture fixture;
+    fixture.attention.hat_shift = 1000;   // the maps stay empty
+    const auto request = request_for("a ball with a hat", "hat");
+    const auto found = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(found.region.origin == "top");
+    DOCTEST_CHECK(found.failed_views == 0);
+    for (const auto& view : found.views) DOCTEST_CHECK(view.branch == "anchor");
+    for (const auto& centre : found.region.centres) {
+        DOCTEST_CHECK(centre.y < -0.25);
+        DOCTEST_CHECK(std::hypot(centre.x + 0.55, centre.z) < 0.45);
+    }
+}
+
+DOCTEST_TEST_CASE("an empty scene, no views and a stop are errors of their own") {
+    const Quiet quiet;
+    Fixture fixture;
+    const auto request = request_for("a blue ball", "blue");
+    const std::vector<View> none;
+    DOCTEST_CHECK_THROWS_AS(edit::locate({fixture.scene.set, none, fixture.words, request, {}, {0, -1, 0}}, fixture.tools()), Error);
+    const GaussianSet empty;
+    DOCTEST_CHECK_THROWS_AS(edit::locate({empty, fixture.views, fixture.words, request, {}, {0, -1, 0}}, fixture.tools()), Error);
+    std::stop_source stop;
+    stop.request_stop();
+    auto tools = fixture.tools();
+    tools.job.stop = stop.get_token();
+    try {
+        edit::locate(fixture.input(request), tools);
+        DOCTEST_CHECK(false);
+    } catch (const Error& error) {
+        DOCTEST_CHECK(error.code() == ErrorCode::Cancelled);
+    }
+}
