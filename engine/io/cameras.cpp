@@ -105,6 +105,24 @@ std::vector<View> load_cameras(const fs::path& path) {
     }
 }
 
+double visible_share(const std::vector<View>& views, std::span<const float> position) {
+    constexpr std::size_t MostViews = 16, MostPoints = 2000;
+    const std::size_t points = position.size() / 3;
+    if (views.empty() || points == 0) return 0;
+    const std::size_t view_step = (views.size() + MostViews - 1) / MostViews;
+    const std::size_t point_step = (points + MostPoints - 1) / MostPoints;
+    std::size_t inside = 0, tested = 0;
+    for (std::size_t v = 0; v < views.size(); v += view_step) {
+        const Camera& camera = views[v].camera;
+        for (std::size_t i = 0; i < points; i += point_step, ++tested) {
+            const Vec3 p = camera.to_camera({position[i * 3], position[i * 3 + 1], position[i * 3 + 2]});
+            const double x = camera.fx * p.x / p.z + camera.cx, y = camera.fy * p.y / p.z + camera.cy;
+            inside += p.z > 0 && x >= 0 && x < camera.width && y >= 0 && y < camera.height ? 1u : 0u;
+        }
+    }
+    return static_cast<double>(inside) / static_cast<double>(tested);
+}
+
 std::optional<fs::path> find_cameras(const fs::path& scene_path) {
     const fs::path own = scene_path.parent_path() / (scene_path.stem().string() + ".cameras.json");
     if (is_there(own)) return own;

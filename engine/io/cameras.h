@@ -22,6 +22,10 @@ std::vector<View> load_cameras(const std::filesystem::path& path);
 /// Returns the path that load_cameras takes, or nothing.
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& scene_path);
 
+/// How well cameras and splats belong together: the share of splat centres [N,3] inside the picture, averaged
+/// over some of the views. Cameras in another world (another tool's axes or scale) give close to zero.
+double visible_share(const std::vector<View>& views, std::span<const float> position);
+
 /// Writes an Inria cameras.json: camera centre, camera-to-world rotation and focal lengths. The format has no
 /// principal point; it is taken as the image centre when read back.
 void save_cameras_json(const std::filesystem::path& path, const std::vector<View>& views);

@@ -1,9 +1,9 @@
 // Niantic .spz: v1-v3 are one gzip stream (or that stream bare), v4 a header, a table and one zstd frame per
 // attribute.
 //
-// Frame: the format's document says the stored axes are right, up, back. Both pairs of the same scene in .spz
-// and .ply that were measured (a v3 and a v4 file) follow it, so y and z are negated on loading unless the
-// extension SPZ_ADOBE_coordinate_system names another frame.
+// Frame: the format's document says the stored axes are right, up, back. Evidence: two pairs of the same
+// scene in .spz and .ply (v3 and v4) agree only under it, and two more real v2 files stand upright only under
+// it. So y and z are negated on loading unless the extension SPZ_ADOBE_coordinate_system names another frame.
 #include <fmt/core.h>
 
 #include <array>

@@ -15,7 +15,8 @@ constexpr double SmallestRadius = 1e-3;  // world units; a scene of one point st
 constexpr double HighElevationStep =
     0.35;  // radians between the lower and the upper ring, so that tops are seen
 constexpr double SteepestElevation = 1.3;  // radians; straight down has no defined "right"
-constexpr double FramingMargin = 1.0;      // of the half diagonal; boxes rarely fill their sphere
+constexpr double FramingMargin =
+    1.15;  // of the half diagonal: the robust bounds leave 2 % of the splats outside
 
 }  // namespace
 
