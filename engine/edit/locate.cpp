@@ -87,6 +87,7 @@ Image mask_image(const Mask& mask) {
 struct Search {
     std::string word;
     std::string prompt;
+    std::vector<std::string> rivals;
     bool absent = false;
 };
 
@@ -147,9 +148,16 @@ private:
         return static_cast<double>(found) / static_cast<double>(renders_.size());
     }
 
-    /// A prompt that surely contains the word.
+    /// The word with a prompt that surely contains it and its rivals.
     Search search_for(const std::string& word, bool absent) const {
-        return {word, has_word(request().prompt, word) ? request().prompt : "a " + word, absent};
+        Search search{word, has_word(request().prompt, word) ? request().prompt : "a " + word, {}, absent};
+        if (absent) return search;
+        for (const auto& rival : words_of(request().rivals)) {
+            if (rival == word) continue;
+            if (!has_word(search.prompt, rival)) search.prompt += ", " + rival;
+            search.rivals.push_back(rival);
+        }
+        return search;
     }
 
     std::vector<ViewEvidence> look(const Search& search) {
@@ -168,18 +176,25 @@ private:
     ViewEvidence attend(const Search& search, std::size_t v) {
         ViewEvidence view;
         view.render = renders_[v];
+        std::vector<std::string> words{search.word};
+        words.insert(words.end(), search.rivals.begin(), search.rivals.end());
         const AttentionQuery query{view.render,
                                    search.prompt,
-                                   {search.word},
+                                   words,
                                    input_.view_words.empty() ? std::string() : input_.view_words[v],
                                    search.absent,
                                    request().attention_repeats,
                                    Random::stream(request().seed, 5000 + v).next()};
         auto maps = tools_.attention.locate(query);
-        GSE_CHECK_EQ(maps.size(), std::size_t{1});
+        GSE_CHECK_EQ(maps.size(), words.size());
+        for (auto& map : maps) {
+            GSE_CHECK(map.width == view.render.width && map.height == view.render.height);
+            normalise_maximum(map);
+        }
         view.map = std::move(maps.front());
-        GSE_CHECK(view.map.width == view.render.width && view.map.height == view.render.height);
-        normalise_maximum(view.map);
+        for (std::size_t rival = 1; rival < maps.size(); ++rival)   // the stronger word takes the pixel
+            for (std::size_t i = 0; i < view.map.data.size(); ++i)
+                if (maps[rival].data[i] > view.map.data[i]) view.map.data[i] = 0;
         const double level =
             request().attention_threshold > 0 ? request().attention_threshold : tools_.attention.threshold();
         const Image small = localize::resize_image(view.map, ClusterGrid, grid_height(view.map));
@@ -316,7 +331,8 @@ private:
         result.views = look(search);
         std::vector<Mask> masks;
         for (const auto& view : result.views) masks.push_back(view.failed ? Mask() : view.mask);
-        const RegionSearch space{input_.gaussians, *result.source_label.bits, input_.views, masks, depths_, input_.up};
+        const RegionSearch space{input_.gaussians, *result.source_label.bits, input_.views, masks, depths_, input_.up,
+                                 input_.front};
         result.region = vote_region(space);
         const bool attended = !result.region.empty();
         if (!attended) {

@@ -24,6 +24,7 @@ struct LocateInput {
     const EditRequest& request;
     raster::Settings settings;
     Vec3 up{0, -1, 0};                            // world up; where the top of a thing is
+    Vec3 front{0, 0, -1};                         // where it looks; for things that go before a face
 };
 
 /// The parts it calls. Both segmenters may be null: then the attention regions themselves are the masks.
@@ -38,7 +39,7 @@ struct LocateTools {
 /// Everything one view contributed, for the window and the evidence pictures.
 struct ViewEvidence {
     Image render;                      // [H,W,3]
-    Image map;                         // [H,W,1] attention of the word, maximum 1
+    Image map;                         // [H,W,1] attention of the word, maximum 1; 0 where a rival has more
     Mask region;                       // thresholded and cleaned attention
     std::vector<PointPrompt> points;   // clicks handed to the segmenter
     Mask mask;                         // the view's vote, not dilated

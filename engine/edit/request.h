@@ -25,6 +25,7 @@ struct EditRequest {
     std::string background = "black";
     bool focus = true;
     // Localization
+    std::string rivals;
     double attention_threshold = 0;
     int attention_repeats = 3;
     double dbscan_eps = 2;
@@ -105,6 +106,8 @@ private:
     }
     template <class Self, class F>
     static void visit_localization(Self& self, F&& f) {
+        f("rivals", self.rivals,
+          "Other things the scene shows (\"hat grass\"): pixels that attend more to them are not taken for the source.");
         f("attention_threshold", self.attention_threshold,
           "Attention above this share of the maximum counts; 0 = what the model states (0.5 in the paper).", Range{0, 1});
         f("attention_repeats", self.attention_repeats, "Attention passes per view, each with fresh noise.", Range{1, 100});

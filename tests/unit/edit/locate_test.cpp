@@ -36,7 +36,13 @@ public:
                 const int source = query.absent ? y + hat_shift : y;   // absent things are drawn above the red
                 if (source < map.height) map.at(x, y, 0) = redness(query.image, x, source);
             }
-        return {localize::resize_image(localize::resize_image(map, 16, 16), map.width, map.height)};
+        std::vector<Image> maps{localize::resize_image(localize::resize_image(map, 16, 16), map.width, map.height)};
+        for (std::size_t rival = 1; rival < query.words.size(); ++rival) {   // all other words: the lower half
+            maps.emplace_back(map.width, map.height, 1);
+            for (int y = map.height / 2; y < map.height; ++y)
+                for (int x = 0; x < map.width; ++x) maps.back().at(x, y, 0) = 1;
+        }
+        return maps;
     }
     int image_size() const override { return Side; }
 
@@ -167,6 +173,20 @@ DOCTEST_TEST_CASE("views in which nothing is found do not vote; too many of them
     Fixture most;
     most.attention.blind_views = 7;
     DOCTEST_CHECK_THROWS_AS(edit::locate(most.input(request), most.tools()), Error);
+}
+
+DOCTEST_TEST_CASE("a rival word takes the pixels that attend more to it") {
+    const Quiet quiet;
+    Fixture fixture;
+    auto request = request_for("a blue ball", "blue");
+    request.rivals = "grass, ball";
+    const auto found = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(fixture.attention.queries.front().prompt == "a blue ball, grass");
+    for (const auto& view : found.views)
+        for (int y = Side / 2 + 1; y < Side; ++y)
+            for (int x = 0; x < Side; ++x)
+                if (view.mask.at(x, y) != 0) DOCTEST_CHECK(view.map.at(x, y, 0) == 1);
+    DOCTEST_CHECK(iou(*found.label.bits, fixture.scene.first) < 0.7);   // the lower half was given away
 }
 
 DOCTEST_TEST_CASE("a text segmenter that agrees with the attention is believed") {
