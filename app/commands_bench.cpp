@@ -1,8 +1,133 @@
-// gseditpro bench.
+// gseditpro bench: run time against error, as JSON.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
 #include "app/cli.h"
+#include "app/scene_tools.h"
+#include "app/starter_bench.h"
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/io/cameras.h"
+#include "engine/io/scene_io.h"
+#include "engine/raster/bench.h"
 
 namespace gse::app {
+namespace {
 
-void add_bench_command(CLI::App&, CommandContext&) {}
+using Json = nlohmann::ordered_json;
+
+struct RasterBenchOptions {
+    std::filesystem::path scene;
+    std::string cameras;
+    std::filesystem::path output;
+    int views = 4;
+    raster::BenchSettings settings;
+};
+
+Json times_json(const raster::BenchTimes& times) {
+    return {{"wall_median_ms", times.wall_median_ms},
+            {"wall_min_ms", times.wall_min_ms},
+            {"cpu_median_ms", times.cpu_median_ms},
+            {"cpu_min_ms", times.cpu_min_ms}};
+}
+
+Json bench_json(const raster::RasterBench& bench) {
+    Json json;
+    json["kernels"] = bench.kernels;
+    json["threads"] = bench.threads;
+    json["splats"] = bench.splats;
+    json["width"] = bench.width;
+    json["height"] = bench.height;
+    json["views"] = bench.views;
+    json["forward_ms"] = bench.forward_ms;
+    json["backward_ms"] = bench.backward_ms;
+    json["forward"] = times_json(bench.forward);
+    json["backward"] = times_json(bench.backward);
+    json["tile_pairs"] = bench.pairs;
+    json["blended_pairs"] = bench.blended_pairs;
+    json["ns_per_pair"] = bench.forward_ns_per_pair + bench.backward_ns_per_pair;
+    json["forward_ns_per_pair"] = bench.forward_ns_per_pair;
+    json["backward_ns_per_pair"] = bench.backward_ns_per_pair;
+    json["peak_rss_mb"] = bench.peak_rss_mb;
+    json["error"] = {{"max_abs", bench.max_abs_error},
+                     {"psnr_db", bench.psnr_db},
+                     {"gradient_relative_l2", bench.gradient_error}};
+    return json;
+}
+
+/// Up to `count` cameras, evenly spread over those named; an orbit when there are none.
+std::vector<Camera> bench_cameras(const Scene& scene, const RasterBenchOptions& options) {
+    std::vector<View> views;
+    if (options.cameras != "none") views = scene_cameras(options.scene, options.cameras);
+    if (views.empty())
+        views = orbit_views(scene_orbit(scene, {}), options.views, options.settings.width, options.settings.height);
+    std::vector<Camera> cameras;
+    const auto count = std::min(views.size(), static_cast<std::size_t>(options.views));
+    for (std::size_t i = 0; i < count; ++i) cameras.push_back(views[i * views.size() / count].camera);
+    return cameras;
+}
+
+void add_raster_bench(CLI::App& bench) {
+    auto options = std::make_shared<RasterBenchOptions>();
+    auto* command = bench.add_subcommand("raster", "Forward and backward of the rasterizer, with its error");
+    command->add_option("scene", options->scene, "Scene file")->required();
+    command->add_option("--cameras", options->cameras, "Camera file; found beside the scene, \"none\" for an orbit");
+    command->add_option("--views", options->views, "How many cameras to use")->capture_default_str()->check(CLI::Range(1, 1000));
+    command->add_option("--width", options->settings.width, "Picture width")->capture_default_str()->check(CLI::Range(1, 8192));
+    command->add_option("--height", options->settings.height, "Picture height")->capture_default_str()->check(CLI::Range(1, 8192));
+    command->add_option("--repetitions", options->settings.repetitions, "Timed rounds")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 10000));
+    command->add_option("--threads", options->settings.threads, "Threads; 0 = one per core")->capture_default_str();
+    command->add_flag("--compare,!--no-compare", options->settings.compare_plain, "Measure the error against the plain version");
+    command->add_option("--out", options->output, "Also write the JSON to this file");
+    command->callback([options] {
+        const Scene scene = load_scene(options->scene);
+        const auto json = bench_json(
+            raster::bench_raster(scene.gaussians.spans(), bench_cameras(scene, *options), options->settings));
+        if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
+        fmt::print("{}\n", json.dump(2));
+    });
+}
+
+void add_starter_bench(CLI::App& bench, CommandContext& context) {
+    struct Options {
+        StarterBenchParameters parameters;
+        EditRecipe settings;
+        std::filesystem::path output;
+    };
+    auto options = std::make_shared<Options>();
+    auto* command = bench.add_subcommand("starter", "A model on held-out synthetic scenes: localization and edits");
+    command->add_option("--model", options->settings.job.model, "Model to measure; the starter when left out");
+    command->add_option("--threads", options->settings.job.threads, "Threads of the networks")->capture_default_str();
+    command->add_option("--out", options->output, "Also write the JSON to this file");
+    bind_fields(*command, options->parameters, "Cases");
+    options->settings.request.mode = "modify";
+    edit::EditRequest::visit_fields(options->settings.request, [&](const char* name, auto& value, const char* help, auto...) {
+        const std::string field = name;   // the words are the bench's own; its seed is that of the scenes
+        if (field == "source" || field == "prompt" || field == "target" || field == "mode" || field == "seed") return;
+        command->add_option(option_name(field), value, help)->capture_default_str()->group("Edit");
+    });
+    neural::SdsParameters::visit_fields(options->settings.guidance, [&](const char* name, auto& value, const char* help, auto...) {
+        command->add_option(option_name(name), value, help)->capture_default_str()->group("Guidance");
+    });
+    command->callback([options, &context] {
+        const auto json = run_starter_bench(options->parameters, options->settings, context.job());
+        if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
+        fmt::print("{}\n", json.dump(2));
+    });
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, CommandContext& context) {
+    auto* bench = app.add_subcommand("bench", "Measure run time against error");
+    bench->require_subcommand(1);
+    add_raster_bench(*bench);
+    add_starter_bench(*bench, context);
+}
 
 }  // namespace gse::app
