@@ -16,7 +16,8 @@ struct AttentionParameters {
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
         f("method", self.method,
-          "probes: noise the image to a few levels and look once at each; img2img: the paper's way, look at every step of "
+          "probes: noise the image to a few levels and look once at each; img2img: the paper's way, look at "
+          "every step of "
           "an image-to-image run (some hundred times slower).");
         f("strength", self.strength, "img2img: share of the steps that are run.", Range{0.02, 1});
         f("steps", self.steps, "img2img: sampling steps.", Range{1, 1000});

@@ -1,4 +1,5 @@
-// Attention maps: single-step probes (method.md X1) or the paper's image-to-image run (method.md, S3 in detail).
+// Attention maps: single-step probes (method.md X1) or the paper's image-to-image run (method.md, S3 in
+// detail).
 #include "engine/neural/attention_source.h"
 
 #include <fmt/format.h>
@@ -13,15 +14,18 @@
 namespace gse::neural {
 namespace {
 
-// Noise levels as shares of the schedule, unless the model states its own (method.md X1; starter.md iv for absent things).
+// Noise levels as shares of the schedule, unless the model states its own (method.md X1; starter.md iv for
+// absent things).
 const std::vector<double> PresentLevels{0.3, 0.5, 0.7};
 const std::vector<double> AbsentLevels{0.8, 0.85, 0.9};
-constexpr double AbsentStrength = 0.9;          // img2img must begin at least this noisy for an absent thing ...
-constexpr double AbsentLowestLevel = 0.75;      // ... and only steps above this level are looked at
-constexpr std::int64_t BatchPixels = 64 * 64;   // latent cells per UNet call: one SD image, 16 of the starter's
+constexpr double AbsentStrength = 0.9;      // img2img must begin at least this noisy for an absent thing ...
+constexpr double AbsentLowestLevel = 0.75;  // ... and only steps above this level are looked at
+constexpr std::int64_t BatchPixels =
+    64 * 64;  // latent cells per UNet call: one SD image, 16 of the starter's
 
 bool any_prefix(std::string_view name, const std::vector<std::string>& prefixes) {
-    return std::any_of(prefixes.begin(), prefixes.end(), [&](const auto& prefix) { return name.starts_with(prefix); });
+    return std::any_of(prefixes.begin(), prefixes.end(),
+                       [&](const auto& prefix) { return name.starts_with(prefix); });
 }
 
 /// Mean over the word's tokens [k,s,s], at the image's size, divided by its maximum.
@@ -43,7 +47,8 @@ AttentionAccumulator::AttentionAccumulator(std::int64_t size, std::int64_t colum
 
 void AttentionAccumulator::take(std::vector<AttentionCapture::Map>& maps) {
     for (const auto& map : maps) {
-        auto mean = map.probabilities.to(torch::kCPU, torch::kFloat32).mean(torch::IntArrayRef{0, 1});   // [hw,k]
+        auto mean =
+            map.probabilities.to(torch::kCPU, torch::kFloat32).mean(torch::IntArrayRef{0, 1});  // [hw,k]
         mean = mean.t().reshape({1, sum_.size(0), map.height, map.width});
         if (map.height != sum_.size(1) || map.width != sum_.size(2))
             mean = torch::upsample_bicubic2d(mean, {sum_.size(1), sum_.size(2)}, false).clamp_min(0);
@@ -55,20 +60,22 @@ void AttentionAccumulator::take(std::vector<AttentionCapture::Map>& maps) {
 
 torch::Tensor AttentionAccumulator::mean() const { return sum_ / std::max<std::int64_t>(count_, 1); }
 
-BundleAttentionSource::BundleAttentionSource(std::shared_ptr<const ModelBundle> bundle, AttentionParameters parameters)
+BundleAttentionSource::BundleAttentionSource(std::shared_ptr<const ModelBundle> bundle,
+                                             AttentionParameters parameters)
     : bundle_(std::move(bundle)), parameters_(std::move(parameters)) {
     if (parameters_.method != "probes" && parameters_.method != "img2img")
-        throw Error(ErrorCode::InvalidArgument, fmt::format("there is no attention method \"{}\"", parameters_.method),
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("there is no attention method \"{}\"", parameters_.method),
                     "use probes or img2img");
 }
 
 AttentionCapture BundleAttentionSource::make_capture() const {
     const auto& facts = bundle_->facts;
     auto layers = facts.attention_layers;
-    if (layers.empty()) layers = {"down_blocks", "up_blocks"};   // DAAM leaves out the middle ...
+    if (layers.empty()) layers = {"down_blocks", "up_blocks"};  // DAAM leaves out the middle ...
     auto sizes = facts.attention_sizes;
     const auto latent = bundle_->latent_size();
-    if (sizes.empty()) sizes = {latent, latent / 2, latent / 4};   // ... and every map of 8x8 at 64x64
+    if (sizes.empty()) sizes = {latent, latent / 2, latent / 4};  // ... and every map of 8x8 at 64x64
     AttentionCapture capture;
     capture.wants = [layers, sizes](std::string_view layer, std::int64_t height, std::int64_t) {
         return any_prefix(layer, layers) && std::find(sizes.begin(), sizes.end(), height) != sizes.end();
@@ -89,7 +96,8 @@ void BundleAttentionSource::probe(const edit::AttentionQuery& query, const torch
         for (const double level : levels) {
             const auto t = static_cast<std::int64_t>(level * static_cast<double>(bundle_->schedule.steps()));
             timesteps.push_back(std::clamp<std::int64_t>(t, 0, last));
-            noises.push_back(seeded_noise(latents.sizes(), Random::stream(query.seed, timesteps.size()).next()));
+            noises.push_back(
+                seeded_noise(latents.sizes(), Random::stream(query.seed, timesteps.size()).next()));
         }
     const auto count = static_cast<std::int64_t>(timesteps.size());
     const auto batch = std::max<std::int64_t>(1, BatchPixels / (latents.size(2) * latents.size(3)));
@@ -104,7 +112,8 @@ void BundleAttentionSource::probe(const edit::AttentionQuery& query, const torch
         // Equal weight for every pass: a smaller last batch must not count as much as a full one.
         for (auto& map : capture.maps)
             for (std::int64_t row = 0; row < size; ++row) {
-                std::vector<AttentionCapture::Map> one = {{map.layer, map.height, map.width, map.probabilities.narrow(0, row, 1)}};
+                std::vector<AttentionCapture::Map> one = {
+                    {map.layer, map.height, map.width, map.probabilities.narrow(0, row, 1)}};
                 sum.take(one);
             }
         capture.maps.clear();
@@ -122,15 +131,17 @@ void BundleAttentionSource::run_img2img(const edit::AttentionQuery& query, const
         const auto seed = Random::stream(query.seed, static_cast<std::uint64_t>(repeat)).next();
         DenoiseJob job;
         job.sampler = sampler.get();
-        job.first = first_step(sampler->step_count(),
-                               query.absent ? std::max(AbsentStrength, parameters_.strength) : parameters_.strength);
+        job.first =
+            first_step(sampler->step_count(),
+                       query.absent ? std::max(AbsentStrength, parameters_.strength) : parameters_.strength);
         job.guidance_scale = parameters_.guidance_scale;
         job.context = torch::cat({negative, context});
         job.seed = seed;
         job.capture = &capture;
         capture.conditional_half_only = job.guidance_scale != 1.0;
         job.after_step = [&](std::int64_t step, const torch::Tensor&) {
-            if (sampler->timestep(step) < lowest) capture.maps.clear();
+            // With few steps none may be that high: then the first one counts.
+            if (sampler->timestep(step) < lowest && step != job.first) capture.maps.clear();
             sum.take(capture.maps);
         };
         const auto noise = seeded_noise(latents.sizes(), seed).to(latents.device());
@@ -171,7 +182,8 @@ std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& que
 
 torch::Tensor BundleAttentionSource::checked_mean(const AttentionAccumulator& sum) const {
     if (sum.count() == 0)
-        throw Error(ErrorCode::Model, "the model has no cross-attention layer of the kind that its facts name",
+        throw Error(ErrorCode::Model,
+                    "the model has no cross-attention layer of the kind that its facts name",
                     "correct attention_layers and attention_sizes in gseditpro.json", bundle_->path);
     auto mean = sum.mean();
     if (!torch::isfinite(mean).all().item<bool>())

@@ -1,4 +1,5 @@
-// Where the words of a prompt land in an image: cross-attention averaged over layers, heads, noise levels and repeats.
+// Where the words of a prompt land in an image: cross-attention averaged over layers, heads, noise levels and
+// repeats.
 #pragma once
 
 #include <memory>
@@ -13,7 +14,8 @@ namespace gse::neural {
 class AttentionAccumulator {
 public:
     AttentionAccumulator(std::int64_t size, std::int64_t columns);
-    /// Adds the mean over batch and heads of every map, bicubic to size x size, negative overshoot cut; clears `maps`.
+    /// Adds the mean over batch and heads of every map, bicubic to size x size, negative overshoot cut;
+    /// clears `maps`.
     void take(std::vector<AttentionCapture::Map>& maps);
     /// Mean over everything taken, [k,size,size].
     torch::Tensor mean() const;
@@ -37,8 +39,9 @@ private:
     torch::Tensor checked_mean(const AttentionAccumulator& sum) const;
     void probe(const edit::AttentionQuery& query, const torch::Tensor& latents, const torch::Tensor& context,
                AttentionCapture& capture, AttentionAccumulator& sum) const;
-    void run_img2img(const edit::AttentionQuery& query, const torch::Tensor& latents, const torch::Tensor& context,
-                     AttentionCapture& capture, AttentionAccumulator& sum) const;
+    void run_img2img(const edit::AttentionQuery& query, const torch::Tensor& latents,
+                     const torch::Tensor& context, AttentionCapture& capture,
+                     AttentionAccumulator& sum) const;
 
     std::shared_ptr<const ModelBundle> bundle_;
     AttentionParameters parameters_;

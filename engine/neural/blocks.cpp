@@ -7,12 +7,13 @@ ResnetBlockImpl::ResnetBlockImpl(const ResnetShape& shape, const WeightOptions& 
     norm1 = register_module("norm1", GroupNorm(shape.in, shape.groups, shape.eps, options));
     conv1 = register_module("conv1", Conv2d(Conv2dImpl::Shape{shape.in, shape.out}, options));
     if (shape.time_width > 0)
-        time_emb_proj = register_module("time_emb_proj", Linear(LinearImpl::Shape{shape.time_width, shape.out}, options));
+        time_emb_proj =
+            register_module("time_emb_proj", Linear(LinearImpl::Shape{shape.time_width, shape.out}, options));
     norm2 = register_module("norm2", GroupNorm(shape.out, shape.groups, shape.eps, options));
     conv2 = register_module("conv2", Conv2d(Conv2dImpl::Shape{shape.out, shape.out}, options));
     if (shape.in != shape.out)
-        conv_shortcut =
-            register_module("conv_shortcut", Linear(LinearImpl::Shape{shape.in, shape.out, true, true}, options));
+        conv_shortcut = register_module("conv_shortcut",
+                                        Linear(LinearImpl::Shape{shape.in, shape.out, true, true}, options));
 }
 
 torch::Tensor ResnetBlockImpl::forward(const torch::Tensor& x, const torch::Tensor& time) const {
@@ -27,7 +28,8 @@ DownsampleImpl::DownsampleImpl(std::int64_t channels, bool right_bottom_only, st
                                const WeightOptions& options)
     : right_bottom_only_(right_bottom_only) {
     conv = register_module(
-        "conv", Conv2d(Conv2dImpl::Shape{channels, channels, 3, 2, right_bottom_only ? 0 : padding}, options));
+        "conv",
+        Conv2d(Conv2dImpl::Shape{channels, channels, 3, 2, right_bottom_only ? 0 : padding}, options));
 }
 
 torch::Tensor DownsampleImpl::forward(const torch::Tensor& x) const {

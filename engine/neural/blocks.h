@@ -9,7 +9,7 @@ struct ResnetShape {
     std::int64_t in = 0, out = 0;
     std::int64_t groups = 32;
     double eps = 1e-5;
-    std::int64_t time_width = 0;   // 0 = no time embedding (VAE)
+    std::int64_t time_width = 0;  // 0 = no time embedding (VAE)
 };
 
 /// norm1, SiLU, conv1, + time embedding, norm2, SiLU, conv2, + (1x1) shortcut.
@@ -29,7 +29,8 @@ TORCH_MODULE(ResnetBlock);
 /// 3x3 convolution with stride 2. The VAE pads right and bottom only, the UNet all around.
 class DownsampleImpl : public torch::nn::Module {
 public:
-    DownsampleImpl(std::int64_t channels, bool right_bottom_only, std::int64_t padding, const WeightOptions& options);
+    DownsampleImpl(std::int64_t channels, bool right_bottom_only, std::int64_t padding,
+                   const WeightOptions& options);
     torch::Tensor forward(const torch::Tensor& x) const;
 
 private:

@@ -16,7 +16,8 @@ namespace {
 class Reader {
 public:
     Reader(const Json& json, const std::filesystem::path& path) : json_(json), path_(path) {
-        if (!json.is_object()) throw Error(ErrorCode::Malformed, "the network's configuration is not a JSON object", {}, path);
+        if (!json.is_object())
+            throw Error(ErrorCode::Malformed, "the network's configuration is not a JSON object", {}, path);
     }
 
     template <class T>
@@ -25,7 +26,8 @@ public:
         try {
             json_.at(key).get_to(value);
         } catch (const nlohmann::json::exception&) {
-            throw Error(ErrorCode::Malformed, fmt::format("the configuration's \"{}\" has the wrong type", key), {}, path_);
+            throw Error(ErrorCode::Malformed,
+                        fmt::format("the configuration's \"{}\" has the wrong type", key), {}, path_);
         }
     }
     bool has(const char* key) const { return json_.contains(key) && !json_.at(key).is_null(); }
@@ -40,11 +42,13 @@ public:
     }
     void positive(const char* key, std::int64_t value, std::int64_t limit) const {
         if (value < 1 || value > limit)
-            throw Error(ErrorCode::Malformed, fmt::format("the configuration's \"{}\" is {}, outside 1..{}", key, value, limit),
-                        {}, path_);
+            throw Error(ErrorCode::Malformed,
+                        fmt::format("the configuration's \"{}\" is {}, outside 1..{}", key, value, limit), {},
+                        path_);
     }
     [[noreturn]] void refuse(const std::string& message) const {
-        throw Error(ErrorCode::Model, message, "only Stable Diffusion 1.x and 2.x structures can be loaded", path_);
+        throw Error(ErrorCode::Model, message, "only Stable Diffusion 1.x and 2.x structures can be loaded",
+                    path_);
     }
     [[noreturn]] void malformed(const std::string& message) const {
         throw Error(ErrorCode::Malformed, message, {}, path_);
@@ -72,7 +76,8 @@ void check_levels(const Reader& reader, const std::vector<std::int64_t>& channel
 }
 
 std::vector<std::int64_t> read_heads(const Reader& reader, std::size_t levels) {
-    // "attention_head_dim" is the number of heads (goldens.md trap 3); "num_attention_heads" is its later, right name.
+    // "attention_head_dim" is the number of heads (goldens.md trap 3); "num_attention_heads" is its later,
+    // right name.
     const char* key = reader.has("num_attention_heads") ? "num_attention_heads" : "attention_head_dim";
     std::vector<std::int64_t> heads(levels, 8);
     if (!reader.has(key)) return heads;
@@ -88,16 +93,20 @@ std::vector<std::int64_t> read_heads(const Reader& reader, std::size_t levels) {
 
 void check_attention(const Reader& reader, const UNetConfig& config) {
     const auto levels = config.block_out_channels.size();
-    if (config.heads.size() != levels || config.down_block_types.size() != levels || config.up_block_types.size() != levels)
+    if (config.heads.size() != levels || config.down_block_types.size() != levels ||
+        config.up_block_types.size() != levels)
         reader.malformed("the lists of block types, channels and heads have different lengths");
     for (std::size_t i = 0; i < levels; ++i) {
         reader.positive("attention_head_dim", config.heads[i], 1024);
         if (config.block_out_channels[i] % config.heads[i] != 0)
-            reader.malformed(fmt::format("{} channels cannot be split into {} heads", config.block_out_channels[i], config.heads[i]));
+            reader.malformed(fmt::format("{} channels cannot be split into {} heads",
+                                         config.block_out_channels[i], config.heads[i]));
         const auto& down = config.down_block_types[i];
         const auto& up = config.up_block_types[levels - 1 - i];
-        if (down != "DownBlock2D" && down != "CrossAttnDownBlock2D") reader.refuse("unknown block type \"" + down + "\"");
-        if (up != "UpBlock2D" && up != "CrossAttnUpBlock2D") reader.refuse("unknown block type \"" + up + "\"");
+        if (down != "DownBlock2D" && down != "CrossAttnDownBlock2D")
+            reader.refuse("unknown block type \"" + down + "\"");
+        if (up != "UpBlock2D" && up != "CrossAttnUpBlock2D")
+            reader.refuse("unknown block type \"" + up + "\"");
     }
 }
 
@@ -125,11 +134,13 @@ UNetConfig UNetConfig::from_json(const Json& json, const std::filesystem::path& 
     reader.expect("time_embedding_type", {"positional"});
     reader.expect("conv_in_kernel", {3});
     reader.expect("conv_out_kernel", {3});
-    for (const char* key : {"num_class_embeds", "class_embed_type", "addition_embed_type", "encoder_hid_dim",
-                            "time_cond_proj_dim", "time_embedding_dim", "time_embedding_act_fn", "timestep_post_act"})
+    for (const char* key :
+         {"num_class_embeds", "class_embed_type", "addition_embed_type", "encoder_hid_dim",
+          "time_cond_proj_dim", "time_embedding_dim", "time_embedding_act_fn", "timestep_post_act"})
         reader.expect_absent(key);
     UNetConfig config;
-    if (reader.has("sample_size") && json.at("sample_size").is_number()) reader.get("sample_size", config.sample_size);
+    if (reader.has("sample_size") && json.at("sample_size").is_number())
+        reader.get("sample_size", config.sample_size);
     reader.get("in_channels", config.in_channels);
     reader.get("out_channels", config.out_channels);
     reader.get("flip_sin_to_cos", config.flip_sin_to_cos);
@@ -154,7 +165,8 @@ UNetConfig UNetConfig::from_json(const Json& json, const std::filesystem::path& 
 }
 
 Json UNetConfig::to_json() const {
-    Json json = {{"_class_name", "UNet2DConditionModel"}, {"_diffusers_version", "0.6.0"}, {"act_fn", "silu"}};
+    Json json = {
+        {"_class_name", "UNet2DConditionModel"}, {"_diffusers_version", "0.6.0"}, {"act_fn", "silu"}};
     json["attention_head_dim"] = heads;
     json["block_out_channels"] = block_out_channels;
     json["center_input_sample"] = false;
@@ -185,7 +197,8 @@ VaeConfig VaeConfig::from_json(const Json& json, const std::filesystem::path& pa
     reader.expect("use_post_quant_conv", {true});
     for (const char* key : {"shift_factor", "latents_mean", "latents_std"}) reader.expect_absent(key);
     VaeConfig config;
-    if (reader.has("sample_size") && json.at("sample_size").is_number()) reader.get("sample_size", config.sample_size);
+    if (reader.has("sample_size") && json.at("sample_size").is_number())
+        reader.get("sample_size", config.sample_size);
     reader.get("in_channels", config.in_channels);
     reader.get("out_channels", config.out_channels);
     reader.get("latent_channels", config.latent_channels);
@@ -222,7 +235,8 @@ TextEncoderConfig TextEncoderConfig::from_json(const Json& json, const std::file
     reader.expect("hidden_act", {"quick_gelu", "gelu"});
     TextEncoderConfig config;
     if (reader.has("architectures") && json.at("architectures").is_array())
-        for (const auto& name : json.at("architectures")) config.with_projection |= name == "CLIPTextModelWithProjection";
+        for (const auto& name : json.at("architectures"))
+            config.with_projection |= name == "CLIPTextModelWithProjection";
     reader.get("vocab_size", config.vocab_size);
     reader.get("hidden_size", config.hidden_size);
     reader.get("intermediate_size", config.intermediate_size);

@@ -13,7 +13,7 @@ using Json = nlohmann::ordered_json;
 
 /// unet/config.json. What is predicted (noise or velocity) stands in the scheduler's config.
 struct UNetConfig {
-    std::int64_t sample_size = 64;    // side of the latent the model was trained at
+    std::int64_t sample_size = 64;  // side of the latent the model was trained at
     std::int64_t in_channels = 4;
     std::int64_t out_channels = 4;
     bool flip_sin_to_cos = true;
@@ -28,7 +28,7 @@ struct UNetConfig {
     std::int64_t norm_num_groups = 32;
     double norm_eps = 1e-5;
     std::int64_t cross_attention_dim = 768;
-    std::vector<std::int64_t> heads = {8, 8, 8, 8};   // per down block; "attention_head_dim" in the file
+    std::vector<std::int64_t> heads = {8, 8, 8, 8};  // per down block; "attention_head_dim" in the file
     bool use_linear_projection = false;
     bool upcast_attention = false;
 
@@ -46,7 +46,7 @@ struct VaeConfig {
     std::vector<std::int64_t> block_out_channels = {128, 256, 512, 512};
     std::int64_t layers_per_block = 2;
     std::int64_t norm_num_groups = 32;
-    double scaling_factor = 0.18215;   // absent in old files
+    double scaling_factor = 0.18215;  // absent in old files
 
     /// Pixels per latent cell.
     std::int64_t factor() const { return std::int64_t{1} << (block_out_channels.size() - 1); }
@@ -60,14 +60,14 @@ struct TextEncoderConfig {
     std::int64_t hidden_size = 768;
     std::int64_t intermediate_size = 3072;
     std::int64_t projection_dim = 768;
-    bool with_projection = false;      // has a text_projection layer
+    bool with_projection = false;  // has a text_projection layer
     std::int64_t num_hidden_layers = 12;
     std::int64_t num_attention_heads = 12;
     std::int64_t max_position_embeddings = 77;
     std::string hidden_act = "quick_gelu";
     double layer_norm_eps = 1e-5;
     std::int64_t bos_token_id = 0;
-    std::int64_t eos_token_id = 2;     // 2 is the legacy value: then the largest id marks the end
+    std::int64_t eos_token_id = 2;  // 2 is the legacy value: then the largest id marks the end
     std::int64_t pad_token_id = 1;
 
     static TextEncoderConfig from_json(const Json& json, const std::filesystem::path& path);
@@ -82,7 +82,7 @@ struct SchedulerConfig {
     double beta_end = 0.012;
     std::string beta_schedule = "scaled_linear";
     std::string prediction_type = "epsilon";
-    std::string timestep_spacing;      // empty = the default of each scheduler
+    std::string timestep_spacing;  // empty = the default of each scheduler
     std::int64_t steps_offset = 1;
     bool set_alpha_to_one = false;
     bool clip_sample = false;

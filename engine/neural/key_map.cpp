@@ -45,9 +45,10 @@ constexpr std::string_view UNetPrefix = "model.diffusion_model.";
 constexpr std::string_view VaePrefix = "first_stage_model.";
 constexpr std::string_view TextPrefix = "cond_stage_model.";
 
-constexpr std::array UNetResnet{Rename{"norm1.", "in_layers.0."},      Rename{"conv1.", "in_layers.2."},
-                                Rename{"time_emb_proj.", "emb_layers.1."}, Rename{"norm2.", "out_layers.0."},
-                                Rename{"conv2.", "out_layers.3."},     Rename{"conv_shortcut.", "skip_connection."}};
+constexpr std::array UNetResnet{
+    Rename{"norm1.", "in_layers.0."},          Rename{"conv1.", "in_layers.2."},
+    Rename{"time_emb_proj.", "emb_layers.1."}, Rename{"norm2.", "out_layers.0."},
+    Rename{"conv2.", "out_layers.3."},         Rename{"conv_shortcut.", "skip_connection."}};
 constexpr std::array UNetTop{Rename{"conv_in.", "input_blocks.0.0."},
                              Rename{"time_embedding.linear_1.", "time_embed.0."},
                              Rename{"time_embedding.linear_2.", "time_embed.2."},
@@ -64,10 +65,11 @@ std::string unet_block_key(const Words& words, std::int64_t block, bool up, cons
     const std::int64_t index = (up ? 0 : 1) + block * per_level + j;
     if (part == "resnets") return fmt::format("{}.{}.0.{}", list, index, renamed(join(words, 4), UNetResnet));
     if (part == "attentions") return fmt::format("{}.{}.1.{}", list, index, join(words, 4));
-    if (part == "downsamplers") return fmt::format("input_blocks.{}.0.op.{}", (block + 1) * per_level, words.back());
+    if (part == "downsamplers")
+        return fmt::format("input_blocks.{}.0.op.{}", (block + 1) * per_level, words.back());
     const bool attention = config.up_block_types[static_cast<std::size_t>(block)] == "CrossAttnUpBlock2D";
-    return fmt::format("output_blocks.{}.{}.conv.{}", block * per_level + config.layers_per_block, attention ? 2 : 1,
-                       words.back());
+    return fmt::format("output_blocks.{}.{}.conv.{}", block * per_level + config.layers_per_block,
+                       attention ? 2 : 1, words.back());
 }
 
 std::string unet_key(const std::string& name, const UNetConfig& config) {
@@ -75,12 +77,14 @@ std::string unet_key(const std::string& name, const UNetConfig& config) {
     if (words[0] == "down_blocks") return unet_block_key(words, std::stoll(words[1]), false, config);
     if (words[0] == "up_blocks") return unet_block_key(words, std::stoll(words[1]), true, config);
     if (words[0] == "mid_block" && words[1] == "resnets")
-        return fmt::format("middle_block.{}.{}", words[2] == "0" ? 0 : 2, renamed(join(words, 3), UNetResnet));
+        return fmt::format("middle_block.{}.{}", words[2] == "0" ? 0 : 2,
+                           renamed(join(words, 3), UNetResnet));
     return renamed(name, UNetTop);
 }
 
-constexpr std::array VaeAttention{Rename{"group_norm.", "norm."}, Rename{"to_q.", "q."}, Rename{"to_k.", "k."},
-                                  Rename{"to_v.", "v."}, Rename{"to_out.0.", "proj_out."}};
+constexpr std::array VaeAttention{Rename{"group_norm.", "norm."}, Rename{"to_q.", "q."},
+                                  Rename{"to_k.", "k."}, Rename{"to_v.", "v."},
+                                  Rename{"to_out.0.", "proj_out."}};
 constexpr std::array VaeResnet{Rename{"conv_shortcut.", "nin_shortcut."}};
 constexpr std::array VaeHalf{Rename{"conv_norm_out.", "norm_out."}};
 
@@ -90,7 +94,8 @@ std::string vae_half_key(const Words& words, std::int64_t levels) {
         const std::int64_t block = up ? levels - 1 - std::stoll(words[2]) : std::stoll(words[2]);
         const char* list = up ? "up" : "down";
         if (words[3] == "resnets")
-            return fmt::format("{}.{}.block.{}.{}", list, block, words[4], renamed(join(words, 5), VaeResnet));
+            return fmt::format("{}.{}.block.{}.{}", list, block, words[4],
+                               renamed(join(words, 5), VaeResnet));
         return fmt::format("{}.{}.{}.conv.{}", list, block, up ? "upsample" : "downsample", words.back());
     }
     if (words[1] == "mid_block") {
@@ -123,13 +128,13 @@ WeightSource open_clip_source(const std::string& name) {
         Rename{"text_model.embeddings.position_embedding.weight", "positional_embedding"},
         Rename{"text_model.final_layer_norm.", "ln_final."},
     };
-    constexpr std::array inner{Rename{"self_attn.out_proj.", "attn.out_proj."}, Rename{"layer_norm1.", "ln_1."},
-                               Rename{"layer_norm2.", "ln_2."}, Rename{"mlp.fc1.", "mlp.c_fc."},
-                               Rename{"mlp.fc2.", "mlp.c_proj."}};
+    constexpr std::array inner{Rename{"self_attn.out_proj.", "attn.out_proj."},
+                               Rename{"layer_norm1.", "ln_1."}, Rename{"layer_norm2.", "ln_2."},
+                               Rename{"mlp.fc1.", "mlp.c_fc."}, Rename{"mlp.fc2.", "mlp.c_proj."}};
     const std::string prefix = std::string(TextPrefix) + "model.";
     if (name == "text_projection.weight") return {prefix + "text_projection", -1, 1, true};
     if (!name.starts_with(layers)) return {prefix + renamed(name, top)};
-    const auto words = split(name);   // text_model encoder layers i rest...
+    const auto words = split(name);  // text_model encoder layers i rest...
     const auto rest = join(words, 4);
     const auto block = fmt::format("{}transformer.resblocks.{}.", prefix, words[3]);
     constexpr std::array stacked{"self_attn.q_proj.", "self_attn.k_proj.", "self_attn.v_proj."};
@@ -180,13 +185,17 @@ LoadPlan text_encoder_plan() {
 }
 
 LoadPlan single_file_unet_plan(const UNetConfig& config) {
-    return {[config](const std::string& name) { return WeightSource{std::string(UNetPrefix) + unet_key(name, config)}; },
+    return {[config](const std::string& name) {
+                return WeightSource{std::string(UNetPrefix) + unet_key(name, config)};
+            },
             [](const std::string& key) { return !key.starts_with(UNetPrefix); }, "checkpoint's UNet"};
 }
 
 LoadPlan single_file_vae_plan(const VaeConfig& config) {
     const auto levels = static_cast<std::int64_t>(config.block_out_channels.size());
-    return {[levels](const std::string& name) { return WeightSource{std::string(VaePrefix) + vae_key(name, levels)}; },
+    return {[levels](const std::string& name) {
+                return WeightSource{std::string(VaePrefix) + vae_key(name, levels)};
+            },
             [](const std::string& key) {
                 return !key.starts_with(VaePrefix) || key.starts_with(std::string(VaePrefix) + "loss.") ||
                        key.starts_with(std::string(VaePrefix) + "model_ema.");
@@ -199,14 +208,17 @@ LoadPlan single_file_text_plan(const TextEncoderConfig& config, SingleFileText l
     plan.what = "checkpoint's text encoder";
     if (layout == SingleFileText::OpenClip) {
         plan.map = open_clip_source;
-        plan.ignore = [layers = config.num_hidden_layers](const std::string& key) { return ignored_open_clip(key, layers); };
+        plan.ignore = [layers = config.num_hidden_layers](const std::string& key) {
+            return ignored_open_clip(key, layers);
+        };
         return plan;
     }
     const bool bare = layout == SingleFileText::TransformersBare;
     plan.map = [bare](const std::string& name) {
         constexpr std::string_view text_model = "text_model.";
         const bool cut = bare && name.starts_with(text_model);
-        return WeightSource{std::string(TextPrefix) + "transformer." + (cut ? name.substr(text_model.size()) : name)};
+        return WeightSource{std::string(TextPrefix) + "transformer." +
+                            (cut ? name.substr(text_model.size()) : name)};
     };
     plan.ignore = [](const std::string& key) {
         return !key.starts_with(TextPrefix) || key.ends_with("embeddings.position_ids") ||
@@ -221,8 +233,10 @@ bool is_single_file(const SafetensorsFile& file) {
 
 SingleFileText single_file_text_layout(const SafetensorsFile& file) {
     const std::string prefix(TextPrefix);
-    if (file.contains(prefix + "transformer.text_model.embeddings.token_embedding.weight")) return SingleFileText::Transformers;
-    if (file.contains(prefix + "transformer.embeddings.token_embedding.weight")) return SingleFileText::TransformersBare;
+    if (file.contains(prefix + "transformer.text_model.embeddings.token_embedding.weight"))
+        return SingleFileText::Transformers;
+    if (file.contains(prefix + "transformer.embeddings.token_embedding.weight"))
+        return SingleFileText::TransformersBare;
     if (file.contains(prefix + "model.token_embedding.weight")) return SingleFileText::OpenClip;
     throw Error(ErrorCode::Model, "the checkpoint has no text encoder of Stable Diffusion 1.x or 2.x",
                 "SDXL, SD 3, Flux and LoRA files cannot be used", file.path());
@@ -240,7 +254,7 @@ UNetConfig infer_unet_config(const SafetensorsFile& file, SingleFileText layout)
     const auto& key = shape_at(file, prefix + "input_blocks.1.1.transformer_blocks.0.attn2.to_k.weight");
     if (key.size() == 2) config.cross_attention_dim = key[1];
     config.use_linear_projection = shape_at(file, prefix + "input_blocks.1.1.proj_in.weight").size() == 2;
-    constexpr std::int64_t HeadWidth = 64;   // of SD 2.x; SD 1.x has 8 heads everywhere
+    constexpr std::int64_t HeadWidth = 64;  // of SD 2.x; SD 1.x has 8 heads everywhere
     if (layout == SingleFileText::OpenClip) {
         for (std::size_t level = 0; level < config.heads.size(); ++level)
             config.heads[level] = std::max<std::int64_t>(1, config.block_out_channels[level] / HeadWidth);
@@ -262,25 +276,30 @@ VaeConfig infer_vae_config(const SafetensorsFile& file) {
 
 TextEncoderConfig infer_text_config(const SafetensorsFile& file, SingleFileText layout) {
     const bool open_clip = layout == SingleFileText::OpenClip;
-    const std::string prefix = std::string(TextPrefix) + (open_clip ? "model." : layout == SingleFileText::Transformers
-                                                                                     ? "transformer.text_model."
-                                                                                     : "transformer.");
+    const std::string prefix =
+        std::string(TextPrefix) + (open_clip                                ? "model."
+                                   : layout == SingleFileText::Transformers ? "transformer.text_model."
+                                                                            : "transformer.");
     TextEncoderConfig config;
-    const auto& table = shape_at(file, prefix + (open_clip ? "token_embedding.weight" : "embeddings.token_embedding.weight"));
+    const auto& table =
+        shape_at(file, prefix + (open_clip ? "token_embedding.weight" : "embeddings.token_embedding.weight"));
     config.vocab_size = table[0];
     config.hidden_size = table.back();
-    config.max_position_embeddings =
-        shape_at(file, prefix + (open_clip ? "positional_embedding" : "embeddings.position_embedding.weight"))[0];
+    config.max_position_embeddings = shape_at(
+        file, prefix + (open_clip ? "positional_embedding" : "embeddings.position_embedding.weight"))[0];
     const std::string layers = prefix + (open_clip ? "transformer.resblocks." : "encoder.layers.");
     config.num_hidden_layers = 0;
-    while (file.contains(fmt::format("{}{}.{}.weight", layers, config.num_hidden_layers, open_clip ? "ln_1" : "layer_norm1")))
+    while (file.contains(
+        fmt::format("{}{}.{}.weight", layers, config.num_hidden_layers, open_clip ? "ln_1" : "layer_norm1")))
         ++config.num_hidden_layers;
-    config.intermediate_size = shape_at(file, layers + (open_clip ? "0.mlp.c_fc.weight" : "0.mlp.fc1.weight"))[0];
-    constexpr std::int64_t HeadWidth = 64;   // of CLIP-L and OpenCLIP-H
+    config.intermediate_size =
+        shape_at(file, layers + (open_clip ? "0.mlp.c_fc.weight" : "0.mlp.fc1.weight"))[0];
+    constexpr std::int64_t HeadWidth = 64;  // of CLIP-L and OpenCLIP-H
     config.num_attention_heads = std::max<std::int64_t>(1, config.hidden_size / HeadWidth);
     if (open_clip) {
         config.hidden_act = "gelu";
-        config.num_hidden_layers -= 1;   // Stable Diffusion 2 takes the layer before the last, then the final norm
+        config.num_hidden_layers -=
+            1;  // Stable Diffusion 2 takes the layer before the last, then the final norm
     }
     return TextEncoderConfig::from_json(config.to_json(), file.path());
 }

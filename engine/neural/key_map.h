@@ -13,15 +13,15 @@ enum class SingleFileText {
     OpenClip,          // cond_stage_model.model.* (SD 2.x)
 };
 
-/// Plans for the files of a diffusers folder. The VAE has two sets of names: today's and those of the SD 1.x/2.x
-/// repositories (query, key, value, proj_attn); which one, the file's keys tell.
+/// Plans for the files of a diffusers folder. The VAE has two sets of names: today's and those of the
+/// SD 1.x/2.x repositories (query, key, value, proj_attn); which one, the file's keys tell.
 LoadPlan unet_plan();
 LoadPlan vae_plan(const SafetensorsFile& file);
 LoadPlan vae_plan(bool legacy_names);
 LoadPlan text_encoder_plan();
 
-/// Plans for one file with everything (ldm names). Keys of the other parts, schedule buffers and averaged copies are
-/// left alone.
+/// Plans for one file with everything (ldm names). Keys of the other parts, schedule buffers and averaged
+/// copies are left alone.
 LoadPlan single_file_unet_plan(const UNetConfig& config);
 LoadPlan single_file_vae_plan(const VaeConfig& config);
 LoadPlan single_file_text_plan(const TextEncoderConfig& config, SingleFileText layout);

@@ -62,7 +62,8 @@ torch::Tensor Conv2dImpl::forward(const torch::Tensor& x) const {
     return torch::conv2d(x, weight, bias, shape_.stride, shape_.padding);
 }
 
-GroupNormImpl::GroupNormImpl(std::int64_t channels, std::int64_t groups, double eps, const WeightOptions& options)
+GroupNormImpl::GroupNormImpl(std::int64_t channels, std::int64_t groups, double eps,
+                             const WeightOptions& options)
     : groups_(groups), eps_(eps) {
     weight = make_parameter(*this, "weight", {channels}, options);
     bias = make_parameter(*this, "bias", {channels}, options);
@@ -73,7 +74,8 @@ void GroupNormImpl::reset() { fill_affine(weight, bias); }
 
 torch::Tensor GroupNormImpl::forward(const torch::Tensor& x) const {
     if (!is_reduced(x)) return torch::group_norm(x, groups_, weight, bias, eps_);
-    return torch::group_norm(x.to(torch::kFloat32), groups_, weight.to(torch::kFloat32), bias.to(torch::kFloat32), eps_)
+    return torch::group_norm(x.to(torch::kFloat32), groups_, weight.to(torch::kFloat32),
+                             bias.to(torch::kFloat32), eps_)
         .to(x.scalar_type());
 }
 
@@ -89,12 +91,13 @@ void LayerNormImpl::reset() { fill_affine(weight, bias); }
 
 torch::Tensor LayerNormImpl::forward(const torch::Tensor& x) const {
     if (!is_reduced(x)) return torch::layer_norm(x, weight.sizes(), weight, bias, eps_);
-    return torch::layer_norm(x.to(torch::kFloat32), weight.sizes(), weight.to(torch::kFloat32), bias.to(torch::kFloat32),
-                             eps_)
+    return torch::layer_norm(x.to(torch::kFloat32), weight.sizes(), weight.to(torch::kFloat32),
+                             bias.to(torch::kFloat32), eps_)
         .to(x.scalar_type());
 }
 
-EmbeddingImpl::EmbeddingImpl(std::int64_t count, std::int64_t width, double initial_std, const WeightOptions& options)
+EmbeddingImpl::EmbeddingImpl(std::int64_t count, std::int64_t width, double initial_std,
+                             const WeightOptions& options)
     : initial_std_(initial_std) {
     weight = make_parameter(*this, "weight", {count, width}, options);
     if (options.initialize) EmbeddingImpl::reset();
@@ -120,8 +123,8 @@ torch::Tensor apply_silu(torch::Tensor x) {
 namespace {
 
 // q, k, v are [B*heads, N or M, d], q already scaled.
-torch::Tensor probabilities_of(const torch::Tensor& q, const torch::Tensor& k, const AttentionRequest& request,
-                               std::int64_t batch) {
+torch::Tensor probabilities_of(const torch::Tensor& q, const torch::Tensor& k,
+                               const AttentionRequest& request, std::int64_t batch) {
     auto scores = torch::bmm(q, k.transpose(1, 2));
     if (request.mask.defined())
         scores = (scores.view({batch, request.heads, q.size(1), k.size(1)}) + request.mask).view_as(scores);
@@ -166,7 +169,8 @@ AttentionResult attend(const torch::Tensor& q_in, const torch::Tensor& k_in, con
         k = k.to(torch::kFloat32);
     }
     AttentionResult result;
-    const bool recorded = torch::GradMode::is_enabled() && (q.requires_grad() || k.requires_grad() || v.requires_grad());
+    const bool recorded =
+        torch::GradMode::is_enabled() && (q.requires_grad() || k.requires_grad() || v.requires_grad());
     const bool large = q.size(0) * q.size(1) * k.size(1) > ScoreBudget;
     if (large && !recorded && !request.want_probabilities && !request.mask.defined()) {
         result.output = merge_heads(attend_in_pieces(q, k, v, request), request.heads);
@@ -174,7 +178,8 @@ AttentionResult attend(const torch::Tensor& q_in, const torch::Tensor& k_in, con
     }
     const auto weights = probabilities_of(q, k, request, batch);
     result.output = merge_heads(torch::bmm(weights.to(v.scalar_type()), v), request.heads);
-    if (request.want_probabilities) result.probabilities = weights.view({batch, request.heads, q.size(1), k.size(1)});
+    if (request.want_probabilities)
+        result.probabilities = weights.view({batch, request.heads, q.size(1), k.size(1)});
     return result;
 }
 

@@ -1,4 +1,5 @@
-// The layers all networks are built of: parameters named as in diffusers and transformers, norms computed in fp32.
+// The layers all networks are built of: parameters named as in diffusers and transformers, norms computed in
+// fp32.
 #pragma once
 
 #include <torch/torch.h>
@@ -12,8 +13,8 @@
 
 namespace gse::neural {
 
-/// How parameters come to life. `initialize` false leaves them undefined (they will be loaded); on torch::kMeta only
-/// names and shapes exist.
+/// How parameters come to life. `initialize` false leaves them undefined (they will be loaded); on
+/// torch::kMeta only names and shapes exist.
 struct WeightOptions {
     torch::Device device = torch::kCPU;
     torch::Dtype dtype = torch::kFloat32;
@@ -58,7 +59,8 @@ private:
 };
 TORCH_MODULE(Conv2d);
 
-/// Group normalisation of [B,C,H,W]; half and bfloat16 inputs are normalised in fp32. Optionally followed by SiLU.
+/// Group normalisation of [B,C,H,W]; half and bfloat16 inputs are normalised in fp32. Optionally followed by
+/// SiLU.
 class GroupNormImpl : public torch::nn::Module, public Resettable {
 public:
     GroupNormImpl(std::int64_t channels, std::int64_t groups, double eps, const WeightOptions& options);
@@ -108,18 +110,18 @@ torch::Tensor apply_silu(torch::Tensor x);
 /// What one attention computes besides its output.
 struct AttentionRequest {
     std::int64_t heads = 1;
-    bool upcast = false;           // scores in fp32 even for half inputs (SD 2.1)
-    torch::Tensor mask;            // added to the scores, broadcast to [B,heads,N,M]; undefined = none
+    bool upcast = false;  // scores in fp32 even for half inputs (SD 2.1)
+    torch::Tensor mask;   // added to the scores, broadcast to [B,heads,N,M]; undefined = none
     bool want_probabilities = false;
 };
 
 struct AttentionResult {
-    torch::Tensor output;          // [B,N,C], heads merged
-    torch::Tensor probabilities;   // [B,heads,N,M] fp32, only when wanted
+    torch::Tensor output;         // [B,N,C], heads merged
+    torch::Tensor probabilities;  // [B,heads,N,M] fp32, only when wanted
 };
 
-/// softmax(q k^T / sqrt(d)) v for q [B,N,C], k and v [B,M,C]. Never goes through baddbmm with beta 0 (NaN at random in
-/// libtorch 1.13); long sequences are done in pieces when no graph is recorded.
+/// softmax(q k^T / sqrt(d)) v for q [B,N,C], k and v [B,M,C]. Never goes through baddbmm with beta 0 (NaN at
+/// random in libtorch 1.13); long sequences are done in pieces when no graph is recorded.
 AttentionResult attend(const torch::Tensor& q, const torch::Tensor& k, const torch::Tensor& v,
                        const AttentionRequest& request);
 
@@ -129,7 +131,8 @@ torch::Tensor tokens_to_image(const torch::Tensor& tokens, std::int64_t height, 
 
 /// A list of modules whose names are "0", "1", ...; typed access beside torch's registration.
 template <class Holder>
-std::vector<Holder> register_list(torch::nn::Module& parent, const std::string& name, std::vector<Holder> modules) {
+std::vector<Holder> register_list(torch::nn::Module& parent, const std::string& name,
+                                  std::vector<Holder> modules) {
     torch::nn::ModuleList list;
     for (const auto& module : modules) list->push_back(module.ptr());
     parent.register_module(name, list);

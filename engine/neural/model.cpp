@@ -20,7 +20,8 @@ public:
     std::unique_ptr<edit::AttentionSource> attention(const AttentionParameters& parameters) override {
         return std::make_unique<BundleAttentionSource>(bundle_, parameters);
     }
-    std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const SdsParameters& parameters) override {
+    std::unique_ptr<edit::Guidance> guidance(const std::string& prompt,
+                                             const SdsParameters& parameters) override {
         return std::make_unique<SdsGuidance>(bundle_, prompt, parameters);
     }
     std::vector<std::string> known_words() const override { return bundle_->facts.vocabulary; }
@@ -36,14 +37,16 @@ private:
             const torch::NoGradGuard no_grad;
             const auto side = bundle_->latent_size();
             const auto sampler = make_sampler(SamplerKind::Ddim, bundle_->schedule, request.steps);
-            auto latents = seeded_noise({1, bundle_->unet->config().in_channels, side, side}, request.seed).to(bundle_->device);
+            auto latents = seeded_noise({1, bundle_->unet->config().in_channels, side, side}, request.seed)
+                               .to(bundle_->device);
             DenoiseJob job;
             job.sampler = sampler.get();
             job.guidance_scale = request.guidance_scale;
             job.context = bundle_->encode_prompts({request.negative_prompt, request.prompt});
             job.seed = request.seed;
             if (image != nullptr) {
-                job.first = std::min(first_step(sampler->step_count(), request.strength), sampler->step_count() - 1);
+                job.first =
+                    std::min(first_step(sampler->step_count(), request.strength), sampler->step_count() - 1);
                 const auto source = resize_square(to_tensor(*image, bundle_->device), bundle_->image_size());
                 latents = sampler->start_from(image_to_latents(*bundle_, source), latents, job.first);
             }

@@ -5,12 +5,13 @@
 
 namespace gse::neural {
 
-/// Loads a diffusers folder or a single-file checkpoint (.safetensors) to `device` ("cpu", "cuda", "cuda:1"). Throws
-/// Error (Model, NotFound, Malformed) with one sentence that names the file and, if it is a tensor, its name.
+/// Loads a diffusers folder or a single-file checkpoint (.safetensors) to `device` ("cpu", "cuda", "cuda:1").
+/// Throws Error (Model, NotFound, Malformed) with one sentence that names the file and, if it is a tensor,
+/// its name.
 std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const std::string& device);
 
-/// Threads inside one network operation; 0 = one per hardware thread. More threads than free cores make small networks
-/// slower, not faster.
+/// Threads inside one network operation; 0 = one per hardware thread. More threads than free cores make small
+/// networks slower, not faster.
 void set_threads(int count);
 
 }  // namespace gse::neural

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 struct Parts {
     bool single_file = false;
     fs::path root;
-    fs::path unet_file, vae_file, text_file;   // the same file for a single-file checkpoint
+    fs::path unet_file, vae_file, text_file;  // the same file for a single-file checkpoint
     SingleFileText text_layout = SingleFileText::Transformers;
     UNetConfig unet;
     VaeConfig vae;
@@ -33,11 +33,13 @@ struct Parts {
 };
 
 constexpr const char* FolderHint =
-    "a model folder has model_index.json, tokenizer, text_encoder, unet, vae and scheduler, as diffusers writes it";
+    "a model folder has model_index.json, tokenizer, text_encoder, unet, vae and scheduler, as diffusers "
+    "writes it";
 
 [[noreturn]] void refuse_pickle(const fs::path& path) {
     throw Error(ErrorCode::Unsupported, "pickled weights can run code when they are read and are not opened",
-                "convert once in Python: safetensors.torch.save_file(torch.load(FILE, weights_only=True)[\"state_dict\"], "
+                "convert once in Python: safetensors.torch.save_file(torch.load(FILE, "
+                "weights_only=True)[\"state_dict\"], "
                 "\"model.safetensors\")",
                 path);
 }
@@ -48,20 +50,24 @@ bool is_pickle(const fs::path& path) {
 }
 
 fs::path find_weights(const fs::path& folder, const char* stem) {
-    if (!fs::is_directory(folder)) throw Error(ErrorCode::NotFound, "the model folder is incomplete", FolderHint, folder);
+    if (!fs::is_directory(folder))
+        throw Error(ErrorCode::NotFound, "the model folder is incomplete", FolderHint, folder);
     for (const char* variant : {"", ".fp16", ".non_ema"}) {
         const auto path = folder / fmt::format("{}{}.safetensors", stem, variant);
         if (fs::exists(path)) return path;
     }
     if (fs::exists(folder / fmt::format("{}.safetensors.index.json", stem)))
-        throw Error(ErrorCode::Unsupported, "weights in several shards cannot be loaded", "merge them into one file", folder);
+        throw Error(ErrorCode::Unsupported, "weights in several shards cannot be loaded",
+                    "merge them into one file", folder);
     const auto pickle = folder / fmt::format("{}.bin", std::string(stem) == "model" ? "pytorch_model" : stem);
     if (fs::exists(pickle)) refuse_pickle(pickle);
-    throw Error(ErrorCode::NotFound, "the model has no weights here", FolderHint, folder / fmt::format("{}.safetensors", stem));
+    throw Error(ErrorCode::NotFound, "the model has no weights here", FolderHint,
+                folder / fmt::format("{}.safetensors", stem));
 }
 
 Json config_of(const fs::path& path) {
-    if (!fs::exists(path)) throw Error(ErrorCode::NotFound, "the model folder is incomplete", FolderHint, path);
+    if (!fs::exists(path))
+        throw Error(ErrorCode::NotFound, "the model folder is incomplete", FolderHint, path);
     return read_json_file(path);
 }
 
@@ -77,7 +83,8 @@ Parts folder_parts(const fs::path& root) {
     parts.text_file = find_weights(root / "text_encoder", "model");
     parts.unet = UNetConfig::from_json(config_of(root / "unet/config.json"), root / "unet/config.json");
     parts.vae = VaeConfig::from_json(config_of(root / "vae/config.json"), root / "vae/config.json");
-    parts.text = TextEncoderConfig::from_json(config_of(root / "text_encoder/config.json"), root / "text_encoder/config.json");
+    parts.text = TextEncoderConfig::from_json(config_of(root / "text_encoder/config.json"),
+                                              root / "text_encoder/config.json");
     const auto scheduler = root / "scheduler/scheduler_config.json";
     parts.scheduler = SchedulerConfig::from_json(config_of(scheduler), scheduler);
     parts.tokenizer = root / "tokenizer";
@@ -115,7 +122,8 @@ Parts single_file_parts(const fs::path& path) {
     parts.text_layout = single_file_text_layout(file);
     const auto beside = path.parent_path();
     const bool second = parts.text_layout == SingleFileText::OpenClip;
-    parts.unet = beside_or<UNetConfig>(beside / "unet_config.json", [&] { return infer_unet_config(file, parts.text_layout); });
+    parts.unet = beside_or<UNetConfig>(beside / "unet_config.json",
+                                       [&] { return infer_unet_config(file, parts.text_layout); });
     parts.vae = beside_or<VaeConfig>(beside / "vae_config.json", [&] { return infer_vae_config(file); });
     parts.text = beside_or<TextEncoderConfig>(beside / "text_encoder_config.json",
                                               [&] { return infer_text_config(file, parts.text_layout); });
@@ -124,8 +132,10 @@ Parts single_file_parts(const fs::path& path) {
         if (second) {
             // Nothing in the file tells the 768-v models from the 512 base ones.
             scheduler.prediction_type = "v_prediction";
-            log::warning("{}: taken for a velocity model (SD 2.x, 768); put a scheduler_config.json beside it if it "
-                         "predicts noise (SD 2.x base)", path.filename().string());
+            log::warning(
+                "{}: taken for a velocity model (SD 2.x, 768); put a scheduler_config.json beside it if it "
+                "predicts noise (SD 2.x base)",
+                path.filename().string());
         }
         return scheduler;
     });
@@ -137,28 +147,34 @@ Parts single_file_parts(const fs::path& path) {
 Parts find_parts(const fs::path& path) {
     std::error_code ignored;
     if (!fs::exists(path, ignored))
-        throw Error(ErrorCode::NotFound, "there is no model here", "name a diffusers folder or a .safetensors checkpoint", path);
+        throw Error(ErrorCode::NotFound, "there is no model here",
+                    "name a diffusers folder or a .safetensors checkpoint", path);
     auto parts = [&] {
         if (fs::is_directory(path)) return folder_parts(path);
         if (is_pickle(path)) refuse_pickle(path);
         if (path.extension() != ".safetensors")
-            throw Error(ErrorCode::Unsupported, "this is not a model", "name a diffusers folder or a .safetensors checkpoint", path);
+            throw Error(ErrorCode::Unsupported, "this is not a model",
+                        "name a diffusers folder or a .safetensors checkpoint", path);
         return single_file_parts(path);
     }();
     // The projection is not part of the conditioning and is often missing.
     parts.text.with_projection = false;
     if (parts.facts.image_size == 0) parts.facts.image_size = parts.unet.sample_size * parts.vae.factor();
     if (parts.facts.name.empty()) parts.facts.name = path.stem().string();
-    if (parts.unet.in_channels != parts.vae.latent_channels || parts.unet.out_channels != parts.vae.latent_channels)
+    if (parts.unet.in_channels != parts.vae.latent_channels ||
+        parts.unet.out_channels != parts.vae.latent_channels)
         throw Error(ErrorCode::Unsupported,
-                    fmt::format("the UNet takes {} channels but the VAE has {}", parts.unet.in_channels, parts.vae.latent_channels),
+                    fmt::format("the UNet takes {} channels but the VAE has {}", parts.unet.in_channels,
+                                parts.vae.latent_channels),
                     "inpainting, depth and instruction models cannot be used", path);
     if (parts.unet.cross_attention_dim != parts.text.hidden_size)
         throw Error(ErrorCode::Model,
                     fmt::format("the UNet expects text of width {} but the text encoder gives {}",
-                                parts.unet.cross_attention_dim, parts.text.hidden_size), {}, path);
+                                parts.unet.cross_attention_dim, parts.text.hidden_size),
+                    {}, path);
     if (parts.facts.image_size % parts.vae.factor() != 0)
-        throw Error(ErrorCode::Model, "the model's image size is not a multiple of the VAE's factor", {}, path);
+        throw Error(ErrorCode::Model, "the model's image size is not a multiple of the VAE's factor", {},
+                    path);
     return parts;
 }
 
@@ -176,8 +192,9 @@ Plans plans_of(const Parts& parts, const SafetensorsFile& vae_file) {
 void check_tokenizer(const Tokenizer& tokenizer, const Parts& parts) {
     if (tokenizer.vocabulary_size() > parts.text.vocab_size)
         throw Error(ErrorCode::Model,
-                    fmt::format("the tokenizer has {} tokens but the text encoder only {}", tokenizer.vocabulary_size(),
-                                parts.text.vocab_size), {}, parts.tokenizer);
+                    fmt::format("the tokenizer has {} tokens but the text encoder only {}",
+                                tokenizer.vocabulary_size(), parts.text.vocab_size),
+                    {}, parts.tokenizer);
 }
 
 std::int64_t count_parameters(const torch::nn::Module& module) {
@@ -205,7 +222,8 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
             throw Error(ErrorCode::Malformed, fmt::format("\"{}\" has the wrong type", key), {}, path);
         }
     };
-    if (!json.is_object()) throw Error(ErrorCode::Malformed, "the model's facts are not a JSON object", {}, path);
+    if (!json.is_object())
+        throw Error(ErrorCode::Malformed, "the model's facts are not a JSON object", {}, path);
     get("name", facts.name);
     get("image_size", facts.image_size);
     get("attention_threshold", facts.attention_threshold);
@@ -253,7 +271,8 @@ ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& 
                            parts.facts,
                            device};
         check_tokenizer(bundle.tokenizer, parts);
-        const SafetensorsFile unet_file(parts.unet_file), vae_file(parts.vae_file), text_file(parts.text_file);
+        const SafetensorsFile unet_file(parts.unet_file), vae_file(parts.vae_file),
+            text_file(parts.text_file);
         const auto plans = plans_of(parts, vae_file);
         load_weights(*bundle.text_encoder, text_file, plans.text);
         load_weights(*bundle.unet, unet_file, plans.unet);
@@ -272,7 +291,8 @@ ModelDescription describe_model(const std::filesystem::path& path) {
         const UNet unet(parts.unet, described);
         const AutoencoderKl vae(parts.vae, described);
         const ClipTextEncoder text(parts.text, described);
-        const SafetensorsFile unet_file(parts.unet_file), vae_file(parts.vae_file), text_file(parts.text_file);
+        const SafetensorsFile unet_file(parts.unet_file), vae_file(parts.vae_file),
+            text_file(parts.text_file);
         const auto plans = plans_of(parts, vae_file);
         check_weights(*text, key_shapes(text_file), plans.text, parts.text_file);
         check_weights(*unet, key_shapes(unet_file), plans.unet, parts.unet_file);
@@ -291,7 +311,8 @@ torch::Device parse_device(const std::string& name) {
     const bool numbered = name.starts_with("cuda:") && name.size() > 5 && name.size() < 8 &&
                           name.find_first_not_of("0123456789", 5) == std::string::npos;
     if (name != "cuda" && !numbered)
-        throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" is not a device", name), "use cpu, cuda or cuda:1");
+        throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" is not a device", name),
+                    "use cpu, cuda or cuda:1");
     const int index = numbered ? std::stoi(name.substr(5)) : 0;
     if (!torch::cuda::is_available() || index >= static_cast<int>(torch::cuda::device_count()))
         throw Error(ErrorCode::InvalidArgument, fmt::format("there is no device \"{}\" here", name),

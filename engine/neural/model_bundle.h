@@ -1,4 +1,5 @@
-// A whole text-to-image model: tokenizer, text encoder, UNet, VAE, noise schedule, and what the model says about itself.
+// A whole text-to-image model: tokenizer, text encoder, UNet, VAE, noise schedule, and what the model says
+// about itself.
 #pragma once
 
 #include <filesystem>
@@ -16,13 +17,16 @@ namespace gse::neural {
 /// gseditpro.json beside model_index.json; every key may be missing.
 struct ModelFacts {
     std::string name;
-    std::int64_t image_size = 0;                     // 0 = UNet's sample_size times the VAE's factor
-    double attention_threshold = 0.5;                // the paper's value
-    std::vector<std::string> attention_layers;       // beginnings of layer names; empty = "down_blocks" and "up_blocks"
-    std::vector<std::int64_t> attention_sizes;       // map heights; empty = latent size, a half and a quarter of it
-    std::vector<double> attention_timesteps;         // shares of the schedule probed; empty = {0.3, 0.5, 0.7}
-    std::vector<double> attention_absent_timesteps;  // the same for what is not there yet; empty = {0.8, 0.85, 0.9}
-    std::vector<std::string> vocabulary;             // words the model was trained on; empty = open
+    std::int64_t image_size = 0;       // 0 = UNet's sample_size times the VAE's factor
+    double attention_threshold = 0.5;  // the paper's value
+    std::vector<std::string>
+        attention_layers;  // beginnings of layer names; empty = "down_blocks" and "up_blocks"
+    std::vector<std::int64_t>
+        attention_sizes;                      // map heights; empty = latent size, a half and a quarter of it
+    std::vector<double> attention_timesteps;  // shares of the schedule probed; empty = {0.3, 0.5, 0.7}
+    std::vector<double>
+        attention_absent_timesteps;       // the same for what is not there yet; empty = {0.8, 0.85, 0.9}
+    std::vector<std::string> vocabulary;  // words the model was trained on; empty = open
 
     static ModelFacts from_json(const Json& json, const std::filesystem::path& path);
 };
@@ -30,10 +34,10 @@ struct ModelFacts {
 /// What a model is, read from its small files and headers only.
 struct ModelDescription {
     std::string name;
-    std::string layout;                 // "diffusers folder" or "single file"
+    std::string layout;  // "diffusers folder" or "single file"
     std::int64_t image_size = 0;
     std::int64_t parameters = 0;
-    std::string prediction;             // "epsilon" or "v_prediction"
+    std::string prediction;  // "epsilon" or "v_prediction"
     std::vector<std::string> vocabulary;
 };
 
@@ -57,8 +61,8 @@ struct ModelBundle {
     torch::Tensor encode_prompts(const std::vector<std::string>& prompts) const;
 };
 
-/// Loads a diffusers folder or a single-file checkpoint (.safetensors). All weights are fp32 and frozen. Throws Error
-/// (NotFound, Malformed, Model, Unsupported) with one sentence.
+/// Loads a diffusers folder or a single-file checkpoint (.safetensors). All weights are fp32 and frozen.
+/// Throws Error (NotFound, Malformed, Model, Unsupported) with one sentence.
 ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device = torch::kCPU);
 
 /// Checks that every file is there and every tensor has the right name and shape, without reading any weight.

@@ -31,14 +31,18 @@ torch::Tensor denoise(const ModelBundle& bundle, torch::Tensor latents, const De
             throw Error(ErrorCode::Cancelled, "sampling was stopped");
         const auto input = sampler.scale_input(latents, i);
         const auto t = torch::full({1}, sampler.timestep(i), torch::kFloat32);
-        const auto output = bundle.unet->forward(guidance ? torch::cat({input, input}) : input, t, context, job.capture);
+        const auto output =
+            bundle.unet->forward(guidance ? torch::cat({input, input}) : input, t, context, job.capture);
         torch::Tensor noise;
         if (sampler.needs_noise())
-            noise = seeded_noise(latents.sizes(), Random::stream(job.seed, static_cast<std::uint64_t>(i) + 1).next()).to(bundle.device);
+            noise = seeded_noise(latents.sizes(),
+                                 Random::stream(job.seed, static_cast<std::uint64_t>(i) + 1).next())
+                        .to(bundle.device);
         latents = sampler.step(guidance ? guided(output, job.guidance_scale) : output, latents, i, noise);
         if (job.after_step) job.after_step(i, latents);
         if (job.control != nullptr)
-            job.control->report("sampling", static_cast<int>(i - job.first + 1), static_cast<int>(sampler.step_count() - job.first));
+            job.control->report("sampling", static_cast<int>(i - job.first + 1),
+                                static_cast<int>(sampler.step_count() - job.first));
     }
     return latents;
 }

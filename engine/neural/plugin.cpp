@@ -13,7 +13,8 @@ namespace {
 
 class Plugin final : public Api {
 public:
-    std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const std::string& device) override {
+    std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path,
+                                            const std::string& device) override {
         return neural::load_model(path, device);
     }
     void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,

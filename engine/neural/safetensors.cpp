@@ -1,5 +1,5 @@
-// Safetensors reader and writer. Layout: u64 little-endian header length, JSON header, data; data_offsets are relative to
-// the data part, tile it without holes, and may be unaligned.
+// Safetensors reader and writer. Layout: u64 little-endian header length, JSON header, data; data_offsets are
+// relative to the data part, tile it without holes, and may be unaligned.
 #include "engine/neural/safetensors.h"
 
 #include <fmt/format.h>
@@ -16,41 +16,49 @@ namespace gse::neural {
 namespace {
 
 constexpr std::size_t LengthBytes = 8;
-constexpr std::uint64_t MaxHeaderBytes = 100'000'000;   // the official reader's limit
+constexpr std::uint64_t MaxHeaderBytes = 100'000'000;  // the official reader's limit
 
 struct TypeName {
     const char* name;
     torch::Dtype dtype;
 };
-constexpr std::array Types{TypeName{"F32", torch::kFloat32}, TypeName{"F16", torch::kHalf},
+constexpr std::array Types{TypeName{"F32", torch::kFloat32},   TypeName{"F16", torch::kHalf},
                            TypeName{"BF16", torch::kBFloat16}, TypeName{"F64", torch::kFloat64},
                            TypeName{"I64", torch::kInt64},     TypeName{"I32", torch::kInt32},
                            TypeName{"I16", torch::kInt16},     TypeName{"I8", torch::kInt8},
                            TypeName{"U8", torch::kUInt8},      TypeName{"BOOL", torch::kBool}};
 
 [[noreturn]] void malformed(const std::filesystem::path& path, const std::string& what) {
-    throw Error(ErrorCode::Malformed, "the safetensors file is damaged: " + what, "download or write it again", path);
+    throw Error(ErrorCode::Malformed, "the safetensors file is damaged: " + what,
+                "download or write it again", path);
 }
 
 std::uint64_t read_length(std::span<const std::byte> bytes, const std::filesystem::path& path) {
     if (bytes.size() < LengthBytes) malformed(path, "it is shorter than its own header length");
     std::uint64_t length = 0;
-    for (std::size_t i = 0; i < LengthBytes; ++i) length |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
-    if (length > MaxHeaderBytes || length > bytes.size() - LengthBytes) malformed(path, "its header is longer than the file");
+    for (std::size_t i = 0; i < LengthBytes; ++i)
+        length |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
+    if (length > MaxHeaderBytes || length > bytes.size() - LengthBytes)
+        malformed(path, "its header is longer than the file");
     return length;
 }
 
 SafetensorsFile::Entry read_entry(const nlohmann::json& json, const std::string& name,
                                   const std::filesystem::path& path) {
-    const auto bad = [&](const std::string& what) { malformed(path, fmt::format("tensor \"{}\" {}", name, what)); };
+    const auto bad = [&](const std::string& what) {
+        malformed(path, fmt::format("tensor \"{}\" {}", name, what));
+    };
     const auto is_count = [](const nlohmann::json& value) { return value.is_number_unsigned(); };
-    if (!json.is_object() || !json.contains("dtype") || !json.contains("shape") || !json.contains("data_offsets"))
+    if (!json.is_object() || !json.contains("dtype") || !json.contains("shape") ||
+        !json.contains("data_offsets"))
         bad("has no dtype, shape or data_offsets");
     SafetensorsFile::Entry entry;
-    const auto type = std::find_if(Types.begin(), Types.end(), [&](const TypeName& t) { return json["dtype"] == t.name; });
+    const auto type =
+        std::find_if(Types.begin(), Types.end(), [&](const TypeName& t) { return json["dtype"] == t.name; });
     if (type == Types.end())
         throw Error(ErrorCode::Unsupported,
-                    fmt::format("tensor \"{}\" has the number type {}, which cannot be read", name, json["dtype"].dump()),
+                    fmt::format("tensor \"{}\" has the number type {}, which cannot be read", name,
+                                json["dtype"].dump()),
                     "use a file in F32, F16 or BF16", path);
     entry.dtype = type->dtype;
     std::uint64_t size = torch::elementSize(entry.dtype);
@@ -58,7 +66,8 @@ SafetensorsFile::Entry read_entry(const nlohmann::json& json, const std::string&
     for (const auto& dimension : json["shape"]) {
         if (!is_count(dimension)) bad("has a dimension that is not a count");
         const auto count = dimension.get<std::uint64_t>();
-        if (__builtin_mul_overflow(size, count, &size) || size > (std::uint64_t{1} << 62) || count > (std::uint64_t{1} << 62))
+        if (__builtin_mul_overflow(size, count, &size) || size > (std::uint64_t{1} << 62) ||
+            count > (std::uint64_t{1} << 62))
             bad("is impossibly large");
         entry.shape.push_back(static_cast<std::int64_t>(count));
     }
@@ -67,7 +76,8 @@ SafetensorsFile::Entry read_entry(const nlohmann::json& json, const std::string&
         bad("has no valid data_offsets");
     entry.begin = offsets[0].get<std::size_t>();
     entry.end = offsets[1].get<std::size_t>();
-    if (entry.begin > entry.end || entry.end - entry.begin != size) bad("has a size that does not fit its shape");
+    if (entry.begin > entry.end || entry.end - entry.begin != size)
+        bad("has a size that does not fit its shape");
     return entry;
 }
 
@@ -117,7 +127,8 @@ SafetensorsFile::SafetensorsFile(const std::filesystem::path& path) : path_(path
     const auto bytes = file_.bytes();
     const auto length = read_length(bytes, path);
     data_begin_ = LengthBytes + static_cast<std::size_t>(length);
-    const auto header = nlohmann::json::parse(file_.text().substr(LengthBytes, static_cast<std::size_t>(length)), nullptr, false);
+    const auto header = nlohmann::json::parse(
+        file_.text().substr(LengthBytes, static_cast<std::size_t>(length)), nullptr, false);
     if (!header.is_object()) malformed(path, "its header is not a JSON object");
     for (const auto& [name, value] : header.items()) {
         if (name == "__metadata__") {
@@ -135,7 +146,8 @@ torch::Tensor SafetensorsFile::view_or_copy(const Entry& entry) const {
     const auto options = torch::TensorOptions().dtype(entry.dtype);
     const bool aligned = reinterpret_cast<std::uintptr_t>(data) % torch::elementSize(entry.dtype) == 0;
     // from_blob takes a mutable pointer; the result is only read.
-    if (aligned && entry.begin != entry.end) return torch::from_blob(const_cast<std::byte*>(data), entry.shape, options);
+    if (aligned && entry.begin != entry.end)
+        return torch::from_blob(const_cast<std::byte*>(data), entry.shape, options);
     auto copy = torch::empty(entry.shape, options);
     if (entry.begin != entry.end) std::memcpy(copy.data_ptr(), data, entry.end - entry.begin);
     return copy;
@@ -162,16 +174,19 @@ void write_safetensors(const std::filesystem::path& path, const NamedTensors& te
     write_atomically(path, [&](const std::filesystem::path& temporary) {
         std::ofstream stream(temporary, std::ios::binary);
         std::array<char, LengthBytes> length{};
-        for (std::size_t i = 0; i < LengthBytes; ++i) length[i] = static_cast<char>(header.size() >> (8 * i) & 0xff);
+        for (std::size_t i = 0; i < LengthBytes; ++i)
+            length[i] = static_cast<char>(header.size() >> (8 * i) & 0xff);
         stream.write(length.data(), LengthBytes);
         stream.write(header.data(), static_cast<std::streamsize>(header.size()));
         for (const auto& [name, tensor] : tensors) {
             const auto plain = tensor.detach().to(torch::kCPU).contiguous();
             stream.write(static_cast<const char*>(plain.data_ptr()),
-                         static_cast<std::streamsize>(plain.numel() * static_cast<std::int64_t>(plain.element_size())));
+                         static_cast<std::streamsize>(plain.numel() *
+                                                      static_cast<std::int64_t>(plain.element_size())));
         }
         stream.flush();
-        if (!stream) throw Error(ErrorCode::Unwritable, "the weights cannot be written", "is the disk full?", path);
+        if (!stream)
+            throw Error(ErrorCode::Unwritable, "the weights cannot be written", "is the disk full?", path);
     });
 }
 

@@ -19,7 +19,7 @@ public:
     struct Entry {
         torch::Dtype dtype = torch::kFloat32;
         std::vector<std::int64_t> shape;
-        std::size_t begin = 0, end = 0;   // bytes in the data part; need not be aligned
+        std::size_t begin = 0, end = 0;  // bytes in the data part; need not be aligned
     };
 
     /// Throws Error (NotFound, Unreadable, Malformed).

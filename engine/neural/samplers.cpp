@@ -1,4 +1,5 @@
-// The samplers: each is the published update rule in the conventions (timesteps, sigmas, last step) of diffusers.
+// The samplers: each is the published update rule in the conventions (timesteps, sigmas, last step) of
+// diffusers.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +26,9 @@ std::vector<double> ascending(const SchedulerConfig& config, const std::string& 
     for (std::int64_t i = 0; i < count; ++i) {
         double t = 0;
         if (spacing == "linspace") {
-            t = count == 1 ? 0 : static_cast<double>(total - 1) * static_cast<double>(i) / static_cast<double>(count - 1);
+            t = count == 1 ? 0
+                           : static_cast<double>(total - 1) * static_cast<double>(i) /
+                                 static_cast<double>(count - 1);
             if (rounded) t = std::nearbyint(t);
         } else if (spacing == "leading") {
             t = static_cast<double>(i * (total / count) + config.steps_offset);
@@ -60,7 +63,8 @@ class DdimSampler : public Sampler {
 public:
     DdimSampler(const NoiseSchedule& schedule, std::int64_t steps, double eta)
         : Sampler(schedule), stride_(schedule.steps() / steps), eta_(eta) {
-        timesteps_ = reversed(ascending(schedule.config(), spacing_of(schedule.config(), "leading"), steps, true));
+        timesteps_ =
+            reversed(ascending(schedule.config(), spacing_of(schedule.config(), "leading"), steps, true));
     }
     bool needs_noise() const override { return eta_ > 0; }
 
@@ -115,7 +119,8 @@ class DdpmSampler final : public Sampler {
 public:
     DdpmSampler(const NoiseSchedule& schedule, std::int64_t steps)
         : Sampler(schedule), stride_(schedule.steps() / steps) {
-        timesteps_ = reversed(ascending(schedule.config(), spacing_of(schedule.config(), "leading"), steps, true));
+        timesteps_ =
+            reversed(ascending(schedule.config(), spacing_of(schedule.config(), "leading"), steps, true));
     }
     bool needs_noise() const override { return true; }
 
@@ -145,7 +150,7 @@ public:
         const auto spacing = spacing_of(schedule.config(), "linspace");
         timesteps_ = reversed(ascending(schedule.config(), spacing, steps, false));
         for (auto& t : timesteps_) {
-            t = static_cast<float>(t);   // the reference keeps them in fp32
+            t = static_cast<float>(t);  // the reference keeps them in fp32
             sigmas_.push_back(sigma_at(schedule, t));
         }
         const double largest = sigmas_.front();
@@ -158,16 +163,19 @@ public:
         const double sigma = sigmas_[static_cast<std::size_t>(i)];
         return x / std::sqrt(sigma * sigma + 1);
     }
-    torch::Tensor start_from(const torch::Tensor& x0, const torch::Tensor& noise, std::int64_t i) const override {
+    torch::Tensor start_from(const torch::Tensor& x0, const torch::Tensor& noise,
+                             std::int64_t i) const override {
         return x0 + static_cast<double>(sigmas_[static_cast<std::size_t>(i)]) * noise;
     }
 
     torch::Tensor step(const torch::Tensor& output, const torch::Tensor& x, std::int64_t i,
                        const torch::Tensor& noise) override {
-        const double sigma = sigmas_[static_cast<std::size_t>(i)], next = sigmas_[static_cast<std::size_t>(i) + 1];
+        const double sigma = sigmas_[static_cast<std::size_t>(i)],
+                     next = sigmas_[static_cast<std::size_t>(i) + 1];
         const double square = sigma * sigma + 1;
-        predicted_x0_ = schedule_.prediction() == Prediction::Velocity ? output * (-sigma / std::sqrt(square)) + x / square
-                                                                       : x - sigma * output;
+        predicted_x0_ = schedule_.prediction() == Prediction::Velocity
+                            ? output * (-sigma / std::sqrt(square)) + x / square
+                            : x - sigma * output;
         const auto slope = (x - predicted_x0_) / sigma;
         if (!ancestral_) return x + slope * (next - sigma);
         const double up = std::sqrt(next * next * (sigma * sigma - next * next) / (sigma * sigma));
@@ -180,12 +188,14 @@ private:
     double initial_ = 1;
 };
 
-/// Pseudo linear multistep (Liu et al. 2022) without the Runge-Kutta warm-up: the second timestep is done twice.
+/// Pseudo linear multistep (Liu et al. 2022) without the Runge-Kutta warm-up: the second timestep is done
+/// twice.
 class PndmSampler final : public Sampler {
 public:
     PndmSampler(const NoiseSchedule& schedule, std::int64_t steps)
         : Sampler(schedule), stride_(schedule.steps() / steps) {
-        timesteps_ = reversed(ascending(schedule.config(), spacing_of(schedule.config(), "leading"), steps, true));
+        timesteps_ =
+            reversed(ascending(schedule.config(), spacing_of(schedule.config(), "leading"), steps, true));
         if (steps > 1) timesteps_.insert(timesteps_.begin() + 1, timesteps_[1]);
     }
 
@@ -195,7 +205,7 @@ public:
         auto previous = t - stride_;
         auto sample = x;
         auto combined = output;
-        if (calls_ == 1) {   // the repeated step averages both slopes and starts again from the first sample
+        if (calls_ == 1) {  // the repeated step averages both slopes and starts again from the first sample
             previous = t;
             t = std::min(t + stride_, schedule_.steps() - 1);
             combined = (output + history_.back()) / 2;
@@ -215,17 +225,22 @@ private:
     torch::Tensor extrapolate() const {
         const auto e = [&](std::size_t back) { return history_[history_.size() - back]; };
         switch (history_.size()) {
-            case 1: return e(1);
-            case 2: return (3 * e(1) - e(2)) / 2;
-            case 3: return (23 * e(1) - 16 * e(2) + 5 * e(3)) / 12;
-            default: return (55 * e(1) - 59 * e(2) + 37 * e(3) - 9 * e(4)) / 24;
+            case 1:
+                return e(1);
+            case 2:
+                return (3 * e(1) - e(2)) / 2;
+            case 3:
+                return (23 * e(1) - 16 * e(2) + 5 * e(3)) / 12;
+            default:
+                return (55 * e(1) - 59 * e(2) + 37 * e(3) - 9 * e(4)) / 24;
         }
     }
     double alpha(std::int64_t t) const {
         if (t >= 0) return schedule_.alpha_cumprod(t);
         return schedule_.config().set_alpha_to_one ? 1.0 : schedule_.alpha_cumprod(0);
     }
-    torch::Tensor move(const torch::Tensor& x, const torch::Tensor& output, std::int64_t t, std::int64_t previous) {
+    torch::Tensor move(const torch::Tensor& x, const torch::Tensor& output, std::int64_t t,
+                       std::int64_t previous) {
         const double a = alpha(t), to = alpha(previous);
         const auto epsilon = schedule_.prediction() == Prediction::Velocity
                                  ? std::sqrt(a) * output + std::sqrt(1 - a) * x
@@ -278,7 +293,8 @@ private:
     Level level(std::int64_t i) const {
         const double sigma = sigmas_[static_cast<std::size_t>(i)];
         const double signal = 1 / std::sqrt(sigma * sigma + 1);
-        return {signal, sigma * signal, sigma > 0 ? -std::log(sigma) : std::numeric_limits<double>::infinity()};
+        return {signal, sigma * signal,
+                sigma > 0 ? -std::log(sigma) : std::numeric_limits<double>::infinity()};
     }
     torch::Tensor previous_x0_;
 };
@@ -289,18 +305,26 @@ torch::Tensor Sampler::start_from(const torch::Tensor& x0, const torch::Tensor& 
     return schedule_.add_noise(x0, noise, as_index(timestep(i)));
 }
 
-std::unique_ptr<Sampler> make_sampler(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps, double eta) {
+std::unique_ptr<Sampler> make_sampler(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps,
+                                      double eta) {
     if (steps < 1 || steps > schedule.steps())
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("{} sampling steps are outside 1..{}", steps, schedule.steps()));
     switch (kind) {
-        case SamplerKind::Ddim: return std::make_unique<DdimSampler>(schedule, steps, eta);
-        case SamplerKind::DdimInverse: return std::make_unique<DdimInverseSampler>(schedule, steps);
-        case SamplerKind::Ddpm: return std::make_unique<DdpmSampler>(schedule, steps);
-        case SamplerKind::Euler: return std::make_unique<EulerSampler>(schedule, steps, false);
-        case SamplerKind::EulerAncestral: return std::make_unique<EulerSampler>(schedule, steps, true);
-        case SamplerKind::Pndm: return std::make_unique<PndmSampler>(schedule, steps);
-        case SamplerKind::DpmSolverPp2M: return std::make_unique<DpmSolverSampler>(schedule, steps);
+        case SamplerKind::Ddim:
+            return std::make_unique<DdimSampler>(schedule, steps, eta);
+        case SamplerKind::DdimInverse:
+            return std::make_unique<DdimInverseSampler>(schedule, steps);
+        case SamplerKind::Ddpm:
+            return std::make_unique<DdpmSampler>(schedule, steps);
+        case SamplerKind::Euler:
+            return std::make_unique<EulerSampler>(schedule, steps, false);
+        case SamplerKind::EulerAncestral:
+            return std::make_unique<EulerSampler>(schedule, steps, true);
+        case SamplerKind::Pndm:
+            return std::make_unique<PndmSampler>(schedule, steps);
+        case SamplerKind::DpmSolverPp2M:
+            return std::make_unique<DpmSolverSampler>(schedule, steps);
     }
     GSE_CHECK(false);
 }

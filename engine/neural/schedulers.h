@@ -18,21 +18,23 @@ class NoiseSchedule {
 public:
     explicit NoiseSchedule(const SchedulerConfig& config);
 
-    const torch::Tensor& betas() const { return betas_; }                     // [T] fp32, CPU
-    const torch::Tensor& alphas_cumprod() const { return alphas_cumprod_; }   // [T] fp32, CPU
+    const torch::Tensor& betas() const { return betas_; }                    // [T] fp32, CPU
+    const torch::Tensor& alphas_cumprod() const { return alphas_cumprod_; }  // [T] fp32, CPU
     float alpha_cumprod(std::int64_t t) const { return values_[static_cast<std::size_t>(t)]; }
     std::int64_t steps() const { return static_cast<std::int64_t>(values_.size()); }
     Prediction prediction() const { return prediction_; }
     const SchedulerConfig& config() const { return config_; }
 
     /// sqrt(a_t) x0 + sqrt(1-a_t) noise; t [B] or scalar int64.
-    torch::Tensor add_noise(const torch::Tensor& x0, const torch::Tensor& noise, const torch::Tensor& t) const;
+    torch::Tensor add_noise(const torch::Tensor& x0, const torch::Tensor& noise,
+                            const torch::Tensor& t) const;
     /// Target of velocity prediction: sqrt(a_t) noise - sqrt(1-a_t) x0.
     torch::Tensor velocity(const torch::Tensor& x0, const torch::Tensor& noise, const torch::Tensor& t) const;
     /// What the UNet is trained to return, according to the configured prediction.
     torch::Tensor target(const torch::Tensor& x0, const torch::Tensor& noise, const torch::Tensor& t) const;
     /// The noise, or the clean sample, that a model output stands for at x_t.
-    torch::Tensor to_epsilon(const torch::Tensor& output, const torch::Tensor& x_t, const torch::Tensor& t) const;
+    torch::Tensor to_epsilon(const torch::Tensor& output, const torch::Tensor& x_t,
+                             const torch::Tensor& t) const;
     torch::Tensor to_x0(const torch::Tensor& output, const torch::Tensor& x_t, const torch::Tensor& t) const;
     /// a_t / (1-a_t), [B].
     torch::Tensor snr(const torch::Tensor& t) const;
@@ -61,14 +63,15 @@ public:
                                const torch::Tensor& noise) = 0;
     virtual torch::Tensor scale_input(const torch::Tensor& x, std::int64_t /*i*/) const { return x; }
     /// x at step i for a clean sample: where img2img begins.
-    virtual torch::Tensor start_from(const torch::Tensor& x0, const torch::Tensor& noise, std::int64_t i) const;
-    virtual double initial_sigma() const { return 1.0; }   // factor of unit noise at the first step
-    virtual bool needs_noise() const { return false; }     // step() wants fresh unit noise
+    virtual torch::Tensor start_from(const torch::Tensor& x0, const torch::Tensor& noise,
+                                     std::int64_t i) const;
+    virtual double initial_sigma() const { return 1.0; }  // factor of unit noise at the first step
+    virtual bool needs_noise() const { return false; }    // step() wants fresh unit noise
 
     std::int64_t step_count() const { return static_cast<std::int64_t>(timesteps_.size()); }
     double timestep(std::int64_t i) const { return timesteps_[static_cast<std::size_t>(i)]; }
     const std::vector<double>& timesteps() const { return timesteps_; }
-    const std::vector<float>& sigmas() const { return sigmas_; }   // Euler and DPM++ only; the last is the end
+    const std::vector<float>& sigmas() const { return sigmas_; }  // Euler and DPM++ only; the last is the end
     /// Clean sample estimated by the latest step.
     const torch::Tensor& predicted_x0() const { return predicted_x0_; }
 

@@ -20,33 +20,39 @@ torch::Tensor reduced(const torch::Tensor& gradient, const SdsParameters& parame
 
 }  // namespace
 
-std::int64_t draw_timestep(const SdsParameters& parameters, double progress, std::int64_t steps, Random& random) {
+std::int64_t draw_timestep(const SdsParameters& parameters, double progress, std::int64_t steps,
+                           Random& random) {
     const double total = static_cast<double>(steps);
-    const double high = parameters.t_max_start + (parameters.t_max_end - parameters.t_max_start) * std::clamp(progress, 0.0, 1.0);
+    const double high = parameters.t_max_start +
+                        (parameters.t_max_end - parameters.t_max_start) * std::clamp(progress, 0.0, 1.0);
     const auto lowest = std::clamp<std::int64_t>(std::llround(parameters.t_min * total), 0, steps - 1);
     const auto highest = std::clamp<std::int64_t>(std::llround(high * total), lowest, steps - 1);
     return lowest + static_cast<std::int64_t>(random.below(static_cast<std::uint64_t>(highest - lowest + 1)));
 }
 
-SdsGuidance::SdsGuidance(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters)
+SdsGuidance::SdsGuidance(std::shared_ptr<const ModelBundle> bundle, std::string prompt,
+                         SdsParameters parameters)
     : bundle_(std::move(bundle)), prompt_(std::move(prompt)), parameters_(std::move(parameters)) {}
 
 const torch::Tensor& SdsGuidance::context_for(const std::string& prompt) {
     const auto found = contexts_.find(prompt);
     if (found != contexts_.end()) return found->second;
-    return contexts_.emplace(prompt, bundle_->encode_prompts({parameters_.negative_prompt, prompt})).first->second;
+    return contexts_.emplace(prompt, bundle_->encode_prompts({parameters_.negative_prompt, prompt}))
+        .first->second;
 }
 
 edit::GuidanceOutput SdsGuidance::evaluate(const edit::GuidanceInput& input) {
     return guard_torch("the guidance", [&] {
-        const auto& context = context_for(parameters_.view_words ? with_view_words(prompt_, input.view_words) : prompt_);
+        const auto& context =
+            context_for(parameters_.view_words ? with_view_words(prompt_, input.view_words) : prompt_);
         Random random(input.seed);
         const double progress = static_cast<double>(input.iteration) / std::max(1, input.iteration_count - 1);
         const auto t = draw_timestep(parameters_, progress, bundle_->schedule.steps(), random);
 
         const torch::AutoGradMode recorded(true);
         auto image = to_tensor(input.rendered, bundle_->device).requires_grad_(true);
-        const auto moments = bundle_->vae->encode_moments(resize_square(image, bundle_->image_size()) * 2 - 1);
+        const auto moments =
+            bundle_->vae->encode_moments(resize_square(image, bundle_->image_size()) * 2 - 1);
         auto z = moments.mean;
         if (parameters_.sample_posterior)
             z = moments.sample(seeded_noise(z.sizes(), random.next()).to(z.device()));
@@ -56,7 +62,8 @@ edit::GuidanceOutput SdsGuidance::evaluate(const edit::GuidanceInput& input) {
         if (!torch::isfinite(result.gradient).all().item<bool>())
             throw Error(ErrorCode::Model, "the model returned a value that is not a finite number",
                         "its weights are damaged or the image holds non-finite pixels", bundle_->path);
-        const auto gradient = torch::autograd::grad({latents}, {image}, {reduced(result.gradient, parameters_)})[0];
+        const auto gradient =
+            torch::autograd::grad({latents}, {image}, {reduced(result.gradient, parameters_)})[0];
 
         edit::GuidanceOutput output;
         output.gradient = to_image(gradient);

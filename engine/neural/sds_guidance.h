@@ -11,7 +11,8 @@
 namespace gse::neural {
 
 /// Noise level of one iteration: uniform over the steps between t_min and the annealed t_max.
-std::int64_t draw_timestep(const SdsParameters& parameters, double progress, std::int64_t steps, Random& random);
+std::int64_t draw_timestep(const SdsParameters& parameters, double progress, std::int64_t steps,
+                           Random& random);
 
 class SdsGuidance final : public edit::Guidance {
 public:
@@ -24,7 +25,7 @@ private:
     std::shared_ptr<const ModelBundle> bundle_;
     std::string prompt_;
     SdsParameters parameters_;
-    std::map<std::string, torch::Tensor> contexts_;   // [2,T,D] negative, positive; one per view word
+    std::map<std::string, torch::Tensor> contexts_;  // [2,T,D] negative, positive; one per view word
 };
 
 }  // namespace gse::neural

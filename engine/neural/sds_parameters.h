@@ -24,12 +24,14 @@ struct SdsParameters {
         f("t_min", self.t_min, "Lowest noise level, as a share of the schedule.", Range{0, 1});
         f("t_max_start", self.t_max_start, "Highest noise level at the first iteration.", Range{0, 1});
         f("t_max_end", self.t_max_end, "Highest noise level at the last iteration.", Range{0, 1});
-        f("guidance_scale", self.guidance_scale, "Classifier-free guidance: 1 = none, higher follows the prompt harder.",
-          Range{0, 200});
+        f("guidance_scale", self.guidance_scale,
+          "Classifier-free guidance: 1 = none, higher follows the prompt harder.", Range{0, 200});
         f("clamp", self.clamp, "Largest absolute gradient per latent value; 0 = no limit.", Range{0, 1e6});
         f("weight", self.weight, "Factor of the whole guidance gradient.", Range{0, 1e6});
-        f("sample_posterior", self.sample_posterior, "Sample the VAE's latent distribution instead of taking its mean.");
-        f("view_words", self.view_words, "Append \"front view\", \"side view\" or \"back view\" to the prompt.");
+        f("sample_posterior", self.sample_posterior,
+          "Sample the VAE's latent distribution instead of taking its mean.");
+        f("view_words", self.view_words,
+          "Append \"front view\", \"side view\" or \"back view\" to the prompt.");
         f("negative_prompt", self.negative_prompt, "What the picture should not show.");
     }
 };

@@ -8,12 +8,14 @@
 namespace gse::neural {
 namespace {
 
-constexpr double TokenStd = 0.02, PositionStd = 0.01;   // CLIP's initial values
+constexpr double TokenStd = 0.02, PositionStd = 0.01;  // CLIP's initial values
 constexpr std::int64_t LegacyEosId = 2;
 
 // Additive mask [B or 1,1,T,T]: lowest float above the diagonal and in columns that attention_mask rules out.
-torch::Tensor causal_mask(std::int64_t tokens, const torch::Tensor& attention_mask, const torch::Device& device) {
-    auto blocked = torch::ones({tokens, tokens}, torch::TensorOptions().dtype(torch::kBool).device(device)).triu(1);
+torch::Tensor causal_mask(std::int64_t tokens, const torch::Tensor& attention_mask,
+                          const torch::Device& device) {
+    auto blocked =
+        torch::ones({tokens, tokens}, torch::TensorOptions().dtype(torch::kBool).device(device)).triu(1);
     blocked = blocked.view({1, 1, tokens, tokens});
     if (attention_mask.defined())
         blocked = blocked.logical_or(attention_mask.to(device).eq(0).view({-1, 1, 1, tokens}));
@@ -60,21 +62,25 @@ ClipTextEncoderImpl::ClipTextEncoderImpl(const TextEncoderConfig& config, const 
     token_embedding = embeddings->register_module(
         "token_embedding", Embedding(config_.vocab_size, config_.hidden_size, TokenStd, options));
     position_embedding = embeddings->register_module(
-        "position_embedding", Embedding(config_.max_position_embeddings, config_.hidden_size, PositionStd, options));
+        "position_embedding",
+        Embedding(config_.max_position_embeddings, config_.hidden_size, PositionStd, options));
     model->register_module("embeddings", embeddings);
     auto encoder = std::make_shared<torch::nn::Module>();
-    for (std::int64_t i = 0; i < config_.num_hidden_layers; ++i) layers_.push_back(ClipLayer(config_, options));
+    for (std::int64_t i = 0; i < config_.num_hidden_layers; ++i)
+        layers_.push_back(ClipLayer(config_, options));
     register_list(*encoder, "layers", layers_);
     model->register_module("encoder", encoder);
-    final_layer_norm =
-        model->register_module("final_layer_norm", LayerNorm(config_.hidden_size, config_.layer_norm_eps, options));
+    final_layer_norm = model->register_module(
+        "final_layer_norm", LayerNorm(config_.hidden_size, config_.layer_norm_eps, options));
     register_module("text_model", model);
     if (config_.with_projection)
         text_projection = register_module(
-            "text_projection", Linear(LinearImpl::Shape{config_.hidden_size, config_.projection_dim, false}, options));
+            "text_projection",
+            Linear(LinearImpl::Shape{config_.hidden_size, config_.projection_dim, false}, options));
 }
 
-TextEncoding ClipTextEncoderImpl::forward(const torch::Tensor& ids, const torch::Tensor& attention_mask) const {
+TextEncoding ClipTextEncoderImpl::forward(const torch::Tensor& ids,
+                                          const torch::Tensor& attention_mask) const {
     const auto tokens = ids.size(1);
     GSE_CHECK(tokens <= config_.max_position_embeddings);
     TextEncoding result;
@@ -86,9 +92,11 @@ TextEncoding ClipTextEncoderImpl::forward(const torch::Tensor& ids, const torch:
         result.hidden_states.push_back(x);
     }
     result.last_hidden = final_layer_norm->forward(x);
-    const auto end = config_.eos_token_id == LegacyEosId ? ids.argmax(1)
-                                                         : ids.eq(config_.eos_token_id).to(torch::kInt32).argmax(1);
-    const auto rows = torch::arange(ids.size(0), torch::TensorOptions().dtype(torch::kInt64).device(ids.device()));
+    const auto end = config_.eos_token_id == LegacyEosId
+                         ? ids.argmax(1)
+                         : ids.eq(config_.eos_token_id).to(torch::kInt32).argmax(1);
+    const auto rows =
+        torch::arange(ids.size(0), torch::TensorOptions().dtype(torch::kInt64).device(ids.device()));
     result.pooled = result.last_hidden.index({rows, end});
     if (!text_projection.is_empty()) result.text_embeds = text_projection->forward(result.pooled);
     return result;

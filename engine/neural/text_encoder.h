@@ -8,10 +8,10 @@ namespace gse::neural {
 
 /// What the text encoder returns; [B,T,D] unless said otherwise.
 struct TextEncoding {
-    torch::Tensor last_hidden;                  // after the final norm: what the UNet is conditioned on
-    std::vector<torch::Tensor> hidden_states;   // [0] embeddings, [i] output of layer i-1; no final norm
-    torch::Tensor pooled;                       // [B,D] row of last_hidden at the end token
-    torch::Tensor text_embeds;                  // [B,P] projection of pooled; undefined without projection layer
+    torch::Tensor last_hidden;                 // after the final norm: what the UNet is conditioned on
+    std::vector<torch::Tensor> hidden_states;  // [0] embeddings, [i] output of layer i-1; no final norm
+    torch::Tensor pooled;                      // [B,D] row of last_hidden at the end token
+    torch::Tensor text_embeds;  // [B,P] projection of pooled; undefined without projection layer
 };
 
 class ClipLayerImpl : public torch::nn::Module {
@@ -31,8 +31,8 @@ class ClipTextEncoderImpl : public torch::nn::Module {
 public:
     explicit ClipTextEncoderImpl(const TextEncoderConfig& config, const WeightOptions& options = {});
 
-    /// ids [B,T] int64, T at most max_position_embeddings; attention_mask [B,T] (1 = keep) or undefined, as the
-    /// Stable Diffusion pipelines have it.
+    /// ids [B,T] int64, T at most max_position_embeddings; attention_mask [B,T] (1 = keep) or undefined, as
+    /// the Stable Diffusion pipelines have it.
     TextEncoding forward(const torch::Tensor& ids, const torch::Tensor& attention_mask = {}) const;
     /// Final layer norm of some hidden state ("clip skip").
     torch::Tensor final_norm(const torch::Tensor& hidden) const { return final_layer_norm->forward(hidden); }

@@ -21,9 +21,9 @@ namespace {
 constexpr const char* StartToken = "<|startoftext|>";
 constexpr const char* EndToken = "<|endoftext|>";
 constexpr const char* WordEnd = "</w>";
-constexpr std::size_t MaxMerges = 49152 - 256 - 2;   // CLIP's vocabulary
+constexpr std::size_t MaxMerges = 49152 - 256 - 2;  // CLIP's vocabulary
 constexpr std::int64_t DefaultLength = 77;
-constexpr std::int64_t LengthLimit = 4096;           // some configurations say 1e30 for "no limit"
+constexpr std::int64_t LengthLimit = 4096;  // some configurations say 1e30 for "no limit"
 
 std::string to_utf8(const icu::UnicodeString& text) {
     std::string result;
@@ -33,10 +33,12 @@ std::string to_utf8(const icu::UnicodeString& text) {
 
 std::string utf8_of(UChar32 code) { return to_utf8(icu::UnicodeString(code)); }
 
-// Printable stand-ins for the 256 bytes, as GPT-2 and CLIP have them: printable ones are themselves, others 256, 257...
+// Printable stand-ins for the 256 bytes, as GPT-2 and CLIP have them: printable ones are themselves, others
+// 256, 257...
 std::array<std::string, 256> make_byte_symbols() {
     const auto printable = [](int byte) {
-        return (byte >= 0x21 && byte <= 0x7e) || (byte >= 0xa1 && byte <= 0xac) || (byte >= 0xae && byte <= 0xff);
+        return (byte >= 0x21 && byte <= 0x7e) || (byte >= 0xa1 && byte <= 0xac) ||
+               (byte >= 0xae && byte <= 0xff);
     };
     std::array<std::string, 256> symbols;
     int next = 256;
@@ -52,7 +54,9 @@ const std::array<std::string, 256>& byte_symbols() {
 
 bool is_letter(UChar32 c) { return (U_GET_GC_MASK(c) & U_GC_L_MASK) != 0; }
 bool is_number(UChar32 c) { return (U_GET_GC_MASK(c) & U_GC_N_MASK) != 0; }
-bool is_control(UChar32 c) { return c != '\t' && c != '\n' && c != '\r' && (U_GET_GC_MASK(c) & U_GC_C_MASK) != 0; }
+bool is_control(UChar32 c) {
+    return c != '\t' && c != '\n' && c != '\r' && (U_GET_GC_MASK(c) & U_GC_C_MASK) != 0;
+}
 bool is_space(UChar32 c) { return u_isUWhiteSpace(c) || (U_GET_GC_MASK(c) & U_GC_Z_MASK) != 0; }
 
 bool is_ideograph(UChar32 c) {
@@ -64,12 +68,14 @@ bool is_ideograph(UChar32 c) {
                                                                  {0x2b820, 0x2ceaf},
                                                                  {0xf900, 0xfaff},
                                                                  {0x2f800, 0x2fa1f}}};
-    return std::any_of(blocks.begin(), blocks.end(), [c](const auto& b) { return c >= b.first && c <= b.second; });
+    return std::any_of(blocks.begin(), blocks.end(),
+                       [c](const auto& b) { return c >= b.first && c <= b.second; });
 }
 
 // Drops control characters, spaces out ideographs, composes, and splits at white space; pieces in lower case.
 std::vector<icu::UnicodeString> normalised_pieces(std::string_view text) {
-    const auto source = icu::UnicodeString::fromUTF8(icu::StringPiece(text.data(), static_cast<int32_t>(text.size())));
+    const auto source =
+        icu::UnicodeString::fromUTF8(icu::StringPiece(text.data(), static_cast<int32_t>(text.size())));
     icu::UnicodeString clean;
     for (int32_t i = 0; i < source.length(); i = source.moveIndex32(i, 1)) {
         const UChar32 c = source.char32At(i);
@@ -124,7 +130,8 @@ std::vector<std::string> split_piece(const icu::UnicodeString& piece) {
             };
             end = piece.moveIndex32(at, 1);
             if (!is_number(first))
-                while (end < piece.length() && same_kind(piece.char32At(end))) end = piece.moveIndex32(end, 1);
+                while (end < piece.length() && same_kind(piece.char32At(end)))
+                    end = piece.moveIndex32(end, 1);
         }
         words.push_back(to_utf8(piece.tempSubStringBetween(at, end)));
         at = end;
@@ -147,7 +154,8 @@ Tokenizer::Tokenizer(const std::filesystem::path& folder, const std::string& pad
     bos_ = id_of(StartToken);
     eos_ = id_of(EndToken);
     if (bos_ < 0 || eos_ < 0)
-        throw Error(ErrorCode::Malformed, "the tokenizer's vocabulary has no start or end token", {}, folder / "vocab.json");
+        throw Error(ErrorCode::Malformed, "the tokenizer's vocabulary has no start or end token", {},
+                    folder / "vocab.json");
     pad_ = unknown_ = eos_;
     read_added_tokens(folder);
     read_special_tokens(folder);
@@ -165,8 +173,11 @@ void Tokenizer::read_merges(const std::filesystem::path& path) {
         begin = end + 1;
         if (line.empty() || line.starts_with("#version")) continue;
         const auto blank = line.find(' ');
-        if (blank == std::string::npos || blank == 0 || blank + 1 == line.size() || line.find(' ', blank + 1) != std::string::npos)
-            throw Error(ErrorCode::Malformed, fmt::format("merge {} of the tokenizer is not two symbols", ranks_.size() + 1), {}, path);
+        if (blank == std::string::npos || blank == 0 || blank + 1 == line.size() ||
+            line.find(' ', blank + 1) != std::string::npos)
+            throw Error(ErrorCode::Malformed,
+                        fmt::format("merge {} of the tokenizer is not two symbols", ranks_.size() + 1), {},
+                        path);
         ranks_.emplace(line, static_cast<int>(ranks_.size()));
         merge_lines_.push_back(std::move(line));
     }
@@ -177,14 +188,19 @@ void Tokenizer::read_vocabulary(const std::filesystem::path& folder) {
     if (std::filesystem::exists(path)) {
         // Not read_json_file: an ordered object looks each of 49408 names up one by one.
         const auto json = nlohmann::json::parse(read_file(path), nullptr, false);
-        if (!json.is_object()) throw Error(ErrorCode::Malformed, "the tokenizer's vocabulary is not a JSON object", {}, path);
+        if (!json.is_object())
+            throw Error(ErrorCode::Malformed, "the tokenizer's vocabulary is not a JSON object", {}, path);
         for (const auto& [token, id] : json.items()) {
-            if (!id.is_number_unsigned() || id.get<std::uint64_t>() > std::numeric_limits<std::int32_t>::max())
-                throw Error(ErrorCode::Malformed, fmt::format("the vocabulary's token \"{}\" has no valid number", token), {}, path);
+            if (!id.is_number_unsigned() ||
+                id.get<std::uint64_t>() > std::numeric_limits<std::int32_t>::max())
+                throw Error(ErrorCode::Malformed,
+                            fmt::format("the vocabulary's token \"{}\" has no valid number", token), {},
+                            path);
             vocabulary_.emplace(token, id.get<std::int64_t>());
         }
     } else {
-        // openai/CLIP: byte symbols in order of their code (printable first), the same with word end, merges, specials.
+        // openai/CLIP: byte symbols in order of their code (printable first), the same with word end, merges,
+        // specials.
         std::vector<std::string> symbols(byte_symbols().begin(), byte_symbols().end());
         std::stable_sort(symbols.begin(), symbols.end(), [](const std::string& a, const std::string& b) {
             return icu::UnicodeString::fromUTF8(a).char32At(0) < icu::UnicodeString::fromUTF8(b).char32At(0);
@@ -217,7 +233,8 @@ void Tokenizer::read_special_tokens(const std::filesystem::path& folder) {
         apply(json, "pad_token", pad_);
         if (json.is_object() && json.contains("model_max_length") && json["model_max_length"].is_number()) {
             const double length = json["model_max_length"].get<double>();
-            max_length_ = length >= 3 && length <= LengthLimit ? static_cast<std::int64_t>(length) : DefaultLength;
+            max_length_ =
+                length >= 3 && length <= LengthLimit ? static_cast<std::int64_t>(length) : DefaultLength;
         }
     }
 }
@@ -226,7 +243,8 @@ void Tokenizer::set_special_token(const std::string& token, std::int64_t& target
     const auto id = id_of(token);
     if (id < 0) return;
     target = id;
-    added_[token] = id;   // the reference matches special tokens anywhere: with padding "!" every "!" is token 0
+    added_[token] =
+        id;  // the reference matches special tokens anywhere: with padding "!" every "!" is token 0
 }
 
 void Tokenizer::read_added_tokens(const std::filesystem::path& folder) {
@@ -243,10 +261,13 @@ void Tokenizer::read_added_tokens(const std::filesystem::path& folder) {
     }
     if (!std::filesystem::exists(folder / "tokenizer_config.json")) return;
     const auto json = read_json_file(folder / "tokenizer_config.json");
-    if (!json.is_object() || !json.contains("added_tokens_decoder") || !json["added_tokens_decoder"].is_object()) return;
+    if (!json.is_object() || !json.contains("added_tokens_decoder") ||
+        !json["added_tokens_decoder"].is_object())
+        return;
     for (const auto& [id, value] : json["added_tokens_decoder"].items()) {
         const auto token = content_of(value);
-        if (!vocabulary_.contains(token) && id.find_first_not_of("0123456789") == std::string::npos && id.size() < 10)
+        if (!vocabulary_.contains(token) && id.find_first_not_of("0123456789") == std::string::npos &&
+            id.size() < 10)
             add(token, std::stoll(id));
     }
 }
@@ -265,7 +286,8 @@ std::vector<Token> Tokenizer::tokenize(std::string_view text) const {
     while (at < text.size()) {
         const std::pair<const std::string, std::int64_t>* longest = nullptr;
         for (const auto& added : added_)
-            if (text.substr(at).starts_with(added.first) && (longest == nullptr || added.first.size() > longest->first.size()))
+            if (text.substr(at).starts_with(added.first) &&
+                (longest == nullptr || added.first.size() > longest->first.size()))
                 longest = &added;
         if (longest == nullptr) {
             ++at;
@@ -331,28 +353,35 @@ Encoding Tokenizer::encode(std::string_view text, std::int64_t max_length) const
     return encoding;
 }
 
-std::vector<std::int64_t> Tokenizer::find_word(std::string_view prompt, std::string_view word, std::int64_t max_length) const {
+std::vector<std::int64_t> Tokenizer::find_word(std::string_view prompt, std::string_view word,
+                                               std::int64_t max_length) const {
     const auto length = static_cast<std::size_t>(max_length > 0 ? max_length : max_length_);
     const auto tokens = tokenize(prompt);
     const auto wanted = tokenize(word);
     std::vector<std::int64_t> columns;
     bool cut_off = false;
     for (std::size_t i = 0; !wanted.empty() && i + wanted.size() <= tokens.size(); ++i) {
-        if (i > 0 && tokens[i - 1].word == tokens[i].word) continue;   // begins within a word
-        const auto same = [](const Token& a, const Token& b) { return a.id == b.id && a.word_text == b.word_text; };
-        if (!std::equal(wanted.begin(), wanted.end(), tokens.begin() + static_cast<std::ptrdiff_t>(i), same)) continue;
+        if (i > 0 && tokens[i - 1].word == tokens[i].word) continue;  // begins within a word
+        const auto same = [](const Token& a, const Token& b) {
+            return a.id == b.id && a.word_text == b.word_text;
+        };
+        if (!std::equal(wanted.begin(), wanted.end(), tokens.begin() + static_cast<std::ptrdiff_t>(i), same))
+            continue;
         if (i + wanted.size() > length - 2) {
             cut_off = true;
             continue;
         }
-        for (std::size_t k = 0; k < wanted.size(); ++k) columns.push_back(static_cast<std::int64_t>(i + k + 1));
+        for (std::size_t k = 0; k < wanted.size(); ++k)
+            columns.push_back(static_cast<std::int64_t>(i + k + 1));
     }
     if (!columns.empty()) return columns;
     if (cut_off)
-        throw Error(ErrorCode::NotFound,
-                    fmt::format("the word \"{}\" stands beyond the {} tokens that the model reads", word, length - 2),
-                    "shorten the prompt or move the word forward");
-    throw Error(ErrorCode::NotFound, fmt::format("the prompt \"{}\" does not contain the word \"{}\"", prompt, word),
+        throw Error(
+            ErrorCode::NotFound,
+            fmt::format("the word \"{}\" stands beyond the {} tokens that the model reads", word, length - 2),
+            "shorten the prompt or move the word forward");
+    throw Error(ErrorCode::NotFound,
+                fmt::format("the prompt \"{}\" does not contain the word \"{}\"", prompt, word),
                 "use a word of the prompt, spelt the same way");
 }
 

@@ -1,4 +1,5 @@
-// CLIP's byte-pair tokenizer, as the Stable Diffusion pipelines run it (transformers' CLIPTokenizer without ftfy).
+// CLIP's byte-pair tokenizer, as the Stable Diffusion pipelines run it (transformers' CLIPTokenizer without
+// ftfy).
 #pragma once
 
 #include <cstdint>
@@ -14,14 +15,14 @@ namespace gse::neural {
 /// One token of a text.
 struct Token {
     std::int64_t id = 0;
-    int word = 0;            // number of the word (or punctuation run, digit, special token) it belongs to
-    std::string word_text;   // that word, normalised and in lower case
+    int word = 0;           // number of the word (or punctuation run, digit, special token) it belongs to
+    std::string word_text;  // that word, normalised and in lower case
 };
 
 /// A text ready for the text encoder.
 struct Encoding {
-    std::vector<std::int64_t> ids;   // [max_length]: start, tokens, end, padding
-    std::vector<Token> tokens;       // all tokens of the text, also those cut off; token i stands in column i + 1
+    std::vector<std::int64_t> ids;  // [max_length]: start, tokens, end, padding
+    std::vector<Token> tokens;  // all tokens of the text, also those cut off; token i stands in column i + 1
     bool truncated = false;
 };
 
@@ -36,9 +37,11 @@ public:
     /// Start token, at most max_length - 2 tokens, end token, padding. max_length 0 = the tokenizer's own.
     Encoding encode(std::string_view text, std::int64_t max_length = 0) const;
 
-    /// Columns of the encoding (0 = start token) that hold `word`, which may be several words; all its occurrences.
-    /// Throws Error (NotFound) when the prompt does not contain it as whole words or it lies beyond the last column.
-    std::vector<std::int64_t> find_word(std::string_view prompt, std::string_view word, std::int64_t max_length = 0) const;
+    /// Columns of the encoding (0 = start token) that hold `word`, which may be several words; all its
+    /// occurrences. Throws Error (NotFound) when the prompt does not contain it as whole words or it lies
+    /// beyond the last column.
+    std::vector<std::int64_t> find_word(std::string_view prompt, std::string_view word,
+                                        std::int64_t max_length = 0) const;
 
     std::int64_t bos() const { return bos_; }
     std::int64_t eos() const { return eos_; }
@@ -58,9 +61,9 @@ private:
 
     std::filesystem::path folder_;
     std::unordered_map<std::string, std::int64_t> vocabulary_;
-    std::unordered_map<std::string, int> ranks_;       // "left right" -> order of the merge
+    std::unordered_map<std::string, int> ranks_;  // "left right" -> order of the merge
     std::vector<std::string> merge_lines_;
-    std::map<std::string, std::int64_t> added_;        // matched anywhere, before normalisation
+    std::map<std::string, std::int64_t> added_;  // matched anywhere, before normalisation
     std::int64_t bos_ = 0, eos_ = 0, pad_ = 0, unknown_ = 0;
     std::int64_t max_length_ = 77;
     std::int64_t vocabulary_size_ = 0;

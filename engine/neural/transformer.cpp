@@ -4,7 +4,7 @@
 namespace gse::neural {
 namespace {
 
-constexpr double TransformerNormEps = 1e-6;   // hard-wired in the reference, unlike norm_eps of the resnets
+constexpr double TransformerNormEps = 1e-6;  // hard-wired in the reference, unlike norm_eps of the resnets
 constexpr double LayerNormEps = 1e-5;
 constexpr std::int64_t FeedForwardFactor = 4;
 
@@ -22,13 +22,14 @@ void store(const torch::Tensor& probabilities, const CaptureSite& site) {
 
 }  // namespace
 
-AttentionImpl::AttentionImpl(std::int64_t channels, std::int64_t context_width, std::int64_t heads, bool upcast,
-                             const WeightOptions& options)
+AttentionImpl::AttentionImpl(std::int64_t channels, std::int64_t context_width, std::int64_t heads,
+                             bool upcast, const WeightOptions& options)
     : heads_(heads), upcast_(upcast) {
     to_q = register_module("to_q", Linear(LinearImpl::Shape{channels, channels, false}, options));
     to_k = register_module("to_k", Linear(LinearImpl::Shape{context_width, channels, false}, options));
     to_v = register_module("to_v", Linear(LinearImpl::Shape{context_width, channels, false}, options));
-    to_out = register_list(*this, "to_out", std::vector{Linear(LinearImpl::Shape{channels, channels}, options)})[0];
+    to_out = register_list(*this, "to_out",
+                           std::vector{Linear(LinearImpl::Shape{channels, channels}, options)})[0];
 }
 
 AttentionResult AttentionImpl::forward(const torch::Tensor& x, const torch::Tensor& context,
@@ -65,7 +66,8 @@ TransformerBlockImpl::TransformerBlockImpl(const TransformerShape& shape, const 
     norm1 = register_module("norm1", LayerNorm(width, LayerNormEps, options));
     attn1 = register_module("attn1", Attention(width, width, shape.heads, shape.upcast, options));
     norm2 = register_module("norm2", LayerNorm(width, LayerNormEps, options));
-    attn2 = register_module("attn2", Attention(width, shape.context_width, shape.heads, shape.upcast, options));
+    attn2 =
+        register_module("attn2", Attention(width, shape.context_width, shape.heads, shape.upcast, options));
     norm3 = register_module("norm3", LayerNorm(width, LayerNormEps, options));
     ff = register_module("ff", FeedForward(width, options));
 }
@@ -74,8 +76,8 @@ torch::Tensor TransformerBlockImpl::forward(torch::Tensor tokens, const torch::T
                                             const CaptureSite& site) const {
     const auto normed = norm1->forward(tokens);
     tokens = tokens + attn1->forward(normed, normed, false).output;
-    const bool wanted =
-        site.capture != nullptr && (!site.capture->wants || site.capture->wants(site.layer, site.height, site.width));
+    const bool wanted = site.capture != nullptr &&
+                        (!site.capture->wants || site.capture->wants(site.layer, site.height, site.width));
     const auto crossed = attn2->forward(norm2->forward(tokens), context, wanted);
     if (wanted) store(crossed.probabilities, site);
     tokens = tokens + crossed.output;
@@ -94,9 +96,10 @@ torch::Tensor SpatialTransformerImpl::forward(const torch::Tensor& x, const torc
                                               AttentionCapture* capture) const {
     const auto height = x.size(2), width = x.size(3);
     auto tokens = proj_in->forward(image_to_tokens(norm->forward(x)));
-    tokens = block->forward(tokens, context,
-                            {capture, capture == nullptr ? std::string() : layer_name + ".transformer_blocks.0.attn2",
-                             height, width});
+    tokens = block->forward(
+        tokens, context,
+        {capture, capture == nullptr ? std::string() : layer_name + ".transformer_blocks.0.attn2", height,
+         width});
     return x + tokens_to_image(proj_out->forward(tokens), height, width);
 }
 

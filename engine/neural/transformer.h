@@ -16,7 +16,8 @@ class AttentionImpl : public torch::nn::Module {
 public:
     AttentionImpl(std::int64_t channels, std::int64_t context_width, std::int64_t heads, bool upcast,
                   const WeightOptions& options);
-    AttentionResult forward(const torch::Tensor& x, const torch::Tensor& context, bool want_probabilities) const;
+    AttentionResult forward(const torch::Tensor& x, const torch::Tensor& context,
+                            bool want_probabilities) const;
 
 private:
     std::int64_t heads_;
@@ -59,8 +60,9 @@ TORCH_MODULE(TransformerBlock);
 class SpatialTransformerImpl : public torch::nn::Module {
 public:
     SpatialTransformerImpl(const TransformerShape& shape, const WeightOptions& options);
-    torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& context, AttentionCapture* capture) const;
-    std::string layer_name;   // where it stands in the UNet, for captures
+    torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& context,
+                          AttentionCapture* capture) const;
+    std::string layer_name;  // where it stands in the UNet, for captures
 
 private:
     GroupNorm norm{nullptr};

@@ -11,7 +11,7 @@ namespace gse::neural {
 /// One resolution of the network (or the middle).
 struct UNetImpl::Level {
     std::vector<ResnetBlock> resnets;
-    std::vector<SpatialTransformer> attentions;   // empty for a level without cross-attention
+    std::vector<SpatialTransformer> attentions;  // empty for a level without cross-attention
     Downsample downsampler{nullptr};
     Upsample upsampler{nullptr};
 };
@@ -24,7 +24,8 @@ struct UNetImpl::Builder {
     std::int64_t time_width() const { return config.block_out_channels.front() * 4; }
 
     ResnetBlock resnet(std::int64_t in, std::int64_t out) const {
-        return ResnetBlock(ResnetShape{in, out, config.norm_num_groups, config.norm_eps, time_width()}, options);
+        return ResnetBlock(ResnetShape{in, out, config.norm_num_groups, config.norm_eps, time_width()},
+                           options);
     }
     SpatialTransformer attention(std::int64_t channels, std::int64_t heads, const std::string& name) const {
         const TransformerShape shape{channels,
@@ -46,16 +47,18 @@ UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : con
     auto time = std::make_shared<torch::nn::Module>();
     time_linear_1 =
         time->register_module("linear_1", Linear(LinearImpl::Shape{widths[0], build.time_width()}, options));
-    time_linear_2 =
-        time->register_module("linear_2", Linear(LinearImpl::Shape{build.time_width(), build.time_width()}, options));
+    time_linear_2 = time->register_module(
+        "linear_2", Linear(LinearImpl::Shape{build.time_width(), build.time_width()}, options));
     register_module("time_embedding", time);
 
-    std::vector<std::int64_t> skips = {widths[0]};   // channels of the stored activations
+    std::vector<std::int64_t> skips = {widths[0]};  // channels of the stored activations
     build_down(build, skips);
     build_middle(build);
     build_up(build, skips);
-    conv_norm_out = register_module("conv_norm_out", GroupNorm(widths[0], config_.norm_num_groups, config_.norm_eps, options));
-    conv_out = register_module("conv_out", Conv2d(Conv2dImpl::Shape{widths[0], config_.out_channels}, options));
+    conv_norm_out = register_module("conv_norm_out",
+                                    GroupNorm(widths[0], config_.norm_num_groups, config_.norm_eps, options));
+    conv_out =
+        register_module("conv_out", Conv2d(Conv2dImpl::Shape{widths[0], config_.out_channels}, options));
 }
 
 void UNetImpl::build_down(const Builder& build, std::vector<std::int64_t>& skips) {
@@ -67,8 +70,9 @@ void UNetImpl::build_down(const Builder& build, std::vector<std::int64_t>& skips
         for (std::int64_t j = 0; j < config_.layers_per_block; ++j) {
             level.resnets.push_back(build.resnet(skips.back(), widths[i]));
             if (config_.down_block_types[i] == "CrossAttnDownBlock2D")
-                level.attentions.push_back(build.attention(
-                    widths[i], config_.heads[i], "down_blocks." + std::to_string(i) + ".attentions." + std::to_string(j)));
+                level.attentions.push_back(
+                    build.attention(widths[i], config_.heads[i],
+                                    "down_blocks." + std::to_string(i) + ".attentions." + std::to_string(j)));
             skips.push_back(widths[i]);
         }
         register_list(*block, "resnets", level.resnets);
@@ -88,10 +92,11 @@ void UNetImpl::build_middle(const Builder& build) {
     const auto width = config_.block_out_channels.back();
     mid_ = std::make_unique<Level>();
     auto mid = std::make_shared<torch::nn::Module>();
-    mid_->resnets = register_list(
-        *mid, "resnets", std::vector{build.resnet(width, width), build.resnet(width, width)});
-    mid_->attentions = register_list(
-        *mid, "attentions", std::vector{build.attention(width, config_.heads.back(), "mid_block.attentions.0")});
+    mid_->resnets =
+        register_list(*mid, "resnets", std::vector{build.resnet(width, width), build.resnet(width, width)});
+    mid_->attentions =
+        register_list(*mid, "attentions",
+                      std::vector{build.attention(width, config_.heads.back(), "mid_block.attentions.0")});
     register_module("mid_block", mid);
 }
 
@@ -134,7 +139,8 @@ torch::Tensor UNetImpl::time_projection(const torch::Tensor& timesteps, std::int
     auto frequency = torch::arange(half, torch::TensorOptions().dtype(torch::kFloat32).device(t.device()));
     frequency = (frequency * -std::log(10000.0) / (static_cast<double>(half) - config_.freq_shift)).exp();
     const auto angle = t * frequency;
-    return config_.flip_sin_to_cos ? torch::cat({angle.cos(), angle.sin()}, 1) : torch::cat({angle.sin(), angle.cos()}, 1);
+    return config_.flip_sin_to_cos ? torch::cat({angle.cos(), angle.sin()}, 1)
+                                   : torch::cat({angle.sin(), angle.cos()}, 1);
 }
 
 torch::Tensor UNetImpl::time_embedding(const torch::Tensor& projection) const {
@@ -144,7 +150,8 @@ torch::Tensor UNetImpl::time_embedding(const torch::Tensor& projection) const {
 torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
                                 const torch::Tensor& context, AttentionCapture* capture) const {
     GSE_CHECK_EQ(sample.dim(), std::int64_t{4});
-    const auto time = apply_silu(time_embedding(time_projection(timesteps, sample.size(0)).to(sample.scalar_type())));
+    const auto time =
+        apply_silu(time_embedding(time_projection(timesteps, sample.size(0)).to(sample.scalar_type())));
     auto x = conv_in->forward(sample.contiguous(torch::MemoryFormat::ChannelsLast));
     std::vector<torch::Tensor> skips = {x};
     for (const auto& level : down_) {
@@ -167,7 +174,8 @@ torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor
             if (!level.attentions.empty()) x = level.attentions[j]->forward(x, context, capture);
         }
         // To the next skip's size: latents need not be a multiple of 2^levels.
-        if (!level.upsampler.is_empty()) x = level.upsampler->forward(x, skips.back().size(2), skips.back().size(3));
+        if (!level.upsampler.is_empty())
+            x = level.upsampler->forward(x, skips.back().size(2), skips.back().size(3));
     }
     return conv_out->forward(conv_norm_out->forward_silu(x));
 }

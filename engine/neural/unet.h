@@ -1,4 +1,5 @@
-// The denoising network of Stable Diffusion 1.x and 2.x (UNet2DConditionModel), with capture of its cross-attention.
+// The denoising network of Stable Diffusion 1.x and 2.x (UNet2DConditionModel), with capture of its
+// cross-attention.
 #pragma once
 
 #include <memory>
@@ -11,10 +12,11 @@
 
 namespace gse::neural {
 
-/// What to keep of the cross-attention of one forward pass. Maps are appended in execution order (down, mid, up).
+/// What to keep of the cross-attention of one forward pass. Maps are appended in execution order (down, mid,
+/// up).
 struct AttentionCapture {
     struct Map {
-        std::string layer;            // "up_blocks.1.attentions.0.transformer_blocks.0.attn2"
+        std::string layer;  // "up_blocks.1.attentions.0.transformer_blocks.0.attn2"
         std::int64_t height = 0, width = 0;
         torch::Tensor probabilities;  // [B or B/2, heads, height*width, k] fp32
     };
@@ -33,10 +35,10 @@ public:
     explicit UNetImpl(const UNetConfig& config, const WeightOptions& options = {});
     ~UNetImpl() override;
 
-    /// sample [B,C,h,w]; timesteps [B] or a scalar, integer or float; context [B,T,D]. All of the weights' dtype
-    /// (timesteps excepted). Returns the prediction [B,out,h,w].
-    torch::Tensor forward(const torch::Tensor& sample, const torch::Tensor& timesteps, const torch::Tensor& context,
-                          AttentionCapture* capture = nullptr) const;
+    /// sample [B,C,h,w]; timesteps [B] or a scalar, integer or float; context [B,T,D]. All of the weights'
+    /// dtype (timesteps excepted). Returns the prediction [B,out,h,w].
+    torch::Tensor forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
+                          const torch::Tensor& context, AttentionCapture* capture = nullptr) const;
 
     /// Sinusoid [B,C0] in fp32, and what the two linear layers make of it (for tests).
     torch::Tensor time_projection(const torch::Tensor& timesteps, std::int64_t batch) const;

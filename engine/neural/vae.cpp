@@ -4,10 +4,11 @@
 namespace gse::neural {
 namespace {
 
-constexpr double VaeNormEps = 1e-6;   // every GroupNorm of the VAE
+constexpr double VaeNormEps = 1e-6;  // every GroupNorm of the VAE
 constexpr double LogvarLow = -30.0, LogvarHigh = 20.0;
 
-ResnetBlock make_resnet(std::int64_t in, std::int64_t out, std::int64_t groups, const WeightOptions& options) {
+ResnetBlock make_resnet(std::int64_t in, std::int64_t out, std::int64_t groups,
+                        const WeightOptions& options) {
     return ResnetBlock(ResnetShape{in, out, groups, VaeNormEps, 0}, options);
 }
 
@@ -33,8 +34,9 @@ torch::Tensor VaeAttentionImpl::forward(const torch::Tensor& x) const {
 }
 
 VaeMiddleImpl::VaeMiddleImpl(std::int64_t channels, std::int64_t groups, const WeightOptions& options) {
-    resnets = register_list(*this, "resnets", std::vector{make_resnet(channels, channels, groups, options),
-                                                          make_resnet(channels, channels, groups, options)});
+    resnets = register_list(*this, "resnets",
+                            std::vector{make_resnet(channels, channels, groups, options),
+                                        make_resnet(channels, channels, groups, options)});
     attention = register_list(*this, "attentions", std::vector{VaeAttention(channels, groups, options)})[0];
 }
 
@@ -67,7 +69,8 @@ VaeEncoderImpl::VaeEncoderImpl(const VaeConfig& config, const WeightOptions& opt
     register_module("down_blocks", blocks);
     mid_block = register_module("mid_block", VaeMiddle(channels, groups, options));
     conv_norm_out = register_module("conv_norm_out", GroupNorm(channels, groups, VaeNormEps, options));
-    conv_out = register_module("conv_out", Conv2d(Conv2dImpl::Shape{channels, 2 * config.latent_channels}, options));
+    conv_out =
+        register_module("conv_out", Conv2d(Conv2dImpl::Shape{channels, 2 * config.latent_channels}, options));
 }
 
 torch::Tensor VaeEncoderImpl::forward(const torch::Tensor& image, std::vector<torch::Tensor>* trace) const {
@@ -87,9 +90,11 @@ torch::Tensor VaeEncoderImpl::forward(const torch::Tensor& image, std::vector<to
 }
 
 VaeDecoderImpl::VaeDecoderImpl(const VaeConfig& config, const WeightOptions& options) {
-    const std::vector<std::int64_t> widths(config.block_out_channels.rbegin(), config.block_out_channels.rend());
+    const std::vector<std::int64_t> widths(config.block_out_channels.rbegin(),
+                                           config.block_out_channels.rend());
     const auto groups = config.norm_num_groups;
-    conv_in = register_module("conv_in", Conv2d(Conv2dImpl::Shape{config.latent_channels, widths[0]}, options));
+    conv_in =
+        register_module("conv_in", Conv2d(Conv2dImpl::Shape{config.latent_channels, widths[0]}, options));
     mid_block = register_module("mid_block", VaeMiddle(widths[0], groups, options));
     torch::nn::ModuleList blocks;
     auto channels = widths[0];
@@ -122,12 +127,15 @@ torch::Tensor VaeDecoderImpl::forward(const torch::Tensor& z) const {
     return conv_out->forward(conv_norm_out->forward_silu(x));
 }
 
-AutoencoderKlImpl::AutoencoderKlImpl(const VaeConfig& config, const WeightOptions& options) : config_(config) {
+AutoencoderKlImpl::AutoencoderKlImpl(const VaeConfig& config, const WeightOptions& options)
+    : config_(config) {
     const auto latent = config_.latent_channels;
     encoder = register_module("encoder", VaeEncoder(config_, options));
     decoder = register_module("decoder", VaeDecoder(config_, options));
-    quant_conv = register_module("quant_conv", Linear(LinearImpl::Shape{2 * latent, 2 * latent, true, true}, options));
-    post_quant_conv = register_module("post_quant_conv", Linear(LinearImpl::Shape{latent, latent, true, true}, options));
+    quant_conv =
+        register_module("quant_conv", Linear(LinearImpl::Shape{2 * latent, 2 * latent, true, true}, options));
+    post_quant_conv =
+        register_module("post_quant_conv", Linear(LinearImpl::Shape{latent, latent, true, true}, options));
 }
 
 VaeMoments AutoencoderKlImpl::encode_moments(const torch::Tensor& image) const {

@@ -78,7 +78,7 @@ struct VaeMoments {
 class AutoencoderKlImpl : public torch::nn::Module {
 public:
     explicit AutoencoderKlImpl(const VaeConfig& config, const WeightOptions& options = {});
-    VaeMoments encode_moments(const torch::Tensor& image) const;   // logvar clamped to [-30, 20]
+    VaeMoments encode_moments(const torch::Tensor& image) const;  // logvar clamped to [-30, 20]
     torch::Tensor decode(const torch::Tensor& z) const;
     const VaeConfig& config() const { return config_; }
     const VaeEncoder& encoder_half() const { return encoder; }

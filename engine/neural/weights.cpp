@@ -42,8 +42,8 @@ KeyShapes key_shapes(const SafetensorsFile& file) {
     return shapes;
 }
 
-std::set<std::string> check_weights(const torch::nn::Module& module, const KeyShapes& shapes, const LoadPlan& plan,
-                                    const std::filesystem::path& path) {
+std::set<std::string> check_weights(const torch::nn::Module& module, const KeyShapes& shapes,
+                                    const LoadPlan& plan, const std::filesystem::path& path) {
     std::vector<std::string> missing, wrong;
     std::set<std::string> used;
     for (const auto& item : module.named_parameters()) {
@@ -56,27 +56,33 @@ std::set<std::string> check_weights(const torch::nn::Module& module, const KeySh
         used.insert(source.key);
         const auto wanted = expected_in_file(shape_of(item.value()), source);
         if (without_unit_kernel(found->second) != wanted)
-            wrong.push_back(fmt::format("\"{}\" has the shape {} instead of {}", source.key, text_of(found->second),
-                                        text_of(wanted)));
+            wrong.push_back(fmt::format("\"{}\" has the shape {} instead of {}", source.key,
+                                        text_of(found->second), text_of(wanted)));
     }
-    const char* hint = "the weights and the configuration do not belong together, or the download is incomplete";
+    const char* hint =
+        "the weights and the configuration do not belong together, or the download is incomplete";
     if (!missing.empty())
-        throw Error(ErrorCode::Model,
-                    fmt::format("the {} has no tensor \"{}\"{}", plan.what, missing[0], and_more(missing.size())), hint, path);
+        throw Error(
+            ErrorCode::Model,
+            fmt::format("the {} has no tensor \"{}\"{}", plan.what, missing[0], and_more(missing.size())),
+            hint, path);
     if (!wrong.empty())
-        throw Error(ErrorCode::Model, fmt::format("in the {} the tensor {}{}", plan.what, wrong[0], and_more(wrong.size())),
+        throw Error(ErrorCode::Model,
+                    fmt::format("in the {} the tensor {}{}", plan.what, wrong[0], and_more(wrong.size())),
                     hint, path);
     std::vector<std::string> extra;
     for (const auto& [name, shape] : shapes)
         if (!used.contains(name) && !(plan.ignore && plan.ignore(name))) extra.push_back(name);
     if (!extra.empty())
         throw Error(ErrorCode::Model,
-                    fmt::format("the {} has a tensor that is not known, \"{}\"{}", plan.what, extra[0], and_more(extra.size())),
+                    fmt::format("the {} has a tensor that is not known, \"{}\"{}", plan.what, extra[0],
+                                and_more(extra.size())),
                     hint, path);
     return used;
 }
 
-std::set<std::string> load_weights(torch::nn::Module& module, const SafetensorsFile& file, const LoadPlan& plan) {
+std::set<std::string> load_weights(torch::nn::Module& module, const SafetensorsFile& file,
+                                   const LoadPlan& plan) {
     auto used = check_weights(module, key_shapes(file), plan, file.path());
     const torch::NoGradGuard no_grad;
     for (auto& item : module.named_parameters()) {

@@ -1,4 +1,5 @@
-// Fills a network from named tensors with exact accounting: every key used once, none missing, every shape right.
+// Fills a network from named tensors with exact accounting: every key used once, none missing, every shape
+// right.
 #pragma once
 
 #include <set>
@@ -10,10 +11,10 @@ namespace gse::neural {
 
 /// Where one parameter of a network is found in a file.
 struct WeightSource {
-    std::string key;            // name in the file
-    std::int64_t row = -1;      // part number `row` of `rows` stacked blocks along the first dimension (q, k, v)
+    std::string key;        // name in the file
+    std::int64_t row = -1;  // part number `row` of `rows` stacked blocks along the first dimension (q, k, v)
     std::int64_t rows = 1;
-    bool transpose = false;     // the file holds the 2D transpose
+    bool transpose = false;  // the file holds the 2D transpose
 };
 
 /// Maps a parameter's name in our network to its place in the file.
@@ -21,19 +22,22 @@ using WeightMap = std::function<WeightSource(const std::string& parameter)>;
 
 /// How a file is matched to a network.
 struct LoadPlan {
-    WeightMap map;                                          // empty = same names
-    std::function<bool(const std::string& key)> ignore;     // keys of the file that may be left over; empty = none
-    std::string what = "network";                           // for messages: "UNet"
+    WeightMap map;  // empty = same names
+    std::function<bool(const std::string& key)>
+        ignore;                    // keys of the file that may be left over; empty = none
+    std::string what = "network";  // for messages: "UNet"
 };
 
-/// Copies all parameters of `module` from `file`. Throws Error (Model) that names the missing, the left-over or the
-/// mis-shaped key (the first, and how many more). Returns the keys of the file that were used.
-std::set<std::string> load_weights(torch::nn::Module& module, const SafetensorsFile& file, const LoadPlan& plan);
+/// Copies all parameters of `module` from `file`. Throws Error (Model) that names the missing, the left-over
+/// or the mis-shaped key (the first, and how many more). Returns the keys of the file that were used.
+std::set<std::string> load_weights(torch::nn::Module& module, const SafetensorsFile& file,
+                                   const LoadPlan& plan);
 
-/// The same check on names and shapes only (module on torch::kMeta, a manifest): `shapes` are the keys of the file.
+/// The same check on names and shapes only (module on torch::kMeta, a manifest): `shapes` are the keys of the
+/// file.
 using KeyShapes = std::map<std::string, std::vector<std::int64_t>>;
-std::set<std::string> check_weights(const torch::nn::Module& module, const KeyShapes& shapes, const LoadPlan& plan,
-                                    const std::filesystem::path& path);
+std::set<std::string> check_weights(const torch::nn::Module& module, const KeyShapes& shapes,
+                                    const LoadPlan& plan, const std::filesystem::path& path);
 
 /// Names and shapes of all tensors of a file.
 KeyShapes key_shapes(const SafetensorsFile& file);

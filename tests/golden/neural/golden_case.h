@@ -33,11 +33,13 @@ struct GoldenCase {
 /// Largest absolute difference; infinite for a wrong shape or a value that is not a number.
 inline double difference(const torch::Tensor& actual, const torch::Tensor& expected) {
     if (actual.numel() == 0 && expected.numel() == 0) return 0;
-    if (actual.numel() != expected.numel() || actual.squeeze().sizes() != expected.squeeze().sizes()) return INFINITY;
-    const auto worst = (actual.detach().to(torch::kFloat64).reshape(-1) - expected.to(torch::kFloat64).reshape(-1))
-                           .abs()
-                           .max()
-                           .item<double>();
+    if (actual.numel() != expected.numel() || actual.squeeze().sizes() != expected.squeeze().sizes())
+        return INFINITY;
+    const auto worst =
+        (actual.detach().to(torch::kFloat64).reshape(-1) - expected.to(torch::kFloat64).reshape(-1))
+            .abs()
+            .max()
+            .item<double>();
     return std::isnan(worst) ? INFINITY : worst;
 }
 
@@ -51,11 +53,12 @@ public:
     explicit Margins(std::string name) : name_(std::move(name)) {}
     ~Margins() {
         if (std::getenv("GSE_MARGINS") != nullptr)
-            std::printf("[margin] %-22s worst %.4f of tolerance (%s, %.3g)\n", name_.c_str(), worst_, where_.c_str(),
-                        error_);
+            std::printf("[margin] %-22s worst %.4f of tolerance (%s, %.3g)\n", name_.c_str(), worst_,
+                        where_.c_str(), error_);
     }
     /// |actual - expected| <= tolerance everywhere.
-    void near(const std::string& what, const torch::Tensor& actual, const torch::Tensor& expected, double tolerance) {
+    void near(const std::string& what, const torch::Tensor& actual, const torch::Tensor& expected,
+              double tolerance) {
         const double error = difference(actual, expected);
         note(what, error, tolerance);
         DOCTEST_CHECK_MESSAGE(error <= tolerance, what, ": ", error, " > ", tolerance);

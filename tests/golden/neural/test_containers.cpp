@@ -53,7 +53,8 @@ void check_tokenizer_case(const Tokenizer& tokenizer, const Json& item, std::int
             known = known || (key.starts_with("full_ids") && ids.get<std::vector<std::int64_t>>() == full);
     DOCTEST_CHECK_MESSAGE(known, text);
     if (full != primary) return;
-    DOCTEST_CHECK_MESSAGE(tokenizer.encode(text, max_length).ids == item["ids"].get<std::vector<std::int64_t>>(), text);
+    DOCTEST_CHECK_MESSAGE(
+        tokenizer.encode(text, max_length).ids == item["ids"].get<std::vector<std::int64_t>>(), text);
 }
 
 /// "key<TAB>AxBxC" per line.
@@ -81,7 +82,7 @@ std::int64_t parameter_count(const torch::nn::Module& module) {
     return count;
 }
 
-const WeightOptions Described{torch::kMeta, torch::kFloat32, false};   // names and shapes only
+const WeightOptions Described{torch::kMeta, torch::kFloat32, false};  // names and shapes only
 
 struct RealModels {
     UNet unet;
@@ -91,10 +92,12 @@ struct RealModels {
 
 RealModels describe(const GoldenCase& golden, const std::string& name) {
     const auto config = [&](const char* part) { return golden.folder / (name + part); };
-    return {UNet(UNetConfig::from_json(read_json_file(config("_unet_config.json")), golden.folder), Described),
-            AutoencoderKl(VaeConfig::from_json(golden.json("vae_config.json"), golden.folder), Described),
-            ClipTextEncoder(TextEncoderConfig::from_json(read_json_file(config("_text_encoder_config.json")), golden.folder),
-                            Described)};
+    return {
+        UNet(UNetConfig::from_json(read_json_file(config("_unet_config.json")), golden.folder), Described),
+        AutoencoderKl(VaeConfig::from_json(golden.json("vae_config.json"), golden.folder), Described),
+        ClipTextEncoder(
+            TextEncoderConfig::from_json(read_json_file(config("_text_encoder_config.json")), golden.folder),
+            Described)};
 }
 
 void check_manifests(const std::string& name, std::int64_t unet_parameters, SingleFileText layout) {
@@ -113,15 +116,18 @@ void check_manifests(const std::string& name, std::int64_t unet_parameters, Sing
     check(*models.vae, "vae_diffusers_new_names.tsv", vae_plan(false));
     check(*models.vae, "vae_diffusers_legacy_names.tsv", vae_plan(true));
     const std::string single = name + "_single_file.tsv";
-    const std::array plans{single_file_unet_plan(models.unet->config()), single_file_vae_plan(models.vae->config()),
+    const std::array plans{single_file_unet_plan(models.unet->config()),
+                           single_file_vae_plan(models.vae->config()),
                            single_file_text_plan(models.text->config(), layout)};
     std::set<std::string> used;
-    for (const auto& part : {check_weights(*models.unet, read_manifest(golden.folder / single), plans[0], single),
-                             check_weights(*models.vae, read_manifest(golden.folder / single), plans[1], single),
-                             check_weights(*models.text, read_manifest(golden.folder / single), plans[2], single)})
+    for (const auto& part :
+         {check_weights(*models.unet, read_manifest(golden.folder / single), plans[0], single),
+          check_weights(*models.vae, read_manifest(golden.folder / single), plans[1], single),
+          check_weights(*models.text, read_manifest(golden.folder / single), plans[2], single)})
         used.insert(part.begin(), part.end());
     for (const auto& [key, shape] : read_manifest(golden.folder / single)) {
-        const bool ignored = std::all_of(plans.begin(), plans.end(), [&](const LoadPlan& plan) { return plan.ignore(key); });
+        const bool ignored =
+            std::all_of(plans.begin(), plans.end(), [&](const LoadPlan& plan) { return plan.ignore(key); });
         DOCTEST_CHECK_MESSAGE(used.contains(key) != ignored, key);
     }
 }

@@ -15,9 +15,9 @@ using namespace gse::test;
 // The tolerances of the cases' README files.
 constexpr double OutputTolerance = 2e-5;
 constexpr double MapTolerance = 5e-6;
-constexpr double GradientTolerance = 2e-4;       // of the tensor's largest value
-constexpr double ClipGradientRelative = 1e-4;    // of each value ...
-constexpr double ClipGradientAbsolute = 1e-5;    // ... plus this share of the largest
+constexpr double GradientTolerance = 2e-4;     // of the tensor's largest value
+constexpr double ClipGradientRelative = 1e-4;  // of each value ...
+constexpr double ClipGradientAbsolute = 1e-5;  // ... plus this share of the largest
 
 /// All "grad.<parameter>" tensors of `io` against the parameters' gradients.
 void check_parameter_gradients(Margins& margins, const torch::nn::Module& module, const SafetensorsFile& io) {
@@ -63,12 +63,14 @@ void check_unet(const std::string& name) {
         margins.near("out_t0", unet->forward(sample, io.tensor("t0"), context, &capture), io.tensor("out_t0"),
                      OutputTolerance);
         check_maps(margins, golden, capture);
-        margins.near("out_odd",
-                     unet->forward(io.tensor("sample_odd"), io.tensor("t0"), io.tensor("encoder_hidden_states_odd")),
-                     io.tensor("out_odd"), OutputTolerance);
+        margins.near(
+            "out_odd",
+            unet->forward(io.tensor("sample_odd"), io.tensor("t0"), io.tensor("encoder_hidden_states_odd")),
+            io.tensor("out_odd"), OutputTolerance);
         const auto projection = unet->time_projection(io.tensor("t1"), sample.size(0));
         margins.near("time_proj_t1", projection, io.tensor("time_proj_t1"), OutputTolerance);
-        margins.near("time_embedding_t1", unet->time_embedding(projection), io.tensor("time_embedding_t1"), OutputTolerance);
+        margins.near("time_embedding_t1", unet->time_embedding(projection), io.tensor("time_embedding_t1"),
+                     OutputTolerance);
     }
     sample.requires_grad_(true);
     context.requires_grad_(true);
@@ -76,8 +78,8 @@ void check_unet(const std::string& name) {
     margins.near("out_t1", output, io.tensor("out_t1"), OutputTolerance);
     (output * io.tensor("G")).sum().backward();
     margins.near_relative("grad_sample", sample.grad(), io.tensor("grad_sample"), GradientTolerance);
-    margins.near_relative("grad_encoder_hidden_states", context.grad(), io.tensor("grad_encoder_hidden_states"),
-                          GradientTolerance);
+    margins.near_relative("grad_encoder_hidden_states", context.grad(),
+                          io.tensor("grad_encoder_hidden_states"), GradientTolerance);
     check_parameter_gradients(margins, *unet, io);
     if (!io.contains("v.pred_x0_t1")) return;
     const auto scheduler = golden.folder / "scheduler_config.json";
@@ -85,8 +87,8 @@ void check_unet(const std::string& name) {
     const auto v = io.tensor("out_t1"), x = io.tensor("sample"), t = io.tensor("t1");
     margins.near("v.pred_x0_t1", schedule.to_x0(v, x, t), io.tensor("v.pred_x0_t1"), OutputTolerance);
     margins.near("v.pred_eps_t1", schedule.to_epsilon(v, x, t), io.tensor("v.pred_eps_t1"), OutputTolerance);
-    margins.near("v.target", schedule.velocity(x, io.tensor("G"), t), io.tensor("v.target_from_x_as_x0_and_G_as_noise"),
-                 OutputTolerance);
+    margins.near("v.target", schedule.velocity(x, io.tensor("G"), t),
+                 io.tensor("v.target_from_x_as_x0_and_G_as_noise"), OutputTolerance);
 }
 
 void check_encoder(Margins& margins, const AutoencoderKl& vae, const SafetensorsFile& io) {
@@ -96,12 +98,15 @@ void check_encoder(Margins& margins, const AutoencoderKl& vae, const Safetensors
     margins.near("logvar", moments.logvar, io.tensor("logvar"), OutputTolerance);
     const auto sample = moments.sample(io.tensor("eps"));
     margins.near("sample", sample, io.tensor("sample"), OutputTolerance);
-    margins.near("latents_scaled", sample * vae->config().scaling_factor, io.tensor("latents_scaled"), OutputTolerance);
+    margins.near("latents_scaled", sample * vae->config().scaling_factor, io.tensor("latents_scaled"),
+                 OutputTolerance);
     (moments.mean * io.tensor("G")).sum().backward({}, true);
-    margins.near_relative("grad_image_of_mean", image.grad(), io.tensor("grad_image_of_mean"), GradientTolerance);
+    margins.near_relative("grad_image_of_mean", image.grad(), io.tensor("grad_image_of_mean"),
+                          GradientTolerance);
     image.mutable_grad() = torch::Tensor();
     (sample * io.tensor("G")).sum().backward();
-    margins.near_relative("grad_image_of_sample", image.grad(), io.tensor("grad_image_of_sample"), GradientTolerance);
+    margins.near_relative("grad_image_of_sample", image.grad(), io.tensor("grad_image_of_sample"),
+                          GradientTolerance);
 
     const torch::NoGradGuard no_grad;
     std::vector<torch::Tensor> trace;
@@ -112,7 +117,8 @@ void check_encoder(Margins& margins, const AutoencoderKl& vae, const Safetensors
         margins.near(key, trace[i], io.tensor(key), OutputTolerance);
     }
     margins.near("enc.mid_block", trace.back(), io.tensor("enc.mid_block"), OutputTolerance);
-    margins.near("mean_odd", vae->encode_moments(io.tensor("image_odd")).mean, io.tensor("mean_odd"), OutputTolerance);
+    margins.near("mean_odd", vae->encode_moments(io.tensor("image_odd")).mean, io.tensor("mean_odd"),
+                 OutputTolerance);
 }
 
 void check_decoder(Margins& margins, AutoencoderKl& vae, const SafetensorsFile& io) {
@@ -121,7 +127,8 @@ void check_decoder(Margins& margins, AutoencoderKl& vae, const SafetensorsFile& 
     const auto decoded = vae->decode(z);
     margins.near("decoded", decoded, io.tensor("decoded"), OutputTolerance);
     (decoded * io.tensor("H")).sum().backward();
-    margins.near_relative("grad_latent_of_decoded", z.grad(), io.tensor("grad_latent_of_decoded"), GradientTolerance);
+    margins.near_relative("grad_latent_of_decoded", z.grad(), io.tensor("grad_latent_of_decoded"),
+                          GradientTolerance);
     check_parameter_gradients(margins, *vae, io);
     margins.near("decoded_odd", vae->decode(io.tensor("z_odd")), io.tensor("decoded_odd"), OutputTolerance);
 }
@@ -139,7 +146,8 @@ void check_vae(const std::string& name) {
 
 void check_clip_gradients(Margins& margins, const ClipTextEncoder& encoder, const SafetensorsFile& io) {
     const auto parameters = encoder->named_parameters();
-    const auto near = [&](const std::string& what, const torch::Tensor& actual, const torch::Tensor& expected) {
+    const auto near = [&](const std::string& what, const torch::Tensor& actual,
+                          const torch::Tensor& expected) {
         // |difference| <= relative * |expected| + absolute * max|expected|, as one scaled comparison.
         const auto allowed = expected.abs() * ClipGradientRelative + ClipGradientAbsolute * largest(expected);
         margins.near(what, (actual - expected) / allowed, torch::zeros_like(expected), 1.0);
@@ -149,7 +157,8 @@ void check_clip_gradients(Margins& margins, const ClipTextEncoder& encoder, cons
         if (!key.empty()) near(name, parameters[key].grad(), io.tensor(name));
     }
     near("grad_token_embedding",
-         parameters["text_model.embeddings.token_embedding.weight"].grad().index_select(0, io.tensor("grad_token_embedding.rows")),
+         parameters["text_model.embeddings.token_embedding.weight"].grad().index_select(
+             0, io.tensor("grad_token_embedding.rows")),
          io.tensor("grad_token_embedding.values"));
 }
 
@@ -157,7 +166,8 @@ void check_clip(const std::string& name) {
     const GoldenCase golden(name);
     if (!golden.present) return;
     Margins margins(name);
-    ClipTextEncoder encoder(TextEncoderConfig::from_json(golden.json("config.json"), golden.folder / "config.json"));
+    ClipTextEncoder encoder(
+        TextEncoderConfig::from_json(golden.json("config.json"), golden.folder / "config.json"));
     load_weights(*encoder, golden.tensors("model.safetensors"), text_encoder_plan());
     const auto io = golden.tensors();
     const auto result = encoder->forward(io.tensor("input_ids"));
@@ -169,12 +179,14 @@ void check_clip(const std::string& name) {
     }
     const auto penultimate = result.hidden_states[result.hidden_states.size() - 2];
     margins.near("penultimate_raw", penultimate, io.tensor("penultimate_raw"), OutputTolerance);
-    margins.near("penultimate_final_ln", encoder->final_norm(penultimate), io.tensor("penultimate_final_ln"), OutputTolerance);
+    margins.near("penultimate_final_ln", encoder->final_norm(penultimate), io.tensor("penultimate_final_ln"),
+                 OutputTolerance);
     margins.near("pooler_output", result.pooled, io.tensor("pooler_output"), OutputTolerance);
     if (io.contains("text_embeds"))
         margins.near("text_embeds", result.text_embeds, io.tensor("text_embeds"), OutputTolerance);
     const auto masked = encoder->forward(io.tensor("input_ids"), io.tensor("attention_mask"));
-    margins.near("last_hidden_state_masked", masked.last_hidden, io.tensor("last_hidden_state_masked"), OutputTolerance);
+    margins.near("last_hidden_state_masked", masked.last_hidden, io.tensor("last_hidden_state_masked"),
+                 OutputTolerance);
     encoder->zero_grad();
     (result.last_hidden * io.tensor("G")).sum().backward();
     check_clip_gradients(margins, encoder, io);
@@ -186,5 +198,9 @@ DOCTEST_TEST_CASE("unet_sd1: outputs, maps and gradients") { check_unet("unet_sd
 DOCTEST_TEST_CASE("unet_sd2: outputs, maps, gradients and velocity conversions") { check_unet("unet_sd2"); }
 DOCTEST_TEST_CASE("vae: moments, decoding, intermediates and gradients") { check_vae("vae"); }
 DOCTEST_TEST_CASE("vae_legacy_keys: the same numbers under the old names") { check_vae("vae_legacy_keys"); }
-DOCTEST_TEST_CASE("clip_text_sd1: hidden states, pooled, masked and gradients") { check_clip("clip_text_sd1"); }
-DOCTEST_TEST_CASE("clip_text_sd2: hidden states, projection, masked and gradients") { check_clip("clip_text_sd2"); }
+DOCTEST_TEST_CASE("clip_text_sd1: hidden states, pooled, masked and gradients") {
+    check_clip("clip_text_sd1");
+}
+DOCTEST_TEST_CASE("clip_text_sd2: hidden states, projection, masked and gradients") {
+    check_clip("clip_text_sd2");
+}

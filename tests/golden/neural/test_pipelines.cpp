@@ -11,10 +11,10 @@ using namespace gse::neural;
 using namespace gse::test;
 
 // The tolerances of the cases' README files.
-constexpr double LatentTolerance = 1e-4;   // of the largest value
+constexpr double LatentTolerance = 1e-4;  // of the largest value
 constexpr double ImageTolerance = 1e-3;
 constexpr double OutputTolerance = 2e-5;
-constexpr double GradientTolerance = 2e-4;   // of the largest value
+constexpr double GradientTolerance = 2e-4;  // of the largest value
 
 /// The pipeline's folder with its links in place, also where a checkout keeps links as small text files.
 void restore_links(const std::filesystem::path& from, const std::filesystem::path& to) {
@@ -45,8 +45,8 @@ torch::Tensor context_of(const SafetensorsFile& io) {
     return torch::cat({io.tensor("negative_prompt_embeds"), io.tensor("prompt_embeds")});
 }
 
-void check_sds_step(Margins& margins, const ModelBundle& bundle, const SafetensorsFile& io, const std::string& mode,
-                    std::int64_t t) {
+void check_sds_step(Margins& margins, const ModelBundle& bundle, const SafetensorsFile& io,
+                    const std::string& mode, std::int64_t t) {
     auto image = io.tensor("image").requires_grad_(true);
     const auto moments = bundle.vae->encode_moments(image);
     const auto z = mode == "mean" ? moments.mean : moments.sample(io.tensor("posterior_eps"));
@@ -54,22 +54,27 @@ void check_sds_step(Margins& margins, const ModelBundle& bundle, const Safetenso
     margins.near(mode + ".latents", latents, io.tensor(mode + ".latents"), OutputTolerance);
     const std::string at = mode + ".t" + std::to_string(t) + ".";
     for (const auto& [scale, text] : {std::pair(7.5, "s7.5."), std::pair(100.0, "s100.")}) {
-        const auto result =
-            sds_gradient(bundle, latents, {io.tensor("noise"), t, scale, torch::cat({io.tensor("uncond"), io.tensor("cond")})});
+        const auto result = sds_gradient(
+            bundle, latents,
+            {io.tensor("noise"), t, scale, torch::cat({io.tensor("uncond"), io.tensor("cond")})});
         margins.near(at + "noisy", result.noisy_latents, io.tensor(at + "noisy_latents"), OutputTolerance);
-        margins.near(at + "eps_uncond", result.epsilon_negative, io.tensor(at + "eps_uncond"), OutputTolerance);
+        margins.near(at + "eps_uncond", result.epsilon_negative, io.tensor(at + "eps_uncond"),
+                     OutputTolerance);
         margins.near(at + "eps_cond", result.epsilon_positive, io.tensor(at + "eps_cond"), OutputTolerance);
         margins.near(at + "w", torch::tensor(result.weight), io.tensor(at + "w"), OutputTolerance);
-        margins.near_relative(at + text + "grad_latents", result.gradient, io.tensor(at + text + "grad_latents"), GradientTolerance);
+        margins.near_relative(at + text + "grad_latents", result.gradient,
+                              io.tensor(at + text + "grad_latents"), GradientTolerance);
         if (!io.contains(at + text + "grad_image")) continue;
         const auto gradient = torch::autograd::grad({latents}, {image}, {result.gradient}, true)[0];
-        margins.near_relative(at + text + "grad_image", gradient, io.tensor(at + text + "grad_image"), GradientTolerance);
+        margins.near_relative(at + text + "grad_image", gradient, io.tensor(at + text + "grad_image"),
+                              GradientTolerance);
     }
 }
 
 /// Every output of a component case, with weights from a single file.
 void check_single_file(const std::string& name, const std::string& version, SingleFileText expected_layout) {
-    const GoldenCase golden(name), unet_case("unet_" + version), vae_case("vae"), text_case("clip_text_" + version);
+    const GoldenCase golden(name), unet_case("unet_" + version), vae_case("vae"),
+        text_case("clip_text_" + version);
     if (!golden.present || !unet_case.present || !vae_case.present || !text_case.present) return;
     Margins margins(name);
     const auto file = golden.tensors("model_fp16.safetensors");
@@ -78,7 +83,8 @@ void check_single_file(const std::string& name, const std::string& version, Sing
     DOCTEST_CHECK(layout == expected_layout);
     const UNet unet(UNetConfig::from_json(golden.json("unet_config.json"), golden.folder));
     const AutoencoderKl vae(VaeConfig::from_json(golden.json("vae_config.json"), golden.folder));
-    const ClipTextEncoder text(TextEncoderConfig::from_json(golden.json("text_encoder_config.json"), golden.folder));
+    const ClipTextEncoder text(
+        TextEncoderConfig::from_json(golden.json("text_encoder_config.json"), golden.folder));
     std::set<std::string> used;
     const auto load = [&](torch::nn::Module& module, const LoadPlan& plan) {
         const auto keys = load_weights(module, file, plan);
@@ -89,11 +95,12 @@ void check_single_file(const std::string& name, const std::string& version, Sing
     load(*text.ptr(), single_file_text_plan(text->config(), layout));
     std::ifstream table(golden.folder / "key_map.tsv");
     std::string line;
-    std::getline(table, line);   // the header
+    std::getline(table, line);  // the header
     for (std::size_t rows = 0; std::getline(table, line); ++rows) {
         const auto key = line.substr(0, line.find('\t'));
         // position_ids is a tensor of the text encoder that no one needs.
-        const bool ignored = line.ends_with("ignore") || line.ends_with("ignore\r") || key.ends_with(".position_ids");
+        const bool ignored =
+            line.ends_with("ignore") || line.ends_with("ignore\r") || key.ends_with(".position_ids");
         DOCTEST_CHECK_MESSAGE(used.contains(key) != ignored, key);
     }
     const torch::NoGradGuard no_grad;
@@ -117,11 +124,13 @@ DOCTEST_TEST_CASE("pipeline_sd1: text to image with guidance") {
     const auto io = pipeline.golden.tensors();
     const auto what = pipeline.golden.json("case.json");
     const auto bundle = pipeline.load();
-    const auto prompt = what["prompt"].get<std::string>(), negative = what["negative_prompt"].get<std::string>();
+    const auto prompt = what["prompt"].get<std::string>(),
+               negative = what["negative_prompt"].get<std::string>();
     DOCTEST_CHECK(torch::equal(bundle.token_ids({prompt, negative}), io.tensor("input_ids")));
     const auto context = bundle.encode_prompts({negative, prompt});
     margins.near("context", context, context_of(io), OutputTolerance);
-    const auto sampler = make_sampler(sampler_kind(bundle.schedule.config()), bundle.schedule, what["steps"].get<std::int64_t>());
+    const auto sampler = make_sampler(sampler_kind(bundle.schedule.config()), bundle.schedule,
+                                      what["steps"].get<std::int64_t>());
     DenoiseJob job;
     job.sampler = sampler.get();
     job.guidance_scale = what["guidance_scale"].get<double>();
@@ -132,7 +141,8 @@ DOCTEST_TEST_CASE("pipeline_sd1: text to image with guidance") {
     };
     const auto latents = denoise(bundle, io.tensor("latents_init") * sampler->initial_sigma(), job);
     const torch::NoGradGuard no_grad;
-    margins.near("decoded_raw", bundle.vae->decode(latents / bundle.scaling_factor()), io.tensor("decoded_raw"), ImageTolerance);
+    margins.near("decoded_raw", bundle.vae->decode(latents / bundle.scaling_factor()),
+                 io.tensor("decoded_raw"), ImageTolerance);
     margins.near("image", latents_to_image(bundle, latents), io.tensor("image"), ImageTolerance);
 }
 
@@ -156,7 +166,8 @@ DOCTEST_TEST_CASE("pipeline_sd1: image to image with guidance") {
                                            io.tensor("img2img.noise"), job.first);
     margins.near("start", start, expected[0], LatentTolerance * largest(expected));
     job.after_step = [&](std::int64_t step, const torch::Tensor& latents) {
-        margins.near("timestep", torch::tensor(sampler->timestep(step)), io.tensor("img2img.timesteps")[step - job.first], 0);
+        margins.near("timestep", torch::tensor(sampler->timestep(step)),
+                     io.tensor("img2img.timesteps")[step - job.first], 0);
         margins.near("latents", latents, expected[step - job.first + 1], LatentTolerance * largest(expected));
     };
     const auto latents = denoise(bundle, start, job);
@@ -172,7 +183,7 @@ DOCTEST_TEST_CASE("sds: gradient on latents and image, mean and sampled posterio
     const auto io = golden.tensors();
     margins.near("alphas_cumprod", bundle.schedule.alphas_cumprod(), io.tensor("alphas_cumprod"), 2e-6);
     std::size_t steps = 0;
-    for (const auto& [name, entry] : io.entries()) {   // "mean.t421.w": every mode and timestep of the case
+    for (const auto& [name, entry] : io.entries()) {  // "mean.t421.w": every mode and timestep of the case
         if (!name.ends_with(".w")) continue;
         const auto t = name.find(".t");
         check_sds_step(margins, bundle, io, name.substr(0, t), std::stoll(name.substr(t + 2)));
@@ -196,8 +207,10 @@ DOCTEST_TEST_CASE("sds: through the bilinear resize of a render") {
     const auto latents = moments.sample(io.tensor("posterior_eps")) * bundle.scaling_factor();
     margins.near("latents", latents, io.tensor("render.latents"), OutputTolerance);
     const auto result =
-        sds_gradient(bundle, latents, {io.tensor("noise"), 421, 7.5, torch::cat({io.tensor("uncond"), io.tensor("cond")})});
-    margins.near_relative("grad_latents", result.gradient, io.tensor("render.grad_latents"), GradientTolerance);
+        sds_gradient(bundle, latents,
+                     {io.tensor("noise"), 421, 7.5, torch::cat({io.tensor("uncond"), io.tensor("cond")})});
+    margins.near_relative("grad_latents", result.gradient, io.tensor("render.grad_latents"),
+                          GradientTolerance);
     latents.backward(result.gradient);
     margins.near_relative("grad_render", render.grad(), io.tensor("render.grad_render"), GradientTolerance);
 }
@@ -216,14 +229,16 @@ DOCTEST_TEST_CASE("single_file_sd1: opened as a model, with the tokenizer beside
     if (!pipeline.golden.present || !golden.present) return;
     const ScratchFolder scratch;
     for (const auto& item : std::filesystem::directory_iterator(golden.folder))
-        std::filesystem::create_symlink(std::filesystem::canonical(item.path()), scratch.path() / item.path().filename());
-    std::filesystem::create_directory_symlink(std::filesystem::canonical(pipeline.golden.folder / "tokenizer"),
-                                              scratch.path() / "tokenizer");
+        std::filesystem::create_symlink(std::filesystem::canonical(item.path()),
+                                        scratch.path() / item.path().filename());
+    std::filesystem::create_directory_symlink(
+        std::filesystem::canonical(pipeline.golden.folder / "tokenizer"), scratch.path() / "tokenizer");
     const auto path = scratch.path() / "model_fp16.safetensors";
     const auto bundle = load_bundle(path);
     const auto io = pipeline.golden.tensors();
     const auto what = pipeline.golden.json("case.json");
-    const auto context = bundle.encode_prompts({what["negative_prompt"].get<std::string>(), what["prompt"].get<std::string>()});
+    const auto context = bundle.encode_prompts(
+        {what["negative_prompt"].get<std::string>(), what["prompt"].get<std::string>()});
     DOCTEST_CHECK(difference(context, context_of(io)) <= OutputTolerance);
     const auto description = describe_model(path);
     DOCTEST_CHECK(description.layout == "single file");

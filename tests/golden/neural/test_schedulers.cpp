@@ -15,10 +15,12 @@ constexpr double ConversionTolerance = 1e-5;
 constexpr double TrajectoryRelative = 1e-4, TrajectoryAbsolute = 1e-4;
 constexpr double SigmaRelative = 1e-5;
 
-torch::Tensor fake_model(const torch::Tensor& x, double t) { return 0.6 * x + 0.3 * torch::sin(3 * x + t / 250.0); }
+torch::Tensor fake_model(const torch::Tensor& x, double t) {
+    return 0.6 * x + 0.3 * torch::sin(3 * x + t / 250.0);
+}
 
-void near_scaled(Margins& margins, const std::string& what, const torch::Tensor& actual, const torch::Tensor& expected,
-                 double relative, double absolute) {
+void near_scaled(Margins& margins, const std::string& what, const torch::Tensor& actual,
+                 const torch::Tensor& expected, double relative, double absolute) {
     DOCTEST_REQUIRE_MESSAGE(actual.sizes() == expected.sizes(), what);
     const auto allowed = expected.abs() * relative + absolute;
     margins.near(what, (actual - expected) / allowed, torch::zeros_like(expected), 1.0);
@@ -36,11 +38,12 @@ SchedulerConfig config_for(const GoldenCase& golden, const Walk& walk) {
     const auto path = golden.folder / "ddim_scheduler_config.json";
     auto config = SchedulerConfig::from_json(read_json_file(path), path);
     if (walk.velocity) config.prediction_type = "v_prediction";
-    if (walk.kind == SamplerKind::Ddpm) config.steps_offset = 0;   // the case: "DDPM has none"
+    if (walk.kind == SamplerKind::Ddpm) config.steps_offset = 0;  // the case: "DDPM has none"
     return config;
 }
 
-torch::Tensor start_of(const Walk& walk, const Sampler& sampler, const SafetensorsFile& io, std::int64_t first) {
+torch::Tensor start_of(const Walk& walk, const Sampler& sampler, const SafetensorsFile& io,
+                       std::int64_t first) {
     if (walk.kind == SamplerKind::DdimInverse) return io.tensor("x0");
     if (walk.strength < 1) return sampler.start_from(io.tensor("x0"), io.tensor("noise"), first);
     return io.tensor("xT") * sampler.initial_sigma();
@@ -51,8 +54,8 @@ void check_walk(Margins& margins, const GoldenCase& golden, const Walk& walk) {
     const auto expected = io.tensor(walk.name + ".latents");
     const auto noises = io.tensor("step_noises");
     const NoiseSchedule schedule(config_for(golden, walk));
-    const std::int64_t steps = walk.strength < 1 ? noises.size(0)
-                                                 : expected.size(0) - 1 - (walk.kind == SamplerKind::Pndm ? 1 : 0);
+    const std::int64_t steps =
+        walk.strength < 1 ? noises.size(0) : expected.size(0) - 1 - (walk.kind == SamplerKind::Pndm ? 1 : 0);
     const auto sampler = make_sampler(walk.kind, schedule, steps, walk.eta);
     const auto first = walk.strength < 1 ? first_step(sampler->step_count(), walk.strength) : 0;
     DOCTEST_REQUIRE(sampler->step_count() - first == expected.size(0) - 1);
@@ -67,11 +70,11 @@ void check_walk(Margins& margins, const GoldenCase& golden, const Walk& walk) {
                          io.tensor(walk.name + ".timesteps")[i - first].to(torch::kFloat64), 0);
         const auto output = fake_model(sampler->scale_input(x, i), sampler->timestep(i));
         x = sampler->step(output, x, i, noises[std::min(i - first, noises.size(0) - 1)]);
-        near_scaled(margins, walk.name + " step " + std::to_string(i), x, expected[i - first + 1], TrajectoryRelative,
-                    TrajectoryAbsolute);
+        near_scaled(margins, walk.name + " step " + std::to_string(i), x, expected[i - first + 1],
+                    TrajectoryRelative, TrajectoryAbsolute);
         if (io.contains(walk.name + ".pred_x0"))
-            near_scaled(margins, walk.name + " x0", sampler->predicted_x0(), io.tensor(walk.name + ".pred_x0")[i - first],
-                        TrajectoryRelative, TrajectoryAbsolute);
+            near_scaled(margins, walk.name + " x0", sampler->predicted_x0(),
+                        io.tensor(walk.name + ".pred_x0")[i - first], TrajectoryRelative, TrajectoryAbsolute);
     }
 }
 
@@ -85,10 +88,12 @@ void check_spacings(Margins& margins, const GoldenCase& golden, const std::strin
         if (!sigma && !name.starts_with(timesteps)) continue;
         const auto rest = name.substr((sigma ? sigmas : timesteps).size());
         auto config = config_for(golden, walk);
-        if (const auto bar = rest.find('_'); bar != std::string::npos) config.timestep_spacing = rest.substr(bar + 1);
+        if (const auto bar = rest.find('_'); bar != std::string::npos)
+            config.timestep_spacing = rest.substr(bar + 1);
         const auto sampler = make_sampler(walk.kind, NoiseSchedule(config), std::stoll(rest));
         if (sigma)
-            near_scaled(margins, name, torch::tensor(sampler->sigmas()), io.tensor(name), SigmaRelative, 1e-30);
+            near_scaled(margins, name, torch::tensor(sampler->sigmas()), io.tensor(name), SigmaRelative,
+                        1e-30);
         else
             margins.near(name, torch::tensor(sampler->timesteps()), io.tensor(name), 0);
         ++compared;
@@ -107,9 +112,10 @@ DOCTEST_TEST_CASE("schedulers: betas, products, noise and conversions") {
     const NoiseSchedule velocity(config_for(golden, {"", SamplerKind::Ddim, true}));
     margins.near("betas", schedule.betas(), io.tensor("betas"), CumprodTolerance);
     margins.near("alphas_cumprod", schedule.alphas_cumprod(), io.tensor("alphas_cumprod"), CumprodTolerance);
-    margins.near("final_alpha_cumprod", torch::tensor(schedule.alpha_cumprod(0)), io.tensor("final_alpha_cumprod"),
-                 CumprodTolerance);
-    const auto t = io.tensor("add_noise.t"), x0 = io.tensor("add_noise.x0"), noise = io.tensor("add_noise.noise");
+    margins.near("final_alpha_cumprod", torch::tensor(schedule.alpha_cumprod(0)),
+                 io.tensor("final_alpha_cumprod"), CumprodTolerance);
+    const auto t = io.tensor("add_noise.t"), x0 = io.tensor("add_noise.x0"),
+               noise = io.tensor("add_noise.noise");
     const auto x_t = io.tensor("add_noise.out"), v = io.tensor("v.in");
     margins.near("add_noise", schedule.add_noise(x0, noise, t), x_t, ConversionTolerance);
     margins.near("velocity", schedule.velocity(x0, noise, t), io.tensor("velocity.out"), ConversionTolerance);
@@ -124,11 +130,16 @@ DOCTEST_TEST_CASE("schedulers: trajectories of all samplers") {
     if (!golden.present) return;
     Margins margins("sampler trajectories");
     using enum SamplerKind;
-    const std::vector<Walk> walks = {{"ddim_txt2img", Ddim},       {"ddim_txt2img_v", Ddim, true},
-                                     {"ddim_img2img", Ddim, false, 0, 0.6}, {"ddim_eta1", Ddim, false, 1.0},
-                                     {"ddim_inverse", DdimInverse}, {"ddpm", Ddpm},
-                                     {"euler", Euler},             {"euler_v", Euler, true},
-                                     {"euler_a", EulerAncestral},  {"pndm", Pndm},
+    const std::vector<Walk> walks = {{"ddim_txt2img", Ddim},
+                                     {"ddim_txt2img_v", Ddim, true},
+                                     {"ddim_img2img", Ddim, false, 0, 0.6},
+                                     {"ddim_eta1", Ddim, false, 1.0},
+                                     {"ddim_inverse", DdimInverse},
+                                     {"ddpm", Ddpm},
+                                     {"euler", Euler},
+                                     {"euler_v", Euler, true},
+                                     {"euler_a", EulerAncestral},
+                                     {"pndm", Pndm},
                                      {"dpmpp_2m", DpmSolverPp2M}};
     for (const auto& walk : walks) {
         DOCTEST_SUBCASE(walk.name.c_str()) { check_walk(margins, golden, walk); }

@@ -1,4 +1,5 @@
-// Damaged files, odd texts and unusable images: an Error or a result, never a crash, a hang or a value that is not finite.
+// Damaged files, odd texts and unusable images: an Error or a result, never a crash, a hang or a value that
+// is not finite.
 #include <cmath>
 
 #include "engine/base/random.h"
@@ -15,7 +16,8 @@ namespace {
 
 std::string valid_file(const ScratchFolder& scratch) {
     const auto path = scratch.path() / "valid.safetensors";
-    write_safetensors(path, {{"a", torch::arange(6, torch::kFloat32).view({2, 3})}, {"b", torch::ones({5}).to(torch::kHalf)}});
+    write_safetensors(path, {{"a", torch::arange(6, torch::kFloat32).view({2, 3})},
+                             {"b", torch::ones({5}).to(torch::kHalf)}});
     return read_file(path);
 }
 
@@ -56,21 +58,23 @@ DOCTEST_TEST_CASE("safetensors: mutated and cut files are read or refused") {
         refused += opens(scratch, bytes) ? 0 : 1;
     }
     DOCTEST_CHECK(refused > Mutants / 4);
-    for (std::size_t size = 0; size < valid.size(); ++size) DOCTEST_CHECK_FALSE(opens(scratch, valid.substr(0, size)));
+    for (std::size_t size = 0; size < valid.size(); ++size)
+        DOCTEST_CHECK_FALSE(opens(scratch, valid.substr(0, size)));
     DOCTEST_CHECK_FALSE(opens(scratch, valid + "x"));
 }
 
 DOCTEST_TEST_CASE("safetensors: lying headers do not allocate or overflow") {
     const ScratchFolder scratch;
-    for (const char* header : {R"({"a":{"dtype":"F32","shape":[18446744073709551615],"data_offsets":[0,4]}})",
-                               R"({"a":{"dtype":"F32","shape":[4611686018427387904,4],"data_offsets":[0,0]}})",
-                               R"({"a":{"dtype":"F32","shape":[0,18446744073709551615],"data_offsets":[0,0]}})",
-                               R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[18446744073709551612,18446744073709551616]}})",
-                               R"({"a":{"dtype":"F32","shape":[1e0],"data_offsets":[0,4]}})",
-                               R"({"a":{"dtype":"F32","shape":"1","data_offsets":[0,4]}})",
-                               R"({"a":{"dtype":7,"shape":[1],"data_offsets":[0,4]}})",
-                               R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[0,4,8]}})",
-                               R"({"a":null})", R"({"a":{}})", R"([])", R"(null)", "", "{", "\xff\xfe"})
+    for (const char* header :
+         {R"({"a":{"dtype":"F32","shape":[18446744073709551615],"data_offsets":[0,4]}})",
+          R"({"a":{"dtype":"F32","shape":[4611686018427387904,4],"data_offsets":[0,0]}})",
+          R"({"a":{"dtype":"F32","shape":[0,18446744073709551615],"data_offsets":[0,0]}})",
+          R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[18446744073709551612,18446744073709551616]}})",
+          R"({"a":{"dtype":"F32","shape":[1e0],"data_offsets":[0,4]}})",
+          R"({"a":{"dtype":"F32","shape":"1","data_offsets":[0,4]}})",
+          R"({"a":{"dtype":7,"shape":[1],"data_offsets":[0,4]}})",
+          R"({"a":{"dtype":"F32","shape":[1],"data_offsets":[0,4,8]}})", R"({"a":null})", R"({"a":{}})",
+          R"([])", R"(null)", "", "{", "\xff\xfe"})
         DOCTEST_CHECK_MESSAGE(!opens(scratch, with_header(header, 4)), header);
     std::string deep = "{\"a\":";
     for (int i = 0; i < 100000; ++i) deep += "[";
@@ -98,7 +102,8 @@ DOCTEST_TEST_CASE("guidance and attention: odd images") {
     BundleAttentionSource source(bundle, {});
     SdsGuidance guidance(bundle, "a red bear", {});
     const View view;
-    for (const auto& [width, height] : {std::pair(1, 1), std::pair(3, 500), std::pair(33, 31), std::pair(700, 2)})
+    for (const auto& [width, height] :
+         {std::pair(1, 1), std::pair(3, 500), std::pair(33, 31), std::pair(700, 2)})
         for (const float fill : {0.0f, 1.0f, -1e4f, 1e6f}) {
             const Image image(width, height, 3, fill);
             const auto maps = source.locate({image, "a red bear", {"bear"}});
@@ -106,7 +111,8 @@ DOCTEST_TEST_CASE("guidance and attention: odd images") {
             edit::GuidanceInput input{image, view};
             const auto output = guidance.evaluate(input);
             for (const auto* values : {&maps[0].data, &output.gradient.data})
-                DOCTEST_CHECK(std::all_of(values->begin(), values->end(), [](float v) { return std::isfinite(v); }));
+                DOCTEST_CHECK(
+                    std::all_of(values->begin(), values->end(), [](float v) { return std::isfinite(v); }));
         }
     Image broken(32, 32, 3, 0.5f);
     broken.at(3, 3, 1) = NAN;
@@ -124,16 +130,27 @@ DOCTEST_TEST_CASE("guidance: damaged weights are said, not spread") {
     const Image image(32, 32, 3, 0.5f);
     const View view;
     edit::GuidanceInput input{image, view};
-    DOCTEST_CHECK(contains(message_of([&] { SdsGuidance(bundle, "a red bear", {}).evaluate(input); }), "finite"));
+    DOCTEST_CHECK(
+        contains(message_of([&] { SdsGuidance(bundle, "a red bear", {}).evaluate(input); }), "finite"));
 }
 
 DOCTEST_TEST_CASE("configurations: random values never crash the reader") {
     Random random(3);
-    const std::vector<Json> values = {nullptr, true, -1, 0, 3, 1e300, "text", Json::array(), Json::array({-1, "x"}),
-                                      Json::array({16, 32}), Json::object(), 1 << 20};
+    const std::vector<Json> values = {nullptr,
+                                      true,
+                                      -1,
+                                      0,
+                                      3,
+                                      1e300,
+                                      "text",
+                                      Json::array(),
+                                      Json::array({-1, "x"}),
+                                      Json::array({16, 32}),
+                                      Json::object(),
+                                      1 << 20};
     for (int i = 0; i < 2000; ++i) {
-        auto unet = tiny_unet_config().to_json(), vae = tiny_vae_config().to_json(), text = tiny_text_config().to_json(),
-             scheduler = SchedulerConfig{}.to_json();
+        auto unet = tiny_unet_config().to_json(), vae = tiny_vae_config().to_json(),
+             text = tiny_text_config().to_json(), scheduler = SchedulerConfig{}.to_json();
         for (auto* json : {&unet, &vae, &text, &scheduler}) {
             auto item = json->begin();
             std::advance(item, static_cast<std::ptrdiff_t>(random.below(json->size())));

@@ -10,7 +10,7 @@ using namespace gse::test;
 DOCTEST_TEST_CASE("safetensors: what is written is read back bit for bit") {
     const ScratchFolder scratch;
     const auto path = scratch.path() / "deep/folder/x.safetensors";
-    NamedTensors tensors = {{"b.bytes", torch::arange(3, torch::kUInt8)},     // makes the next one unaligned
+    NamedTensors tensors = {{"b.bytes", torch::arange(3, torch::kUInt8)},  // makes the next one unaligned
                             {"a.float", torch::randn({2, 3})},
                             {"half", torch::randn({5}).to(torch::kHalf)},
                             {"brain", torch::randn({1, 4}).to(torch::kBFloat16)},
@@ -25,7 +25,7 @@ DOCTEST_TEST_CASE("safetensors: what is written is read back bit for bit") {
     DOCTEST_CHECK(file.metadata().at("format") == "pt");
     DOCTEST_CHECK(file.entries().size() == tensors.size());
     for (const auto& [name, tensor] : tensors) {
-        DOCTEST_CHECK(file.tensor(name).scalar_type() == tensor.scalar_type());
+        DOCTEST_CHECK((file.tensor(name).scalar_type() == tensor.scalar_type()));
         DOCTEST_CHECK_MESSAGE(torch::equal(file.tensor(name), tensor), name);
     }
     auto target = torch::zeros({3, 2}, torch::kFloat64);
@@ -37,16 +37,17 @@ DOCTEST_TEST_CASE("safetensors: what is written is read back bit for bit") {
 DOCTEST_TEST_CASE("safetensors: a place that cannot be written leaves nothing behind") {
     const ScratchFolder scratch;
     write_file(scratch.path() / "file", "x");
-    DOCTEST_CHECK(!message_of([&] {
-                       write_safetensors(scratch.path() / "file/inside.safetensors", {{"a", torch::zeros({1})}});
-                   }).empty());
+    DOCTEST_CHECK(
+        !message_of([&] {
+             write_safetensors(scratch.path() / "file/inside.safetensors", {{"a", torch::zeros({1})}});
+         }).empty());
     DOCTEST_CHECK(read_file(scratch.path() / "file") == "x");
 }
 
 DOCTEST_TEST_CASE("model: a complete folder loads, and its description needs no weights") {
     const TinyModel model;
     const auto bundle = load_bundle(model.path());
-    DOCTEST_CHECK(bundle.image_size() == 32);   // sample_size 8 times factor 4
+    DOCTEST_CHECK(bundle.image_size() == 32);  // sample_size 8 times factor 4
     DOCTEST_CHECK(bundle.facts.name == "tiny");
     DOCTEST_CHECK(bundle.token_count() == 24);
     for (const auto& [name, tensor] : model.unet)
@@ -88,7 +89,7 @@ DOCTEST_TEST_CASE("model: what cannot be opened is refused with one sentence") {
         try {
             load_bundle(path);
         } catch (const Error& error) {
-            DOCTEST_CHECK(error.code() == code);
+            DOCTEST_CHECK((error.code() == code));
             DOCTEST_CHECK(error.message().find('\n') == std::string::npos);
             return;
         }
@@ -113,7 +114,8 @@ DOCTEST_TEST_CASE("model: what cannot be opened is refused with one sentence") {
         refused(model.path(), ErrorCode::NotFound);
     }
     const TinyModel model;
-    std::filesystem::rename(model.path() / "unet/diffusion_pytorch_model.safetensors", model.path() / "unet/diffusion_pytorch_model.bin");
+    std::filesystem::rename(model.path() / "unet/diffusion_pytorch_model.safetensors",
+                            model.path() / "unet/diffusion_pytorch_model.bin");
     refused(model.path(), ErrorCode::Unsupported);
     DOCTEST_CHECK(!message_of([&] { load_model(model.path(), "tpu"); }).empty());
 }
@@ -121,14 +123,23 @@ DOCTEST_TEST_CASE("model: what cannot be opened is refused with one sentence") {
 DOCTEST_TEST_CASE("configurations: survive a round trip; unsupported structures are refused") {
     const auto unet = tiny_unet_config();
     DOCTEST_CHECK(UNetConfig::from_json(unet.to_json(), "x").to_json() == unet.to_json());
-    DOCTEST_CHECK(VaeConfig::from_json(tiny_vae_config().to_json(), "x").to_json() == tiny_vae_config().to_json());
-    DOCTEST_CHECK(TextEncoderConfig::from_json(tiny_text_config().to_json(), "x").to_json() == tiny_text_config().to_json());
+    DOCTEST_CHECK(VaeConfig::from_json(tiny_vae_config().to_json(), "x").to_json() ==
+                  tiny_vae_config().to_json());
+    DOCTEST_CHECK(TextEncoderConfig::from_json(tiny_text_config().to_json(), "x").to_json() ==
+                  tiny_text_config().to_json());
     SchedulerConfig scheduler;
     DOCTEST_CHECK(SchedulerConfig::from_json(scheduler.to_json(), "x").to_json() == scheduler.to_json());
-    for (const auto& [key, value] : std::vector<std::pair<std::string, Json>>{
-             {"block_out_channels", Json::array()}, {"norm_num_groups", 0}, {"norm_num_groups", 5}, {"act_fn", "gelu"},
-             {"addition_embed_type", "text_time"}, {"attention_head_dim", 3}, {"layers_per_block", "two"},
-             {"block_out_channels", {16, -32}}, {"down_block_types", {"Odd", "DownBlock2D"}}, {"in_channels", 1e9}}) {
+    for (const auto& [key, value] :
+         std::vector<std::pair<std::string, Json>>{{"block_out_channels", Json::array()},
+                                                   {"norm_num_groups", 0},
+                                                   {"norm_num_groups", 5},
+                                                   {"act_fn", "gelu"},
+                                                   {"addition_embed_type", "text_time"},
+                                                   {"attention_head_dim", 3},
+                                                   {"layers_per_block", "two"},
+                                                   {"block_out_channels", {16, -32}},
+                                                   {"down_block_types", {"Odd", "DownBlock2D"}},
+                                                   {"in_channels", 1e9}}) {
         auto json = unet.to_json();
         json[key] = value;
         DOCTEST_CHECK_MESSAGE(!message_of([&] { UNetConfig::from_json(json, "x"); }).empty(), key);
@@ -142,7 +153,7 @@ DOCTEST_TEST_CASE("tokenizer: columns of whole words, all occurrences, several t
     DOCTEST_CHECK(tokenizer.find_word("a red hat", "hat") == Columns{3});
     DOCTEST_CHECK(tokenizer.find_word("A Red HAT, hat.", "Hat") == Columns{3, 5});
     DOCTEST_CHECK(tokenizer.find_word("a red hat", "red hat") == Columns{2, 3});
-    DOCTEST_CHECK(tokenizer.find_word("a dog", "dog") == Columns{2, 3, 4});   // d, o, g</w>
+    DOCTEST_CHECK(tokenizer.find_word("a dog", "dog") == Columns{2, 3, 4});  // d, o, g</w>
     DOCTEST_CHECK(tokenizer.find_word("dog hat", "hat") == Columns{4});
     for (const char* prompt : {"a hatter", "that", "a red", "", "h at"})
         DOCTEST_CHECK(contains(message_of([&] { tokenizer.find_word(prompt, "hat"); }), "hat"));

@@ -1,4 +1,5 @@
-// Attention maps, score distillation and sampling on a tiny random model: properties that hold for any weights.
+// Attention maps, score distillation and sampling on a tiny random model: properties that hold for any
+// weights.
 #include <cmath>
 
 #include "engine/neural/attention_source.h"
@@ -17,7 +18,8 @@ Image gradient_image(int width, int height) {
     Image image(width, height, 3);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
-            for (int c = 0; c < 3; ++c) image.at(x, y, c) = static_cast<float>((x * (c + 1) + y * 2) % 17) / 17.0f;
+            for (int c = 0; c < 3; ++c)
+                image.at(x, y, c) = static_cast<float>((x * (c + 1) + y * 2) % 17) / 17.0f;
     return image;
 }
 
@@ -35,7 +37,8 @@ edit::GuidanceInput input_at(const Image& image, const View& view, int iteration
 
 }  // namespace
 
-DOCTEST_TEST_CASE("attention source: one map per word, at the image's size, divided by its maximum, repeatable") {
+DOCTEST_TEST_CASE(
+    "attention source: one map per word, at the image's size, divided by its maximum, repeatable") {
     const TinyModel model;
     const Image image = gradient_image(50, 40);
     for (const char* method : {"probes", "img2img"}) {
@@ -66,11 +69,12 @@ DOCTEST_TEST_CASE("attention source: one map per word, at the image's size, divi
 
 DOCTEST_TEST_CASE("attention accumulator: a hand-made map comes back") {
     AttentionAccumulator sum(4, 2);
-    auto probabilities = torch::zeros({1, 2, 16, 2});   // heads 2, 4x4, two columns
+    auto probabilities = torch::zeros({1, 2, 16, 2});  // heads 2, 4x4, two columns
     probabilities.index_put_({0, 0, 5, 0}, 1.0);
     probabilities.index_put_({0, 1, 5, 0}, 0.5);
     probabilities.index_put_({0, torch::indexing::Slice(), 10, 1}, 0.25);
-    std::vector<AttentionCapture::Map> maps = {{"a", 4, 4, probabilities}, {"b", 2, 2, torch::full({1, 2, 4, 2}, 0.5)}};
+    std::vector<AttentionCapture::Map> maps = {{"a", 4, 4, probabilities},
+                                               {"b", 2, 2, torch::full({1, 2, 4, 2}, 0.5)}};
     sum.take(maps);
     DOCTEST_CHECK(maps.empty());
     const auto mean = sum.mean();
@@ -91,10 +95,13 @@ DOCTEST_TEST_CASE("sds guidance: repeatable gradient at the render's size, silen
         DOCTEST_CHECK(first.gradient.width == 48);
         DOCTEST_CHECK(first.gradient.height == 40);
         DOCTEST_CHECK(first.scalars.at("gradient_norm") > 0);
-        DOCTEST_CHECK(std::all_of(first.gradient.data.begin(), first.gradient.data.end(), [](float v) { return std::isfinite(v); }));
+        DOCTEST_CHECK(std::all_of(first.gradient.data.begin(), first.gradient.data.end(),
+                                  [](float v) { return std::isfinite(v); }));
         DOCTEST_CHECK(guidance.evaluate(input_at(image, view, 3)).gradient.data == first.gradient.data);
         parameters.weight = 0;
-        DOCTEST_CHECK(SdsGuidance(bundle, "a red bear", parameters).evaluate(input_at(image, view, 3)).scalars.at("gradient_norm") == 0);
+        DOCTEST_CHECK(SdsGuidance(bundle, "a red bear", parameters)
+                          .evaluate(input_at(image, view, 3))
+                          .scalars.at("gradient_norm") == 0);
     }
 }
 
@@ -110,7 +117,7 @@ DOCTEST_TEST_CASE("sds guidance: the gradient is that of the latents, back throu
     const auto output = SdsGuidance(bundle, "a red bear", parameters).evaluate(input_at(image, view, 0));
     DOCTEST_CHECK(output.scalars.at("timestep") == 400);
     // Directional derivative of sum(latents * g / n) by central differences in double precision.
-    const auto& vae = bundle->vae;
+    auto vae = load_bundle(model.path()).vae;
     vae->to(torch::kFloat64);
     const auto x = to_tensor(image, torch::kCPU).to(torch::kFloat64);
     torch::manual_seed(3);
@@ -119,13 +126,16 @@ DOCTEST_TEST_CASE("sds guidance: the gradient is that of the latents, back throu
     const auto latents_at = [&](double step) {
         return vae->encode_moments((x + step * direction) * 2 - 1).mean * bundle->scaling_factor();
     };
-    constexpr double Step = 1e-4, Tolerance = 1e-3;   // of the value; fp32 gradient against fp64 differences
+    constexpr double Step = 1e-4, Tolerance = 1e-3;  // of the value; fp32 gradient against fp64 differences
     Random random(99);
     draw_timestep(parameters, 0, bundle->schedule.steps(), random);
     const auto noise = seeded_noise(latents_at(0).sizes(), random.next());
-    const auto g = sds_gradient(*bundle, latents_at(0).to(torch::kFloat32),
-                                {noise, 400, parameters.guidance_scale, bundle->encode_prompts({"", "a red bear"})}).gradient;
-    const double expected = ((latents_at(Step) - latents_at(-Step)) / (2 * Step) * g).sum().item<double>() / static_cast<double>(g.numel());
+    const auto g =
+        sds_gradient(*bundle, latents_at(0).to(torch::kFloat32),
+                     {noise, 400, parameters.guidance_scale, bundle->encode_prompts({"", "a red bear"})})
+            .gradient;
+    const double expected = ((latents_at(Step) - latents_at(-Step)) / (2 * Step) * g).sum().item<double>() /
+                            static_cast<double>(g.numel());
     const double actual = (to_tensor(output.gradient, torch::kCPU) * direction).sum().item<double>();
     DOCTEST_CHECK(std::abs(actual - expected) <= Tolerance * std::abs(expected));
 }
@@ -146,9 +156,9 @@ DOCTEST_TEST_CASE("sds guidance: timesteps stay within the annealed range") {
         }
         DOCTEST_CHECK(lowest >= 100);
         DOCTEST_CHECK(highest <= high);
-        DOCTEST_CHECK(highest > high - 20);   // 2000 draws reach the last 2 %
+        DOCTEST_CHECK(highest > high - 20);  // 2000 draws reach the last 2 %
     }
-    parameters.t_max_end = 0.01;              // below t_min: the range collapses to t_min
+    parameters.t_max_end = 0.01;  // below t_min: the range collapses to t_min
     DOCTEST_CHECK(draw_timestep(parameters, 1, 1000, random) == 100);
 }
 
@@ -182,12 +192,14 @@ DOCTEST_TEST_CASE("samplers: with an oracle that knows the clean sample, every s
 }
 
 DOCTEST_TEST_CASE("images: resizing keeps the mean and flows gradient to every pixel") {
-    for (const auto& [width, height] : {std::pair(64, 64), std::pair(16, 16), std::pair(100, 24), std::pair(32, 32)}) {
+    for (const auto& [width, height] :
+         {std::pair(64, 64), std::pair(16, 16), std::pair(100, 24), std::pair(32, 32)}) {
         const auto image = to_tensor(gradient_image(width, height), torch::kCPU).requires_grad_(true);
         const auto resized = resize_square(image, 32);
         DOCTEST_CHECK(resized.size(2) == 32);
         DOCTEST_CHECK(resized.size(3) == 32);
-        DOCTEST_CHECK(resized.mean().item<float>() == doctest::Approx(image.mean().item<float>()).epsilon(0.02));
+        DOCTEST_CHECK(resized.mean().item<float>() ==
+                      doctest::Approx(image.mean().item<float>()).epsilon(0.02));
         const auto gradient = torch::autograd::grad({resized.sum()}, {image})[0];
         DOCTEST_CHECK(gradient.min().item<float>() > 0);
     }
@@ -195,7 +207,8 @@ DOCTEST_TEST_CASE("images: resizing keeps the mean and flows gradient to every p
     DOCTEST_CHECK(to_image(to_tensor(image, torch::kCPU)).data == image.data);
 }
 
-DOCTEST_TEST_CASE("model: samples are repeatable images in [0,1]; weak img2img stays near the decoded image") {
+DOCTEST_TEST_CASE(
+    "model: samples are repeatable images in [0,1]; weak img2img stays near the decoded image") {
     const TinyModel model;
     const auto loaded = load_model(model.path(), "cpu");
     SampleRequest request;
@@ -204,7 +217,8 @@ DOCTEST_TEST_CASE("model: samples are repeatable images in [0,1]; weak img2img s
     const auto sample = loaded->sample(request);
     DOCTEST_CHECK(sample.width == loaded->image_size());
     DOCTEST_CHECK(loaded->sample(request).data == sample.data);
-    DOCTEST_CHECK(std::all_of(sample.data.begin(), sample.data.end(), [](float v) { return v >= 0 && v <= 1; }));
+    DOCTEST_CHECK(
+        std::all_of(sample.data.begin(), sample.data.end(), [](float v) { return v >= 0 && v <= 1; }));
     request.seed = 1;
     DOCTEST_CHECK(loaded->sample(request).data != sample.data);
     const Image image = gradient_image(32, 32);

@@ -9,16 +9,20 @@ using namespace gse::test;
 
 namespace {
 
-constexpr double FloatNoise = 1e-5;   // fp32 sums in another order
-constexpr double Bf16Noise = 0.05;    // bfloat16 keeps 8 bits: relative error of a deep network's output
+constexpr double FloatNoise = 1e-5;  // fp32 sums in another order
+constexpr double Bf16Noise = 0.05;   // bfloat16 keeps 8 bits: relative error of a deep network's output
 
-double difference(const torch::Tensor& a, const torch::Tensor& b) { return (a - b).abs().max().item<double>(); }
+double difference(const torch::Tensor& a, const torch::Tensor& b) {
+    return (a - b).abs().max().item<double>();
+}
 
-torch::Tensor plain_attention(const torch::Tensor& q, const torch::Tensor& k, const torch::Tensor& v, std::int64_t heads) {
+torch::Tensor plain_attention(const torch::Tensor& q, const torch::Tensor& k, const torch::Tensor& v,
+                              std::int64_t heads) {
     std::vector<torch::Tensor> outputs;
     const auto qs = q.chunk(heads, 2), ks = k.chunk(heads, 2), vs = v.chunk(heads, 2);
     for (std::size_t h = 0; h < qs.size(); ++h) {
-        const auto scores = torch::matmul(qs[h], ks[h].transpose(1, 2)) / std::sqrt(static_cast<double>(qs[h].size(2)));
+        const auto scores =
+            torch::matmul(qs[h], ks[h].transpose(1, 2)) / std::sqrt(static_cast<double>(qs[h].size(2)));
         outputs.push_back(torch::matmul(scores.softmax(-1), vs[h]));
     }
     return torch::cat(outputs, 2);
@@ -28,9 +32,10 @@ torch::Tensor plain_attention(const torch::Tensor& q, const torch::Tensor& k, co
 
 DOCTEST_TEST_CASE("attention: in pieces, with a graph and by the definition agree") {
     torch::manual_seed(1);
-    // 2 * 2100 * 2100 scores are more than the budget of one piece only together with the second head.
+    // 2 heads of 3000 x 3000 scores are more than one piece may hold.
     for (const std::int64_t tokens : {5, 3000}) {
-        const auto q = torch::randn({1, tokens, 8}), k = torch::randn({1, tokens, 8}), v = torch::randn({1, tokens, 8});
+        const auto q = torch::randn({1, tokens, 8}), k = torch::randn({1, tokens, 8}),
+                   v = torch::randn({1, tokens, 8});
         AttentionRequest request;
         request.heads = 2;
         const auto expected = plain_attention(q, k, v, 2);
@@ -59,7 +64,8 @@ DOCTEST_TEST_CASE("unet: captured columns are those of the full map; the conditi
     const torch::NoGradGuard no_grad;
     torch::manual_seed(2);
     const UNet unet(tiny_unet_config());
-    const auto x = torch::randn({2, 4, 8, 8}), context = torch::randn({2, 6, 16}), t = torch::tensor({10, 500});
+    const auto x = torch::randn({2, 4, 8, 8}), context = torch::randn({2, 6, 16}),
+               t = torch::tensor({10, 500});
     AttentionCapture all, some;
     const auto output = unet->forward(x, t, context, &all);
     some.columns = {4, 1};
@@ -69,10 +75,11 @@ DOCTEST_TEST_CASE("unet: captured columns are those of the full map; the conditi
     };
     DOCTEST_CHECK(torch::equal(unet->forward(x, t, context, &some), output));
     DOCTEST_CHECK(torch::equal(unet->forward(x, t, context), output));
-    DOCTEST_CHECK(all.maps.size() == 4);    // 1 down, 1 middle, 2 up
+    DOCTEST_CHECK(all.maps.size() == 4);  // 1 down, 1 middle, 2 up
     DOCTEST_REQUIRE(some.maps.size() == 2);
     for (const auto& map : some.maps) {
-        const auto full = std::find_if(all.maps.begin(), all.maps.end(), [&](const auto& m) { return m.layer == map.layer; });
+        const auto full = std::find_if(all.maps.begin(), all.maps.end(),
+                                       [&](const auto& m) { return m.layer == map.layer; });
         DOCTEST_REQUIRE(full != all.maps.end());
         const auto expected = full->probabilities.narrow(0, 1, 1).index_select(3, torch::tensor({4, 1}));
         DOCTEST_CHECK(torch::equal(map.probabilities, expected));
@@ -104,20 +111,23 @@ DOCTEST_TEST_CASE("unet: bfloat16 weights stay close to fp32") {
     const auto expected = unet->forward(x, t, context);
     unet->to(torch::kBFloat16);
     const auto actual = unet->forward(x.to(torch::kBFloat16), t, context.to(torch::kBFloat16));
-    DOCTEST_CHECK(actual.scalar_type() == torch::kBFloat16);
-    DOCTEST_CHECK(difference(actual.to(torch::kFloat32), expected) < Bf16Noise * expected.abs().max().item<double>());
+    DOCTEST_CHECK((actual.scalar_type() == torch::kBFloat16));
+    DOCTEST_CHECK(difference(actual.to(torch::kFloat32), expected) <
+                  Bf16Noise * expected.abs().max().item<double>());
 }
 
 DOCTEST_TEST_CASE("unet: rows of a batch do not see each other, memory format does not matter") {
     const torch::NoGradGuard no_grad;
     torch::manual_seed(5);
     const UNet unet(tiny_unet_config());
-    const auto x = torch::randn({3, 4, 7, 9}), context = torch::randn({3, 6, 16}), t = torch::tensor({1, 400, 999});
+    const auto x = torch::randn({3, 4, 7, 9}), context = torch::randn({3, 6, 16}),
+               t = torch::tensor({1, 400, 999});
     const auto together = unet->forward(x, t, context);
     for (std::int64_t i = 0; i < 3; ++i)
         DOCTEST_CHECK(difference(unet->forward(x.narrow(0, i, 1), t.narrow(0, i, 1), context.narrow(0, i, 1)),
                                  together.narrow(0, i, 1)) < FloatNoise);
-    DOCTEST_CHECK(difference(unet->forward(x.contiguous(torch::MemoryFormat::ChannelsLast), t, context), together) < FloatNoise);
+    DOCTEST_CHECK(difference(unet->forward(x.contiguous(torch::MemoryFormat::ChannelsLast), t, context),
+                             together) < FloatNoise);
 }
 
 DOCTEST_TEST_CASE("weights: the same seed draws the same values") {

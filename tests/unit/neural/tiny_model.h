@@ -42,7 +42,7 @@ inline std::string tiny_merges() {
 
 inline neural::TextEncoderConfig tiny_text_config() {
     neural::TextEncoderConfig config;
-    config.vocab_size = 512 + 7 + 2;   // bytes with and without word end, merges, start and end
+    config.vocab_size = 512 + 7 + 2;  // bytes with and without word end, merges, start and end
     config.hidden_size = 16;
     config.intermediate_size = 32;
     config.num_hidden_layers = 2;
@@ -54,7 +54,8 @@ inline neural::TextEncoderConfig tiny_text_config() {
 template <class Holder>
 neural::NamedTensors tensors_of(const Holder& module) {
     neural::NamedTensors tensors;
-    for (const auto& item : module->named_parameters()) tensors.emplace_back(item.key(), item.value().detach());
+    for (const auto& item : module->named_parameters())
+        tensors.emplace_back(item.key(), item.value().detach());
     return tensors;
 }
 
@@ -75,12 +76,13 @@ struct TinyModel {
         write_file(root / "tokenizer/merges.txt", tiny_merges());
         write_file(root / "tokenizer/tokenizer_config.json", "{\"model_max_length\": 24}");
         write_file(root / "model_index.json", "{}");
-        write_file(root / "gseditpro.json", R"({"name": "tiny", "attention_sizes": [8], "vocabulary": ["bear", "hat"]})");
+        write_file(root / "gseditpro.json",
+                   R"({"name": "tiny", "attention_sizes": [8], "vocabulary": ["bear", "hat"]})");
     }
     void write_weights() const {
-        write_safetensors(path() / "unet/diffusion_pytorch_model.safetensors", unet);
-        write_safetensors(path() / "vae/diffusion_pytorch_model.safetensors", vae);
-        write_safetensors(path() / "text_encoder/model.safetensors", text);
+        neural::write_safetensors(path() / "unet/diffusion_pytorch_model.safetensors", unet);
+        neural::write_safetensors(path() / "vae/diffusion_pytorch_model.safetensors", vae);
+        neural::write_safetensors(path() / "text_encoder/model.safetensors", text);
     }
     const std::filesystem::path& path() const { return scratch.path(); }
 
@@ -99,6 +101,8 @@ std::string message_of(Work&& work) {
     return {};
 }
 
-inline bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+inline bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 }  // namespace gse::test
