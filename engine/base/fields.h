@@ -50,7 +50,9 @@ void fields_from_json(P& parameters, const nlohmann::ordered_json& json) {
     if (known == json.size()) return;
     for (const auto& [key, ignored] : json.items()) {
         bool found = false;
-        P::visit_fields(parameters, [&](const char* name, const auto&, const char*, auto...) { found |= key == name; });
+        P::visit_fields(parameters, [&found, &wanted = key](const char* name, const auto&, const char*, auto...) {
+            found |= wanted == name;  // renamed: clang 14 cannot capture a structured binding
+        });
         if (!found) throw Error(ErrorCode::InvalidArgument, "there is no setting \"" + key + "\"");
     }
 }
