@@ -12,23 +12,27 @@ namespace {
 
 constexpr double Beta1 = 0.9, Beta2 = 0.999;
 constexpr float AdamEpsilon = 1e-15f;
-constexpr std::size_t LongestRow = 48;   // SH degree 3
+constexpr std::size_t LongestRow = 48;  // SH degree 3
 
 /// The part of one step that does not depend on the value.
 struct Step {
     float keep1 = 0, keep2 = 0, take1 = 0, take2 = 0;
-    float correction1 = 0, correction2 = 0;   // 1 / (1 - beta^t)
+    float correction1 = 0, correction2 = 0;  // 1 / (1 - beta^t)
 };
 
 Step make_step(int step) {
     const double power1 = std::pow(Beta1, step), power2 = std::pow(Beta2, step);
-    return {static_cast<float>(Beta1),           static_cast<float>(Beta2),           static_cast<float>(1 - Beta1),
-            static_cast<float>(1 - Beta2),       static_cast<float>(1 / (1 - power1)), static_cast<float>(1 / (1 - power2))};
+    return {static_cast<float>(Beta1),
+            static_cast<float>(Beta2),
+            static_cast<float>(1 - Beta1),
+            static_cast<float>(1 - Beta2),
+            static_cast<float>(1 / (1 - power1)),
+            static_cast<float>(1 / (1 - power2))};
 }
 
 /// `count` values that share one learning rate.
-void update(float* parameter, const float* gradient, float* first, float* second, std::size_t count, float rate,
-            const Step& step) {
+void update(float* parameter, const float* gradient, float* first, float* second, std::size_t count,
+            float rate, const Step& step) {
     for (std::size_t i = 0; i < count; ++i) {
         const float g = gradient[i];
         const float m = step.keep1 * first[i] + step.take1 * g;
@@ -62,11 +66,13 @@ void adam_step(std::span<float> parameters, std::span<const float> gradient, Ada
     moments.first.resize(parameters.size());
     moments.second.resize(parameters.size());
     const Step step = make_step(rates.step);
-    const bool one_rate = std::all_of(rates.rates.begin(), rates.rates.end(), [&](double r) { return r == rates.rates[0]; });
+    const bool one_rate =
+        std::all_of(rates.rates.begin(), rates.rates.end(), [&](double r) { return r == rates.rates[0]; });
     float* first = moments.first.data();
     float* second = moments.second.data();
     if (one_rate && rates.row_factor.empty()) {
-        update(parameters.data(), gradient.data(), first, second, parameters.size(), static_cast<float>(rates.rates[0]), step);
+        update(parameters.data(), gradient.data(), first, second, parameters.size(),
+               static_cast<float>(rates.rates[0]), step);
         return;
     }
     std::array<float, LongestRow> row_rates{};
@@ -74,7 +80,8 @@ void adam_step(std::span<float> parameters, std::span<const float> gradient, Ada
         const double factor = rates.row_factor.empty() ? 1 : rates.row_factor[row];
         for (std::size_t i = 0; i < stride; ++i) row_rates[i] = static_cast<float>(rates.rates[i] * factor);
         const std::size_t at = row * stride;
-        update_row(parameters.data() + at, gradient.data() + at, first + at, second + at, stride, row_rates.data(), step);
+        update_row(parameters.data() + at, gradient.data() + at, first + at, second + at, stride,
+                   row_rates.data(), step);
     }
 }
 

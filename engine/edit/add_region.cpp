@@ -1,4 +1,5 @@
-// A grid of cubes around the source: voted by the masks of all views, or placed by where such things usually sit.
+// A grid of cubes around the source: voted by the masks of all views, or placed by where such things usually
+// sit.
 #include "engine/edit/add_region.h"
 
 #include <algorithm>
@@ -13,8 +14,8 @@
 namespace gse::edit {
 namespace {
 
-constexpr float InvisibleLogit = -5.5373f;   // opacity 1/255
-constexpr double BoundsTrim = 0.01;          // share of the rows cut off at either end of every axis
+constexpr float InvisibleLogit = -5.5373f;  // opacity 1/255
+constexpr double BoundsTrim = 0.01;         // share of the rows cut off at either end of every axis
 
 /// Right-handed frame of the scene: x sideways, y up, z to the front.
 struct Frame {
@@ -90,7 +91,8 @@ struct Grid {
     double side = 0;
     std::array<int, 3> count{};
     std::size_t size() const {
-        return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]) * static_cast<std::size_t>(count[2]);
+        return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]) *
+               static_cast<std::size_t>(count[2]);
     }
     Vec3 centre(std::size_t cell) const {
         const auto nx = static_cast<std::size_t>(count[0]), ny = static_cast<std::size_t>(count[1]);
@@ -106,7 +108,8 @@ Grid make_grid(const Box& box, int cells) {
     const Vec3 size = box.size();
     grid.side = std::max({size.x, size.y, size.z, 1e-9}) / std::max(cells, 1);
     for (int axis = 0; axis < 3; ++axis)
-        grid.count[static_cast<std::size_t>(axis)] = std::max(1, static_cast<int>(std::ceil(size[axis] / grid.side)));
+        grid.count[static_cast<std::size_t>(axis)] =
+            std::max(1, static_cast<int>(std::ceil(size[axis] / grid.side)));
     return grid;
 }
 
@@ -171,19 +174,26 @@ AddRegion fill(const Frame& frame, const Grid& grid, const std::function<bool(co
     return region;
 }
 
-/// A cap on the top of the source: an upright ellipsoid, its lower part around the top.
+/// A cap on the top of the source: as wide as what is up there, about as high as its radius, narrower
+/// upwards.
 AddRegion top_region(const Frame& frame, const std::vector<Vec3>& points, int cells) {
+    constexpr double TipShare = 0.08, HeadShare = 0.25, HeadReach = 0.32;            // of the height
+    constexpr double WiderThanHead = 1.2, Below = 0.25, Above = 0.95, Taper = 0.45;  // of the radius
     const Box all = trimmed_box(points, BoundsTrim);
     const double height = all.size().y;
-    const auto top = slice(points, all.high.y - 0.2 * height, all.high.y);
-    const Box head = trimmed_box(top, 0.05);
-    const double radius = std::clamp(0.5 * std::max(head.size().x, head.size().z), 0.08 * height, 0.4 * height);
-    const double half_height = std::min(0.75 * radius, 0.15 * height);
-    const Vec3 centre{head.centre().x, all.high.y + 0.55 * half_height, head.centre().z};
-    const Vec3 reach{radius, half_height, radius};
-    return fill(frame, make_grid({centre - reach, centre + reach}, cells / 2), [=](const Vec3& p) {
-        const Vec3 d = p - centre;
-        return std::hypot(d.x / radius, d.y / half_height, d.z / radius) <= 1;
+    const Vec3 tip = trimmed_box(slice(points, all.high.y - TipShare * height, all.high.y), 0.05).centre();
+    const Vec3 base{tip.x, all.high.y, tip.z};
+    std::vector<double> distances{0.1 * height};
+    for (const auto& p : slice(points, all.high.y - HeadShare * height, all.high.y)) {
+        const double distance = std::hypot(p.x - base.x, p.z - base.z);
+        if (distance < HeadReach * height) distances.push_back(distance);  // the rest is not below the tip
+    }
+    const double radius = WiderThanHead * quantile(distances, 0.9);
+    Box box{base - Vec3{radius, Below * radius, radius}, base + Vec3{radius, Above * radius, radius}};
+    return fill(frame, make_grid(box, cells / 2), [=](const Vec3& p) {
+        const Vec3 d = p - base;
+        const double rise = std::max(0.0, d.y) / (Above * radius);
+        return std::hypot(d.x, d.z) <= radius * (1 - Taper * rise) && rise <= 1;
     });
 }
 
@@ -195,7 +205,8 @@ AddRegion front_region(const Frame& frame, const std::vector<Vec3>& points, int 
     const Box box = trimmed_box(face, 0.03);
     Box plate;
     plate.low = {box.centre().x - 0.45 * box.size().x, all.low.y + 0.74 * height, box.high.z - 0.06 * height};
-    plate.high = {box.centre().x + 0.45 * box.size().x, all.low.y + 0.86 * height, box.high.z + 0.06 * height};
+    plate.high = {box.centre().x + 0.45 * box.size().x, all.low.y + 0.86 * height,
+                  box.high.z + 0.06 * height};
     return fill(frame, make_grid(plate, cells / 2), [](const Vec3&) { return true; });
 }
 
@@ -234,7 +245,8 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
     GSE_CHECK_EQ(search.source_bits.size(), search.gaussians.size());
     const Frame frame = make_frame(search.up, search.front);
     const auto points = source_points(search, frame);
-    const auto voters = std::count_if(search.masks.begin(), search.masks.end(), [](const Mask& m) { return !m.data.empty(); });
+    const auto voters = std::count_if(search.masks.begin(), search.masks.end(),
+                                      [](const Mask& m) { return !m.data.empty(); });
     if (points.empty() || voters == 0) return {};
     Box box = trimmed_box(points, BoundsTrim);
     const Vec3 size = box.size();
@@ -281,20 +293,23 @@ AddRegion anchor_region(const RegionSearch& search, const std::string& place, in
 
 std::string usual_place(const std::string& word) {
     static const std::map<std::string, std::string> places{
-        {"sunglasses", "front"}, {"glasses", "front"}, {"moustache", "front"}, {"mask", "front"},  {"scarf", "neck"},
-        {"necklace", "neck"},    {"collar", "neck"},   {"tie", "neck"},        {"bow", "neck"},    {"flames", "around"},
-        {"fire", "around"},      {"smoke", "around"},  {"wings", "around"},    {"snow", "around"}};
+        {"sunglasses", "front"}, {"glasses", "front"}, {"moustache", "front"}, {"mask", "front"},
+        {"scarf", "neck"},       {"necklace", "neck"}, {"collar", "neck"},     {"tie", "neck"},
+        {"bow", "neck"},         {"flames", "around"}, {"fire", "around"},     {"smoke", "around"},
+        {"wings", "around"},     {"snow", "around"}};
     const auto found = places.find(word);
     return found == places.end() ? "top" : found->second;
 }
 
-GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std::uint64_t seed, double opacity) {
+GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std::uint64_t seed,
+                         double opacity) {
     GaussianData data;
     data.sh_degree = sh_degree;
     if (region.empty() || count <= 0) return data;
-    data.resize(static_cast<std::size_t>(count));   // colour coefficients stay 0: neutral grey
-    constexpr double OverlapFactor = 0.55;          // standard deviation over the room of one splat
-    const double volume = static_cast<double>(region.centres.size()) * region.side * region.side * region.side;
+    data.resize(static_cast<std::size_t>(count));  // colour coefficients stay 0: neutral grey
+    constexpr double OverlapFactor = 0.55;         // standard deviation over the room of one splat
+    const double volume =
+        static_cast<double>(region.centres.size()) * region.side * region.side * region.side;
     const auto scale = static_cast<float>(std::log(OverlapFactor * std::cbrt(volume / count)));
     const auto logit = static_cast<float>(std::log(opacity / (1 - opacity)));
     Random random = Random::stream(seed, 101);
@@ -313,13 +328,15 @@ GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std:
 
 Mask region_mask(const AddRegion& region, const Camera& camera) {
     Mask mask(camera.width, camera.height);
-    constexpr double Corner = 0.87;   // half the diagonal of a cube of side 1
+    constexpr double Corner = 0.87;  // half the diagonal of a cube of side 1
     for (const auto& centre : region.centres) {
         const Vec3 p = camera.to_camera(centre);
         if (p.z <= region.side) continue;
         const double x = camera.fx * p.x / p.z + camera.cx, y = camera.fy * p.y / p.z + camera.cy;
         const double radius = Corner * region.side * camera.fx / p.z;
-        const auto limit = [](double value, int size) { return static_cast<int>(std::clamp(value, 0.0, size + 0.0)); };
+        const auto limit = [](double value, int size) {
+            return static_cast<int>(std::clamp(value, 0.0, size + 0.0));
+        };
         for (int v = limit(y - radius, mask.height); v < limit(y + radius + 1, mask.height); ++v)
             for (int u = limit(x - radius, mask.width); u < limit(x + radius + 1, mask.width); ++u)
                 if (std::hypot(u + 0.5 - x, v + 0.5 - y) <= std::max(radius, 0.71)) mask.at(u, v) = 1;

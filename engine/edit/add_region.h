@@ -23,34 +23,37 @@ struct AddRegion {
 /// What the search for a region looks at.
 struct RegionSearch {
     const GaussianSet& gaussians;
-    std::span<const std::uint8_t> source_bits;   // [N] rows of the thing the new one belongs to
+    std::span<const std::uint8_t> source_bits;  // [N] rows of the thing the new one belongs to
     const std::vector<View>& views;
-    std::span<const Mask> masks;                 // per view; an empty mask does not vote
-    std::span<const Image> depths;               // per view [H,W,1] depth of the surface, 0 = nothing there
+    std::span<const Mask> masks;    // per view; an empty mask does not vote
+    std::span<const Image> depths;  // per view [H,W,1] depth of the surface, 0 = nothing there
     Vec3 up{0, -1, 0};
-    Vec3 front{0, 0, -1};                        // where the thing looks
+    Vec3 front{0, 0, -1};  // where the thing looks
 };
 
 struct RegionParameters {
-    int cells = 28;                 // along the longest side of the searched box
-    double least_agreement = 0.5;   // share of the views that must cover a cube
-    double near_best = 0.8;         // and of the best cube's share
-    double least_seen = 0.2;        // share of the views in which the cube is not hidden behind the surface
-    double most_volume = 0.35;      // of the searched box: a larger region means the maps agree on nothing
+    int cells = 28;                // along the longest side of the searched box
+    double least_agreement = 0.5;  // share of the views that must cover a cube
+    double near_best = 0.8;        // and of the best cube's share
+    double least_seen = 0.2;       // share of the views in which the cube is not hidden behind the surface
+    double most_volume = 0.35;     // of the searched box: a larger region means the maps agree on nothing
     int least_cells = 6;
 };
 
 /// Votes a grid of cubes around the source with the masks; empty when the masks do not agree on a place.
 AddRegion vote_region(const RegionSearch& search, const RegionParameters& parameters = {});
 
-/// A place relative to the source: "top" (hat, crown), "front" (glasses), "neck" (scarf) or "around" (flames).
+/// A place relative to the source: "top" (hat, crown), "front" (glasses), "neck" (scarf) or "around"
+/// (flames).
 AddRegion anchor_region(const RegionSearch& search, const std::string& place, int cells = 28);
 
 /// The place a word usually takes: "top" for what is not known.
 std::string usual_place(const std::string& word);
 
-/// `count` round splats of neutral colour, spread over the region; sized by the room each has. `opacity` in (0,1).
-GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std::uint64_t seed, double opacity = 0.1);
+/// `count` round splats of neutral colour, spread over the region; sized by the room each has. `opacity` in
+/// (0,1).
+GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std::uint64_t seed,
+                         double opacity = 0.1);
 
 /// Pixels that the region covers in a view.
 Mask region_mask(const AddRegion& region, const Camera& camera);

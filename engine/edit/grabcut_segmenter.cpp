@@ -28,8 +28,8 @@ void for_disc(const Image& image, const PointPrompt& point, double radius_px, F&
 class ThresholdSegmenter : public Segmenter {
 public:
     explicit ThresholdSegmenter(double level) : level_(level) {}
-    Mask segment(const Image& image, const std::vector<PointPrompt>& points, const std::optional<BoxPrompt>& box,
-                 const Image& hint) override {
+    Mask segment(const Image& image, const std::vector<PointPrompt>& points,
+                 const std::optional<BoxPrompt>& box, const Image& hint) override {
         Mask mask(image.width, image.height);
         for (std::size_t i = 0; i < std::min(hint.data.size(), mask.data.size()); ++i)
             mask.data[i] = hint.data[i] >= level_ ? 1 : 0;
@@ -37,8 +37,10 @@ public:
             for (int y = 0; y < image.height; ++y)
                 for (int x = 0; x < image.width; ++x)
                     mask.at(x, y) =
-                        x + 0.5 >= box->x0 && x + 0.5 <= box->x1 && y + 0.5 >= box->y0 && y + 0.5 <= box->y1 ? 1 : 0;
-        constexpr double radius = 0.02;   // of the width
+                        x + 0.5 >= box->x0 && x + 0.5 <= box->x1 && y + 0.5 >= box->y0 && y + 0.5 <= box->y1
+                            ? 1
+                            : 0;
+        constexpr double radius = 0.02;  // of the width
         for (const auto& point : points)
             for_disc(image, point, radius * image.width,
                      [&](int x, int y) { mask.at(x, y) = point.positive ? 1 : 0; });
@@ -56,8 +58,8 @@ class GrabCutSegmenter : public Segmenter {
 public:
     explicit GrabCutSegmenter(const GrabCutParameters& parameters) : parameters_(parameters) {}
 
-    Mask segment(const Image& image, const std::vector<PointPrompt>& points, const std::optional<BoxPrompt>& box,
-                 const Image& hint) override {
+    Mask segment(const Image& image, const std::vector<PointPrompt>& points,
+                 const std::optional<BoxPrompt>& box, const Image& hint) override {
         GSE_CHECK_EQ(image.channels, 3);
         cv::Mat marks = trimap(image, points, box, hint);
         Mask result(image.width, image.height);
@@ -72,8 +74,8 @@ public:
     std::string name() const override { return "grabcut"; }
 
 private:
-    cv::Mat trimap(const Image& image, const std::vector<PointPrompt>& points, const std::optional<BoxPrompt>& box,
-                   const Image& hint) const {
+    cv::Mat trimap(const Image& image, const std::vector<PointPrompt>& points,
+                   const std::optional<BoxPrompt>& box, const Image& hint) const {
         cv::Mat marks(image.height, image.width, CV_8UC1);
         const double margin = parameters_.box_margin * image.width;
         for (int y = 0; y < image.height; ++y)
@@ -82,13 +84,15 @@ private:
                 const bool boxed = !box || (x + 0.5 >= box->x0 - margin && x + 0.5 <= box->x1 + margin &&
                                             y + 0.5 >= box->y0 - margin && y + 0.5 <= box->y1 + margin);
                 int mark = value > parameters_.probable_inside ? cv::GC_PR_FGD : cv::GC_PR_BGD;
-                if (!boxed && value < std::max(parameters_.certain_outside, parameters_.probable_inside)) mark = cv::GC_BGD;
+                if (!boxed && value < std::max(parameters_.certain_outside, parameters_.probable_inside))
+                    mark = cv::GC_BGD;
                 if (hint.data.empty() && box && boxed) mark = cv::GC_PR_FGD;
                 marks.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(mark);
             }
         for (const auto& point : points)
             for_disc(image, point, parameters_.click_radius * image.width, [&](int x, int y) {
-                marks.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(point.positive ? cv::GC_FGD : cv::GC_BGD);
+                marks.at<std::uint8_t>(y, x) =
+                    static_cast<std::uint8_t>(point.positive ? cv::GC_FGD : cv::GC_BGD);
             });
         return marks;
     }
@@ -104,12 +108,13 @@ private:
         for (int y = 0; y < image.height; ++y)
             for (int x = 0; x < image.width; ++x)
                 for (int c = 0; c < 3; ++c)
-                    bytes.at<cv::Vec3b>(y, x)[c] =
-                        static_cast<std::uint8_t>(std::lround(255 * std::clamp(image.at(x, y, c), 0.0f, 1.0f)));
+                    bytes.at<cv::Vec3b>(y, x)[c] = static_cast<std::uint8_t>(
+                        std::lround(255 * std::clamp(image.at(x, y, c), 0.0f, 1.0f)));
         try {
             cv::Mat background, foreground;
-            cv::setRNGSeed(1);   // its k-means starts at random
-            cv::grabCut(bytes, marks, cv::Rect(), background, foreground, parameters_.iterations, cv::GC_INIT_WITH_MASK);
+            cv::setRNGSeed(1);  // its k-means starts at random
+            cv::grabCut(bytes, marks, cv::Rect(), background, foreground, parameters_.iterations,
+                        cv::GC_INIT_WITH_MASK);
         } catch (const cv::Exception& failure) {
             throw Error(ErrorCode::Foreign, std::string("the segmentation failed: ") + failure.what());
         }
@@ -122,7 +127,9 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Segmenter> make_threshold_segmenter(double level) { return std::make_unique<ThresholdSegmenter>(level); }
+std::unique_ptr<Segmenter> make_threshold_segmenter(double level) {
+    return std::make_unique<ThresholdSegmenter>(level);
+}
 
 #ifdef GSE_HAVE_OPENCV
 

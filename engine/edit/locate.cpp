@@ -17,12 +17,12 @@
 namespace gse::edit {
 namespace {
 
-constexpr int ClusterGrid = 64;             // clustering happens on maps of this width (method 2.7)
-constexpr std::size_t LeastRegionCells = 4; // smaller regions of a 64-cell map count as nothing found
-constexpr int LeastViews = 3;               // fewer voting views cannot tell front from back
-constexpr double LargestMaskShare = 0.9;    // of the picture: such a mask has found nothing
-constexpr double LargestMaskGrowth = 4;     // of the attention region's area: the segmenter ran away
-constexpr double LeastOverlapIou = 0.1;     // of a text segmenter's mask and the attention region (A8)
+constexpr int ClusterGrid = 64;              // clustering happens on maps of this width (method 2.7)
+constexpr std::size_t LeastRegionCells = 4;  // smaller regions of a 64-cell map count as nothing found
+constexpr int LeastViews = 3;                // fewer voting views cannot tell front from back
+constexpr double LargestMaskShare = 0.9;     // of the picture: such a mask has found nothing
+constexpr double LargestMaskGrowth = 4;      // of the attention region's area: the segmenter ran away
+constexpr double LeastOverlapIou = 0.1;      // of a text segmenter's mask and the attention region (A8)
 constexpr double LeastTextScore = 0.3;
 constexpr double LeastEvidenceShare = 0.2;  // of the mean evidence of the rows that are seen at all
 constexpr double ReferenceSide = 512;       // pictures for which request lengths in pixels are stated
@@ -38,9 +38,11 @@ int word_position(const std::vector<std::string>& words, const std::string& word
     return found == words.end() ? -1 : static_cast<int>(found - words.begin());
 }
 
-bool any_of_between(const std::vector<std::string>& words, int begin, int end, const std::vector<std::string>& wanted) {
+bool any_of_between(const std::vector<std::string>& words, int begin, int end,
+                    const std::vector<std::string>& wanted) {
     for (int i = begin + 1; i < end; ++i)
-        if (std::find(wanted.begin(), wanted.end(), words[static_cast<std::size_t>(i)]) != wanted.end()) return true;
+        if (std::find(wanted.begin(), wanted.end(), words[static_cast<std::size_t>(i)]) != wanted.end())
+            return true;
     return false;
 }
 
@@ -103,13 +105,14 @@ public:
         render_all();
         std::tie(result.mode, result.reason) = decide_mode(input_.request, found_share());
         log::info("{} \"{}\": {}", result.mode == EditMode::Add ? "adding" : "changing",
-                  result.mode == EditMode::Add ? input_.request.target : input_.request.source, result.reason);
+                  result.mode == EditMode::Add ? input_.request.target : input_.request.source,
+                  result.reason);
         if (result.mode == EditMode::Modify)
             modify(result);
         else
             add(result);
-        result.failed_views = static_cast<int>(
-            std::count_if(result.views.begin(), result.views.end(), [](const ViewEvidence& view) { return view.failed; }));
+        result.failed_views = static_cast<int>(std::count_if(
+            result.views.begin(), result.views.end(), [](const ViewEvidence& view) { return view.failed; }));
         return result;
     }
 
@@ -132,13 +135,15 @@ private:
             for (std::size_t i = 0; i < depth.data.size(); ++i)
                 depth.data[i] = output.alpha.data[i] > 0.5f ? depth.data[i] / output.alpha.data[i] : 0.0f;
             depths_.push_back(std::move(depth));
-            tools_.job.report("rendering views", static_cast<int>(renders_.size()), static_cast<int>(input_.views.size()));
+            tools_.job.report("rendering views", static_cast<int>(renders_.size()),
+                              static_cast<int>(input_.views.size()));
         }
     }
 
     /// Share of the views in which the text segmenter sees the target word; nothing without one.
     std::optional<double> found_share() {
-        if (tools_.text_segmenter == nullptr || request().mode != "auto" || renders_.empty()) return std::nullopt;
+        if (tools_.text_segmenter == nullptr || request().mode != "auto" || renders_.empty())
+            return std::nullopt;
         int found = 0;
         for (const auto& render : renders_) {
             check_stop();
@@ -192,20 +197,22 @@ private:
             normalise_maximum(map);
         }
         view.map = std::move(maps.front());
-        for (std::size_t rival = 1; rival < maps.size(); ++rival)   // the stronger word takes the pixel
+        for (std::size_t rival = 1; rival < maps.size(); ++rival)  // the stronger word takes the pixel
             for (std::size_t i = 0; i < view.map.data.size(); ++i)
                 if (maps[rival].data[i] > view.map.data[i]) view.map.data[i] = 0;
         const double level =
             request().attention_threshold > 0 ? request().attention_threshold : tools_.attention.threshold();
         const Image small = localize::resize_image(view.map, ClusterGrid, grid_height(view.map));
         small_region_ = localize::clean_clusters(localize::threshold_map(small, level), small,
-                                                 {request().dbscan_eps, request().dbscan_min_samples}, request().keep_mass);
+                                                 {request().dbscan_eps, request().dbscan_min_samples},
+                                                 request().keep_mass);
         view.region = localize::resize_mask(small_region_, view.map.width, view.map.height);
         view.mask = view.region;
         view.branch = "attention";
         view.captured = 1;
         small_map_ = small;
-        const bool everything = static_cast<double>(view.region.count()) > LargestMaskShare * static_cast<double>(view.region.data.size());
+        const bool everything = static_cast<double>(view.region.count()) >
+                                LargestMaskShare * static_cast<double>(view.region.data.size());
         if (small_region_.count() < LeastRegionCells || everything) fail(view);
         return view;
     }
@@ -229,7 +236,8 @@ private:
                 from_text = std::move(mask);
             }
         }
-        if (from_text && text_mass >= request().fallback_mass && mask_iou(*from_text, view.region) >= LeastOverlapIou) {
+        if (from_text && text_mass >= request().fallback_mass &&
+            mask_iou(*from_text, view.region) >= LeastOverlapIou) {
             accept(view, std::move(*from_text), text_mass, "text");
             return;
         }
@@ -242,7 +250,8 @@ private:
                 return;
             }
         }
-        if (from_text && text_mass >= request().fallback_mass) accept(view, std::move(*from_text), text_mass, "text");
+        if (from_text && text_mass >= request().fallback_mass)
+            accept(view, std::move(*from_text), text_mass, "text");
     }
 
     static void accept(ViewEvidence& view, Mask mask, double mass, const char* branch) {
@@ -268,21 +277,25 @@ private:
     }
 
     /// Fuses the masks into weights and a label.
-    std::pair<localize::LabelWeights, Label> label_of(const Search& search, const std::vector<ViewEvidence>& views) {
+    std::pair<localize::LabelWeights, Label> label_of(const Search& search,
+                                                      const std::vector<ViewEvidence>& views) {
         std::vector<localize::MaskedView> votes;
         for (std::size_t v = 0; v < views.size(); ++v)
             votes.push_back({input_.views[v].camera, mask_image(views[v].mask), views[v].failed});
-        auto weights = localize::back_project(input_.gaussians.spans(), votes, input_.settings, tools_.rasterizer);
+        auto weights =
+            localize::back_project(input_.gaussians.spans(), votes, input_.settings, tools_.rasterizer);
         if (weights.views_used < LeastViews)
             throw Error(ErrorCode::InvalidArgument,
                         fmt::format("\"{}\" was found in {} views, at least {} are needed", search.word,
                                     weights.views_used, LeastViews),
                         "look from more views");
-        Label label = localize::label_from_weights(search.word, weights, request().tau, least_evidence(weights));
+        Label label =
+            localize::label_from_weights(search.word, weights, request().tau, least_evidence(weights));
         return {std::move(weights), std::move(label)};
     }
 
-    /// The request's evidence is meant for scenes whose splats cover a few pixels; in denser ones no splat has that much.
+    /// The request's evidence is meant for scenes whose splats cover a few pixels; in denser ones no splat
+    /// has that much.
     double least_evidence(const localize::LabelWeights& weights) const {
         double sum = 0;
         std::size_t seen = 0;
@@ -290,7 +303,9 @@ private:
             sum += evidence;
             seen += evidence > 0 ? 1 : 0;
         }
-        return seen == 0 ? 0 : std::min(request().evidence_px, LeastEvidenceShare * sum / static_cast<double>(seen));
+        return seen == 0
+                   ? 0
+                   : std::min(request().evidence_px, LeastEvidenceShare * sum / static_cast<double>(seen));
     }
 
     static std::size_t count_bits(const Label& label) {
@@ -331,13 +346,15 @@ private:
         result.views = look(search);
         std::vector<Mask> masks;
         for (const auto& view : result.views) masks.push_back(view.failed ? Mask() : view.mask);
-        const RegionSearch space{input_.gaussians, *result.source_label.bits, input_.views, masks, depths_, input_.up,
-                                 input_.front};
+        const RegionSearch space{
+            input_.gaussians, *result.source_label.bits, input_.views, masks, depths_, input_.up,
+            input_.front};
         result.region = vote_region(space);
         const bool attended = !result.region.empty();
         if (!attended) {
             const std::string place = usual_place(search.word);
-            log::info("the views do not agree where \"{}\" goes; it is put at the usual place: {}", search.word, place);
+            log::info("the views do not agree where \"{}\" goes; it is put at the usual place: {}",
+                      search.word, place);
             result.region = anchor_region(space, place);
         }
         if (result.region.empty())
@@ -349,21 +366,23 @@ private:
             view.branch = attended ? "attention" : "anchor";
             view.failed = view.mask.count() == 0;
         }
-        result.seeds = seed_splats(result.region, request().seed_splats, input_.gaussians.sh_degree(), request().seed);
+        result.seeds =
+            seed_splats(result.region, request().seed_splats, input_.gaussians.sh_degree(), request().seed);
         result.label = make_label(search.word, std::vector<float>(input_.gaussians.size(), 0.0f), 0.5f);
     }
 
     const LocateInput& input_;
     const LocateTools& tools_;
     std::vector<Image> renders_, depths_;
-    Image small_map_;      // of the view attended last, 64 cells wide
+    Image small_map_;  // of the view attended last, 64 cells wide
     Mask small_region_;
 };
 
 }  // namespace
 
-std::pair<EditMode, std::string> decide_mode(const EditRequest& request, std::optional<double> target_found_share) {
-    constexpr double present_share = 0.3;   // A7
+std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
+                                             std::optional<double> target_found_share) {
+    constexpr double present_share = 0.3;  // A7
     if (request.mode == "add") return {EditMode::Add, "as asked"};
     if (request.mode == "modify") return {EditMode::Modify, "as asked"};
     if (target_found_share && *target_found_share >= present_share)
@@ -372,18 +391,23 @@ std::pair<EditMode, std::string> decide_mode(const EditRequest& request, std::op
     const int source = word_position(words, request.source), target = word_position(words, request.target);
     if (source < 0) return {EditMode::Modify, "the sentence replaces \"" + request.source + "\""};
     if (source == target) return {EditMode::Modify, "source and target are the same word"};
-    static const std::vector<std::string> joining{"wearing", "with",   "and",  "holding", "has",   "having", "on",
-                                                  "under",   "beside", "near", "carrying", "plus", "to",     "behind"};
+    static const std::vector<std::string> joining{"wearing",  "with", "and",   "holding", "has",
+                                                  "having",   "on",   "under", "beside",  "near",
+                                                  "carrying", "plus", "to",    "behind"};
     static const std::vector<std::string> turning{"made", "of", "into", "as"};
     const int first = std::min(source, target), last = std::max(source, target);
-    const bool joined = any_of_between(words, first, last, joining) && !any_of_between(words, first, last, turning);
-    if (joined) return {EditMode::Add, "the sentence puts \"" + request.target + "\" beside \"" + request.source + "\""};
+    const bool joined =
+        any_of_between(words, first, last, joining) && !any_of_between(words, first, last, turning);
+    if (joined)
+        return {EditMode::Add,
+                "the sentence puts \"" + request.target + "\" beside \"" + request.source + "\""};
     return {EditMode::Modify, "\"" + request.target + "\" describes \"" + request.source + "\""};
 }
 
 LocateResult locate(const LocateInput& input, const LocateTools& tools) {
     if (input.gaussians.empty() || input.views.empty())
-        throw Error(ErrorCode::InvalidArgument, "there is nothing to look at: the scene or the list of views is empty");
+        throw Error(ErrorCode::InvalidArgument,
+                    "there is nothing to look at: the scene or the list of views is empty");
     return Locator(input, tools).run();
 }
 

@@ -1,4 +1,5 @@
-// From words to what may change: attention maps, masks and labels over all views (GSEditPro 3.2, method S3 to S5).
+// From words to what may change: attention maps, masks and labels over all views (GSEditPro 3.2, method S3 to
+// S5).
 #pragma once
 
 #include <optional>
@@ -19,12 +20,12 @@ namespace gse::edit {
 /// What is looked at. `request` must have gone through validated().
 struct LocateInput {
     const GaussianSet& gaussians;
-    const std::vector<View>& views;               // cameras at the size of the pictures
-    const std::vector<std::string>& view_words;   // per view, or empty
+    const std::vector<View>& views;              // cameras at the size of the pictures
+    const std::vector<std::string>& view_words;  // per view, or empty
     const EditRequest& request;
     raster::Settings settings;
-    Vec3 up{0, -1, 0};                            // world up; where the top of a thing is
-    Vec3 front{0, 0, -1};                         // where it looks; for things that go before a face
+    Vec3 up{0, -1, 0};     // world up; where the top of a thing is
+    Vec3 front{0, 0, -1};  // where it looks; for things that go before a face
 };
 
 /// The parts it calls. Both segmenters may be null: then the attention regions themselves are the masks.
@@ -38,39 +39,40 @@ struct LocateTools {
 
 /// Everything one view contributed, for the window and the evidence pictures.
 struct ViewEvidence {
-    Image render;                      // [H,W,3]
-    Image map;                         // [H,W,1] attention of the word, maximum 1; 0 where a rival has more
-    Mask region;                       // thresholded and cleaned attention
-    std::vector<PointPrompt> points;   // clicks handed to the segmenter
-    Mask mask;                         // the view's vote, not dilated
-    std::string branch;                // what made the mask: "text", "points", "attention", "anchor" or "none"
-    double captured = 0;               // share of the region's attention inside the mask
-    bool failed = false;               // nothing was found: the view does not vote
+    Image render;                     // [H,W,3]
+    Image map;                        // [H,W,1] attention of the word, maximum 1; 0 where a rival has more
+    Mask region;                      // thresholded and cleaned attention
+    std::vector<PointPrompt> points;  // clicks handed to the segmenter
+    Mask mask;                        // the view's vote, not dilated
+    std::string branch;               // what made the mask: "text", "points", "attention", "anchor" or "none"
+    double captured = 0;              // share of the region's attention inside the mask
+    bool failed = false;              // nothing was found: the view does not vote
 };
 
 struct LocateResult {
     EditMode mode = EditMode::Modify;
-    std::string reason;                // why this mode, for the log
-    std::string word;                  // the word that was looked for
+    std::string reason;  // why this mode, for the log
+    std::string word;    // the word that was looked for
     std::vector<ViewEvidence> views;
-    localize::LabelWeights weights;    // of the thing the edit is about (in add mode: of the source)
-    Label label;                       // modify: rows that may change; add: all zero
-    Label source_label;                // rows of the source word
-    AddRegion region;                  // add mode: where the new thing goes
-    GaussianData seeds;                // add mode: new rows
+    localize::LabelWeights weights;  // of the thing the edit is about (in add mode: of the source)
+    Label label;                     // modify: rows that may change; add: all zero
+    Label source_label;              // rows of the source word
+    AddRegion region;                // add mode: where the new thing goes
+    GaussianData seeds;              // add mode: new rows
     int failed_views = 0;
 };
 
-/// Labels what the request is about. Throws Error when the words are found in less than half of the views, when fewer
-/// than three views are left, or when no splat ends up labelled.
+/// Labels what the request is about. Throws Error when the words are found in less than half of the views,
+/// when fewer than three views are left, or when no splat ends up labelled.
 LocateResult locate(const LocateInput& input, const LocateTools& tools);
 
-/// Decides "auto" from the sentence and, when there is a text segmenter, from whether it finds the target word (A7).
-/// Returns the mode and the reason.
-std::pair<EditMode, std::string> decide_mode(const EditRequest& request, std::optional<double> target_found_share);
+/// Decides "auto" from the sentence and, when there is a text segmenter, from whether it finds the target
+/// word (A7). Returns the mode and the reason.
+std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
+                                             std::optional<double> target_found_share);
 
-/// The plan of the edit loop from what was located: masks dilated as the request says and joined with the label's own
-/// render, so that a view whose mask missed part of the label does not pull it back.
+/// The plan of the edit loop from what was located: masks dilated as the request says and joined with the
+/// label's own render, so that a view whose mask missed part of the label does not pull it back.
 EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster::Rasterizer& rasterizer);
 
 }  // namespace gse::edit

@@ -56,7 +56,8 @@ Preservation::Box Preservation::grown(const Box& box, int by, const Image& image
             std::min(image.height, box.y1 + by)};
 }
 
-double Preservation::add_gradient(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient) {
+double Preservation::add_gradient(const Image& rendered, const Image& original, const Mask& may_change,
+                                  Image& gradient) {
     GSE_CHECK_EQ(rendered.data.size(), original.data.size());
     GSE_CHECK_EQ(rendered.data.size(), gradient.data.size());
     GSE_CHECK_EQ(may_change.data.size(), rendered.pixel_count());
@@ -76,7 +77,8 @@ Preservation::Box Preservation::add_l1(const Image& rendered, const Image& origi
     Box box{rendered.width, rendered.height, 0, 0};
     for (int y = 0; y < rendered.height; ++y)
         for (int x = 0; x < rendered.width; ++x) {
-            const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(rendered.width) + static_cast<std::size_t>(x);
+            const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(rendered.width) +
+                               static_cast<std::size_t>(x);
             const Image& source = may_change.data[pixel] != 0 ? rendered : original;
             bool differs = false;
             for (std::size_t i = pixel * 3; i < pixel * 3 + 3; ++i) {
@@ -87,7 +89,9 @@ Preservation::Box Preservation::add_l1(const Image& rendered, const Image& origi
                 loss += scale * std::abs(static_cast<double>(difference));
                 gradient.data[i] += difference > 0 ? push : -push;
             }
-            if (differs) box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1), std::max(box.y1, y + 1)};
+            if (differs)
+                box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1),
+                       std::max(box.y1, y + 1)};
         }
     return box;
 }
@@ -98,7 +102,8 @@ void Preservation::load(const Image& rendered, const Box& work, std::size_t chan
     std::size_t i = 0;
     for (int v = work.y0; v < work.y1; ++v)
         for (int u = work.x0; u < work.x1; ++u, ++i) {
-            const float x = rendered.at(u, v, static_cast<int>(channel)), y = target_.at(u, v, static_cast<int>(channel));
+            const float x = rendered.at(u, v, static_cast<int>(channel)),
+                        y = target_.at(u, v, static_cast<int>(channel));
             x_[i] = x;
             y_[i] = y;
             xx_[i] = x * x;
@@ -108,14 +113,16 @@ void Preservation::load(const Image& rendered, const Box& work, std::size_t chan
     for (auto* plane : {&x_, &y_, &xx_, &yy_, &xy_}) blur(*plane, scratch_, work.width(), work.height());
 }
 
-/// Turns x_, xx_, xy_ into the derivative of the summed SSIM map by E[x], E[x^2] and E[xy]; returns sum(1 - SSIM).
+/// Turns x_, xx_, xy_ into the derivative of the summed SSIM map by E[x], E[x^2] and E[xy]; returns sum(1 -
+/// SSIM).
 double Preservation::differentiate(const Box& work, const Box& live) {
     double loss = 0;
     std::size_t i = 0;
     for (int v = work.y0; v < work.y1; ++v)
         for (int u = work.x0; u < work.x1; ++u, ++i) {
             if (u < live.x0 || u >= live.x1 || v < live.y0 || v >= live.y1) {
-                x_[i] = xx_[i] = xy_[i] = 0;   // the pictures are equal in the whole window: SSIM is 1 and flat
+                x_[i] = xx_[i] = xy_[i] =
+                    0;  // the pictures are equal in the whole window: SSIM is 1 and flat
                 continue;
             }
             const float mx = x_[i], my = y_[i];
@@ -131,10 +138,12 @@ double Preservation::differentiate(const Box& work, const Box& live) {
     return loss;
 }
 
-/// Outside `changed` the pictures are equal, so SSIM differs from 1 only within a window of it, and its gradient from 0
-/// only within two (method E3): the rest of the picture is skipped.
-void Preservation::ssim_gradient(const Image& rendered, const Box& changed, double scale, Image& gradient, double& loss) {
-    const Box live = grown(changed, WindowRadius, rendered), work = grown(changed, 2 * WindowRadius, rendered);
+/// Outside `changed` the pictures are equal, so SSIM differs from 1 only within a window of it, and its
+/// gradient from 0 only within two (method E3): the rest of the picture is skipped.
+void Preservation::ssim_gradient(const Image& rendered, const Box& changed, double scale, Image& gradient,
+                                 double& loss) {
+    const Box live = grown(changed, WindowRadius, rendered),
+              work = grown(changed, 2 * WindowRadius, rendered);
     for (std::size_t channel = 0; channel < 3; ++channel) {
         load(rendered, work, channel);
         loss += scale * differentiate(work, live);

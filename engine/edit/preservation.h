@@ -1,4 +1,5 @@
-// The loss that keeps a picture as it was outside a mask: L1 and D-SSIM against a pseudo ground truth (GSEditPro 3.3).
+// The loss that keeps a picture as it was outside a mask: L1 and D-SSIM against a pseudo ground truth
+// (GSEditPro 3.3).
 #pragma once
 
 #include <cstddef>
@@ -20,9 +21,10 @@ class Preservation {
 public:
     explicit Preservation(const PreservationWeights& weights) : weights_(weights) {}
 
-    /// Loss of `rendered` [H,W,3] against M * rendered + (1 - M) * original, the first factor detached; adds its
-    /// gradient to `gradient` [H,W,3]. L1 and 1 - SSIM are means over all pixels and channels.
-    double add_gradient(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient);
+    /// Loss of `rendered` [H,W,3] against M * rendered + (1 - M) * original, the first factor detached; adds
+    /// its gradient to `gradient` [H,W,3]. L1 and 1 - SSIM are means over all pixels and channels.
+    double add_gradient(const Image& rendered, const Image& original, const Mask& may_change,
+                        Image& gradient);
 
 private:
     /// Pixels [x0,x1) x [y0,y1).
@@ -33,10 +35,12 @@ private:
         int height() const { return y1 - y0; }
     };
     static Box grown(const Box& box, int by, const Image& image);
-    Box add_l1(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient, double& loss);
+    Box add_l1(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient,
+               double& loss);
     void load(const Image& rendered, const Box& work, std::size_t channel);
     double differentiate(const Box& work, const Box& live);
-    void ssim_gradient(const Image& rendered, const Box& changed, double scale, Image& gradient, double& loss);
+    void ssim_gradient(const Image& rendered, const Box& changed, double scale, Image& gradient,
+                       double& loss);
 
     PreservationWeights weights_;
     Image target_;

@@ -1,4 +1,5 @@
-// Hostile scenes, guidance and requests: the loop must end, count what it left out, and never write a non-finite value.
+// Hostile scenes, guidance and requests: the loop must end, count what it left out, and never write a
+// non-finite value.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -31,7 +32,8 @@ edit::EditRequest hostile_request() {
     return request;
 }
 
-edit::EditResult run(const test::BallScene& scene, const edit::EditRequest& request, edit::Guidance& guidance) {
+edit::EditResult run(const test::BallScene& scene, const edit::EditRequest& request,
+                     edit::Guidance& guidance) {
     const Quiet quiet;
     ThreadPool pool(2);
     const auto rasterizer = raster::make_fast_rasterizer(pool);
@@ -78,15 +80,17 @@ DOCTEST_TEST_CASE("guidance of every size and kind") {
 DOCTEST_TEST_CASE("huge learning rates stay within the guards") {
     auto request = hostile_request();
     request.rate_position = request.rate_position_end = 1;
-    request.rate_colour = request.rate_sh = request.rate_opacity = request.rate_scale = request.rate_rotation = 10;
-    request.min_opacity = 0;   // nothing is pruned away
+    request.rate_colour = request.rate_sh = request.rate_opacity = request.rate_scale =
+        request.rate_rotation = 10;
+    request.min_opacity = 0;  // nothing is pruned away
     auto guidance = test::towards({0.1, 0.1, 0.9});
     const auto result = run(test::ball_scene(), request, guidance);
     check_sane(result);
     for (std::size_t row = 0; row < result.set.size(); ++row) {
         if (result.label[row] == 0) continue;
         DOCTEST_CHECK(std::abs(result.set.opacity_logit()[row]) <= 12.0f);
-        for (std::size_t i = row * 3; i < row * 3 + 3; ++i) DOCTEST_CHECK(std::exp(result.set.log_scale()[i]) < 0.51 * 3.5);
+        for (std::size_t i = row * 3; i < row * 3 + 3; ++i)
+            DOCTEST_CHECK(std::exp(result.set.log_scale()[i]) < 0.51 * 3.5);
     }
 }
 
@@ -101,12 +105,15 @@ DOCTEST_TEST_CASE("labelled rows that are broken at load do not spread") {
         {"infinite scale", [](GaussianData& d) { d.log_scale[0] = Infinity; }},
         {"flat scale", [](GaussianData& d) { d.log_scale[0] = -Infinity; }},
         {"zero quaternion", [](GaussianData& d) { std::fill_n(d.rotation.begin(), 40, 0.0f); }},
-        {"opaque and empty", [](GaussianData& d) { d.opacity_logit[0] = Infinity, d.opacity_logit[1] = -Infinity; }},
+        {"opaque and empty",
+         [](GaussianData& d) { d.opacity_logit[0] = Infinity, d.opacity_logit[1] = -Infinity; }},
         {"giant", [](GaussianData& d) { std::fill_n(d.log_scale.begin(), 3, 5.0f); }},
-        {"needles", [](GaussianData& d) {
+        {"needles",
+         [](GaussianData& d) {
              for (std::size_t i = 0; i < 90; i += 3) d.log_scale[i] = 0, d.log_scale[i + 1] = -9;
          }},
-        {"coincident", [](GaussianData& d) {
+        {"coincident",
+         [](GaussianData& d) {
              for (std::size_t i = 3; i < 300; ++i) d.position[i] = d.position[i % 3];
          }},
     };
@@ -116,12 +123,12 @@ DOCTEST_TEST_CASE("labelled rows that are broken at load do not spread") {
         const auto scene = changed(hostile.change);
         const auto result = run(scene, hostile_request(), guidance);
         DOCTEST_CHECK(result.changed_outside_label == 0);
-        std::size_t broken = 0;   // broken rows may stay as they came, but must not become more
+        std::size_t broken = 0;  // broken rows may stay as they came, but must not become more
         for (const float value : result.set.sh()) broken += std::isfinite(value) ? 0 : 1;
         for (const float value : result.set.position()) broken += std::isfinite(value) ? 0 : 1;
         for (const float value : result.set.rotation()) broken += std::isfinite(value) ? 0 : 1;
         DOCTEST_CHECK(broken <= 1);
-        DOCTEST_CHECK(result.nonfinite == 0);   // they no longer count as labelled
+        DOCTEST_CHECK(result.nonfinite == 0);  // they no longer count as labelled
     }
 }
 
@@ -136,7 +143,7 @@ DOCTEST_TEST_CASE("one labelled splat, no iterations, and a label that fades awa
     const auto nothing = run(test::ball_scene(), request, guidance);
     DOCTEST_CHECK(test::same_bytes(nothing.set, test::ball_scene().set));
     request = hostile_request();
-    request.min_opacity = 1;   // every labelled row counts as too faint
+    request.min_opacity = 1;  // every labelled row counts as too faint
     const auto gone = run(test::ball_scene(), request, guidance);
     check_sane(gone);
     DOCTEST_CHECK(gone.set.size() == 150);

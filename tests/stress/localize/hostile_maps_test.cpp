@@ -43,12 +43,14 @@ DOCTEST_TEST_CASE("values that are not numbers are outside") {
 DOCTEST_TEST_CASE("a label of a scene that nobody sees is empty") {
     GaussianData data;
     data.resize(5);
-    for (std::size_t row = 0; row < 5; ++row) data.position[row * 3 + 2] = -100, data.opacity_logit[row] = -30;
+    for (std::size_t row = 0; row < 5; ++row)
+        data.position[row * 3 + 2] = -100, data.opacity_logit[row] = -30;
     const GaussianSet set(std::move(data));
     const auto rasterizer = raster::make_plain_rasterizer();
     OrbitParameters orbit;
     std::vector<localize::MaskedView> views;
-    for (const auto& view : orbit_views(orbit, 4, 16, 16)) views.push_back({view.camera, Image(16, 16, 1, 1), false});
+    for (const auto& view : orbit_views(orbit, 4, 16, 16))
+        views.push_back({view.camera, Image(16, 16, 1, 1), false});
     const auto weights = localize::back_project(set.spans(), views, {}, *rasterizer);
     const auto label = localize::label_from_weights("x", weights, 0.5, 0);
     for (const auto bit : *label.bits) DOCTEST_CHECK(bit == 0);

@@ -23,7 +23,8 @@ struct Search {
         for (const auto& view : views) {
             rasterizer->forward(scene.set.spans(), view.camera, {}, output);
             for (std::size_t i = 0; i < output.depth.data.size(); ++i)
-                output.depth.data[i] = output.alpha.data[i] > 0.5f ? output.depth.data[i] / output.alpha.data[i] : 0;
+                output.depth.data[i] =
+                    output.alpha.data[i] > 0.5f ? output.depth.data[i] / output.alpha.data[i] : 0;
             depths.push_back(output.depth);
             Mask mask(Side, Side);
             const Vec3 p = view.camera.to_camera(centre);
@@ -36,7 +37,9 @@ struct Search {
             masks.push_back(std::move(mask));
         }
     }
-    edit::RegionSearch search() const { return {scene.set, scene.first, views, masks, depths, {0, -1, 0}, {0, 0, -1}}; }
+    edit::RegionSearch search() const {
+        return {scene.set, scene.first, views, masks, depths, {0, -1, 0}, {0, 0, -1}};
+    }
 };
 
 }  // namespace
@@ -51,21 +54,22 @@ DOCTEST_TEST_CASE("masks of one place vote for that place") {
     Vec3 mean;
     for (const auto& cell : region.centres) {
         mean = mean + cell / static_cast<double>(region.centres.size());
-        DOCTEST_CHECK(length(cell - centre) < 0.2 * 1.6);   // the hull of twelve discs bulges a little
+        DOCTEST_CHECK(length(cell - centre) < 0.2 * 1.6);  // the hull of twelve discs bulges a little
     }
     DOCTEST_CHECK(length(mean - centre) < 0.08);
     // Its picture covers the masks it came from.
     for (std::size_t v = 0; v < setup.views.size(); ++v) {
         const Mask seen = edit::region_mask(region, setup.views[v].camera);
         std::size_t both = 0;
-        for (std::size_t i = 0; i < seen.data.size(); ++i) both += seen.data[i] != 0 && setup.masks[v].data[i] != 0 ? 1 : 0;
+        for (std::size_t i = 0; i < seen.data.size(); ++i)
+            both += seen.data[i] != 0 && setup.masks[v].data[i] != 0 ? 1 : 0;
         DOCTEST_CHECK(static_cast<double>(both) > 0.7 * static_cast<double>(setup.masks[v].count()));
     }
 }
 
 DOCTEST_TEST_CASE("masks that disagree, cover everything or are hidden inside give no region") {
     Search apart({-0.55, -0.55, 0}, 0.2);
-    for (std::size_t v = 0; v < apart.masks.size(); ++v) {   // one quarter of the picture each, going round
+    for (std::size_t v = 0; v < apart.masks.size(); ++v) {  // one quarter of the picture each, going round
         apart.masks[v] = Mask(Side, Side);
         for (int y = 0; y < Side / 2; ++y)
             for (int x = 0; x < Side / 2; ++x)
@@ -75,7 +79,7 @@ DOCTEST_TEST_CASE("masks that disagree, cover everything or are hidden inside gi
     Search all({-0.55, -0.55, 0}, 0.2);
     for (auto& mask : all.masks) mask = Mask(Side, Side, 1);
     DOCTEST_CHECK(edit::vote_region(all.search()).empty());
-    const Search inside({-0.55, 0, 0}, 0.12);   // within the opaque ball: nobody could see it
+    const Search inside({-0.55, 0, 0}, 0.12);  // within the opaque ball: nobody could see it
     DOCTEST_CHECK(edit::vote_region(inside.search()).empty());
     Search blind({-0.55, -0.55, 0}, 0.2);
     for (auto& mask : blind.masks) mask = Mask();
@@ -91,7 +95,8 @@ DOCTEST_TEST_CASE("anchors lie where their names say") {
         DOCTEST_CHECK(std::hypot(cell.x + 0.55, cell.z) > 0.2);
         DOCTEST_CHECK(std::abs(cell.y) < 0.3);
     }
-    for (const auto& cell : edit::anchor_region(search, "around").centres) DOCTEST_CHECK(length(cell - Vec3{-0.55, 0, 0}) > 0.3);
+    for (const auto& cell : edit::anchor_region(search, "around").centres)
+        DOCTEST_CHECK(length(cell - Vec3{-0.55, 0, 0}) > 0.3);
     for (const char* place : {"top", "front", "neck", "around"}) {
         const auto region = edit::anchor_region(search, place);
         DOCTEST_CHECK(region.centres.size() > 20);
@@ -116,7 +121,8 @@ DOCTEST_TEST_CASE("seeds lie in the region, are finite and repeatable") {
         for (const auto& centre : region.centres) {
             bool here = true;
             for (int axis = 0; axis < 3; ++axis)
-                here &= std::abs(seeds.position[row * 3 + static_cast<std::size_t>(axis)] - centre[axis]) <= 0.0501;
+                here &= std::abs(seeds.position[row * 3 + static_cast<std::size_t>(axis)] - centre[axis]) <=
+                        0.0501;
             inside |= here;
         }
         DOCTEST_CHECK(inside);

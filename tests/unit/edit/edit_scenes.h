@@ -19,7 +19,7 @@ namespace gse::test {
 /// Two opaque balls beside each other, `count` splats each: the first red, the second green.
 struct BallScene {
     GaussianSet set;
-    std::vector<std::uint8_t> first;    // [N] rows of the red ball
+    std::vector<std::uint8_t> first;  // [N] rows of the red ball
 };
 
 inline BallScene ball_scene(std::size_t count = 150, int sh_degree = 0) {
@@ -32,7 +32,8 @@ inline BallScene ball_scene(std::size_t count = 150, int sh_degree = 0) {
         const bool first = row < count;
         const double y = 1 - 2 * (static_cast<double>(row % count) + 0.5) / static_cast<double>(count);
         const double angle = 2.399963 * static_cast<double>(row), r = std::sqrt(1 - y * y);
-        const Vec3 p = Vec3{first ? -0.55 : 0.55, 0, 0} + Vec3{r * std::cos(angle), y, r * std::sin(angle)} * 0.4;
+        const Vec3 p =
+            Vec3{first ? -0.55 : 0.55, 0, 0} + Vec3{r * std::cos(angle), y, r * std::sin(angle)} * 0.4;
         const double shade = 0.75 - 0.2 * y + random.uniform(-0.05, 0.05);
         const Vec3 colour = (first ? Vec3{0.9, 0.15, 0.1} : Vec3{0.1, 0.7, 0.2}) * shade;
         for (int axis = 0; axis < 3; ++axis) {
@@ -65,7 +66,8 @@ inline Mask true_mask(const GaussianSet& set, const std::vector<std::uint8_t>& b
 }
 
 /// A plan whose label and masks are the red ball's true ones.
-inline edit::EditPlan ball_plan(const BallScene& scene, raster::Rasterizer& rasterizer, int views = 6, int side = 32) {
+inline edit::EditPlan ball_plan(const BallScene& scene, raster::Rasterizer& rasterizer, int views = 6,
+                                int side = 32) {
     edit::EditPlan plan;
     plan.views = ball_views(views, side);
     plan.label = scene.first;
@@ -91,7 +93,8 @@ inline FunctionGuidance towards(const Vec3& colour) {
         edit::GuidanceOutput output;
         output.gradient = Image(input.rendered.width, input.rendered.height, 3);
         for (std::size_t i = 0; i < output.gradient.data.size(); ++i)
-            output.gradient.data[i] = input.rendered.data[i] - static_cast<float>(colour[static_cast<int>(i % 3)]);
+            output.gradient.data[i] =
+                input.rendered.data[i] - static_cast<float>(colour[static_cast<int>(i % 3)]);
         return output;
     });
 }

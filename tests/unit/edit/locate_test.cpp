@@ -11,8 +11,8 @@ namespace {
 
 using namespace gse;
 
-constexpr double LeastIou = 0.9;    // blurred attention, clicks and twelve views at 48 px
-constexpr double LeastIouUnrefined = 0.65;   // a blurred map above one half covers less than the thing
+constexpr double LeastIou = 0.9;            // blurred attention, clicks and twelve views at 48 px
+constexpr double LeastIouUnrefined = 0.65;  // a blurred map above one half covers less than the thing
 constexpr int Side = 48;
 
 double iou(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
@@ -33,11 +33,12 @@ public:
         const bool blind = calls++ % 12 < blind_views;
         for (int y = 0; y < map.height && !blind; ++y)
             for (int x = 0; x < map.width; ++x) {
-                const int source = query.absent ? y + hat_shift : y;   // absent things are drawn above the red
+                const int source = query.absent ? y + hat_shift : y;  // absent things are drawn above the red
                 if (source < map.height) map.at(x, y, 0) = redness(query.image, x, source);
             }
-        std::vector<Image> maps{localize::resize_image(localize::resize_image(map, 16, 16), map.width, map.height)};
-        for (std::size_t rival = 1; rival < query.words.size(); ++rival) {   // all other words: the lower half
+        std::vector<Image> maps{
+            localize::resize_image(localize::resize_image(map, 16, 16), map.width, map.height)};
+        for (std::size_t rival = 1; rival < query.words.size(); ++rival) {  // all other words: the lower half
             maps.emplace_back(map.width, map.height, 1);
             for (int y = map.height / 2; y < map.height; ++y)
                 for (int x = 0; x < map.width; ++x) maps.back().at(x, y, 0) = 1;
@@ -69,7 +70,8 @@ public:
         Mask mask(image.width, image.height);
         if (noun != "ball") return {mask, 0.0};
         for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x) mask.at(x, y) = image.at(x, y, 0) - image.at(x, y, 1) > 0.2f ? 1 : 0;
+            for (int x = 0; x < image.width; ++x)
+                mask.at(x, y) = image.at(x, y, 0) - image.at(x, y, 1) > 0.2f ? 1 : 0;
         return {mask, 0.9};
     }
 };
@@ -91,7 +93,9 @@ struct Fixture {
     std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(pool);
     ColourAttention attention;
 
-    edit::LocateInput input(const edit::EditRequest& request) const { return {scene.set, views, words, request, {}, {0, -1, 0}}; }
+    edit::LocateInput input(const edit::EditRequest& request) const {
+        return {scene.set, views, words, request, {}, {0, -1, 0}};
+    }
     edit::LocateTools tools(edit::Segmenter* segmenter = nullptr, edit::TextSegmenter* text = nullptr) {
         return {*rasterizer, attention, segmenter, text, {}};
     }
@@ -110,19 +114,22 @@ DOCTEST_TEST_CASE("an object word labels its splats, with every segmenter and wi
     for (const bool segmented : {false, true}) {
         Fixture fixture;
         const auto segmenter = edit::make_default_segmenter();
-        const auto found = edit::locate(fixture.input(request), fixture.tools(segmented ? segmenter.get() : nullptr));
+        const auto found =
+            edit::locate(fixture.input(request), fixture.tools(segmented ? segmenter.get() : nullptr));
         DOCTEST_CHECK(found.mode == edit::EditMode::Modify);
         DOCTEST_CHECK(found.word == "ball");
         DOCTEST_CHECK(found.failed_views == 0);
         DOCTEST_INFO("segmenter " << segmented << " iou " << iou(*found.label.bits, fixture.scene.first));
-        DOCTEST_CHECK(iou(*found.label.bits, fixture.scene.first) > (segmented && edit::grabcut_available() ? LeastIou : LeastIouUnrefined));
+        DOCTEST_CHECK(iou(*found.label.bits, fixture.scene.first) >
+                      (segmented && edit::grabcut_available() ? LeastIou : LeastIouUnrefined));
         DOCTEST_CHECK(found.seeds.size() == 0);
         int by_points = 0;
         for (const auto& view : found.views) {
             DOCTEST_CHECK(view.mask.count() > 0);
             DOCTEST_CHECK(view.captured > 0.4);
             by_points += view.branch == "points" ? 1 : 0;
-            const auto inside = std::count_if(view.points.begin(), view.points.end(), [](const auto& p) { return p.positive; });
+            const auto inside = std::count_if(view.points.begin(), view.points.end(),
+                                              [](const auto& p) { return p.positive; });
             DOCTEST_CHECK(inside >= 1);
             DOCTEST_CHECK(inside <= 5);
         }
@@ -186,7 +193,7 @@ DOCTEST_TEST_CASE("a rival word takes the pixels that attend more to it") {
         for (int y = Side / 2 + 1; y < Side; ++y)
             for (int x = 0; x < Side; ++x)
                 if (view.mask.at(x, y) != 0) DOCTEST_CHECK(view.map.at(x, y, 0) == 1);
-    DOCTEST_CHECK(iou(*found.label.bits, fixture.scene.first) < 0.7);   // the lower half was given away
+    DOCTEST_CHECK(iou(*found.label.bits, fixture.scene.first) < 0.7);  // the lower half was given away
 }
 
 DOCTEST_TEST_CASE("a text segmenter that agrees with the attention is believed") {
@@ -212,8 +219,9 @@ DOCTEST_TEST_CASE("an added thing gets seeds where the attention of all views me
     Vec3 mean;
     for (std::size_t row = 0; row < found.seeds.size(); ++row)
         for (int axis = 0; axis < 3; ++axis)
-            mean[axis] += found.seeds.position[row * 3 + static_cast<std::size_t>(axis)] / static_cast<double>(found.seeds.size());
-    DOCTEST_CHECK(length(mean - Vec3{-0.55, -0.5, 0}) < 0.35);   // above the red ball; up is -y
+            mean[axis] += found.seeds.position[row * 3 + static_cast<std::size_t>(axis)] /
+                          static_cast<double>(found.seeds.size());
+    DOCTEST_CHECK(length(mean - Vec3{-0.55, -0.5, 0}) < 0.35);  // above the red ball; up is -y
     const auto plan = edit::make_plan(fixture.input(request), found, *fixture.rasterizer);
     DOCTEST_CHECK(plan.seeds.size() == found.seeds.size());
     for (const auto& mask : plan.masks) DOCTEST_CHECK(mask.count() > 0);
@@ -222,7 +230,7 @@ DOCTEST_TEST_CASE("an added thing gets seeds where the attention of all views me
 DOCTEST_TEST_CASE("without agreement an added thing goes to its usual place") {
     const Quiet quiet;
     Fixture fixture;
-    fixture.attention.hat_shift = 1000;   // the maps stay empty
+    fixture.attention.hat_shift = 1000;  // the maps stay empty
     const auto request = request_for("a ball with a hat", "hat");
     const auto found = edit::locate(fixture.input(request), fixture.tools());
     DOCTEST_CHECK(found.region.origin == "top");
@@ -239,9 +247,12 @@ DOCTEST_TEST_CASE("an empty scene, no views and a stop are errors of their own")
     Fixture fixture;
     const auto request = request_for("a blue ball", "blue");
     const std::vector<View> none;
-    DOCTEST_CHECK_THROWS_AS(edit::locate({fixture.scene.set, none, fixture.words, request, {}, {0, -1, 0}}, fixture.tools()), Error);
+    DOCTEST_CHECK_THROWS_AS(
+        edit::locate({fixture.scene.set, none, fixture.words, request, {}, {0, -1, 0}}, fixture.tools()),
+        Error);
     const GaussianSet empty;
-    DOCTEST_CHECK_THROWS_AS(edit::locate({empty, fixture.views, fixture.words, request, {}, {0, -1, 0}}, fixture.tools()), Error);
+    DOCTEST_CHECK_THROWS_AS(
+        edit::locate({empty, fixture.views, fixture.words, request, {}, {0, -1, 0}}, fixture.tools()), Error);
     std::stop_source stop;
     stop.request_stop();
     auto tools = fixture.tools();

@@ -1,4 +1,5 @@
-// Adam against a hand calculation, the generation schedule against its closed form, SSIM against finite differences.
+// Adam against a hand calculation, the generation schedule against its closed form, SSIM against finite
+// differences.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -13,8 +14,8 @@ namespace {
 
 using namespace gse;
 
-constexpr double FloatRounding = 1e-5;   // results are stored as float
-constexpr double Step = 1e-3;            // central differences of a smooth function, values are float
+constexpr double FloatRounding = 1e-5;  // results are stored as float
+constexpr double Step = 1e-3;           // central differences of a smooth function, values are float
 constexpr double GradientTolerance = 2e-2;
 
 Image random_image(int width, int height, std::uint64_t seed) {
@@ -28,7 +29,8 @@ Image random_image(int width, int height, std::uint64_t seed) {
 double plain_ssim(const Image& a, const Image& b, int channel) {
     std::array<double, 11> window{};
     double sum = 0;
-    for (int i = 0; i < 11; ++i) sum += window[static_cast<std::size_t>(i)] = std::exp(-(i - 5) * (i - 5) / 4.5);
+    for (int i = 0; i < 11; ++i)
+        sum += window[static_cast<std::size_t>(i)] = std::exp(-(i - 5) * (i - 5) / 4.5);
     double total = 0;
     for (int y = 0; y < a.height; ++y)
         for (int x = 0; x < a.width; ++x) {
@@ -48,9 +50,11 @@ double plain_ssim(const Image& a, const Image& b, int channel) {
 
 double plain_loss(const Image& image, const Image& target) {
     double l1 = 0;
-    for (std::size_t i = 0; i < image.data.size(); ++i) l1 += std::abs(static_cast<double>(image.data[i]) - target.data[i]);
+    for (std::size_t i = 0; i < image.data.size(); ++i)
+        l1 += std::abs(static_cast<double>(image.data[i]) - target.data[i]);
     l1 /= static_cast<double>(image.data.size());
-    const double ssim = (plain_ssim(image, target, 0) + plain_ssim(image, target, 1) + plain_ssim(image, target, 2)) / 3;
+    const double ssim =
+        (plain_ssim(image, target, 0) + plain_ssim(image, target, 1) + plain_ssim(image, target, 2)) / 3;
     return 10 * (0.8 * l1 + 0.2 * (1 - ssim));
 }
 
@@ -67,10 +71,13 @@ DOCTEST_TEST_CASE("Adam follows its formula") {
     edit::adam_step(parameters, std::array<float, 2>{0.25f, 0}, moments, {rates, {}, 2});
     const double first = (0.9 * 0.05 + 0.1 * 0.25) / (1 - 0.81);
     const double second = (0.999 * 0.001 * 0.25 + 0.001 * 0.0625) / (1 - 0.998001);
-    DOCTEST_CHECK(parameters[0] == doctest::Approx(0.9 - 0.1 * first / std::sqrt(second)).epsilon(FloatRounding));
+    DOCTEST_CHECK(parameters[0] ==
+                  doctest::Approx(0.9 - 0.1 * first / std::sqrt(second)).epsilon(FloatRounding));
     const double still_first = 0.9 * -0.4 / 0.19, still_second = 0.999 * 0.016 / 0.001999;
     // Momentum moves the second value although its gradient is zero now.
-    DOCTEST_CHECK(parameters[1] == doctest::Approx(-1.99 - 0.01 * still_first / std::sqrt(still_second)).epsilon(FloatRounding));
+    DOCTEST_CHECK(
+        parameters[1] ==
+        doctest::Approx(-1.99 - 0.01 * still_first / std::sqrt(still_second)).epsilon(FloatRounding));
 }
 
 DOCTEST_TEST_CASE("Adam's per-row factor scales the step and zero stops it") {
@@ -85,7 +92,8 @@ DOCTEST_TEST_CASE("Adam's per-row factor scales the step and zero stops it") {
 }
 
 DOCTEST_TEST_CASE("the generation schedule is its closed form (method 2.3)") {
-    for (const auto& [g0, a0, m] : {std::array{0.05, 0.1, 1.3}, {1.0, 0.1, 2.0}, {0.0, 0.02, 1.3}, {0.01, 0.01, 1.3}}) {
+    for (const auto& [g0, a0, m] :
+         {std::array{0.05, 0.1, 1.3}, {1.0, 0.1, 2.0}, {0.0, 0.02, 1.3}, {0.01, 0.01, 1.3}}) {
         edit::EditRequest request;
         request.anchor_first = g0;
         request.anchor_start = a0;
@@ -97,7 +105,8 @@ DOCTEST_TEST_CASE("the generation schedule is its closed form (method 2.3)") {
             DOCTEST_CHECK(schedule.newest() == k);
             DOCTEST_CHECK(schedule.weight(0) == doctest::Approx(std::min(10.0, g0 * std::pow(m, k))));
             for (int i = 1; i < k; ++i)
-                DOCTEST_CHECK(schedule.weight(i) == doctest::Approx(std::min(10.0, a0 * std::pow(m, k - 1 - i))));
+                DOCTEST_CHECK(schedule.weight(i) ==
+                              doctest::Approx(std::min(10.0, a0 * std::pow(m, k - 1 - i))));
             DOCTEST_CHECK(schedule.weight(k) == 0);
         }
     }
@@ -134,11 +143,11 @@ DOCTEST_TEST_CASE("the pseudo ground truth leaves the inside of the mask alone b
     const double loss = preservation.add_gradient(image, original, mask, gradient);
     DOCTEST_CHECK(loss > 0);
     for (int y = 0; y < 24; ++y)
-        for (int x = 0; x < 10; ++x)   // farther than two window radii from the rim: nothing reaches here
+        for (int x = 0; x < 10; ++x)  // farther than two window radii from the rim: nothing reaches here
             DOCTEST_CHECK(gradient.at(x, y, 1) == 0);
     Image again(40, 24, 3);
     DOCTEST_CHECK(preservation.add_gradient(image, original, Mask(40, 24, 1), again) == doctest::Approx(0));
-    for (const float value : again.data) DOCTEST_CHECK(std::abs(value) < 1e-7);   // float rounding of the blur
+    for (const float value : again.data) DOCTEST_CHECK(std::abs(value) < 1e-7);  // float rounding of the blur
     Image third(40, 24, 3);
     DOCTEST_CHECK(preservation.add_gradient(original, original, Mask(40, 24), third) == doctest::Approx(0));
 }

@@ -56,7 +56,8 @@ DOCTEST_TEST_CASE("every field survives JSON, has a help text and a name of its 
     DOCTEST_CHECK(fields_to_json(EditRequest{}) != json);
     // Every member is in the list: the struct is no larger than its listed members and padding.
     std::size_t listed = 0;
-    EditRequest::visit_fields(request, [&](const char*, auto& value, const char*, auto...) { listed += sizeof(value); });
+    EditRequest::visit_fields(
+        request, [&](const char*, auto& value, const char*, auto...) { listed += sizeof(value); });
     DOCTEST_CHECK(sizeof(EditRequest) - listed < 8 * names.size());
 }
 
@@ -71,7 +72,7 @@ DOCTEST_TEST_CASE("a request is checked in one sentence") {
     DOCTEST_CHECK_THROWS_AS(edit::validated(bear("bear", "", "hat")), Error);
     DOCTEST_CHECK_THROWS_AS(edit::validated(bear("bear", "a blue bear", "hat")), Error);
     DOCTEST_CHECK_THROWS_AS(edit::validated(bear("", "a blue bear", "")), Error);
-    DOCTEST_CHECK_THROWS_AS(edit::validated(bear("bear", "a bluebear", "blue")), Error);   // whole words only
+    DOCTEST_CHECK_THROWS_AS(edit::validated(bear("bear", "a bluebear", "blue")), Error);  // whole words only
     EditRequest request = bear("bear", "a blue bear", "blue");
     request.mode = "guess";
     DOCTEST_CHECK_THROWS_AS(edit::validated(request), Error);
@@ -99,7 +100,8 @@ DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") 
     DOCTEST_CHECK(mode_of("bear", "add a hat to the bear", "hat") == EditMode::Add);
     DOCTEST_CHECK(mode_of("bear", "a hat on the bear", "hat") == EditMode::Add);
     auto request = bear("bear", "a red bear wearing a blue hat", "hat");
-    DOCTEST_CHECK(edit::decide_mode(request, 0.8).first == EditMode::Modify);   // the detector sees one already
+    DOCTEST_CHECK(edit::decide_mode(request, 0.8).first ==
+                  EditMode::Modify);  // the detector sees one already
     DOCTEST_CHECK(edit::decide_mode(request, 0.1).first == EditMode::Add);
     request.mode = "modify";
     DOCTEST_CHECK(edit::decide_mode(request, 0.0).first == EditMode::Modify);

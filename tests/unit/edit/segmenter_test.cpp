@@ -31,13 +31,15 @@ Picture disc() {
             picture.image.at(x, y, 0) = (inside ? 0.8f : 0.2f) + noise;
             picture.image.at(x, y, 1) = (inside ? 0.2f : 0.6f) + noise;
             picture.image.at(x, y, 2) = 0.2f + noise;
-            blob.at(x, y, 0) = static_cast<float>(std::exp(-(std::pow(x - 38, 2) + std::pow(y - 33, 2)) / 200));
+            blob.at(x, y, 0) =
+                static_cast<float>(std::exp(-(std::pow(x - 38, 2) + std::pow(y - 33, 2)) / 200));
         }
     picture.hint = blob;
     return picture;
 }
 
-const std::vector<edit::PointPrompt> Clicks{{38.5, 33.5, true}, {45.5, 27.5, true}, {5.5, 5.5, false}, {75.5, 50.5, false}};
+const std::vector<edit::PointPrompt> Clicks{
+    {38.5, 33.5, true}, {45.5, 27.5, true}, {5.5, 5.5, false}, {75.5, 50.5, false}};
 
 double iou(const Mask& a, const Mask& b) {
     double both = 0, either = 0;
@@ -56,20 +58,25 @@ DOCTEST_TEST_CASE("GrabCut finds the outline that the hint only guesses, the sam
     const auto segmenter = edit::make_grabcut_segmenter();
     const edit::BoxPrompt box{26, 20, 52, 46};
     const Mask mask = segmenter->segment(picture.image, Clicks, box, picture.hint);
-    constexpr double LeastIou = 0.95;   // a clean disc on a clean ground
+    constexpr double LeastIou = 0.95;  // a clean disc on a clean ground
     DOCTEST_CHECK(iou(mask, picture.truth) > LeastIou);
-    DOCTEST_CHECK(iou(localize::threshold_map(picture.hint, 0.5), picture.truth) < 0.6);   // there was something to do
+    DOCTEST_CHECK(iou(localize::threshold_map(picture.hint, 0.5), picture.truth) <
+                  0.6);  // there was something to do
     DOCTEST_CHECK(segmenter->segment(picture.image, Clicks, box, picture.hint).data == mask.data);
-    DOCTEST_CHECK(iou(segmenter->segment(picture.image, Clicks, std::nullopt, picture.hint), picture.truth) > LeastIou);
-    DOCTEST_CHECK(iou(segmenter->segment(picture.image, Clicks, edit::BoxPrompt{22, 10, 62, 50}, {}), picture.truth) > LeastIou);
+    DOCTEST_CHECK(iou(segmenter->segment(picture.image, Clicks, std::nullopt, picture.hint), picture.truth) >
+                  LeastIou);
+    DOCTEST_CHECK(iou(segmenter->segment(picture.image, Clicks, edit::BoxPrompt{22, 10, 62, 50}, {}),
+                      picture.truth) > LeastIou);
 }
 
 DOCTEST_TEST_CASE("without samples of both kinds the marks come back as they are") {
     const Picture picture = disc();
     const auto segmenter = edit::make_default_segmenter();
     DOCTEST_CHECK(segmenter->segment(picture.image, {}, std::nullopt, {}).count() == 0);
-    DOCTEST_CHECK(segmenter->segment(picture.image, {}, std::nullopt, Image(80, 60, 1, 1.0f)).count() == 80 * 60);
-    DOCTEST_CHECK(segmenter->segment(Image(80, 60, 3), Clicks, std::nullopt, Image(80, 60, 1)).count() > 0);   // one flat colour
+    DOCTEST_CHECK(segmenter->segment(picture.image, {}, std::nullopt, Image(80, 60, 1, 1.0f)).count() ==
+                  80 * 60);
+    DOCTEST_CHECK(segmenter->segment(Image(80, 60, 3), Clicks, std::nullopt, Image(80, 60, 1)).count() >
+                  0);  // one flat colour
 }
 
 DOCTEST_TEST_CASE("the threshold segmenter follows hint, clicks and box") {

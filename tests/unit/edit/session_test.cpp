@@ -1,5 +1,5 @@
-// Promises of the edit loop: nothing outside the label changes, the same seed gives the same bytes, a stop keeps the
-// last state, hostile guidance does no harm.
+// Promises of the edit loop: nothing outside the label changes, the same seed gives the same bytes, a stop
+// keeps the last state, hostile guidance does no harm.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -48,7 +48,8 @@ Vec3 mean_colour(const GaussianSet& set, const std::vector<std::uint8_t>& bits) 
     const std::size_t stride = set.sh().size() / std::max<std::size_t>(set.size(), 1);
     for (std::size_t row = 0; row < set.size(); ++row) {
         if (bits[row] == 0) continue;
-        for (int c = 0; c < 3; ++c) sum[c] += colour_from_sh(set.sh()[row * stride + static_cast<std::size_t>(c)]);
+        for (int c = 0; c < 3; ++c)
+            sum[c] += colour_from_sh(set.sh()[row * stride + static_cast<std::size_t>(c)]);
         count += 1;
     }
     return sum / std::max(count, 1.0);
@@ -68,7 +69,8 @@ DOCTEST_TEST_CASE("labelled rows follow the guidance, all others keep every bit,
         DOCTEST_CHECK(result.cloned + result.split > 0);
         DOCTEST_CHECK(result.set.size() == result.label.size());
         DOCTEST_CHECK(result.set.size() == result.generation.size());
-        const Vec3 before = mean_colour(scene.set, scene.first), after = mean_colour(result.set, result.label);
+        const Vec3 before = mean_colour(scene.set, scene.first),
+                   after = mean_colour(result.set, result.label);
         DOCTEST_CHECK(after.z > before.z + 0.1);
         DOCTEST_CHECK(after.x < before.x - 0.1);
         std::int64_t last = -1;
@@ -76,18 +78,19 @@ DOCTEST_TEST_CASE("labelled rows follow the guidance, all others keep every bit,
             const std::int64_t now = result.base_to_new[row];
             DOCTEST_CHECK((now < 0 || now > last));
             if (now < 0) {
-                DOCTEST_CHECK(scene.first[row] != 0);   // only labelled rows may go
+                DOCTEST_CHECK(scene.first[row] != 0);  // only labelled rows may go
                 continue;
             }
             last = now;
             DOCTEST_CHECK(result.label[static_cast<std::size_t>(now)] == scene.first[row]);
             if (scene.first[row] != 0) continue;
-            DOCTEST_CHECK(test::same_bytes(scene.set.position().subspan(row * 3, 3),
-                                           result.set.position().subspan(static_cast<std::size_t>(now) * 3, 3)));
+            DOCTEST_CHECK(
+                test::same_bytes(scene.set.position().subspan(row * 3, 3),
+                                 result.set.position().subspan(static_cast<std::size_t>(now) * 3, 3)));
             DOCTEST_CHECK(result.generation[static_cast<std::size_t>(now)] == 0);
         }
         for (std::size_t row = static_cast<std::size_t>(last) + 1; row < result.set.size(); ++row) {
-            DOCTEST_CHECK(result.label[row] == 1);       // new rows come last
+            DOCTEST_CHECK(result.label[row] == 1);  // new rows come last
             DOCTEST_CHECK(result.generation[row] > 0);
         }
     }
@@ -179,12 +182,14 @@ DOCTEST_TEST_CASE("no label, and a label nobody sees, are refused in one sentenc
     auto guidance = test::towards({0, 0, 1});
     auto plan = test::ball_plan(scene, *rasterizer, 3, 16);
     plan.label.assign(plan.label.size(), 0);
-    DOCTEST_CHECK_THROWS_AS(edit::run_edit(scene.set, plan, short_request(), {*rasterizer, guidance, {}, {}}), Error);
+    DOCTEST_CHECK_THROWS_AS(edit::run_edit(scene.set, plan, short_request(), {*rasterizer, guidance, {}, {}}),
+                            Error);
     GaussianData data = scene.set.to_data();
     for (std::size_t row = 0; row < data.size(); ++row) data.opacity_logit[row] = -20;
     plan.label = scene.first;
-    DOCTEST_CHECK_THROWS_AS(edit::run_edit(GaussianSet(std::move(data)), plan, short_request(), {*rasterizer, guidance, {}, {}}),
-                            Error);
+    DOCTEST_CHECK_THROWS_AS(
+        edit::run_edit(GaussianSet(std::move(data)), plan, short_request(), {*rasterizer, guidance, {}, {}}),
+        Error);
 }
 
 DOCTEST_TEST_CASE("seeds are new rows of a later generation, the scene itself stays") {
@@ -200,7 +205,8 @@ DOCTEST_TEST_CASE("seeds are new rows of a later generation, the scene itself st
     auto guidance = test::towards({0.1, 0.1, 0.9});
     const auto result = edit::run_edit(scene.set, plan, short_request(), {*rasterizer, guidance, {}, {}});
     DOCTEST_CHECK(result.set.size() > scene.set.size());
-    for (std::size_t row = 0; row < scene.set.size(); ++row) DOCTEST_CHECK(result.base_to_new[row] == static_cast<std::int64_t>(row));
+    for (std::size_t row = 0; row < scene.set.size(); ++row)
+        DOCTEST_CHECK(result.base_to_new[row] == static_cast<std::int64_t>(row));
     DOCTEST_CHECK(test::same_bytes(scene.set.sh(), result.set.sh().first(scene.set.sh().size())));
     for (std::size_t row = scene.set.size(); row < result.set.size(); ++row) {
         DOCTEST_CHECK(result.label[row] == 1);
@@ -223,32 +229,36 @@ DOCTEST_TEST_CASE("growth is capped") {
 DOCTEST_TEST_CASE("a full colour coupling shifts all rows alike, none lets each go its own way") {
     auto scene = test::ball_scene();
     GaussianData data = scene.set.to_data();
-    for (std::size_t i = 0; i < data.sh.size(); ++i) data.sh[i] = static_cast<float>(sh_from_colour(i % 3 == 0 ? 0.8 : 0.3));
-    scene.set = GaussianSet(std::move(data));   // of one colour, so that a common change has nothing to tell rows apart by
-    test::FunctionGuidance guidance([](const edit::GuidanceInput& input) {   // upper half blue, lower half yellow
-        edit::GuidanceOutput output;
-        output.gradient = Image(input.rendered.width, input.rendered.height, 3);
-        for (int y = 0; y < input.rendered.height; ++y)
-            for (int x = 0; x < input.rendered.width; ++x)
-                for (int c = 0; c < 3; ++c) {
-                    const bool upper = y < input.rendered.height / 2;
-                    output.gradient.at(x, y, c) = input.rendered.at(x, y, c) - ((c == 2) == upper ? 0.9f : 0.1f);
-                }
-        return output;
-    });
+    for (std::size_t i = 0; i < data.sh.size(); ++i)
+        data.sh[i] = static_cast<float>(sh_from_colour(i % 3 == 0 ? 0.8 : 0.3));
+    scene.set = GaussianSet(
+        std::move(data));  // of one colour, so that a common change has nothing to tell rows apart by
+    test::FunctionGuidance guidance(
+        [](const edit::GuidanceInput& input) {  // upper half blue, lower half yellow
+            edit::GuidanceOutput output;
+            output.gradient = Image(input.rendered.width, input.rendered.height, 3);
+            for (int y = 0; y < input.rendered.height; ++y)
+                for (int x = 0; x < input.rendered.width; ++x)
+                    for (int c = 0; c < 3; ++c) {
+                        const bool upper = y < input.rendered.height / 2;
+                        output.gradient.at(x, y, c) =
+                            input.rendered.at(x, y, c) - ((c == 2) == upper ? 0.9f : 0.1f);
+                    }
+            return output;
+        });
     auto request = short_request();
     request.densify_every = 0;
     const auto contrast = [&](double coupling) {
         request.colour_coupling = coupling;
         const auto result = run(scene, request, guidance);
         double upper = 0, lower = 0;
-        for (std::size_t row = 0; row < 60; ++row) {   // rows go from y = +0.4 (below, as -y is up) to -0.4
+        for (std::size_t row = 0; row < 60; ++row) {  // rows go from y = +0.4 (below, as -y is up) to -0.4
             lower += result.set.sh()[row * 3 + 2] - scene.set.sh()[row * 3 + 2];
             upper += result.set.sh()[(90 + row) * 3 + 2] - scene.set.sh()[(90 + row) * 3 + 2];
         }
         return (upper - lower) / 60;
     };
-    constexpr double SameForAll = 1e-4;   // float rounding of forty steps
+    constexpr double SameForAll = 1e-4;  // float rounding of forty steps
     DOCTEST_CHECK(std::abs(contrast(1)) < SameForAll);
     DOCTEST_CHECK(contrast(0) > 0.3);
 }

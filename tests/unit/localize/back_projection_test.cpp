@@ -13,11 +13,11 @@ namespace {
 
 using namespace gse;
 
-constexpr double LeastIou = 0.95;    // given true masks; what is lost are rows hidden in every view
+constexpr double LeastIou = 0.95;  // given true masks; what is lost are rows hidden in every view
 
 struct TwoBalls {
     GaussianSet set;
-    std::vector<std::uint8_t> first;   // [N] rows of the first ball
+    std::vector<std::uint8_t> first;  // [N] rows of the first ball
 };
 
 /// Two opaque balls beside each other, 250 surface splats each.
@@ -29,9 +29,11 @@ TwoBalls two_balls() {
     Random random(7);
     for (std::size_t row = 0; row < 2 * count; ++row) {
         const bool first = row < count;
-        const double y = 1 - 2 * (static_cast<double>(row % count) + 0.5) / count, angle = 2.399963 * static_cast<double>(row);
+        const double y = 1 - 2 * (static_cast<double>(row % count) + 0.5) / count,
+                     angle = 2.399963 * static_cast<double>(row);
         const double r = std::sqrt(1 - y * y);
-        const Vec3 p = Vec3{first ? -0.6 : 0.6, 0, 0} + Vec3{r * std::cos(angle), y, r * std::sin(angle)} * 0.45;
+        const Vec3 p =
+            Vec3{first ? -0.6 : 0.6, 0, 0} + Vec3{r * std::cos(angle), y, r * std::sin(angle)} * 0.45;
         for (int axis = 0; axis < 3; ++axis) {
             data.position[row * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(p[axis]);
             data.log_scale[row * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(std::log(0.05));
@@ -52,7 +54,8 @@ std::vector<View> ring(int count) {
 }
 
 /// Masks of the first ball, from its share of every pixel.
-std::vector<localize::MaskedView> true_views(const TwoBalls& scene, raster::Rasterizer& rasterizer, int count) {
+std::vector<localize::MaskedView> true_views(const TwoBalls& scene, raster::Rasterizer& rasterizer,
+                                             int count) {
     std::vector<localize::MaskedView> views;
     const std::vector<float> values(scene.first.begin(), scene.first.end());
     for (const auto& view : ring(count)) {
@@ -111,17 +114,19 @@ DOCTEST_TEST_CASE("the weights are the colour gradient of the masked picture (S5
     const auto views = true_views(scene, *rasterizer, 1);
     const auto weights = localize::back_project(scene.set.spans(), views, {}, *rasterizer);
     raster::Settings settings;
-    settings.negative_colour_slope = 1;   // every row's colour counts, also those clamped at zero
+    settings.negative_colour_slope = 1;  // every row's colour counts, also those clamped at zero
     raster::ForwardOutput output;
     rasterizer->forward(scene.set.spans(), views[0].camera, settings, output);
     Image d_colour(48, 48, 3);
-    for (std::size_t i = 0; i < views[0].mask.data.size(); ++i) d_colour.data[i * 3 + 1] = views[0].mask.data[i];
+    for (std::size_t i = 0; i < views[0].mask.data.size(); ++i)
+        d_colour.data[i * 3 + 1] = views[0].mask.data[i];
     raster::Gradients gradients;
     rasterizer->backward(d_colour, {}, 0, gradients);
-    constexpr double FloatGradient = 1e-4;   // gradients are handed out as float
+    constexpr double FloatGradient = 1e-4;  // gradients are handed out as float
     for (std::size_t row = 0; row < scene.set.size(); ++row) {
         const double masked = weights.weight[row] * std::max(weights.evidence[row], 1e-8);
-        DOCTEST_CHECK(gradients.sh[row * 3 + 1] / ShC0 == doctest::Approx(masked).epsilon(FloatGradient).scale(1));
+        DOCTEST_CHECK(gradients.sh[row * 3 + 1] / ShC0 ==
+                      doctest::Approx(masked).epsilon(FloatGradient).scale(1));
     }
 }
 

@@ -90,7 +90,7 @@ DOCTEST_TEST_CASE("grid DBSCAN equals the definition on random masks") {
             clusters_seen += *std::max_element(fast.begin(), fast.end()) + 1;
         }
     }
-    DOCTEST_CHECK(clusters_seen > 300);   // the masks were not all noise
+    DOCTEST_CHECK(clusters_seen > 300);  // the masks were not all noise
 }
 
 DOCTEST_TEST_CASE("eps below one pixel makes everything noise when a neighbour is asked for") {
@@ -102,7 +102,7 @@ DOCTEST_TEST_CASE("a border pixel between two clusters joins the lower one") {
     Mask mask(9, 3);
     fill(mask, 0, 0, 3, 3);
     fill(mask, 6, 0, 9, 3);
-    mask.at(4, 1) = 1;   // within 2 px of both, itself not core
+    mask.at(4, 1) = 1;  // within 2 px of both, itself not core
     const auto clusters = gse::localize::dbscan(mask, {2, 6});
     DOCTEST_CHECK(clusters[static_cast<std::size_t>(1 * 9 + 4)] == 0);
     DOCTEST_CHECK(clusters[static_cast<std::size_t>(1 * 9 + 7)] == 1);
@@ -110,10 +110,10 @@ DOCTEST_TEST_CASE("a border pixel between two clusters joins the lower one") {
 
 DOCTEST_TEST_CASE("cleaning keeps the heaviest cluster and those with enough of its mass, and drops specks") {
     Mask mask(64, 64);
-    fill(mask, 5, 5, 15, 15);      // 100 pixels
-    fill(mask, 30, 5, 36, 11);     // 36 pixels: kept at 25 %
-    fill(mask, 30, 30, 34, 34);    // 16 pixels: dropped
-    mask.at(60, 60) = 1;           // noise
+    fill(mask, 5, 5, 15, 15);    // 100 pixels
+    fill(mask, 30, 5, 36, 11);   // 36 pixels: kept at 25 %
+    fill(mask, 30, 30, 34, 34);  // 16 pixels: dropped
+    mask.at(60, 60) = 1;         // noise
     const Mask clean = gse::localize::clean_clusters(mask, flat_map(mask, 1), {2, 4}, 0.25);
     DOCTEST_CHECK(clean.count() == 136);
     DOCTEST_CHECK(clean.at(32, 32) == 0);
@@ -155,7 +155,7 @@ DOCTEST_TEST_CASE("resizing keeps constants, and means when shrinking by whole f
     const Image small = gse::localize::resize_image(image, 12, 8);
     double small_mean = 0;
     for (const auto value : small.data) small_mean += value;
-    constexpr double FloatSum = 1e-5;   // sums of a thousand floats
+    constexpr double FloatSum = 1e-5;  // sums of a thousand floats
     DOCTEST_CHECK(small_mean / 96 == doctest::Approx(mean).epsilon(FloatSum));
     for (const int side : {1, 7, 64, 200})
         for (const auto value : gse::localize::resize_image(Image(33, 21, 3, 0.25f), side, side).data)
