@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 
 #include "app/cli.h"
 #include "app/scene_tools.h"
@@ -158,12 +159,22 @@ void check_word(const std::string& word, const std::vector<std::string>& words, 
                 "choose from " + list);
 }
 
+/// Cameras that frame the object, alternately low and high.
+std::vector<View> synth_ring(const synth::SynthScene& scene) {
+    constexpr int count = 24, side = 512;
+    std::vector<View> views;
+    for (int i = 0; i < count; ++i)
+        views.push_back({fmt::format("ring_{:02}", i),
+                         synth::scene_camera(scene, 2 * std::numbers::pi * i / count, i % 2 == 0 ? 0.2 : 0.5, 1, side, side)});
+    return views;
+}
+
 void add_synth(CLI::App& app, CommandContext&) {
     struct SynthOptions {
         synth::SceneSpec spec;
         std::filesystem::path output;
+        std::filesystem::path cameras;
         std::string edit;
-        bool labels = true;
     };
     auto options = std::make_shared<SynthOptions>();
     auto& spec = options->spec;
@@ -179,6 +190,7 @@ void add_synth(CLI::App& app, CommandContext&) {
         ->capture_default_str()
         ->check(CLI::Range(500, 5000000));
     command->add_option("--edit", options->edit, "Sentence of an edit: writes the true edited scene instead");
+    command->add_option("--cameras", options->cameras, "Also write a ring of 24 cameras to this cameras.json");
     command->callback([options] {
         auto& wanted = options->spec;
         check_word(wanted.object, synth::object_words(), "an object", false);
@@ -197,6 +209,7 @@ void add_synth(CLI::App& app, CommandContext&) {
             save.from_label = &result.scene.labels.labels.front();
         }
         save_scene(options->output, result.scene, save);
+        if (!options->cameras.empty()) save_cameras_json(options->cameras, synth_ring(result));
         fmt::print("{}: {}\n", options->output.string(), synth::full_caption(final_spec).text);
     });
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -61,6 +62,16 @@ std::vector<View> spread_views(const std::vector<View>& views, std::size_t count
 std::string words_for_azimuth(double azimuth) {
     const double turned = std::abs(std::remainder(azimuth, 2 * std::numbers::pi));
     return turned < 50 * Degree ? "front view" : turned > 130 * Degree ? "back view" : "side view";
+}
+
+/// Azimuth from which a camera sees the orbit's centre, in the convention of orbit_camera.
+double azimuth_of(const Camera& camera, const OrbitParameters& orbit) {
+    OrbitParameters level = orbit;
+    level.elevation = 0;
+    const Vec3 front = normalized(orbit_camera(level, 0, 8, 8).centre() - orbit.centre);
+    const Vec3 side = cross(normalized(orbit.up), front);
+    const Vec3 direction = camera.centre() - orbit.centre;
+    return std::atan2(dot(direction, side), dot(direction, front));
 }
 
 double parse_front(const std::string& text) {
@@ -167,8 +178,7 @@ nlohmann::ordered_json StageTimes::to_json() const {
 
 EditJob::EditJob(EditRecipe recipe, JobControl control)
     : recipe_(std::move(recipe)),
-      control_(std::move(control)),
-      painter_(static_cast<unsigned>(recipe_.job.threads)) {
+      control_(std::move(control)) {
     recipe_.request = edit::validated(recipe_.request);
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});
@@ -210,16 +220,20 @@ void EditJob::choose_views() {
     }
     views_ = spread_views(cameras, static_cast<std::size_t>(recipe_.request.views));
     for (auto& view : views_) view.camera = square_camera(view.camera, recipe_.request.image_size);
+    name_views();
 }
 
 void EditJob::set_orbit_views() {
     const int side = recipe_.request.image_size;
     views_ = orbit_views(orbit_, recipe_.request.views, side, side);
+    name_views();
+}
+
+void EditJob::name_views() {
     view_words_.clear();
     if (recipe_.job.front.empty()) return;
     const double front = parse_front(recipe_.job.front);
-    for (int i = 0; i < recipe_.request.views; ++i)
-        view_words_.push_back(words_for_azimuth(2 * std::numbers::pi * i / recipe_.request.views - front));
+    for (const auto& view : views_) view_words_.push_back(words_for_azimuth(azimuth_of(view.camera, orbit_) - front));
 }
 
 edit::LocateInput EditJob::locate_input() const {
@@ -229,28 +243,84 @@ edit::LocateInput EditJob::locate_input() const {
     return {scene_.gaussians, views_, view_words_, recipe_.request, settings, scene_.info.up};
 }
 
+/// How decided the views are: 1 when every splat is either always or never inside the masks.
+static double decidedness(const localize::LabelWeights& weights) {
+    double decided = 0, all = 0;
+    for (std::size_t row = 0; row < weights.weight.size(); ++row) {
+        decided += weights.evidence[row] * std::abs(2.0 * weights.weight[row] - 1);
+        all += weights.evidence[row];
+    }
+    return all > 0 ? decided / all : 0;
+}
+
+void EditJob::choose_distance(const edit::LocateTools& tools) {
+    // The fitted orbit shows the whole scene; what the words mean may be a small part of it. The distance at which the
+    // views agree best on what is meant wins; a few views tell.
+    constexpr std::array<double, 4> distances{1.0, 0.7, 0.45, 0.3};
+    constexpr int scan_views = 6;
+    const OrbitParameters fitted = orbit_;
+    const int views = recipe_.request.views;
+    recipe_.request.views = std::min(views, scan_views);
+    double best = -1;
+    OrbitParameters chosen = fitted;
+    for (const double distance : distances) {
+        orbit_ = fitted;
+        orbit_.radius *= distance;
+        set_orbit_views();
+        try {
+            const auto found = edit::locate(locate_input(), tools);
+            const double score = decidedness(found.weights);
+            log::debug("orbit at {:.2f} of the fitted distance: views agree {:.3f}", distance, score);
+            if (score > best) {
+                best = score;
+                chosen = orbit_;
+            }
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::Cancelled) throw;   // not found from here: try nearer
+        }
+    }
+    recipe_.request.views = views;
+    orbit_ = chosen;
+    set_orbit_views();
+}
+
 void EditJob::locate() {
     times_.begin("locate");
     const auto attention = model_->attention();
     const auto segmenter = edit::make_default_segmenter();
     const edit::LocateTools tools{painter_.rasterizer(), *attention, segmenter.get(), nullptr, control_};
-    constexpr int most_looks = 3;
-    for (int look = 0; look < most_looks; ++look) {
-        located_ = edit::locate(locate_input(), tools);
-        if (!automatic_views_ || !recipe_.request.focus || look + 1 == most_looks) break;
+    const bool moves = automatic_views_ && recipe_.request.focus;
+    if (moves) choose_distance(tools);
+    located_ = edit::locate(locate_input(), tools);
+    if (moves) {
         const auto& label = located_.mode == edit::EditMode::Add ? located_.source_label : located_.label;
         auto focused = localize::focus_orbit(scene_.gaussians, *label.bits, orbit_);
         // What is added needs room around what is there.
         if (located_.mode == edit::EditMode::Add) focused.radius *= 1.35;
-        if (!localize::worth_refocusing(orbit_, focused)) break;
-        orbit_ = focused;
-        set_orbit_views();
+        if (localize::worth_refocusing(orbit_, focused)) {
+            orbit_ = focused;
+            set_orbit_views();
+            located_ = edit::locate(locate_input(), tools);
+        }
     }
     plan_ = edit::make_plan(locate_input(), located_, painter_.rasterizer());
     times_.end();
     const auto labelled = std::count(located_.label.bits->begin(), located_.label.bits->end(), std::uint8_t{1});
     log::info("mode {} ({}); {} of {} splats labelled, {} new", located_.mode == edit::EditMode::Add ? "add" : "modify",
               located_.reason, labelled, scene_.gaussians.size(), located_.seeds.size());
+}
+
+OrbitParameters EditJob::film_orbit() const {
+    // What was changed or added, and what it belongs to, with room around.
+    std::vector<std::uint8_t> bits = result_.label;
+    const auto& source = located_.source_label.bits;
+    if (source)
+        for (std::size_t row = 0; row < source->size(); ++row)
+            if ((*source)[row] != 0 && result_.base_to_new[row] >= 0)
+                bits[static_cast<std::size_t>(result_.base_to_new[row])] = 1;
+    OrbitParameters orbit = localize::focus_orbit(result_.set, bits, orbit_);
+    orbit.radius = std::min(orbit.radius * 1.3, orbit_.radius * 1.25);
+    return orbit;
 }
 
 void EditJob::run() {

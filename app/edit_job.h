@@ -22,7 +22,7 @@ struct JobParameters {
     std::string cameras;
     std::string model;
     std::string device = "cpu";
-    int threads = 2;
+    int threads = 1;
     std::string up = "auto";
     std::string front;
     int turntable_size = 480;
@@ -35,7 +35,7 @@ struct JobParameters {
           "COLMAP folder, transforms.json or cameras.json; found beside the scene when empty, \"none\" for an orbit.");
         f("model", self.model, "Diffusers folder or .safetensors checkpoint; empty = the starter model.");
         f("device", self.device, "Where the networks run: cpu or cuda.");
-        f("threads", self.threads, "Threads of the networks; another number may round differently.", Range{1, 256});
+        f("threads", self.threads, "Threads of the networks; small ones gain nothing from more. Another number may round differently.", Range{1, 256});
         f("up", self.up, "World up: auto, x, y, z, -x, -y or -z.");
         f("front", self.front,
           "Azimuth in degrees from which the scene shows its front; lets the model be told \"front view\" and so on.");
@@ -88,7 +88,7 @@ public:
     const edit::EditPlan& plan() const { return plan_; }
     const edit::EditResult& result() const { return result_; }
     /// Orbit around what was edited, for films.
-    const OrbitParameters& orbit() const { return orbit_; }
+    OrbitParameters film_orbit() const;
     neural::TextToImage& model() { return *model_; }
     Painter& painter() { return painter_; }
     StageTimes& times() { return times_; }
@@ -97,6 +97,8 @@ public:
 private:
     void choose_views();
     void set_orbit_views();
+    void name_views();
+    void choose_distance(const edit::LocateTools& tools);
     edit::LocateInput locate_input() const;
 
     EditRecipe recipe_;

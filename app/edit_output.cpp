@@ -132,8 +132,7 @@ void write_labelled_source(const fs::path& path, const EditJob& job) {
 void write_before_after(const fs::path& folder, EditJob& job) {
     const int side = job.recipe().job.turntable_size, frames = job.recipe().job.turntable_frames;
     raster::Settings settings = job.plan().settings;
-    OrbitParameters orbit = job.orbit();
-    orbit.radius *= 1.25;
+    const OrbitParameters orbit = job.film_orbit();
     const auto pair = [&](double azimuth) {
         const Camera camera = orbit_camera(orbit, azimuth, side, side);
         const Image before = job.painter().paint(job.scene().gaussians.spans(), camera, settings).colour;
