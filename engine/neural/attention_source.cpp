@@ -71,11 +71,14 @@ BundleAttentionSource::BundleAttentionSource(std::shared_ptr<const ModelBundle> 
 
 AttentionCapture BundleAttentionSource::make_capture() const {
     const auto& facts = bundle_->facts;
-    auto layers = facts.attention_layers;
-    if (layers.empty()) layers = {"down_blocks", "up_blocks"};  // DAAM leaves out the middle ...
-    auto sizes = facts.attention_sizes;
     const auto latent = bundle_->latent_size();
-    if (sizes.empty()) sizes = {latent, latent / 2, latent / 4};  // ... and every map of 8x8 at 64x64
+    auto layers = facts.attention_layers;
+    auto sizes = facts.attention_sizes;
+    // A model that names its layers was trained to ground words at full latent resolution. For all others:
+    // DAAM, that is everything but the middle and the smallest maps (8x8 at 64x64).
+    if (sizes.empty())
+        sizes = layers.empty() ? std::vector{latent, latent / 2, latent / 4} : std::vector{latent};
+    if (layers.empty()) layers = {"down_blocks", "up_blocks"};
     AttentionCapture capture;
     capture.wants = [layers, sizes](std::string_view layer, std::int64_t height, std::int64_t) {
         return any_prefix(layer, layers) && std::find(sizes.begin(), sizes.end(), height) != sizes.end();

@@ -17,16 +17,20 @@ namespace gse::neural {
 /// gseditpro.json beside model_index.json; every key may be missing.
 struct ModelFacts {
     std::string name;
-    std::int64_t image_size = 0;       // 0 = UNet's sample_size times the VAE's factor
-    double attention_threshold = 0.5;  // the paper's value
-    std::vector<std::string>
-        attention_layers;  // beginnings of layer names; empty = "down_blocks" and "up_blocks"
-    std::vector<std::int64_t>
-        attention_sizes;                      // map heights; empty = latent size, a half and a quarter of it
-    std::vector<double> attention_timesteps;  // shares of the schedule probed; empty = {0.3, 0.5, 0.7}
-    std::vector<double>
-        attention_absent_timesteps;       // the same for what is not there yet; empty = {0.8, 0.85, 0.9}
-    std::vector<std::string> vocabulary;  // words the model was trained on; empty = open
+    /// 0 = the UNet's sample_size times the VAE's factor.
+    std::int64_t image_size = 0;
+    /// Binarisation of the maps; the paper's value unless the model was measured to work better with another.
+    double attention_threshold = 0.5;
+    /// Beginnings of the names of the layers looked at; empty = "down_blocks" and "up_blocks".
+    std::vector<std::string> attention_layers;
+    /// Heights of the maps looked at; empty = latent size, and its half and quarter unless layers are named.
+    std::vector<std::int64_t> attention_sizes;
+    /// Noise levels probed, as shares of the schedule; empty = 0.3, 0.5, 0.7.
+    std::vector<double> attention_timesteps;
+    /// The same for what is not in the image yet; empty = 0.8, 0.85, 0.9.
+    std::vector<double> attention_absent_timesteps;
+    /// Words the model was trained on; empty = an open vocabulary.
+    std::vector<std::string> vocabulary;
 
     static ModelFacts from_json(const Json& json, const std::filesystem::path& path);
 };

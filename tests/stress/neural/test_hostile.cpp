@@ -1,6 +1,7 @@
 // Damaged files, odd texts and unusable images: an Error or a result, never a crash, a hang or a value that
 // is not finite.
 #include <cmath>
+#include <fstream>
 
 #include "engine/base/random.h"
 #include "engine/neural/attention_source.h"
@@ -24,7 +25,7 @@ std::string valid_file(const ScratchFolder& scratch) {
 /// Opens the bytes as a file and reads every tensor; an Error is fine.
 bool opens(const ScratchFolder& scratch, const std::string& bytes) {
     const auto path = scratch.path() / "mutant.safetensors";
-    write_file(path, bytes);
+    std::ofstream(path, std::ios::binary) << bytes;
     try {
         const SafetensorsFile file(path);
         for (const auto& [name, entry] : file.entries()) file.tensor(name);
