@@ -2,6 +2,7 @@
 #include "engine/base/file.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -24,9 +25,8 @@ namespace {
 
 std::filesystem::path temporary_beside(const std::filesystem::path& path) {
     static std::atomic<unsigned> counter{0};
-    const std::string name = "." + path.stem().string() + ".tmp" + std::to_string(getpid()) + "-" +
-                             std::to_string(counter.fetch_add(1)) + path.extension().string();
-    return path.parent_path() / name;
+    return path.parent_path() / fmt::format(".{}.tmp{}-{}{}", path.stem().string(), getpid(), counter.fetch_add(1),
+                                            path.extension().string());
 }
 
 void sync_file(const std::filesystem::path& path) {

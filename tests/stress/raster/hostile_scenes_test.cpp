@@ -99,8 +99,9 @@ DOCTEST_TEST_CASE("any image size") {
          {std::pair{1, 1}, {5, 3}, {17, 1}, {1, 33}, {16, 16}, {31, 47}, {64, 4}}) {
         Hostile h;
         h.camera = test::test_camera(width, height);
-        DOCTEST_CAPTURE(width);
-        survive(h);
+    for (const auto& size :
+         {std::pair{1, 1}, {5, 3}, {17, 1}, {1, 33}, {16, 16}, {31, 47}, {64, 4}}) {
+        const int width = size.first, height = size.second;
     }
 }
 
