@@ -294,7 +294,7 @@ std::vector<Token> Tokenizer::tokenize(std::string_view text) const {
             continue;
         }
         append_plain(text.substr(plain, at - plain), tokens, words);
-        tokens.push_back({longest->second, words++, longest->first});
+        tokens.push_back({longest->second, words++});
         at += longest->first.size();
         plain = at;
     }
@@ -310,7 +310,7 @@ void Tokenizer::append_plain(std::string_view text, std::vector<Token>& tokens, 
 void Tokenizer::append_word(const std::string& word, std::vector<Token>& tokens, int& words) const {
     const int number = words++;
     if (word == StartToken || word == EndToken) {
-        tokens.push_back({id_of(word), number, word});
+        tokens.push_back({id_of(word), number});
         return;
     }
     std::vector<std::string> symbols;
@@ -336,7 +336,7 @@ void Tokenizer::append_word(const std::string& word, std::vector<Token>& tokens,
     }
     for (const auto& symbol : symbols) {
         const auto id = id_of(symbol);
-        tokens.push_back({id >= 0 ? id : unknown_, number, word});
+        tokens.push_back({id >= 0 ? id : unknown_, number});
     }
 }
 
@@ -361,11 +361,12 @@ std::vector<std::int64_t> Tokenizer::find_word(std::string_view prompt, std::str
     std::vector<std::int64_t> columns;
     bool cut_off = false;
     for (std::size_t i = 0; !wanted.empty() && i + wanted.size() <= tokens.size(); ++i) {
-        if (i > 0 && tokens[i - 1].word == tokens[i].word) continue;  // begins within a word
-        const auto same = [](const Token& a, const Token& b) {
-            return a.id == b.id && a.word_text == b.word_text;
-        };
-        if (!std::equal(wanted.begin(), wanted.end(), tokens.begin() + static_cast<std::ptrdiff_t>(i), same))
+        const std::size_t end = i + wanted.size();
+        const bool begins = i == 0 || tokens[i - 1].word != tokens[i].word;
+        const bool ends = end == tokens.size() || tokens[end].word != tokens[end - 1].word;
+        const auto same = [](const Token& a, const Token& b) { return a.id == b.id; };
+        if (!begins || !ends ||
+            !std::equal(wanted.begin(), wanted.end(), tokens.begin() + static_cast<std::ptrdiff_t>(i), same))
             continue;
         if (i + wanted.size() > length - 2) {
             cut_off = true;

@@ -15,8 +15,7 @@ namespace gse::neural {
 /// One token of a text.
 struct Token {
     std::int64_t id = 0;
-    int word = 0;           // number of the word (or punctuation run, digit, special token) it belongs to
-    std::string word_text;  // that word, normalised and in lower case
+    int word = 0;  // number of the word (or punctuation run, digit, special token) it belongs to
 };
 
 /// A text ready for the text encoder.
