@@ -98,6 +98,18 @@ class Edits(ProgramTest):
         self.assertEqual(report["changed_outside_label"], 0)
         self.check_unlabelled_rows(out)
 
+    def test_the_starter_reaches_its_figures(self):
+        """The project's acceptance figures on held-out scenes, at the size of a quick run."""
+        process = run("-q", "bench", "starter", "--scenes", 6, "--recolours", 1, "--additions", 1, "--views", 12,
+                      "--image-size", 64, "--iterations", 150, timeout=1500)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        figures = json.loads(process.stdout)
+        self.assertGreaterEqual(figures["localization"]["mean_weighted_iou"], 0.7)
+        self.assertGreaterEqual(figures["recolour"]["mean_colour_error_reduction"], 0.5)
+        self.assertGreaterEqual(figures["add"]["mean_recall"], 0.5)
+        for case in figures["recolour"]["cases"]:
+            self.assertEqual(case["changed_outside_label"], 0)
+
 
 if __name__ == "__main__":
     unittest.main()
