@@ -201,7 +201,8 @@ DOCTEST_TEST_CASE("tokenizer: vocabulary from the merges alone, added tokens") {
     const Tokenizer derived(scratch.path());
     const Tokenizer full(golden.folder);
     DOCTEST_CHECK(derived.vocabulary_size() == full.vocabulary_size());
-    for (const auto& item : golden.json("cases.json")["cases"]) {
+    const auto cases = golden.json("cases.json");
+    for (const auto& item : cases["cases"]) {
         const auto text = item["text"].get<std::string>();
         DOCTEST_CHECK(derived.encode(text, 77).ids == full.encode(text, 77).ids);
     }

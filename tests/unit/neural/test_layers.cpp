@@ -97,7 +97,8 @@ DOCTEST_TEST_CASE("unet: gradients flow through captured probabilities only when
         DOCTEST_CHECK(capture.maps.front().probabilities.requires_grad() == keep);
         if (!keep) continue;
         capture.maps.front().probabilities.select(3, 2).sum().backward();
-        const auto* weight = unet->named_parameters().find(capture.maps.front().layer + ".to_k.weight");
+        const auto parameters = unet->named_parameters();
+        const auto* weight = parameters.find(capture.maps.front().layer + ".to_k.weight");
         DOCTEST_REQUIRE(weight != nullptr);
         DOCTEST_CHECK(weight->grad().abs().sum().item<double>() > 0);
     }
