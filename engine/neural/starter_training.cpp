@@ -51,16 +51,17 @@ bool load_checkpoint(const std::filesystem::path& path, Stage& stage, torch::opt
     torch::NoGradGuard no_grad;
     torch::serialize::InputArchive archive;
     archive.load_from(path.string());
-    torch::Tensor value;
-    archive.read("step", value);
-    state.step = value.item<std::int64_t>();
-    archive.read("seconds", value);
-    state.seconds = value.item<double>();
+    // A tensor per read: reading into one that holds data of another file's tensor fails.
+    const auto read = [&](const std::string& name) {
+        torch::Tensor value;
+        archive.read(name, value);
+        return value;
+    };
+    state.step = read("step").item<std::int64_t>();
+    state.seconds = read("seconds").item<double>();
     for (std::size_t i = 0; i < stage.replicas[0].size(); ++i) {
-        archive.read(fmt::format("p{}", i), value);
-        stage.replicas[0][i].copy_(value);
-        archive.read(fmt::format("e{}", i), value);
-        ema.values()[i].copy_(value);
+        stage.replicas[0][i].copy_(read(fmt::format("p{}", i)));
+        ema.values()[i].copy_(read(fmt::format("e{}", i)));
     }
     torch::serialize::InputArchive moments;
     archive.read("optimizer", moments);

@@ -11,9 +11,13 @@ class Commands(ProgramTest):
         for command in ["info", "convert", "render", "turntable", "locate", "edit", "synth", "train-starter", "bench"]:
             process = run(command, "--help")
             self.assertEqual(process.returncode, 0)
-            for line in process.stdout.splitlines():
-                if line.startswith("  --"):  # every option says what it does
-                    self.assertGreater(len(line.split()), 2, f"{command}: {line}")
+            lines = process.stdout.splitlines()
+            for line, following in zip(lines, lines[1:] + [""]):
+                if not line.startswith("  --"):
+                    continue
+                # Every option says what it does, beside a short name or under a long one.
+                text = line.split() if len(line.split()) > 2 else following.split()
+                self.assertGreater(len(text), 2, f"{command}: {line}")
 
     def test_info_counts_and_lints(self):
         rows = grid_rows(4)
