@@ -22,7 +22,7 @@ endif()
 # asks for FMA by intrinsic.
 add_library(gse_flags INTERFACE)
 target_compile_options(gse_flags INTERFACE -Wall -Wextra -Wshadow -Wno-unused-parameter -ffp-contract=off)
-target_include_directories(gse_flags INTERFACE ${CMAKE_SOURCE_DIR} ${CMAKE_BINARY_DIR}/generated)
+target_include_directories(gse_flags INTERFACE ${CMAKE_SOURCE_DIR})
 if(GSE_SANITIZE)
   target_compile_options(gse_flags INTERFACE -fsanitize=${GSE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(gse_flags INTERFACE -fsanitize=${GSE_SANITIZE})

@@ -1,0 +1,101 @@
+// What an artist works on: base scene, stack of edits as deltas, labels and views, with undo. States are values that share
+// their arrays, so a step of undo costs what it changed.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/image.h"
+#include "engine/scene/delta.h"
+#include "engine/scene/scene.h"
+
+namespace gse {
+
+/// A named label an artist sees and corrects. bits[row] = manual[row] != 0 ? manual[row] > 0 : weight[row] > threshold.
+struct NamedLabel {
+    std::string name;
+    float threshold = 0.5f;
+    std::shared_ptr<const std::vector<float>> weight;         // [N] in [0,1], from the views; never changed by hand
+    std::shared_ptr<const std::vector<std::int8_t>> manual;   // [N] +1 added, -1 removed by hand, 0 = as the weight says
+    std::shared_ptr<const std::vector<std::uint8_t>> bits;    // [N] 0 or 1, what the others give
+};
+
+/// Fills `bits` from weight, manual and threshold.
+NamedLabel with_bits(NamedLabel label);
+
+/// One edit of the stack.
+struct EditNode {
+    std::uint64_t id = 0;
+    std::string name;                             // the sentence, or what was done
+    std::string recipe;                           // JSON: everything needed to repeat it; may be empty
+    bool enabled = true;
+    std::shared_ptr<const SceneDelta> delta;
+    std::shared_ptr<const Image> thumbnail;       // may be null
+    double seconds = 0;
+    double psnr_outside_db = 0;
+    std::size_t changed_outside_label = 0;
+};
+
+/// One state of the document; copying it copies pointers.
+struct DocumentState {
+    GaussianSet base;                             // as loaded
+    SceneInfo info;
+    std::vector<EditNode> stack;                  // oldest first
+    GaussianSet current;                          // base with the enabled edits applied
+    std::shared_ptr<const std::vector<RowId>> row_ids;   // [current.size()]
+    std::vector<NamedLabel> labels;               // over the rows of `current`
+    int active_label = -1;
+    std::vector<View> views;
+};
+
+/// The state of a freshly loaded scene (labels that the file carried become named labels).
+DocumentState initial_state(const Scene& scene, std::vector<View> views);
+
+/// The same state with `current`, `row_ids` and the labels recomputed for another stack; labels follow their rows.
+DocumentState with_stack(const DocumentState& state, std::vector<EditNode> stack);
+
+/// Undo and redo over named states, bounded by entries and bytes (arrays shared with a neighbour count once).
+class Document {
+public:
+    struct Limits {
+        std::size_t entries = 100;
+        std::size_t bytes = std::size_t{512} << 20;
+    };
+    Document() = default;
+    explicit Document(DocumentState state);
+    Document(DocumentState state, Limits limits);
+
+    const DocumentState& state() const { return states_[position_].state; }
+    bool empty() const { return states_.empty(); }
+    /// Makes `state` the current one under `name`; what could be redone is dropped. Steps of the same non-empty `merge_key`
+    /// that follow each other (a slider being dragged, a brush stroke) become one.
+    void apply(std::string name, DocumentState state, const std::string& merge_key = {});
+    bool can_undo() const { return position_ > 0; }
+    bool can_redo() const { return position_ + 1 < states_.size(); }
+    void undo();
+    void redo();
+    /// Names from the oldest; names()[position()] led to the current state.
+    std::vector<std::string> names() const;
+    std::size_t position() const { return position_; }
+    void go_to(std::size_t position);
+    /// Bytes held by undo and redo beyond the current state.
+    std::size_t undo_bytes() const;
+    /// Grows with every change of state; compared with the value at the last save it tells whether there is work unsaved.
+    std::uint64_t revision() const { return revision_; }
+
+private:
+    struct Step {
+        std::string name, merge_key;
+        DocumentState state;
+        std::uint64_t revision = 0;
+    };
+    void trim();
+    std::vector<Step> states_;
+    std::size_t position_ = 0;
+    std::uint64_t revision_ = 0, next_revision_ = 1;
+    Limits limits_;
+};
+
+}  // namespace gse

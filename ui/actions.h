@@ -1,0 +1,86 @@
+// What the panels can ask for. The application implements it; every call returns at once, work goes to the job threads, and
+// what came of it is seen in the ViewModel of a later frame. Errors are shown by the application, never thrown to panels.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "ui/view_model.h"
+
+namespace gse::ui {
+
+/// A region on the screen, in pixels of the viewport texture, that splats are selected with.
+struct ScreenRegion {
+    std::vector<std::array<float, 2>> polygon;   // closed; empty = use the circles
+    std::vector<std::array<float, 2>> circles;   // centres of a brush stroke
+    float radius_px = 0;
+};
+
+class Actions {
+public:
+    virtual ~Actions() = default;
+    // Files
+    virtual void open(const std::filesystem::path& path) = 0;      // scene, folder, project, or a PNG with a recipe in it
+    virtual void open_sample() = 0;
+    virtual void save_project(const std::filesystem::path& path) = 0;   // empty = where it was saved last
+    virtual void recover(const std::string& project) = 0;
+    virtual void discard_recovery(const std::string& project) = 0;
+    virtual void set_up_axis(const std::string& up) = 0;           // "y", "-y", "auto", ...
+    virtual void repair_scene() = 0;                               // drops what cannot be drawn (undoable)
+    // Work
+    virtual void locate() = 0;
+    virtual void edit() = 0;
+    virtual void pause(bool paused) = 0;
+    virtual void cancel() = 0;                                     // the edit job
+    virtual void cancel_file_job() = 0;
+    virtual void apply_result() = 0;
+    virtual void discard_result() = 0;
+    virtual void show_snapshot(int index) = 0;                     // -1 = newest
+    virtual void branch_from_snapshot(int index) = 0;              // takes that state as the result
+    // Labels (all undoable)
+    virtual void set_attention_threshold(double value) = 0;
+    virtual void set_label_threshold(float value) = 0;
+    virtual void set_active_label(int index) = 0;
+    virtual void add_label(const std::string& name) = 0;
+    virtual void rename_label(int index, const std::string& name) = 0;
+    virtual void delete_label(int index) = 0;
+    virtual void select(const ScreenRegion& region, SetOperation operation, bool stroke_ends) = 0;
+    virtual void grow_label(int steps) = 0;                        // negative shrinks
+    virtual void invert_label() = 0;
+    virtual void clear_label() = 0;
+    virtual void delete_labelled_splats() = 0;
+    // History
+    virtual void undo() = 0;
+    virtual void redo() = 0;
+    virtual void go_to(std::size_t position) = 0;
+    virtual void set_edit_enabled(std::uint64_t id, bool enabled) = 0;
+    virtual void delete_edit(std::uint64_t id) = 0;
+    virtual void move_edit(std::uint64_t id, int places) = 0;
+    virtual void repeat_edit(std::uint64_t id) = 0;                // its settings into the prompt, with a new seed
+    // View
+    virtual void set_camera(const Camera& camera) = 0;             // in viewport pixels; moving = resolution may drop
+    virtual void set_view_settings(const ViewSettings& settings) = 0;
+    virtual void set_comparison(Comparison comparison) = 0;
+    virtual void look_through(std::size_t view) = 0;
+    virtual void add_view() = 0;                                   // the present camera becomes a view
+    virtual void delete_view(std::size_t view) = 0;
+    virtual void set_viewport_size(int width, int height) = 0;     // framebuffer pixels wanted
+    // Prompt and models
+    virtual void set_request(const edit::EditRequest& request) = 0;
+    virtual void choose_model(const std::string& path) = 0;        // a path typed or picked; added to the list
+    // Export
+    virtual void set_exports(const ExportSettings& settings) = 0;
+    virtual void export_picture() = 0;
+    virtual void export_turntable() = 0;
+    virtual void export_scene() = 0;
+    virtual void add_camera_key() = 0;
+    virtual void delete_camera_key(std::size_t index) = 0;
+    virtual void export_camera_path(bool as_film) = 0;             // JSON, or the film along the path
+    // Window
+    virtual void dismiss_toast(std::size_t index) = 0;
+    virtual void set_ui_scale(float scale) = 0;
+    virtual void quit() = 0;
+};
+
+}  // namespace gse::ui

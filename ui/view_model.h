@@ -1,0 +1,241 @@
+// What the panels show: plain data that the application refreshes before every frame. No Vulkan, no torch, no threads.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/fields.h"
+#include "engine/base/image.h"
+#include "engine/base/log.h"
+#include "engine/edit/locate.h"
+#include "engine/edit/request.h"
+#include "engine/scene/document.h"
+
+namespace gse::ui {
+
+/// Handle of a picture on the screen device; 0 = none.
+using TextureId = std::uint64_t;
+
+/// Pictures for widgets: uploaded once per Image object, dropped when the object dies.
+class Textures {
+public:
+    virtual ~Textures() = default;
+    virtual TextureId texture(const std::shared_ptr<const Image>& image) = 0;
+};
+
+/// How the viewport shows splats; the order is that of the menu.
+enum class DisplayMode { Beauty, Centres, Rings, Ellipsoids, Depth, Opacity, Labels, LabelWeight, Attention, Changed };
+constexpr std::array<const char*, 10> DisplayModeNames{"Beauty",  "Centres", "Rings",        "Ellipsoids", "Depth",
+                                                       "Opacity", "Labels",  "Label weight", "Attention",  "Changed"};
+
+enum class Tool { Orbit, Brush, Rectangle, Lasso };
+enum class SetOperation { Add, Remove, Intersect, Replace };
+enum class Comparison { None, Wipe, Original };
+
+/// Everything of the window an artist sets; saved in the project. One list of fields.
+struct ViewSettings {
+    int mode = 0;                   // DisplayMode
+    int sh_degree = 3;
+    bool tint_labels = true;        // labels over the beauty picture
+    float tint_strength = 0.6f;
+    bool show_axes = true;
+    bool show_bounds = false;
+    bool show_views = false;        // camera frusta
+    bool show_hud = true;
+    bool front_only = true;         // selection touches what is seen, not what is behind
+    float brush_px = 24;
+    std::string background = "#1d1f24";
+    float wipe = 0.5f;
+    double fov_degrees = 50;
+    double move_speed = 1;
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("mode", self.mode, "How splats are shown.", Range{0, 9});
+        f("sh_degree", self.sh_degree, "Highest spherical-harmonics degree shown.", Range{0, 3});
+        f("tint_labels", self.tint_labels, "Tint the labelled splats over the picture.");
+        f("tint_strength", self.tint_strength, "How strong the tint is.", Range{0, 1});
+        f("show_axes", self.show_axes, "World axes.");
+        f("show_bounds", self.show_bounds, "Box around the scene.");
+        f("show_views", self.show_views, "Cameras of the views.");
+        f("show_hud", self.show_hud, "Frame rate and counts over the picture.");
+        f("front_only", self.front_only, "Selecting touches the front only, not what is behind.");
+        f("brush_px", self.brush_px, "Radius of the brush in pixels.", Range{1, 500});
+        f("background", self.background, "Colour behind the scene.");
+        f("wipe", self.wipe, "Where the wipe between before and after stands.", Range{0, 1});
+        f("fov_degrees", self.fov_degrees, "Horizontal field of view.", Range{5, 150});
+        f("move_speed", self.move_speed, "Speed of flying.", Range{0.01, 100});
+    }
+};
+
+/// The job that runs (or ran last).
+struct JobView {
+    bool running = false;
+    bool paused = false;
+    bool can_pause = false;
+    std::string title;              // "Edit: a red bear", "Locate", "Turntable turn.mp4"
+    std::string stage;              // "render", "attention", ...
+    int step = 0, total = 0;        // of the stage, total 0 = unknown
+    double seconds = 0;
+    double eta_seconds = -1;        // negative = unknown
+    std::string outcome;            // empty while it runs; then "done in 61 s", "stopped", ...
+    std::string error;              // one sentence, with what to do; empty = none
+};
+
+/// A point of the curves in Progress.
+struct LossPoint {
+    int iteration = 0;
+    float preservation = 0, anchor = 0, guidance_loss = 0, guidance_norm = 0, preservation_norm = 0;
+};
+
+/// A state of the running (or last) edit that can be looked at again.
+struct SnapshotView {
+    int iteration = 0;
+    std::size_t splats = 0;
+};
+
+/// What Locate found, per view; the pictures are made once, ready for the screen.
+struct AttentionView {
+    std::string name;
+    std::shared_ptr<const Image> render;         // [H,W,3]
+    std::shared_ptr<const Image> map;            // [H,W,1] attention in [0,1]
+    std::shared_ptr<const Image> map_coloured;   // [H,W,3] the map in false colour over the render
+    std::shared_ptr<const Image> mask_picture;   // [H,W,3] mask over the render
+    std::vector<edit::PointPrompt> points;
+    std::string branch;                          // what made the mask
+    double captured = 0;
+    bool failed = false;
+    Camera camera;
+};
+
+/// A place where a model was looked for.
+struct ModelView {
+    std::string name;
+    std::string path;
+    std::string structure;       // "Stable Diffusion 1.x", "starter", ...
+    std::uint64_t bytes = 0;
+    bool usable = false;
+    std::string problem;         // what is missing or not supported, and what to do
+    bool chosen = false;
+};
+
+struct LogLine {
+    log::Level level = log::Level::Info;
+    std::string time;            // "14:02:07"
+    std::string text;
+};
+
+/// What an edit will cost, before it starts.
+struct Estimate {
+    double seconds = -1;         // negative = not known yet
+    double memory_mb = -1;
+    double memory_free_mb = -1;
+};
+
+/// A short message over the viewport, with an optional button.
+struct Toast {
+    std::string text;
+    bool is_error = false;
+    double age_seconds = 0;
+};
+
+/// Settings of a picture or film to be written (Export panel and dialogs).
+struct ExportSettings {
+    int width = 1920, height = 1080;
+    bool transparent = false;
+    std::string picture_path = "screenshot.png";
+    std::string film_path = "turntable.mp4";     // .mp4, .webm, or a folder for PNGs
+    int frames = 120;
+    double fps = 30;
+    double degrees = 360;
+    double start_degrees = 0;
+    bool ease = false;
+    double radius_factor = 1;                    // of the fitted distance
+    double elevation_degrees = 12;
+    bool around_label = true;                    // centre: what is labelled, else the scene
+    bool before_after = false;
+    std::string scene_path = "edited.ply";       // format by extension
+    bool with_labels = false;
+    std::string camera_path_path = "camera_path.json";
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("width", self.width, "Width in pixels.", Range{16, 16384});
+        f("height", self.height, "Height in pixels.", Range{16, 16384});
+        f("transparent", self.transparent, "Transparent background (PNG).");
+        f("picture_path", self.picture_path, "File of the screenshot.");
+        f("film_path", self.film_path, "File of the turntable: .mp4, .webm, or a folder for PNG frames.");
+        f("frames", self.frames, "Frames of the turntable.", Range{1, 100000});
+        f("fps", self.fps, "Frames per second.", Range{1, 240});
+        f("degrees", self.degrees, "How far it turns.", Range{-36000, 36000});
+        f("start_degrees", self.start_degrees, "Where it starts.", Range{-3600, 3600});
+        f("ease", self.ease, "Start and stop gently.");
+        f("radius_factor", self.radius_factor, "Distance, relative to the fitted one.", Range{0.05, 20});
+        f("elevation_degrees", self.elevation_degrees, "Height above the horizon.", Range{-89, 89});
+        f("around_label", self.around_label, "Turn around what is labelled.");
+        f("before_after", self.before_after, "Before and after side by side.");
+        f("scene_path", self.scene_path, "File of the scene: .ply, .compressed.ply, .splat, .spz.");
+        f("with_labels", self.with_labels, "Write the label as a float column (PLY).");
+        f("camera_path_path", self.camera_path_path, "File of the camera path.");
+    }
+};
+
+/// One camera on the artist's path.
+struct CameraKey {
+    double time = 0;             // seconds
+    Camera camera;
+};
+
+/// Everything the panels read. Pointers are valid for the frame.
+struct ViewModel {
+    // Document
+    const Document* document = nullptr;          // null or empty() = nothing open
+    SceneStatistics statistics;
+    std::string scene_path, project_path;
+    bool unsaved = false;
+    std::string saved_at;                        // "saved 14:02 (autosave on)"
+    std::vector<std::string> recent;             // paths, newest first
+    std::vector<std::string> recoverable;        // projects that can be recovered after a crash
+    // Viewport
+    TextureId viewport = 0;                      // the rendered picture
+    int viewport_width = 0, viewport_height = 0; // of the texture
+    std::shared_ptr<const Image> viewport_depth; // [H,W,1] may be null; for front-only selection and picking
+    Camera camera;                               // of the picture shown
+    OrbitParameters orbit;                       // home: the fitted orbit
+    double frames_per_second = 0, render_ms = 0;
+    std::string renderer;                        // "native AVX-512", "Vulkan: llvmpipe"
+    std::size_t labelled = 0;
+    // Prompt
+    edit::EditRequest request;                   // as edited by the panel, echoed by the application
+    std::vector<std::string> known_words;        // of the chosen model; empty = open vocabulary
+    bool words_known = false;                    // known_words has been read
+    Estimate estimate;
+    std::string cannot_edit;                     // why Locate and Edit are off; empty = they are on
+    // Localization
+    std::vector<AttentionView> attention;
+    std::string attention_word, attention_mode;  // "bear", "modify: ..."
+    double attention_threshold = 0.5;
+    // Work
+    JobView job;                                 // locate, edit
+    JobView file_job;                            // load, export, save
+    std::vector<LossPoint> losses;
+    std::vector<SnapshotView> snapshots;
+    int shown_snapshot = -1;                     // index into snapshots, -1 = newest
+    bool result_waiting = false;                 // an edit is done and asks: apply or discard
+    // Rest
+    std::vector<ModelView> models;
+    std::vector<LogLine> log;
+    std::vector<Toast> toasts;
+    ViewSettings view;
+    ExportSettings exports;
+    std::vector<CameraKey> camera_keys;
+    Comparison comparison = Comparison::None;
+    float ui_scale = 1;
+};
+
+}  // namespace gse::ui
