@@ -14,6 +14,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
+#include "engine/base/spelling.h"
 #include "engine/edit/grabcut_segmenter.h"
 #include "engine/io/scene_io.h"
 #include "engine/localize/focus.h"
@@ -64,11 +65,16 @@ std::string words_for_azimuth(double azimuth) {
     return turned < 50 * Degree ? "front view" : turned > 130 * Degree ? "back view" : "side view";
 }
 
-/// Azimuth from which a camera sees the orbit's centre, in the convention of orbit_camera.
-double azimuth_of(const Camera& camera, const OrbitParameters& orbit) {
+/// Level unit direction from the orbit's centre to its camera at `azimuth`.
+Vec3 direction_at(const OrbitParameters& orbit, double azimuth) {
     OrbitParameters level = orbit;
     level.elevation = 0;
-    const Vec3 front = normalized(orbit_camera(level, 0, 8, 8).centre() - orbit.centre);
+    return normalized(orbit_camera(level, azimuth, 8, 8).centre() - orbit.centre);
+}
+
+/// Azimuth from which a camera sees the orbit's centre, in the convention of orbit_camera.
+double azimuth_of(const Camera& camera, const OrbitParameters& orbit) {
+    const Vec3 front = direction_at(orbit, 0);
     const Vec3 side = cross(normalized(orbit.up), front);
     const Vec3 direction = camera.centre() - orbit.centre;
     return std::atan2(dot(direction, side), dot(direction, front));
@@ -85,22 +91,6 @@ double parse_front(const std::string& text) {
     if (used == 0 || used != text.size() || !std::isfinite(value))
         throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not an angle", "give --front in degrees, for example 0");
     return value * Degree;
-}
-
-/// Levenshtein distance, for suggestions.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t above = row[j];
-            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-            diagonal = above;
-        }
-    }
-    return row[b.size()];
 }
 
 std::string join_prompt(const std::vector<std::string>& words) {
@@ -123,10 +113,9 @@ void warn_unknown_words(const std::vector<std::string>& words, const std::vector
     if (known.empty()) return;
     for (const auto& word : words) {
         if (std::find(known.begin(), known.end(), word) != known.end()) continue;
-        const auto nearest = *std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-            return edit_distance(a, word) < edit_distance(b, word);
-        });
-        log::warning("the model does not know the word \"{}\"; the nearest it knows is \"{}\"", word, nearest);
+        const auto nearest = nearest_word(word, known);
+        if (nearest.empty()) log::warning("the model does not know the word \"{}\"", word);
+        else log::warning("the model does not know the word \"{}\"; the nearest it knows is \"{}\"", word, nearest);
     }
 }
 
@@ -240,7 +229,8 @@ edit::LocateInput EditJob::locate_input() const {
     raster::Settings settings;
     settings.background = parse_colour(recipe_.request.background);
     settings.antialiased = scene_.info.antialiased;
-    return {scene_.gaussians, views_, view_words_, recipe_.request, settings, scene_.info.up};
+    const double front = recipe_.job.front.empty() ? 0 : parse_front(recipe_.job.front);
+    return {scene_.gaussians, views_, view_words_, recipe_.request, settings, scene_.info.up, direction_at(orbit_, front)};
 }
 
 /// How decided the views are: 1 when every splat is either always or never inside the masks.

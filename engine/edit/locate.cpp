@@ -13,6 +13,7 @@
 #include "engine/base/random.h"
 #include "engine/localize/clusters.h"
 #include "engine/localize/points.h"
+#include "engine/localize/spread.h"
 
 namespace gse::edit {
 namespace {
@@ -289,8 +290,12 @@ private:
                         fmt::format("\"{}\" was found in {} views, at least {} are needed", search.word,
                                     weights.views_used, LeastViews),
                         "look from more views");
-        Label label =
-            localize::label_from_weights(search.word, weights, request().tau, least_evidence(weights));
+        const double least = least_evidence(weights);
+        localize::SpreadParameters spread;
+        spread.least_evidence_px = least;
+        spread.tau = request().tau;
+        localize::spread_to_unseen(input_.gaussians.spans(), spread, weights);
+        Label label = localize::label_from_weights(search.word, weights, request().tau, least);
         return {std::move(weights), std::move(label)};
     }
 

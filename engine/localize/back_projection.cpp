@@ -35,8 +35,11 @@ LabelWeights back_project(const GaussianSpans& gaussians, std::span<const Masked
 
 Label label_from_weights(const std::string& name, const LabelWeights& weights, double tau, double least_evidence_px) {
     std::vector<std::uint8_t> bits(weights.weight.size());
-    for (std::size_t row = 0; row < bits.size(); ++row)
-        bits[row] = weights.weight[row] > tau && weights.evidence[row] > least_evidence_px ? 1 : 0;
+    for (std::size_t row = 0; row < bits.size(); ++row) {
+        const bool known = weights.evidence[row] > least_evidence_px ||
+                           (!weights.inferred.empty() && weights.inferred[row] != 0);
+        bits[row] = weights.weight[row] > tau && known ? 1 : 0;
+    }
     Label label;
     label.name = name;
     label.weight = std::make_shared<const std::vector<float>>(weights.weight);

@@ -1,6 +1,7 @@
 // From one mask per view to one weight per Gaussian (GSEditPro 3.2; method S5, variant B).
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@ namespace gse::localize {
 struct LabelWeights {
     std::vector<float> weight;     // [N] sum(alpha T M) / sum(alpha T) over the views used, in [0,1]
     std::vector<double> evidence;  // [N] sum(alpha T) in pixels
+    std::vector<std::uint8_t> inferred;  // [N] or empty: 1 = no view saw the row, its neighbours decided (spread.h)
     int views_used = 0;
 };
 
@@ -28,7 +30,7 @@ struct MaskedView {
 LabelWeights back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
                           const raster::Settings& settings, raster::Rasterizer& rasterizer);
 
-/// Rows with weight > tau and evidence > least_evidence_px become the label; the weights stay for display.
+/// Rows with weight > tau that were seen (evidence > least_evidence_px) or whose neighbours decided become the label; the weights stay for display.
 Label label_from_weights(const std::string& name, const LabelWeights& weights, double tau, double least_evidence_px);
 
 }  // namespace gse::localize

@@ -104,6 +104,7 @@ class Edits(ProgramTest):
                       "--image-size", 64, "--iterations", 150, timeout=1500)
         self.assertEqual(process.returncode, 0, process.stderr)
         figures = json.loads(process.stdout)
+        self.assertGreaterEqual(figures["localization"]["mean_iou"], 0.7)
         self.assertGreaterEqual(figures["localization"]["mean_weighted_iou"], 0.7)
         self.assertGreaterEqual(figures["recolour"]["mean_colour_error_reduction"], 0.5)
         self.assertGreaterEqual(figures["add"]["mean_recall"], 0.5)
