@@ -2,6 +2,7 @@
 // stack can be switched on and off on their own.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -35,5 +36,31 @@ SceneDelta make_delta(const GaussianSet& before, std::span<const RowId> before_i
 /// their order, then the added ones. Both SH degrees must agree (a delta of a lower degree is widened with zeros).
 std::pair<GaussianSet, std::vector<RowId>> apply_delta(const GaussianSet& set, std::span<const RowId> ids,
                                                        const SceneDelta& delta);
+
+/// Several at once, oldest first: the same result, but each array is copied at most once where no rows come or go.
+std::pair<GaussianSet, std::vector<RowId>> apply_deltas(const GaussianSet& set, std::span<const RowId> ids,
+                                                        std::span<const SceneDelta* const> deltas);
+
+/// Calls visit(row, k) for every row whose identity is wanted[k], rows ascending. `wanted` must ascend; `ids` may be in any
+/// order (long ascending stretches are fast).
+template <class F>
+void locate_rows(std::span<const RowId> ids, std::span<const RowId> wanted, F&& visit) {
+    std::size_t begin = 0;
+    while (begin < ids.size() && !wanted.empty()) {
+        std::size_t end = begin + 1;
+        while (end < ids.size() && ids[end] > ids[end - 1]) ++end;
+        auto k = static_cast<std::size_t>(std::lower_bound(wanted.begin(), wanted.end(), ids[begin]) - wanted.begin());
+        for (std::size_t row = begin; k < wanted.size() && wanted[k] <= ids[end - 1]; ++k) {
+            std::size_t step = 1;  // gallop: the next one is near
+            while (row + step < end && ids[row + step] <= wanted[k]) step *= 2;
+            const auto from = ids.begin() + static_cast<std::ptrdiff_t>(row + step / 2);
+            const auto to = ids.begin() + static_cast<std::ptrdiff_t>(std::min(row + step, end));
+            row = static_cast<std::size_t>(std::lower_bound(from, to, wanted[k]) - ids.begin());
+            if (row < end && ids[row] == wanted[k]) visit(row, k);
+            if (row == end) break;
+        }
+        begin = end;
+    }
+}
 
 }  // namespace gse

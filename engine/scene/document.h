@@ -13,6 +13,13 @@
 
 namespace gse {
 
+/// What a label said of rows that are not there at present (their edit is off), so that they come back labelled.
+struct AbsentRows {
+    std::vector<RowId> ids;             // ascending
+    std::vector<float> weight;          // [ids]
+    std::vector<std::int8_t> manual;    // [ids]
+};
+
 /// A named label an artist sees and corrects. bits[row] = manual[row] != 0 ? manual[row] > 0 : weight[row] > threshold.
 struct NamedLabel {
     std::string name;
@@ -20,9 +27,10 @@ struct NamedLabel {
     std::shared_ptr<const std::vector<float>> weight;         // [N] in [0,1], from the views; never changed by hand
     std::shared_ptr<const std::vector<std::int8_t>> manual;   // [N] +1 added, -1 removed by hand, 0 = as the weight says
     std::shared_ptr<const std::vector<std::uint8_t>> bits;    // [N] 0 or 1, what the others give
+    std::shared_ptr<const AbsentRows> absent;                 // may be null
 };
 
-/// Fills `bits` from weight, manual and threshold.
+/// Fills `bits` from weight, manual and threshold; a channel that is null counts as zeros.
 NamedLabel with_bits(NamedLabel label);
 
 /// One edit of the stack.
@@ -50,13 +58,46 @@ struct DocumentState {
     std::vector<View> views;
 };
 
+/// Calls visit(address, bytes) for every array the state holds; arrays shared between states have one address.
+template <class F>
+void visit_arrays(const DocumentState& state, F&& visit) {
+    for (const GaussianSet* set : {&state.base, &state.current}) {
+        const GaussianBuffers arrays = set->buffers();
+        for (const auto* array :
+             {&arrays.position, &arrays.log_scale, &arrays.rotation, &arrays.opacity_logit, &arrays.sh})
+            visit(static_cast<const void*>(array->get()), (*array)->size() * sizeof(float));
+    }
+    const auto visit_vector = [&](const auto& array) {
+        if (array != nullptr) visit(static_cast<const void*>(array.get()), array->size() * sizeof(array->front()));
+    };
+    visit_vector(state.row_ids);
+    for (const EditNode& edit : state.stack) {
+        if (edit.delta != nullptr) visit(static_cast<const void*>(edit.delta.get()), edit.delta->byte_size());
+        if (edit.thumbnail != nullptr)
+            visit(static_cast<const void*>(edit.thumbnail.get()), edit.thumbnail->data.size() * sizeof(float));
+    }
+    for (const NamedLabel& label : state.labels) {
+        visit_vector(label.weight);
+        visit_vector(label.manual);
+        visit_vector(label.bits);
+        if (label.absent != nullptr)
+            visit(static_cast<const void*>(label.absent.get()),
+                  label.absent->ids.size() * (sizeof(RowId) + sizeof(float) + 1));
+    }
+}
+
 /// The state of a freshly loaded scene (labels that the file carried become named labels).
 DocumentState initial_state(const Scene& scene, std::vector<View> views);
+
+/// Identity for an edit to be pushed on this stack.
+std::uint64_t next_edit_id(const DocumentState& state);
 
 /// The same state with `current`, `row_ids` and the labels recomputed for another stack; labels follow their rows.
 DocumentState with_stack(const DocumentState& state, std::vector<EditNode> stack);
 
-/// Undo and redo over named states, bounded by entries and bytes (arrays shared with a neighbour count once).
+/// Undo and redo over named states, bounded by entries and bytes (arrays shared with a neighbour count once). When bytes
+/// run out, states away from the current one first give up their `current`, which the base and the stack give again bit
+/// for bit; then the oldest are forgotten.
 class Document {
 public:
     struct Limits {
@@ -82,7 +123,8 @@ public:
     void go_to(std::size_t position);
     /// Bytes held by undo and redo beyond the current state.
     std::size_t undo_bytes() const;
-    /// Grows with every change of state; compared with the value at the last save it tells whether there is work unsaved.
+    /// A number of the current state, new for every applied one; compared with the value at the last save it tells whether there is work unsaved
+    /// (undo back to the saved state and there is none).
     std::uint64_t revision() const { return revision_; }
 
 private:
@@ -90,6 +132,7 @@ private:
         std::string name, merge_key;
         DocumentState state;
         std::uint64_t revision = 0;
+        bool thin = false;   // `current` and `row_ids` are given up until the state is current again
     };
     void trim();
     std::vector<Step> states_;

@@ -53,18 +53,34 @@ GaussianSpans spans(const GaussianData& data) {
 
 GaussianSet::GaussianSet() : GaussianSet(GaussianData{}) {}
 
-GaussianSet::GaussianSet(GaussianData data) : sh_degree_(data.sh_degree) {
-    const std::size_t n = data.size();
-    GSE_CHECK(data.sh_degree >= 0 && data.sh_degree <= MaxShDegree);
-    GSE_CHECK_EQ(data.position.size(), n * 3);
-    GSE_CHECK_EQ(data.log_scale.size(), n * 3);
-    GSE_CHECK_EQ(data.rotation.size(), n * 4);
-    GSE_CHECK_EQ(data.sh.size(), n * data.sh_stride());
-    position_ = share(std::move(data.position));
-    log_scale_ = share(std::move(data.log_scale));
-    rotation_ = share(std::move(data.rotation));
-    opacity_logit_ = share(std::move(data.opacity_logit));
-    sh_ = share(std::move(data.sh));
+GaussianSet::GaussianSet(GaussianData data)
+    : sh_degree_(data.sh_degree),
+      position_(share(std::move(data.position))),
+      log_scale_(share(std::move(data.log_scale))),
+      rotation_(share(std::move(data.rotation))),
+      opacity_logit_(share(std::move(data.opacity_logit))),
+      sh_(share(std::move(data.sh))) {
+    check_lengths();
+}
+
+GaussianSet::GaussianSet(GaussianBuffers buffers)
+    : sh_degree_(buffers.sh_degree),
+      position_(std::move(buffers.position)),
+      log_scale_(std::move(buffers.log_scale)),
+      rotation_(std::move(buffers.rotation)),
+      opacity_logit_(std::move(buffers.opacity_logit)),
+      sh_(std::move(buffers.sh)) {
+    GSE_CHECK(position_ && log_scale_ && rotation_ && opacity_logit_ && sh_);
+    check_lengths();
+}
+
+void GaussianSet::check_lengths() const {
+    const std::size_t n = opacity_logit_->size();
+    GSE_CHECK(sh_degree_ >= 0 && sh_degree_ <= MaxShDegree);
+    GSE_CHECK_EQ(position_->size(), n * 3);
+    GSE_CHECK_EQ(log_scale_->size(), n * 3);
+    GSE_CHECK_EQ(rotation_->size(), n * 4);
+    GSE_CHECK_EQ(sh_->size(), n * static_cast<std::size_t>(sh_coefficient_count(sh_degree_)) * 3);
 }
 
 GaussianSpans GaussianSet::spans() const {

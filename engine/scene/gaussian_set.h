@@ -38,14 +38,23 @@ struct GaussianSpans {
 
 GaussianSpans spans(const GaussianData& data);
 
+/// The shared arrays of a set.
+struct GaussianBuffers {
+    using Buffer = std::shared_ptr<const std::vector<float>>;
+    int sh_degree = 0;
+    Buffer position, log_scale, rotation, opacity_logit, sh;
+};
+
 /// Immutable set; copies share their arrays.
 class GaussianSet {
 public:
-    using Buffer = std::shared_ptr<const std::vector<float>>;
+    using Buffer = GaussianBuffers::Buffer;
 
     GaussianSet();
     /// Takes the arrays over; aborts if their lengths disagree.
     explicit GaussianSet(GaussianData data);
+    /// Shares these arrays (none may be null); aborts if their lengths disagree.
+    explicit GaussianSet(GaussianBuffers buffers);
 
     std::size_t size() const { return opacity_logit_->size(); }
     bool empty() const { return size() == 0; }
@@ -57,6 +66,12 @@ public:
     std::span<const float> sh() const { return *sh_; }
 
     GaussianSpans spans() const;
+    GaussianBuffers buffers() const { return {sh_degree_, position_, log_scale_, rotation_, opacity_logit_, sh_}; }
+    /// The very same arrays, not only the same values.
+    bool shares_all_with(const GaussianSet& other) const {
+        return sh_degree_ == other.sh_degree_ && position_ == other.position_ && log_scale_ == other.log_scale_ &&
+               rotation_ == other.rotation_ && opacity_logit_ == other.opacity_logit_ && sh_ == other.sh_;
+    }
     /// Deep copy for changing.
     GaussianData to_data() const;
     /// Rows for which keep[row] != 0, in order.
@@ -65,6 +80,8 @@ public:
     std::size_t byte_size() const;
 
 private:
+    void check_lengths() const;
+
     int sh_degree_ = 0;
     Buffer position_, log_scale_, rotation_, opacity_logit_, sh_;
 };
