@@ -25,7 +25,8 @@ std::array<std::vector<float>*, ColumnCount> columns_of(GaussianData& data) {
     return {&data.position, &data.log_scale, &data.rotation, &data.opacity_logit, &data.sh};
 }
 
-/// Bits of `a`[a_stride] and `b`[b_stride] agree where both have values, and the longer one goes on with zeros.
+/// Bits of `a`[a_stride] and `b`[b_stride] agree where both have values, and the longer one goes on with
+/// zeros.
 bool same_widened(const float* a, std::size_t a_stride, const float* b, std::size_t b_stride) {
     const std::size_t common = std::min(a_stride, b_stride);
     if (std::memcmp(a, b, common * sizeof(float)) != 0) return false;
@@ -54,7 +55,8 @@ GaussianData gather(const GaussianSpans& set, std::span<const std::size_t> rows)
     for (std::size_t c = 0; c < ColumnCount; ++c) {
         to[c]->resize(rows.size() * stride[c]);
         for (std::size_t i = 0; i < rows.size(); ++i)
-            std::memcpy(to[c]->data() + i * stride[c], from[c].data() + rows[i] * stride[c], stride[c] * sizeof(float));
+            std::memcpy(to[c]->data() + i * stride[c], from[c].data() + rows[i] * stride[c],
+                        stride[c] * sizeof(float));
     }
     return data;
 }
@@ -65,7 +67,9 @@ struct Column {
     std::vector<float> own;
     std::size_t stride = 1;
 
-    std::span<const float> values() const { return shared != nullptr ? std::span<const float>(*shared) : own; }
+    std::span<const float> values() const {
+        return shared != nullptr ? std::span<const float>(*shared) : own;
+    }
     float* writable() {
         if (shared != nullptr) {
             own.assign(shared->begin(), shared->end());
@@ -102,8 +106,12 @@ public:
     }
 
     std::pair<GaussianSet, std::vector<RowId>> finish() {
-        GaussianBuffers buffers{degree_,           columns_[0].finish(), columns_[1].finish(),
-                                columns_[2].finish(), columns_[3].finish(), columns_[4].finish()};
+        GaussianBuffers buffers{degree_,
+                                columns_[0].finish(),
+                                columns_[1].finish(),
+                                columns_[2].finish(),
+                                columns_[3].finish(),
+                                columns_[4].finish()};
         return {GaussianSet(std::move(buffers)), std::move(ids_)};
     }
 
@@ -170,8 +178,8 @@ private:
             const std::size_t stride = column.stride, given = changed_strides[c];
             const auto values = column.values();
             const bool differs = std::any_of(rows.begin(), rows.end(), [&](const auto& pair) {
-                return !same_widened(values.data() + pair.first * stride, stride, changed[c].data() + pair.second * given,
-                                     given);
+                return !same_widened(values.data() + pair.first * stride, stride,
+                                     changed[c].data() + pair.second * given, given);
             });
             if (!differs) continue;
             float* to = column.writable();

@@ -1,5 +1,5 @@
-// An edit as the difference between two sets of Gaussians: changed, removed and added rows, by identity, so that edits of a
-// stack can be switched on and off on their own.
+// An edit as the difference between two sets of Gaussians: changed, removed and added rows, by identity, so
+// that edits of a stack can be switched on and off on their own.
 #pragma once
 
 #include <algorithm>
@@ -13,43 +13,46 @@
 
 namespace gse {
 
-/// Identity of a row for the whole life of a document: rows of the base are 0..N-1, rows that edit `e` added are
-/// (e << 32) | index.
+/// Identity of a row for the whole life of a document: rows of the base are 0..N-1, rows that edit `e` added
+/// are (e << 32) | index.
 using RowId = std::uint64_t;
 
 struct SceneDelta {
-    std::vector<RowId> changed;        // ascending
-    GaussianData changed_rows;         // [changed.size()] their new values
-    std::vector<RowId> removed;        // ascending
-    std::vector<RowId> added;          // identities of the new rows
-    GaussianData added_rows;           // [added.size()]
+    std::vector<RowId> changed;  // ascending
+    GaussianData changed_rows;   // [changed.size()] their new values
+    std::vector<RowId> removed;  // ascending
+    std::vector<RowId> added;    // identities of the new rows
+    GaussianData added_rows;     // [added.size()]
 
     std::size_t byte_size() const;
 };
 
-/// The difference. base_to_new[row] is the row of `after` that `before`'s row became, -1 = removed; rows of `after` that no
-/// row maps to are new and get identities of edit `edit_id`. Bit-identical rows do not enter.
+/// The difference. base_to_new[row] is the row of `after` that `before`'s row became, -1 = removed; rows of
+/// `after` that no row maps to are new and get identities of edit `edit_id`. Bit-identical rows do not enter.
 SceneDelta make_delta(const GaussianSet& before, std::span<const RowId> before_ids, const GaussianSet& after,
                       std::span<const std::int64_t> base_to_new, std::uint64_t edit_id);
 
-/// Applies it; rows it names that are not there (their edit is switched off) are passed over. Order: the rows that stay, in
-/// their order, then the added ones. Both SH degrees must agree (a delta of a lower degree is widened with zeros).
+/// Applies it; rows it names that are not there (their edit is switched off) are passed over. Order: the rows
+/// that stay, in their order, then the added ones. Both SH degrees must agree (a delta of a lower degree is
+/// widened with zeros).
 std::pair<GaussianSet, std::vector<RowId>> apply_delta(const GaussianSet& set, std::span<const RowId> ids,
                                                        const SceneDelta& delta);
 
-/// Several at once, oldest first: the same result, but each array is copied at most once where no rows come or go.
+/// Several at once, oldest first: the same result, but each array is copied at most once where no rows come
+/// or go.
 std::pair<GaussianSet, std::vector<RowId>> apply_deltas(const GaussianSet& set, std::span<const RowId> ids,
                                                         std::span<const SceneDelta* const> deltas);
 
-/// Calls visit(row, k) for every row whose identity is wanted[k], rows ascending. `wanted` must ascend; `ids` may be in any
-/// order (long ascending stretches are fast).
+/// Calls visit(row, k) for every row whose identity is wanted[k], rows ascending. `wanted` must ascend; `ids`
+/// may be in any order (long ascending stretches are fast).
 template <class F>
 void locate_rows(std::span<const RowId> ids, std::span<const RowId> wanted, F&& visit) {
     std::size_t begin = 0;
     while (begin < ids.size() && !wanted.empty()) {
         std::size_t end = begin + 1;
         while (end < ids.size() && ids[end] > ids[end - 1]) ++end;
-        auto k = static_cast<std::size_t>(std::lower_bound(wanted.begin(), wanted.end(), ids[begin]) - wanted.begin());
+        auto k = static_cast<std::size_t>(std::lower_bound(wanted.begin(), wanted.end(), ids[begin]) -
+                                          wanted.begin());
         for (std::size_t row = begin; k < wanted.size() && wanted[k] <= ids[end - 1]; ++k) {
             std::size_t step = 1;  // gallop: the next one is near
             while (row + step < end && ids[row + step] <= wanted[k]) step *= 2;

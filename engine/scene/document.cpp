@@ -30,13 +30,13 @@ std::vector<const SceneDelta*> enabled_deltas(const std::vector<EditNode>& stack
     return deltas;
 }
 
-/// Sets `current` and `row_ids` of `state` from its base and stack. `near` is a whole state: where its stack begins the
-/// same way over the same base, its result is where this one starts.
+/// Sets `current` and `row_ids` of `state` from its base and stack. `near` is a whole state: where its stack
+/// begins the same way over the same base, its result is where this one starts.
 void rebuild_rows(DocumentState& state, const DocumentState& near) {
     const auto wanted = enabled_deltas(state.stack);
     const auto done = enabled_deltas(near.stack);
-    const bool ahead = near.row_ids != nullptr && state.base.shares_all_with(near.base) && done.size() <= wanted.size() &&
-                       std::equal(done.begin(), done.end(), wanted.begin());
+    const bool ahead = near.row_ids != nullptr && state.base.shares_all_with(near.base) &&
+                       done.size() <= wanted.size() && std::equal(done.begin(), done.end(), wanted.begin());
     const GaussianSet start = ahead ? near.current : state.base;
     const SharedIds start_ids = ahead ? near.row_ids : base_ids(state.base.size());
     const std::span<const SceneDelta* const> rest = std::span(wanted).subspan(ahead ? done.size() : 0);
@@ -58,8 +58,9 @@ std::vector<std::uint32_t> old_rows(std::span<const RowId> old_ids, std::span<co
     while (begin < new_ids.size()) {  // locate_rows wants ascending identities: one call for each stretch
         std::size_t end = begin + 1;
         while (end < new_ids.size() && new_ids[end] > new_ids[end - 1]) ++end;
-        locate_rows(old_ids, new_ids.subspan(begin, end - begin),
-                    [&](std::size_t row, std::size_t k) { rows[begin + k] = static_cast<std::uint32_t>(row); });
+        locate_rows(old_ids, new_ids.subspan(begin, end - begin), [&](std::size_t row, std::size_t k) {
+            rows[begin + k] = static_cast<std::uint32_t>(row);
+        });
         begin = end;
     }
     return rows;
@@ -84,8 +85,10 @@ public:
         : before_ids_(*before.row_ids), after_ids_(*after.row_ids), from_(old_rows(before_ids_, after_ids_)) {
         std::vector<std::uint8_t> goes_on(before_ids_.size(), 0);
         for (std::size_t row = 0; row < from_.size(); ++row) {
-            if (from_[row] != NoRow) goes_on[from_[row]] = 1;
-            else arrived_.emplace_back(after_ids_[row], row);
+            if (from_[row] != NoRow)
+                goes_on[from_[row]] = 1;
+            else
+                arrived_.emplace_back(after_ids_[row], row);
         }
         for (std::size_t row = 0; row < goes_on.size(); ++row)
             if (goes_on[row] == 0) leaving_.push_back(row);
@@ -101,7 +104,8 @@ public:
         if (label.weight != nullptr) weight = follow(*label.weight);
         if (label.manual != nullptr) manual = follow(*label.manual);
         std::erase_if(absent, [&](const LabelValue& value) {
-            const auto found = std::lower_bound(arrived_.begin(), arrived_.end(), std::pair{value.id, std::size_t{0}});
+            const auto found =
+                std::lower_bound(arrived_.begin(), arrived_.end(), std::pair{value.id, std::size_t{0}});
             if (found == arrived_.end() || found->first != value.id) return !may_return(value.id);
             weight.resize(after_ids_.size());
             manual.resize(after_ids_.size());
@@ -159,9 +163,9 @@ private:
     }
 
     std::span<const RowId> before_ids_, after_ids_;
-    std::vector<std::uint32_t> from_;                        // [after] row before, or NoRow
-    std::vector<std::pair<RowId, std::size_t>> arrived_;     // identity and row after, ascending
-    std::vector<std::size_t> leaving_;                       // rows before
+    std::vector<std::uint32_t> from_;                     // [after] row before, or NoRow
+    std::vector<std::pair<RowId, std::size_t>> arrived_;  // identity and row after, ascending
+    std::vector<std::size_t> leaving_;                    // rows before
     std::vector<std::uint64_t> edits_;
 };
 
@@ -251,7 +255,8 @@ NamedLabel with_bits(NamedLabel label) {
 
 DocumentState initial_state(const Scene& scene, std::vector<View> views) {
     if (scene.gaussians.size() >= NoRow)
-        throw Error(ErrorCode::Unsupported, "the scene has more than four thousand million splats", "split it");
+        throw Error(ErrorCode::Unsupported, "the scene has more than four thousand million splats",
+                    "split it");
     DocumentState state;
     state.base = state.current = scene.gaussians;
     state.info = scene.info;

@@ -1,5 +1,5 @@
-// What an artist works on: base scene, stack of edits as deltas, labels and views, with undo. States are values that share
-// their arrays, so a step of undo costs what it changed.
+// What an artist works on: base scene, stack of edits as deltas, labels and views, with undo. States are
+// values that share their arrays, so a step of undo costs what it changed.
 #pragma once
 
 #include <cstdint>
@@ -13,21 +13,24 @@
 
 namespace gse {
 
-/// What a label said of rows that are not there at present (their edit is off), so that they come back labelled.
+/// What a label said of rows that are not there at present (their edit is off), so that they come back
+/// labelled.
 struct AbsentRows {
-    std::vector<RowId> ids;             // ascending
-    std::vector<float> weight;          // [ids]
-    std::vector<std::int8_t> manual;    // [ids]
+    std::vector<RowId> ids;           // ascending
+    std::vector<float> weight;        // [ids]
+    std::vector<std::int8_t> manual;  // [ids]
 };
 
-/// A named label an artist sees and corrects. bits[row] = manual[row] != 0 ? manual[row] > 0 : weight[row] > threshold.
+/// A named label an artist sees and corrects. bits[row] = manual[row] != 0 ? manual[row] > 0 : weight[row] >
+/// threshold.
 struct NamedLabel {
     std::string name;
     float threshold = 0.5f;
-    std::shared_ptr<const std::vector<float>> weight;         // [N] in [0,1], from the views; never changed by hand
-    std::shared_ptr<const std::vector<std::int8_t>> manual;   // [N] +1 added, -1 removed by hand, 0 = as the weight says
-    std::shared_ptr<const std::vector<std::uint8_t>> bits;    // [N] 0 or 1, what the others give
-    std::shared_ptr<const AbsentRows> absent;                 // may be null
+    std::shared_ptr<const std::vector<float>> weight;  // [N] in [0,1], from the views; never changed by hand
+    std::shared_ptr<const std::vector<std::int8_t>>
+        manual;  // [N] +1 added, -1 removed by hand, 0 = as the weight says
+    std::shared_ptr<const std::vector<std::uint8_t>> bits;  // [N] 0 or 1, what the others give
+    std::shared_ptr<const AbsentRows> absent;               // may be null
 };
 
 /// Fills `bits` from weight, manual and threshold; a channel that is null counts as zeros.
@@ -36,11 +39,11 @@ NamedLabel with_bits(NamedLabel label);
 /// One edit of the stack.
 struct EditNode {
     std::uint64_t id = 0;
-    std::string name;                             // the sentence, or what was done
-    std::string recipe;                           // JSON: everything needed to repeat it; may be empty
+    std::string name;    // the sentence, or what was done
+    std::string recipe;  // JSON: everything needed to repeat it; may be empty
     bool enabled = true;
     std::shared_ptr<const SceneDelta> delta;
-    std::shared_ptr<const Image> thumbnail;       // may be null
+    std::shared_ptr<const Image> thumbnail;  // may be null
     double seconds = 0;
     double psnr_outside_db = 0;
     std::size_t changed_outside_label = 0;
@@ -48,17 +51,18 @@ struct EditNode {
 
 /// One state of the document; copying it copies pointers.
 struct DocumentState {
-    GaussianSet base;                             // as loaded
+    GaussianSet base;  // as loaded
     SceneInfo info;
-    std::vector<EditNode> stack;                  // oldest first
-    GaussianSet current;                          // base with the enabled edits applied
-    std::shared_ptr<const std::vector<RowId>> row_ids;   // [current.size()]
-    std::vector<NamedLabel> labels;               // over the rows of `current`
+    std::vector<EditNode> stack;                        // oldest first
+    GaussianSet current;                                // base with the enabled edits applied
+    std::shared_ptr<const std::vector<RowId>> row_ids;  // [current.size()]
+    std::vector<NamedLabel> labels;                     // over the rows of `current`
     int active_label = -1;
     std::vector<View> views;
 };
 
-/// Calls visit(address, bytes) for every array the state holds; arrays shared between states have one address.
+/// Calls visit(address, bytes) for every array the state holds; arrays shared between states have one
+/// address.
 template <class F>
 void visit_arrays(const DocumentState& state, F&& visit) {
     for (const GaussianSet* set : {&state.base, &state.current}) {
@@ -68,13 +72,15 @@ void visit_arrays(const DocumentState& state, F&& visit) {
             visit(static_cast<const void*>(array->get()), (*array)->size() * sizeof(float));
     }
     const auto visit_vector = [&](const auto& array) {
-        if (array != nullptr) visit(static_cast<const void*>(array.get()), array->size() * sizeof(array->front()));
+        if (array != nullptr)
+            visit(static_cast<const void*>(array.get()), array->size() * sizeof(array->front()));
     };
     visit_vector(state.row_ids);
     for (const EditNode& edit : state.stack) {
         if (edit.delta != nullptr) visit(static_cast<const void*>(edit.delta.get()), edit.delta->byte_size());
         if (edit.thumbnail != nullptr)
-            visit(static_cast<const void*>(edit.thumbnail.get()), edit.thumbnail->data.size() * sizeof(float));
+            visit(static_cast<const void*>(edit.thumbnail.get()),
+                  edit.thumbnail->data.size() * sizeof(float));
     }
     for (const NamedLabel& label : state.labels) {
         visit_vector(label.weight);
@@ -92,12 +98,13 @@ DocumentState initial_state(const Scene& scene, std::vector<View> views);
 /// Identity for an edit to be pushed on this stack.
 std::uint64_t next_edit_id(const DocumentState& state);
 
-/// The same state with `current`, `row_ids` and the labels recomputed for another stack; labels follow their rows.
+/// The same state with `current`, `row_ids` and the labels recomputed for another stack; labels follow their
+/// rows.
 DocumentState with_stack(const DocumentState& state, std::vector<EditNode> stack);
 
-/// Undo and redo over named states, bounded by entries and bytes (arrays shared with a neighbour count once). When bytes
-/// run out, states away from the current one first give up their `current`, which the base and the stack give again bit
-/// for bit; then the oldest are forgotten.
+/// Undo and redo over named states, bounded by entries and bytes (arrays shared with a neighbour count once).
+/// When bytes run out, states away from the current one first give up their `current`, which the base and the
+/// stack give again bit for bit; then the oldest are forgotten.
 class Document {
 public:
     struct Limits {
@@ -110,8 +117,8 @@ public:
 
     const DocumentState& state() const { return states_[position_].state; }
     bool empty() const { return states_.empty(); }
-    /// Makes `state` the current one under `name`; what could be redone is dropped. Steps of the same non-empty `merge_key`
-    /// that follow each other (a slider being dragged, a brush stroke) become one.
+    /// Makes `state` the current one under `name`; what could be redone is dropped. Steps of the same
+    /// non-empty `merge_key` that follow each other (a slider being dragged, a brush stroke) become one.
     void apply(std::string name, DocumentState state, const std::string& merge_key = {});
     bool can_undo() const { return position_ > 0; }
     bool can_redo() const { return position_ + 1 < states_.size(); }
@@ -123,8 +130,8 @@ public:
     void go_to(std::size_t position);
     /// Bytes held by undo and redo beyond the current state.
     std::size_t undo_bytes() const;
-    /// A number of the current state, new for every applied one; compared with the value at the last save it tells whether there is work unsaved
-    /// (undo back to the saved state and there is none).
+    /// A number of the current state, new for every applied one; compared with the value at the last save it
+    /// tells whether there is work unsaved (undo back to the saved state and there is none).
     std::uint64_t revision() const { return revision_; }
 
 private:
@@ -132,7 +139,7 @@ private:
         std::string name, merge_key;
         DocumentState state;
         std::uint64_t revision = 0;
-        bool thin = false;   // `current` and `row_ids` are given up until the state is current again
+        bool thin = false;  // `current` and `row_ids` are given up until the state is current again
     };
     void trim();
     std::vector<Step> states_;

@@ -1,4 +1,5 @@
-// The scene: an immutable structure of arrays, each attribute shared on its own so that an edit copies what it changes.
+// The scene: an immutable structure of arrays, each attribute shared on its own so that an edit copies what
+// it changes.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +12,8 @@
 
 namespace gse {
 
-/// Plain mutable arrays of N Gaussians, as readers, generators and the edit loop fill them. Raw (pre-activation)
-/// values exactly as in a 3DGS file.
+/// Plain mutable arrays of N Gaussians, as readers, generators and the edit loop fill them. Raw
+/// (pre-activation) values exactly as in a 3DGS file.
 struct GaussianData {
     int sh_degree = 0;
     std::vector<float> position;       // [N,3] world units
@@ -66,11 +67,14 @@ public:
     std::span<const float> sh() const { return *sh_; }
 
     GaussianSpans spans() const;
-    GaussianBuffers buffers() const { return {sh_degree_, position_, log_scale_, rotation_, opacity_logit_, sh_}; }
+    GaussianBuffers buffers() const {
+        return {sh_degree_, position_, log_scale_, rotation_, opacity_logit_, sh_};
+    }
     /// The very same arrays, not only the same values.
     bool shares_all_with(const GaussianSet& other) const {
-        return sh_degree_ == other.sh_degree_ && position_ == other.position_ && log_scale_ == other.log_scale_ &&
-               rotation_ == other.rotation_ && opacity_logit_ == other.opacity_logit_ && sh_ == other.sh_;
+        return sh_degree_ == other.sh_degree_ && position_ == other.position_ &&
+               log_scale_ == other.log_scale_ && rotation_ == other.rotation_ &&
+               opacity_logit_ == other.opacity_logit_ && sh_ == other.sh_;
     }
     /// Deep copy for changing.
     GaussianData to_data() const;
