@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "app/neural_loader.h"
+#include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
@@ -165,43 +166,61 @@ nlohmann::ordered_json StageTimes::to_json() const {
     return json;
 }
 
-EditJob::EditJob(EditRecipe recipe, JobControl control)
+std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job) {
+    const auto path = job.model.empty() ? starter_model_path() : std::filesystem::path(job.model);
+    neural_api().set_threads(job.threads);
+    return neural_api().load_model(path, job.device);
+}
+
+EditJob::EditJob(EditRecipe recipe, JobControl control) : recipe_(std::move(recipe)), control_(std::move(control)) {
+    check_recipe();
+    times_.begin("load_scene");
+    recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
+    scene_ = load_scene(recipe_.job.scene);
+    times_.end();
+    std::vector<View> cameras;
+    if (recipe_.job.cameras != "none") cameras = scene_cameras(recipe_.job.scene, recipe_.job.cameras);
+    times_.begin("load_model");
+    model_ = load_recipe_model(recipe_.job);
+    times_.end();
+    begin(std::move(cameras));
+}
+
+EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
     : recipe_(std::move(recipe)),
-      control_(std::move(control)) {
+      control_(std::move(control)),
+      scene_(std::move(input.scene)),
+      model_(std::move(input.model)) {
+    check_recipe();
+    begin(std::move(input.cameras));
+}
+
+void EditJob::check_recipe() {
     recipe_.request = edit::validated(recipe_.request);
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});
     if (!recipe_.job.front.empty()) parse_front(recipe_.job.front);
-    times_.begin("load_scene");
-    recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
-    scene_ = load_scene(recipe_.job.scene);
+}
+
+void EditJob::begin(std::vector<View> cameras) {
     const auto statistics = compute_statistics(scene_.gaussians);
     if (statistics.count <= statistics.nan_rows + statistics.invisible_rows)
         throw Error(ErrorCode::InvalidArgument, "the scene has no splat that can be seen", "open another scene",
                     recipe_.job.scene);
     scene_.info.up = parse_up(recipe_.job.up, scene_.info);
-    times_.end();
-    times_.begin("load_model");
-    const auto model_path =
-        recipe_.job.model.empty() ? starter_model_path() : std::filesystem::path(recipe_.job.model);
-    neural_api().set_threads(recipe_.job.threads);
-    model_ = neural_api().load_model(model_path, recipe_.job.device);
-    times_.end();
     auto words = edit::words_of(recipe_.request.prompt);
     words.push_back(recipe_.request.source);
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());
     warn_unknown_words(words, model_->known_words());
-    choose_views();
+    choose_views(std::move(cameras));
 }
 
-void EditJob::choose_views() {
+void EditJob::choose_views(std::vector<View> cameras) {
     RenderParameters render;
     render.up = recipe_.job.up;
     render.elevation = recipe_.request.elevation;
     orbit_ = scene_orbit(scene_, render);
-    std::vector<View> cameras;
-    if (recipe_.job.cameras != "none") cameras = scene_cameras(recipe_.job.scene, recipe_.job.cameras);
     automatic_views_ = cameras.empty();
     if (automatic_views_) {
         set_orbit_views();
@@ -276,9 +295,9 @@ void EditJob::choose_distance(const edit::LocateTools& tools) {
 
 void EditJob::locate() {
     times_.begin("locate");
-    const auto attention = model_->attention();
+    attention_ = std::make_unique<edit::CachedAttention>(model_->attention());
     const auto segmenter = edit::make_default_segmenter();
-    const edit::LocateTools tools{painter_.rasterizer(), *attention, segmenter.get(), nullptr, control_};
+    const edit::LocateTools tools{painter_.rasterizer(), *attention_, segmenter.get(), nullptr, control_};
     const bool moves = automatic_views_ && recipe_.request.focus;
     if (moves) choose_distance(tools);
     located_ = edit::locate(locate_input(), tools);
@@ -293,11 +312,43 @@ void EditJob::locate() {
             located_ = edit::locate(locate_input(), tools);
         }
     }
+    finish_locate();
+}
+
+void EditJob::locate_again(double attention_threshold) {
+    GSE_CHECK(attention_ != nullptr);
+    times_.begin("locate");
+    recipe_.request.attention_threshold = attention_threshold;
+    const auto segmenter = edit::make_default_segmenter();
+    located_ = edit::locate(locate_input(), {painter_.rasterizer(), *attention_, segmenter.get(), nullptr, control_});
+    finish_locate();
+}
+
+void EditJob::finish_locate() {
     plan_ = edit::make_plan(locate_input(), located_, painter_.rasterizer());
     times_.end();
     const auto labelled = std::count(located_.label.bits->begin(), located_.label.bits->end(), std::uint8_t{1});
     log::info("mode {} ({}); {} of {} splats labelled, {} new", located_.mode == edit::EditMode::Add ? "add" : "modify",
               located_.reason, labelled, scene_.gaussians.size(), located_.seeds.size());
+}
+
+void EditJob::correct_label(const std::vector<std::uint8_t>& bits) {
+    GSE_CHECK_EQ(bits.size(), scene_.gaussians.size());
+    located_.label.bits = std::make_shared<const std::vector<std::uint8_t>>(bits);
+    plan_ = edit::make_plan(locate_input(), located_, painter_.rasterizer());
+}
+
+void EditJob::set_loop_settings(const edit::EditRequest& request) {
+    edit::EditRequest next = edit::validated(request);
+    const auto& old = recipe_.request;
+    next.source = old.source;
+    next.prompt = old.prompt;
+    next.target = old.target;
+    next.mode = old.mode;
+    next.views = old.views;
+    next.image_size = old.image_size;
+    next.attention_threshold = old.attention_threshold;
+    recipe_.request = next;
 }
 
 OrbitParameters EditJob::film_orbit() const {
@@ -313,10 +364,12 @@ OrbitParameters EditJob::film_orbit() const {
     return orbit;
 }
 
-void EditJob::run() {
+void EditJob::run(const EditObserver& observer) {
     times_.begin("edit");
     const auto guidance = model_->guidance(join_prompt(edit::words_of(recipe_.request.prompt)), recipe_.guidance);
-    result_ = edit::run_edit(scene_.gaussians, plan_, recipe_.request, {painter_.rasterizer(), *guidance, {}, control_});
+    result_ = edit::run_edit(scene_.gaussians, plan_, recipe_.request, 
+                             {painter_.rasterizer(), *guidance, observer.snapshot, control_, observer.iteration,
+                              observer.snapshot_seconds});
     times_.end();
 }
 

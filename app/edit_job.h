@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/scene_tools.h"
+#include "engine/edit/cached_attention.h"
 #include "engine/edit/locate.h"
 #include "engine/edit/session.h"
 #include "engine/neural/api.h"
@@ -70,16 +71,44 @@ private:
     double start_ = 0;
 };
 
+/// What a job works on when it is in memory already.
+struct EditJobInput {
+    Scene scene;
+    std::vector<View> cameras;                     // empty = an orbit is fitted
+    std::shared_ptr<neural::TextToImage> model;
+};
+
+/// Callbacks of a running edit; all may be empty.
+struct EditObserver {
+    edit::SnapshotCallback snapshot;
+    double snapshot_seconds = 0;   // above 0: time between snapshots, instead of the request's iterations
+    edit::IterationCallback iteration;
+};
+
+/// The model a recipe names (the starter when it names none). Throws Error (Model, NotFound).
+std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job);
+
 /// A scene with its model and views, ready to be edited.
 class EditJob {
 public:
     /// Checks the request, reads the scene, loads the model, chooses the views. Throws Error before anything is written.
     EditJob(EditRecipe recipe, JobControl control);
+    /// The same for what is in memory; the recipe's files are not read.
+    EditJob(EditRecipe recipe, EditJobInput input, JobControl control);
 
     /// Looks from all views, moves in on what was found, looks again.
     void locate();
+    /// The same from the views chosen already, with another attention threshold; networks are asked only about pictures
+    /// they have not seen.
+    void locate_again(double attention_threshold);
+    /// What may change, corrected by hand (modify mode): [N] 0 or 1.
+    void correct_label(const std::vector<std::uint8_t>& bits);
     /// Runs the edit loop.
-    void run();
+    void run(const EditObserver& observer = {});
+    /// Replaces where to report and what stops (a job that located goes on to edit).
+    void set_control(JobControl control) { control_ = std::move(control); }
+    /// Takes the loop's settings (iterations, weights, rates, seed) of another request; words and views stay.
+    void set_loop_settings(const edit::EditRequest& request);
 
     const EditRecipe& recipe() const { return recipe_; }
     const Scene& scene() const { return scene_; }
@@ -95,10 +124,13 @@ public:
     const JobControl& control() const { return control_; }
 
 private:
-    void choose_views();
+    void check_recipe();
+    void begin(std::vector<View> cameras);
+    void choose_views(std::vector<View> cameras);
     void set_orbit_views();
     void name_views();
     void choose_distance(const edit::LocateTools& tools);
+    void finish_locate();
     edit::LocateInput locate_input() const;
 
     EditRecipe recipe_;
@@ -106,7 +138,8 @@ private:
     StageTimes times_;
     Painter painter_;
     Scene scene_;
-    std::unique_ptr<neural::TextToImage> model_;
+    std::shared_ptr<neural::TextToImage> model_;
+    std::unique_ptr<edit::CachedAttention> attention_;
     std::vector<View> views_;
     std::vector<std::string> view_words_;
     bool automatic_views_ = false;

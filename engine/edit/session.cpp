@@ -91,10 +91,8 @@ public:
                 break;
             }
             result.iterations = iteration + 1;
-            if (tools_.snapshot && (iteration + 1) % request_.snapshot_every == 0) {
-                const StageTimer timer(seconds_.snapshot);
-                tools_.snapshot(std::make_shared<const GaussianSet>(set_.assemble().set), iteration + 1);
-            }
+            if (tools_.iteration) tools_.iteration(result.history.back());
+            if (tools_.snapshot && snapshot_due(iteration)) take_snapshot(iteration);
             tools_.job.report("editing", iteration + 1, request_.iterations);
             if (set_.labelled() == 0) break;   // everything was removed: nothing is left to do
         }
@@ -103,6 +101,21 @@ public:
     }
 
 private:
+    bool snapshot_due(int iteration) const {
+        if (tools_.snapshot_seconds > 0)
+            return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_snapshot_).count() >=
+                   tools_.snapshot_seconds;
+        return (iteration + 1) % request_.snapshot_every == 0;
+    }
+
+    void take_snapshot(int iteration) {
+        const StageTimer timer(seconds_.snapshot);
+        auto now = set_.assemble();
+        tools_.snapshot({std::make_shared<const GaussianSet>(std::move(now.set)),
+                         std::make_shared<const std::vector<std::int64_t>>(std::move(now.base_to_new)), iteration + 1});
+        last_snapshot_ = std::chrono::steady_clock::now();
+    }
+
     void render_originals(const GaussianSet& base) {
         const StageTimer timer(seconds_.originals);
         settings_ = plan_.settings;
@@ -253,6 +266,7 @@ private:
     std::vector<double> calibration_;   // norms of the first guidance gradients
     double guidance_scale_ = 0;
     StageSeconds seconds_;
+    std::chrono::steady_clock::time_point last_snapshot_ = std::chrono::steady_clock::now();
 };
 
 bool same_row(std::span<const float> a, std::size_t row_a, std::span<const float> b, std::size_t row_b, std::size_t stride) {

@@ -52,7 +52,16 @@ struct EditResult {
 };
 
 /// Receives the state of a running edit every few iterations; the set is immutable and may be kept.
-using SnapshotCallback = std::function<void(std::shared_ptr<const GaussianSet> set, int iteration)>;
+/// base_to_new[row] is the row of `set` that the base's row is now, -1 = removed.
+struct EditSnapshot {
+    std::shared_ptr<const GaussianSet> set;
+    std::shared_ptr<const std::vector<std::int64_t>> base_to_new;
+    int iteration = 0;
+};
+using SnapshotCallback = std::function<void(EditSnapshot snapshot)>;
+
+/// Receives every line of the loss history as it is written.
+using IterationCallback = std::function<void(const IterationRecord& record)>;
 
 /// The parts the loop calls.
 struct EditTools {
@@ -60,6 +69,8 @@ struct EditTools {
     Guidance& guidance;
     SnapshotCallback snapshot;   // may be empty
     JobControl job;
+    IterationCallback iteration = {};   // may be empty
+    double snapshot_seconds = 0;        // above 0: a snapshot whenever this much time has passed, instead of by iterations
 };
 
 /// Runs the edit. Rows outside the label come back bit-identical (checked at the end). The same plan, request and seed

@@ -118,9 +118,10 @@ DOCTEST_TEST_CASE("a stop in the middle returns the last state, equal to a short
     });
     std::shared_ptr<const GaussianSet> snapshot;
     Run how;
-    how.snapshot = [&](std::shared_ptr<const GaussianSet> set, int iteration) {
-        DOCTEST_CHECK(iteration % 10 == 0);
-        snapshot = std::move(set);
+    how.snapshot = [&](const edit::EditSnapshot& taken) {
+        DOCTEST_CHECK(taken.iteration % 10 == 0);
+        DOCTEST_CHECK(taken.base_to_new->size() == scene.set.size());
+        snapshot = taken.set;
     };
     how.job.stop = stop.get_token();
     const auto result = run(scene, short_request(), guidance, how);
@@ -137,7 +138,7 @@ DOCTEST_TEST_CASE("snapshots are the states of the run and stay as they were") {
     auto guidance = test::towards({0.1, 0.1, 0.9});
     std::vector<std::shared_ptr<const GaussianSet>> snapshots;
     Run how;
-    how.snapshot = [&](std::shared_ptr<const GaussianSet> set, int) { snapshots.push_back(std::move(set)); };
+    how.snapshot = [&](const edit::EditSnapshot& snapshot) { snapshots.push_back(snapshot.set); };
     const auto result = run(scene, short_request(), guidance, how);
     DOCTEST_REQUIRE(snapshots.size() == 4);
     DOCTEST_CHECK(test::same_bytes(*snapshots.back(), result.set));
