@@ -1,0 +1,110 @@
+// Background jobs: one at a time, pause stops progress, cancel ends them, failures become one sentence.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "app/job_thread.h"
+#include "engine/base/log.h"
+
+namespace {
+
+using namespace gse;
+using namespace std::chrono_literals;
+
+/// Runs the main queue until `condition` holds; gives up after ten seconds.
+template <class F>
+bool wait_for(app::MainQueue& queue, F condition) {
+    for (int i = 0; i < 2000; ++i) {
+        queue.run();
+        if (condition()) return true;
+        std::this_thread::sleep_for(5ms);
+    }
+    return false;
+}
+
+struct Quiet {
+    Quiet() { log::set_sink([](log::Level, std::string_view) {}); }
+    ~Quiet() { log::set_sink({}); }
+};
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a job reports, ends and tells the main thread") {
+    app::MainQueue queue;
+    app::JobThread jobs(queue);
+    bool done = false;
+    DOCTEST_REQUIRE(jobs.start({"count", [](const JobControl& job) {
+                                    for (int i = 1; i <= 10; ++i) job.report("counting", i, 10);
+                                },
+                                [&](const Error* error) { done = error == nullptr; }}));
+    DOCTEST_REQUIRE(wait_for(queue, [&] { return done; }));
+    const auto status = jobs.status();
+    DOCTEST_CHECK_FALSE(status.running);
+    DOCTEST_CHECK(status.step == 10);
+    DOCTEST_CHECK(status.outcome.substr(0, 4) == "done");
+}
+
+DOCTEST_TEST_CASE("one job at a time; cancel ends it and says stopped") {
+    app::MainQueue queue;
+    app::JobThread jobs(queue);
+    bool ended = false;
+    const auto endless = [](const JobControl& job) {
+        for (int i = 0; !job.stop_requested(); ++i) {
+            job.report("running", i, 0);
+            std::this_thread::sleep_for(1ms);
+        }
+        throw Error(ErrorCode::Cancelled, "the work was stopped");
+    };
+    DOCTEST_REQUIRE(jobs.start({"endless", endless, [&](const Error* error) { ended = error != nullptr; }}));
+    DOCTEST_CHECK_FALSE(jobs.start({"second", endless, {}}));
+    jobs.cancel();
+    DOCTEST_REQUIRE(wait_for(queue, [&] { return ended; }));
+    DOCTEST_CHECK(jobs.status().outcome == "stopped");
+    DOCTEST_CHECK(jobs.status().error.empty());
+}
+
+DOCTEST_TEST_CASE("a paused job stands still, goes on, and can be cancelled while paused") {
+    app::MainQueue queue;
+    app::JobThread jobs(queue);
+    std::atomic<int> steps{0};
+    bool ended = false;
+    DOCTEST_REQUIRE(jobs.start({"steps",
+                                [&](const JobControl& job) {
+                                    while (!job.stop_requested()) {
+                                        job.report("stepping", ++steps, 0);
+                                        std::this_thread::sleep_for(1ms);
+                                    }
+                                },
+                                [&](const Error*) { ended = true; }, true}));
+    DOCTEST_REQUIRE(wait_for(queue, [&] { return steps > 3; }));
+    jobs.pause(true);
+    std::this_thread::sleep_for(20ms);   // the step under way may still end
+    const int standing = steps;
+    std::this_thread::sleep_for(50ms);
+    DOCTEST_CHECK(steps == standing);
+    jobs.pause(false);
+    DOCTEST_CHECK(wait_for(queue, [&] { return steps > standing + 3; }));
+    jobs.pause(true);
+    jobs.cancel();
+    DOCTEST_CHECK(wait_for(queue, [&] { return ended; }));
+}
+
+DOCTEST_TEST_CASE("failures arrive as one error, foreign ones too") {
+    const Quiet quiet;
+    app::MainQueue queue;
+    app::JobThread jobs(queue);
+    std::string message;
+    const auto keep = [&](const Error* error) { message = error != nullptr ? error->message() : "none"; };
+    DOCTEST_REQUIRE(jobs.start({"bad", [](const JobControl&) { throw Error(ErrorCode::NotFound, "no such file"); }, keep}));
+    DOCTEST_REQUIRE(wait_for(queue, [&] { return !message.empty(); }));
+    DOCTEST_CHECK(message == "no such file");
+    message.clear();
+    DOCTEST_REQUIRE(wait_for(queue, [&] { return !jobs.running(); }));
+    DOCTEST_REQUIRE(jobs.start({"worse", [](const JobControl&) { throw std::runtime_error("boom"); }, keep}));
+    DOCTEST_REQUIRE(wait_for(queue, [&] { return !message.empty(); }));
+    DOCTEST_CHECK(message.find("boom") != std::string::npos);
+    DOCTEST_CHECK(jobs.status().error.find("boom") != std::string::npos);
+}
