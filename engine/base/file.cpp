@@ -3,12 +3,14 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 
@@ -16,6 +18,8 @@
 
 namespace gse {
 namespace {
+
+constexpr const char* TemporaryMark = ".tmp";  // ".NAME.tmpPROCESS-NUMBER.EXTENSION"
 
 [[noreturn]] void throw_open_error(const std::filesystem::path& path) {
     const int reason = errno;
@@ -25,15 +29,18 @@ namespace {
 
 std::filesystem::path temporary_beside(const std::filesystem::path& path) {
     static std::atomic<unsigned> counter{0};
-    return path.parent_path() / fmt::format(".{}.tmp{}-{}{}", path.stem().string(), getpid(), counter.fetch_add(1),
+    return path.parent_path() / fmt::format(".{}{}{}-{}{}", path.stem().string(), TemporaryMark, getpid(), counter.fetch_add(1),
                                             path.extension().string());
 }
 
-void sync_file(const std::filesystem::path& path) {
+/// Brings a file, or the names in a folder, to the disk. False when the device reports an error; places that cannot sync
+/// (some network and virtual file systems) count as done.
+bool sync_path(const std::filesystem::path& path) {
     const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (descriptor < 0) return;
-    fsync(descriptor);
+    if (descriptor < 0) return true;
+    const bool failed = fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS;
     close(descriptor);
+    return !failed;
 }
 
 }  // namespace
@@ -85,12 +92,33 @@ void write_atomically(const std::filesystem::path& path,
         std::filesystem::remove(temporary, failure);
         throw;
     }
-    sync_file(temporary);
+    if (!sync_path(temporary)) {
+        std::filesystem::remove(temporary, failure);
+        throw Error(ErrorCode::Unwritable, "the disk did not take the file", "check the free space and the disk", path);
+    }
     std::filesystem::rename(temporary, path, failure);
     if (failure) {
         const std::string reason = failure.message();
         std::filesystem::remove(temporary, failure);
         throw Error(ErrorCode::Unwritable, "the file cannot be written (" + reason + ")", "choose another place", path);
+    }
+    sync_path(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
+}
+
+void remove_stale_temporaries(const std::filesystem::path& folder) {
+    std::error_code failure;
+    std::filesystem::directory_iterator entry(folder, failure);
+    for (; !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure)) {
+        const std::string name = entry->path().filename().string();
+        const std::size_t mark = name.rfind(TemporaryMark);
+        if (!name.starts_with('.') || mark == std::string::npos) continue;
+        long process = 0, number = 0;
+        int used = 0;
+        const char* rest = name.c_str() + mark + std::strlen(TemporaryMark);
+        if (std::sscanf(rest, "%ld-%ld%n", &process, &number, &used) != 2 || process <= 0) continue;
+        if (rest[used] != '\0' && rest[used] != '.') continue;
+        std::error_code ignored;
+        if (kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) std::filesystem::remove(entry->path(), ignored);
     }
 }
 

@@ -34,6 +34,9 @@ private:
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
+/// Removes temporary files that writers which died left in the folder (those whose process is gone). Never throws.
+void remove_stale_temporaries(const std::filesystem::path& folder);
+
 /// Writes these bytes to `path`, atomically.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 

@@ -36,27 +36,24 @@ void copy_pixels(const cv::Mat& from, double scale, Image& to) {
     }
 }
 
-cv::Mat decode(const std::filesystem::path& path) {
-    const MappedFile file(path);
-    if (file.bytes().empty()) throw Error(ErrorCode::Malformed, "the image file is empty", "", path);
+cv::Mat decode(std::span<const std::byte> bytes) {
+    if (bytes.empty()) throw Error(ErrorCode::Malformed, "the image file is empty");
     try {
-        const cv::Mat raw(1, static_cast<int>(file.bytes().size()), CV_8U,
-                          const_cast<std::byte*>(file.bytes().data()));
+        const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<std::byte*>(bytes.data()));
         return cv::imdecode(raw, cv::IMREAD_UNCHANGED);
     } catch (const cv::Exception& failure) {
-        throw Error(ErrorCode::Malformed, "the image cannot be decoded (" + failure.err + ")", "", path);
+        throw Error(ErrorCode::Malformed, "the image cannot be decoded (" + failure.err + ")");
     }
 }
 
 }  // namespace
 
-Image read_image(const std::filesystem::path& path) {
-    const cv::Mat pixels = decode(path);
-    if (pixels.empty()) throw Error(ErrorCode::Malformed, "the file is no image that can be read", "", path);
+Image decode_image(std::span<const std::byte> bytes) {
+    const cv::Mat pixels = decode(bytes);
+    if (pixels.empty()) throw Error(ErrorCode::Malformed, "the file is no image that can be read");
     const int channels = pixels.channels();
     if (channels == 2 || channels > 4)
-        throw Error(ErrorCode::Unsupported, fmt::format("an image of {} channels is not handled", channels),
-                    "", path);
+        throw Error(ErrorCode::Unsupported, fmt::format("an image of {} channels is not handled", channels));
     Image image(pixels.cols, pixels.rows, channels);
     switch (pixels.depth()) {
         case CV_8U:
@@ -69,16 +66,24 @@ Image read_image(const std::filesystem::path& path) {
             copy_pixels<float>(pixels, 1, image);
             break;
         default:
-            throw Error(ErrorCode::Unsupported, "the pixel type of the image is not handled", "", path);
+            throw Error(ErrorCode::Unsupported, "the pixel type of the image is not handled");
     }
     return image;
 }
 #else
-Image read_image(const std::filesystem::path& path) {
-    throw Error(ErrorCode::Unsupported, "this build reads no image files", "build it with GSE_OPENCV=ON",
-                path);
+Image decode_image(std::span<const std::byte>) {
+    throw Error(ErrorCode::Unsupported, "this build reads no image files", "build it with GSE_OPENCV=ON");
 }
 #endif
+
+Image read_image(const std::filesystem::path& path) {
+    const MappedFile file(path);
+    try {
+        return decode_image(file.bytes());
+    } catch (const Error& error) {
+        throw Error(error.code(), error.message(), error.hint(), path);
+    }
+}
 
 void write_png(const std::filesystem::path& path, const Image& image, const PngText& text) {
     GSE_CHECK(image.channels == 1 || image.channels == 3 || image.channels == 4);
@@ -114,5 +119,7 @@ PngText read_png_text(const std::filesystem::path& path) {
 std::optional<ImageSize> read_image_size(const std::filesystem::path& path) {
     return io::parse_image_size(MappedFile(path).bytes());
 }
+
+std::optional<ImageSize> image_size(std::span<const std::byte> bytes) { return io::parse_image_size(bytes); }
 
 }  // namespace gse

@@ -1,9 +1,11 @@
 // Image files: 8-bit display values to and from floats in [0,1].
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "engine/base/image.h"
@@ -12,6 +14,9 @@ namespace gse {
 
 /// Reads PNG, JPEG, WebP...: 1, 3 (red, green, blue) or 4 channels, values in [0,1]. Throws Error.
 Image read_image(const std::filesystem::path& path);
+
+/// The same for a file in memory.
+Image decode_image(std::span<const std::byte> bytes);
 
 /// Keyword -> text (UTF-8) stored in the PNG; keywords are 1-79 printable Latin-1 characters.
 using PngText = std::map<std::string, std::string>;
@@ -35,5 +40,6 @@ struct ImageSize {
     int height = 0;
 };
 std::optional<ImageSize> read_image_size(const std::filesystem::path& path);
+std::optional<ImageSize> image_size(std::span<const std::byte> bytes);
 
 }  // namespace gse

@@ -36,16 +36,6 @@ bool same_widened(const float* a, std::size_t a_stride, const float* b, std::siz
     return true;
 }
 
-bool same_row(const GaussianSpans& a, std::size_t a_row, const GaussianSpans& b, std::size_t b_row) {
-    const auto a_strides = strides(a.sh_degree), b_strides = strides(b.sh_degree);
-    const auto a_columns = columns_of(a), b_columns = columns_of(b);
-    for (std::size_t c = 0; c < ColumnCount; ++c)
-        if (!same_widened(a_columns[c].data() + a_row * a_strides[c], a_strides[c],
-                          b_columns[c].data() + b_row * b_strides[c], b_strides[c]))
-            return false;
-    return true;
-}
-
 GaussianData gather(const GaussianSpans& set, std::span<const std::size_t> rows) {
     GaussianData data;
     data.sh_degree = set.sh_degree;
@@ -201,6 +191,16 @@ std::size_t data_bytes(const GaussianData& data) {
 }
 
 }  // namespace
+
+bool same_row(const GaussianSpans& a, std::size_t a_row, const GaussianSpans& b, std::size_t b_row) {
+    const auto a_strides = strides(a.sh_degree), b_strides = strides(b.sh_degree);
+    const auto a_columns = columns_of(a), b_columns = columns_of(b);
+    for (std::size_t c = 0; c < ColumnCount; ++c)
+        if (!same_widened(a_columns[c].data() + a_row * a_strides[c], a_strides[c],
+                          b_columns[c].data() + b_row * b_strides[c], b_strides[c]))
+            return false;
+    return true;
+}
 
 std::size_t SceneDelta::byte_size() const {
     return sizeof(RowId) * (changed.size() + removed.size() + added.size()) + data_bytes(changed_rows) +

@@ -38,6 +38,9 @@ SceneDelta make_delta(const GaussianSet& before, std::span<const RowId> before_i
 std::pair<GaussianSet, std::vector<RowId>> apply_delta(const GaussianSet& set, std::span<const RowId> ids,
                                                        const SceneDelta& delta);
 
+/// Every attribute agrees bit for bit; of two SH degrees the higher one must go on with zeros.
+bool same_row(const GaussianSpans& a, std::size_t a_row, const GaussianSpans& b, std::size_t b_row);
+
 /// Several at once, oldest first: the same result, but each array is copied at most once where no rows come
 /// or go.
 std::pair<GaussianSet, std::vector<RowId>> apply_deltas(const GaussianSet& set, std::span<const RowId> ids,
