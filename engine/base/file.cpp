@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -20,6 +21,8 @@ namespace gse {
 namespace {
 
 constexpr const char* TemporaryMark = ".tmp";  // ".NAME.tmpPROCESS-NUMBER.EXTENSION"
+
+constexpr std::chrono::minutes LeastAge{1};     // of a temporary file that is given up
 
 [[noreturn]] void throw_open_error(const std::filesystem::path& path) {
     const int reason = errno;
@@ -118,6 +121,8 @@ void remove_stale_temporaries(const std::filesystem::path& folder) {
         if (std::sscanf(rest, "%ld-%ld%n", &process, &number, &used) != 2 || process <= 0) continue;
         if (rest[used] != '\0' && rest[used] != '.') continue;
         std::error_code ignored;
+        const auto age = std::filesystem::file_time_type::clock::now() - entry->last_write_time(ignored);
+        if (ignored || age < LeastAge) continue;  // a shared folder: the writer may live on another machine
         if (kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) std::filesystem::remove(entry->path(), ignored);
     }
 }

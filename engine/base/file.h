@@ -34,7 +34,8 @@ private:
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
-/// Removes temporary files that writers which died left in the folder (those whose process is gone). Never throws.
+/// Removes temporary files that writers which died left in the folder (those whose process is gone,
+/// a minute old at least). Never throws.
 void remove_stale_temporaries(const std::filesystem::path& folder);
 
 /// Writes these bytes to `path`, atomically.
