@@ -15,11 +15,16 @@ constexpr std::uint32_t SetsPerPool = 256;
 
 int rank(vk::PhysicalDeviceType type) {
     switch (type) {
-        case vk::PhysicalDeviceType::eDiscreteGpu: return 0;
-        case vk::PhysicalDeviceType::eIntegratedGpu: return 1;
-        case vk::PhysicalDeviceType::eVirtualGpu: return 2;
-        case vk::PhysicalDeviceType::eCpu: return 4;
-        default: return 3;
+        case vk::PhysicalDeviceType::eDiscreteGpu:
+            return 0;
+        case vk::PhysicalDeviceType::eIntegratedGpu:
+            return 1;
+        case vk::PhysicalDeviceType::eVirtualGpu:
+            return 2;
+        case vk::PhysicalDeviceType::eCpu:
+            return 4;
+        default:
+            return 3;
     }
 }
 
@@ -37,7 +42,8 @@ bool is_chosen(const std::string& choice, std::size_t index, const std::string& 
 
 bool modern(const vk::raii::PhysicalDevice& candidate) {
     if (candidate.getProperties().apiVersion < VK_API_VERSION_1_2) return false;
-    const auto features = candidate.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+    const auto features =
+        candidate.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
     return features.get<vk::PhysicalDeviceVulkan12Features>().timelineSemaphore == VK_TRUE;
 }
 
@@ -98,7 +104,8 @@ void Device::choose(const DeviceOptions& options) {
 }
 
 void Device::read_info() {
-    const auto all = physical_->getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>();
+    const auto all =
+        physical_->getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>();
     const auto& properties = all.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& subgroup = all.get<vk::PhysicalDeviceSubgroupProperties>();
     info_.name = properties.deviceName.data();
@@ -110,7 +117,8 @@ void Device::read_info() {
     info_.storage_range = properties.limits.maxStorageBufferRange;
     info_.texel_elements = properties.limits.maxTexelBufferElements;
     info_.image_size = properties.limits.maxImageDimension2D;
-    info_.timestamp_ns = properties.limits.timestampComputeAndGraphics ? properties.limits.timestampPeriod : 0.0;
+    info_.timestamp_ns =
+        properties.limits.timestampComputeAndGraphics ? properties.limits.timestampPeriod : 0.0;
 }
 
 void Device::create() {
@@ -130,7 +138,8 @@ void Device::create() {
     command_pool_.emplace(*device_, vk::CommandPoolCreateInfo(pool_flags, queue_family_));
     const vk::SemaphoreTypeCreateInfo timeline(vk::SemaphoreType::eTimeline, 0);
     timeline_.emplace(*device_, vk::SemaphoreCreateInfo({}, &timeline));
-    name(vk::ObjectType::eQueue, reinterpret_cast<std::uint64_t>(static_cast<VkQueue>(**queue_)), "main queue");
+    name(vk::ObjectType::eQueue, reinterpret_cast<std::uint64_t>(static_cast<VkQueue>(**queue_)),
+         "main queue");
 }
 
 std::uint64_t Device::submit(const Submission& work) {
@@ -141,18 +150,32 @@ std::uint64_t Device::submit(const Submission& work) {
         const std::uint64_t signal_values[2] = {serial, 0}, wait_value = 0;
         const std::uint32_t signal_count = work.signal ? 2u : 1u, wait_count = work.wait ? 1u : 0u;
         const vk::TimelineSemaphoreSubmitInfo values(wait_count, &wait_value, signal_count, signal_values);
-        const vk::SubmitInfo info(wait_count, &work.wait, &work.wait_stage, 1, &work.commands, signal_count, signals,
-                                  &values);
+        const vk::SubmitInfo info(wait_count, &work.wait, &work.wait_stage, 1, &work.commands, signal_count,
+                                  signals, &values);
         queue_->submit(info);
         submitted_ = serial;
+        close_recording();
         collect();
         return serial;
     });
 }
 
+Device::Ticket Device::ticket() {
+    if (open_recordings_ == 0) return std::make_shared<std::uint64_t>(std::max<std::uint64_t>(submitted_, 1));
+    if (!open_ticket_) open_ticket_ = std::make_shared<std::uint64_t>(0);
+    return open_ticket_;
+}
+
+void Device::close_recording() {
+    if (--open_recordings_ > 0 || !open_ticket_) return;
+    *open_ticket_ = std::max<std::uint64_t>(submitted_, 1);
+    open_ticket_.reset();
+}
+
+void Device::discard(vk::raii::CommandBuffer) { close_recording(); }
+
 bool Device::finished(std::uint64_t serial) {
-    if (serial > completed_)
-        completed_ = guarded("working", [&] { return timeline_->getCounterValue(); });
+    if (serial > completed_) completed_ = guarded("working", [&] { return timeline_->getCounterValue(); });
     return serial <= completed_;
 }
 
@@ -168,9 +191,7 @@ void Device::wait(std::uint64_t serial) {
     collect();
 }
 
-void Device::wait_idle() {
-    wait(submitted_);
-}
+void Device::wait_idle() { wait(submitted_); }
 
 vk::raii::CommandBuffer Device::begin_commands() {
     return guarded("recording commands", [&] {
@@ -186,6 +207,7 @@ vk::raii::CommandBuffer Device::begin_commands() {
             commands.emplace(std::move(device_->allocateCommandBuffers(info).front()));
         }
         commands->begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+        ++open_recordings_;
         return std::move(*commands);
     });
 }
@@ -199,7 +221,7 @@ void Device::collect() {
         std::size_t kept = 0;
         std::vector<Retired> dying;  // destructors may retire more
         for (auto& entry : retired_) {
-            if (finished(entry.serial))
+            if (finished(entry.last_use))
                 dying.push_back(std::move(entry));
             else
                 retired_[kept++] = std::move(entry);
@@ -223,14 +245,15 @@ vk::raii::DescriptorSet Device::make_set(vk::DescriptorSetLayout layout) {
                 }
                 full_pools_.push_back(std::move(*descriptor_pool_));
             }
-            const vk::DescriptorPoolSize sizes[] = {{vk::DescriptorType::eStorageBuffer, SetsPerPool * 8},
-                                                    {vk::DescriptorType::eUniformTexelBuffer, SetsPerPool * 4},
-                                                    {vk::DescriptorType::eUniformBuffer, SetsPerPool},
-                                                    {vk::DescriptorType::eStorageImage, SetsPerPool},
-                                                    {vk::DescriptorType::eCombinedImageSampler, SetsPerPool}};
-            descriptor_pool_.emplace(*device_, vk::DescriptorPoolCreateInfo(
-                                                   vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, SetsPerPool,
-                                                   sizes));
+            const vk::DescriptorPoolSize sizes[] = {
+                {vk::DescriptorType::eStorageBuffer, SetsPerPool * 8},
+                {vk::DescriptorType::eUniformTexelBuffer, SetsPerPool * 4},
+                {vk::DescriptorType::eUniformBuffer, SetsPerPool},
+                {vk::DescriptorType::eStorageImage, SetsPerPool},
+                {vk::DescriptorType::eCombinedImageSampler, SetsPerPool}};
+            descriptor_pool_.emplace(
+                *device_, vk::DescriptorPoolCreateInfo(vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet,
+                                                       SetsPerPool, sizes));
         }
     });
 }
@@ -239,7 +262,8 @@ std::uint32_t Device::memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags
                                   vk::MemoryPropertyFlags required) const {
     for (const auto flags : {wanted | required, required})
         for (std::uint32_t type = 0; type < memory_.memoryTypeCount; ++type)
-            if ((allowed >> type & 1u) != 0 && (memory_.memoryTypes[type].propertyFlags & flags) == flags) return type;
+            if ((allowed >> type & 1u) != 0 && (memory_.memoryTypes[type].propertyFlags & flags) == flags)
+                return type;
     throw Error(ErrorCode::Unsupported, "the graphics device has no memory of the kind needed",
                 "try another device with GSE_VULKAN_DEVICE");
 }

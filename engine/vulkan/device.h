@@ -19,7 +19,7 @@ namespace gse::vulkan {
 
 struct InstanceOptions {
     std::vector<std::string> extensions;  // of the window system
-    bool validation = false;              // also switched on by GSE_VULKAN_VALIDATION=1; ignored if not installed
+    bool validation = false;  // also switched on by GSE_VULKAN_VALIDATION=1; ignored if not installed
 };
 
 /// Connection to the Vulkan library. Throws Error{NotFound} where there is none.
@@ -87,17 +87,22 @@ public:
         vk::PipelineStageFlags wait_stage{};
         vk::Semaphore signal{};
     };
-    /// Hands work to the queue and returns its serial number.
+    /// Hands work recorded after begin_commands() to the queue and returns its serial number.
     std::uint64_t submit(const Submission& work);
-    /// The serial number that the next submission will get; what is being recorded belongs to it.
-    std::uint64_t next_serial() const { return submitted_ + 1; }
     bool finished(std::uint64_t serial);
+    /// Stands for everything submitted or being recorded now; holds the serial number to wait for, 0 while
+    /// commands are still being recorded.
+    using Ticket = std::shared_ptr<std::uint64_t>;
+    Ticket ticket();
+    bool finished(const Ticket& ticket) { return ticket && *ticket != 0 && finished(*ticket); }
     void wait(std::uint64_t serial);
     void wait_idle();
 
-    /// Command buffer ready for recording (one-time submit). Give it back with recycle() and its serial.
+    /// Command buffer ready for recording (one-time submit). After submit() give it back with recycle() and
+    /// its serial, or without submitting with discard().
     vk::raii::CommandBuffer begin_commands();
     void recycle(vk::raii::CommandBuffer commands, std::uint64_t serial);
+    void discard(vk::raii::CommandBuffer commands);
     /// Records body(commands), submits it and waits.
     template <class Body>
     void run(Body&& body);
@@ -119,9 +124,10 @@ public:
 
 private:
     struct Retired {
-        std::uint64_t serial;
+        Ticket last_use;
         std::shared_ptr<void> object;
     };
+    void close_recording();
     void choose(const DeviceOptions& options);
     void create();
     void read_info();
@@ -142,6 +148,8 @@ private:
     std::vector<vk::raii::DescriptorPool> full_pools_;
     std::optional<vk::raii::Semaphore> timeline_;
     std::uint64_t submitted_ = 0, completed_ = 0;
+    std::size_t open_recordings_ = 0;
+    Ticket open_ticket_;  // of everything that ends when no recording is open any more
     std::vector<std::pair<std::uint64_t, vk::raii::CommandBuffer>> recycled_;
     std::vector<Retired> retired_;  // dies first of all
 };
@@ -150,9 +158,15 @@ template <class Body>
 void Device::run(Body&& body) {
     guarded("running commands", [&] {
         vk::raii::CommandBuffer commands = begin_commands();
-        body(commands);
-        commands.end();
-        const std::uint64_t serial = submit({.commands = *commands});
+        std::uint64_t serial = 0;
+        try {
+            body(commands);
+            commands.end();
+            serial = submit({.commands = *commands});
+        } catch (...) {
+            discard(std::move(commands));
+            throw;
+        }
         recycle(std::move(commands), serial);
         wait(serial);
     });
@@ -160,7 +174,7 @@ void Device::run(Body&& body) {
 
 template <class Object>
 void Device::retire(Object object) {
-    retired_.push_back({next_serial(), std::make_shared<Object>(std::move(object))});
+    retired_.push_back({ticket(), std::make_shared<Object>(std::move(object))});
 }
 
 }  // namespace gse::vulkan

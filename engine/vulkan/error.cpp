@@ -9,7 +9,8 @@ namespace gse::vulkan {
 
 DeviceLost::DeviceLost(const std::string& during)
     : Error(ErrorCode::Foreign, fmt::format("the graphics device was lost while {}", during),
-            "the view is being rebuilt; if it keeps happening, update the graphics driver or use --preview native") {}
+            "the view is being rebuilt; if it keeps happening, update the graphics driver or use --preview "
+            "native") {}
 
 void rethrow_as_error(const char* doing) {
     try {

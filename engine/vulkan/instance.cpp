@@ -5,6 +5,9 @@
 #include "engine/base/log.h"
 #include "engine/vulkan/device.h"
 
+// Functions for the handles without RAII (command buffers, mostly); found at run time.
+VULKAN_HPP_DEFAULT_DISPATCH_LOADER_DYNAMIC_STORAGE
+
 namespace gse::vulkan {
 namespace {
 
@@ -27,8 +30,9 @@ Instance::Instance(const InstanceOptions& options) {
     try {
         context_.emplace();
     } catch (const std::exception&) {
-        throw Error(ErrorCode::NotFound, "there is no Vulkan library on this machine",
-                    "install libvulkan1 and a driver (mesa-vulkan-drivers has one that needs no graphics card)");
+        throw Error(
+            ErrorCode::NotFound, "there is no Vulkan library on this machine",
+            "install libvulkan1 and a driver (mesa-vulkan-drivers has one that needs no graphics card)");
     }
     guarded("connecting to Vulkan", [&] { create(options); });
 }
@@ -48,14 +52,17 @@ void Instance::create(const InstanceOptions& options) {
     vk::InstanceCreateInfo info({}, &application, layers, extensions);
     using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
     using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-    const vk::DebugUtilsMessengerCreateInfoEXT messenger({}, Severity::eWarning | Severity::eError,
-                                                         Type::eValidation | Type::ePerformance, &on_message, this);
+    const vk::DebugUtilsMessengerCreateInfoEXT messenger(
+        {}, Severity::eWarning | Severity::eError, Type::eValidation | Type::ePerformance, &on_message, this);
     if (validates_) info.pNext = &messenger;
     instance_.emplace(*context_, info);
+    VULKAN_HPP_DEFAULT_DISPATCHER.init(static_cast<VkInstance>(**instance_),
+                                       context_->getDispatcher()->vkGetInstanceProcAddr);
     if (validates_) messenger_.emplace(*instance_, messenger);
 }
 
-VkBool32 VKAPI_PTR Instance::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+VkBool32 VKAPI_PTR Instance::on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                        VkDebugUtilsMessageTypeFlagsEXT,
                                         const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
     auto& self = *static_cast<Instance*>(user);
     ++self.message_count_;

@@ -1,4 +1,5 @@
-// Creation, layout changes and copies of buffers and images. One allocation each: there are tens of them, not thousands.
+// Creation, layout changes and copies of buffers and images. One allocation each: there are tens of them, not
+// thousands.
 #include "engine/vulkan/resources.h"
 
 #include <algorithm>
@@ -10,15 +11,19 @@ using Memory = vk::MemoryPropertyFlagBits;
 
 vk::MemoryPropertyFlags wanted_memory(BufferHome home) {
     switch (home) {
-        case BufferHome::Device: return Memory::eDeviceLocal;
-        case BufferHome::Upload: return {};
-        case BufferHome::Readback: return Memory::eHostCached;
+        case BufferHome::Device:
+            return Memory::eDeviceLocal;
+        case BufferHome::Upload:
+            return {};
+        case BufferHome::Readback:
+            return Memory::eHostCached;
     }
     return {};
 }
 
 vk::MemoryPropertyFlags required_memory(BufferHome home) {
-    return home == BufferHome::Device ? vk::MemoryPropertyFlags{} : Memory::eHostVisible | Memory::eHostCoherent;
+    return home == BufferHome::Device ? vk::MemoryPropertyFlags{}
+                                      : Memory::eHostVisible | Memory::eHostCoherent;
 }
 
 }  // namespace
@@ -49,10 +54,10 @@ Buffer::Buffer(Device& device, const BufferDescription& description)
         if ((flags & Memory::eHostVisible) && (flags & Memory::eHostCoherent))
             state.mapped = static_cast<std::byte*>(state.memory.mapMemory(0, VK_WHOLE_SIZE));
         if (texels)
-            state.view =
-                vk::raii::BufferView(device.handle(), {{}, *state.buffer, description.texel_format, 0, VK_WHOLE_SIZE});
-        device.name(vk::ObjectType::eBuffer, reinterpret_cast<std::uint64_t>(static_cast<VkBuffer>(*state.buffer)),
-                    description.name);
+            state.view = vk::raii::BufferView(
+                device.handle(), {{}, *state.buffer, description.texel_format, 0, VK_WHOLE_SIZE});
+        device.name(vk::ObjectType::eBuffer,
+                    reinterpret_cast<std::uint64_t>(static_cast<VkBuffer>(*state.buffer)), description.name);
     });
 }
 
@@ -83,13 +88,22 @@ struct Texture::State {
 };
 
 Texture::Texture(Device& device, const ImageDescription& description)
-    : device_(&device), width_(description.width), height_(description.height), state_(std::make_shared<State>()) {
+    : device_(&device),
+      width_(description.width),
+      height_(description.height),
+      state_(std::make_shared<State>()) {
     guarded("making an image", [&] {
         State& state = *state_;
         const vk::Extent3D extent(width_, height_, 1);
-        state.image = vk::raii::Image(
-            device.handle(), {{}, vk::ImageType::e2D, description.format, extent, 1, 1, vk::SampleCountFlagBits::e1,
-                              vk::ImageTiling::eOptimal, description.usage});
+        state.image = vk::raii::Image(device.handle(), {{},
+                                                        vk::ImageType::e2D,
+                                                        description.format,
+                                                        extent,
+                                                        1,
+                                                        1,
+                                                        vk::SampleCountFlagBits::e1,
+                                                        vk::ImageTiling::eOptimal,
+                                                        description.usage});
         const auto needs = state.image.getMemoryRequirements();
         const auto type = device.memory_type(needs.memoryTypeBits, Memory::eDeviceLocal, {});
         state.memory = vk::raii::DeviceMemory(device.handle(), {needs.size, type});
@@ -97,8 +111,8 @@ Texture::Texture(Device& device, const ImageDescription& description)
         const vk::ImageSubresourceRange range(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1);
         state.view = vk::raii::ImageView(
             device.handle(), {{}, *state.image, vk::ImageViewType::e2D, description.format, {}, range});
-        device.name(vk::ObjectType::eImage, reinterpret_cast<std::uint64_t>(static_cast<VkImage>(*state.image)),
-                    description.name);
+        device.name(vk::ObjectType::eImage,
+                    reinterpret_cast<std::uint64_t>(static_cast<VkImage>(*state.image)), description.name);
     });
 }
 
@@ -126,10 +140,10 @@ vk::ImageView Texture::view() const { return state_ ? *state_->view : vk::ImageV
 void Texture::transition(vk::CommandBuffer commands, vk::ImageLayout layout) {
     const auto any = vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite;
     const vk::ImageSubresourceRange range(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1);
-    const vk::ImageMemoryBarrier barrier(any, any, layout_, layout, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED,
-                                         handle(), range);
-    commands.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eAllCommands, {}, {},
-                             {}, barrier);
+    const vk::ImageMemoryBarrier barrier(any, any, layout_, layout, VK_QUEUE_FAMILY_IGNORED,
+                                         VK_QUEUE_FAMILY_IGNORED, handle(), range);
+    commands.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands, vk::PipelineStageFlagBits::eAllCommands,
+                             {}, {}, {}, barrier);
     layout_ = layout;
 }
 
@@ -155,15 +169,16 @@ void full_barrier(vk::CommandBuffer commands) {
     const vk::MemoryBarrier barrier(vk::AccessFlagBits::eMemoryWrite,
                                     vk::AccessFlagBits::eMemoryRead | vk::AccessFlagBits::eMemoryWrite);
     commands.pipelineBarrier(vk::PipelineStageFlagBits::eAllCommands,
-                             vk::PipelineStageFlagBits::eAllCommands | vk::PipelineStageFlagBits::eHost, {}, barrier, {},
-                             {});
+                             vk::PipelineStageFlagBits::eAllCommands | vk::PipelineStageFlagBits::eHost, {},
+                             barrier, {}, {});
 }
 
 void compute_barrier(vk::CommandBuffer commands) {
-    const vk::MemoryBarrier barrier(
-        vk::AccessFlagBits::eShaderWrite | vk::AccessFlagBits::eTransferWrite,
-        vk::AccessFlagBits::eShaderRead | vk::AccessFlagBits::eShaderWrite | vk::AccessFlagBits::eIndirectCommandRead |
-            vk::AccessFlagBits::eTransferRead | vk::AccessFlagBits::eTransferWrite);
+    const vk::MemoryBarrier barrier(vk::AccessFlagBits::eShaderWrite | vk::AccessFlagBits::eTransferWrite,
+                                    vk::AccessFlagBits::eShaderRead | vk::AccessFlagBits::eShaderWrite |
+                                        vk::AccessFlagBits::eIndirectCommandRead |
+                                        vk::AccessFlagBits::eTransferRead |
+                                        vk::AccessFlagBits::eTransferWrite);
     const auto stages = vk::PipelineStageFlagBits::eComputeShader | vk::PipelineStageFlagBits::eTransfer;
     commands.pipelineBarrier(stages, stages | vk::PipelineStageFlagBits::eDrawIndirect, {}, barrier, {}, {});
 }

@@ -1,4 +1,5 @@
-// Buffers and images that clean up after themselves: the object on the device lives until the device is done with it.
+// Buffers and images that clean up after themselves: the object on the device lives until the device is done
+// with it.
 #pragma once
 
 #include <cstddef>
@@ -88,7 +89,8 @@ private:
     std::shared_ptr<State> state_;
 };
 
-/// Everything written by earlier commands is seen by later ones (compute, transfer, indirect, fragment, host).
+/// Everything written by earlier commands is seen by later ones (compute, transfer, indirect, fragment,
+/// host).
 void full_barrier(vk::CommandBuffer commands);
 /// What compute shaders and copies wrote is seen by later compute shaders and indirect dispatches.
 void compute_barrier(vk::CommandBuffer commands);

@@ -1,0 +1,4 @@
+if(TARGET gse_window)
+  target_link_libraries(${test_target} PRIVATE gse_window glfw)
+  target_compile_definitions(${test_target} PRIVATE GSE_WINDOW=1)
+endif()
