@@ -1,4 +1,4 @@
-// MP4 through OpenCV's FFmpeg: H.264 where the system can encode it, MPEG-4 elsewhere.
+// MP4 and WebM through OpenCV's FFmpeg: H.264 where the system can encode it, MPEG-4 elsewhere; VP9 or VP8 for WebM.
 #include "engine/io/video.h"
 
 #include <fmt/core.h>
@@ -35,7 +35,8 @@ bool open_any_codec(cv::VideoWriter& writer, const std::filesystem::path& file, 
                     std::string& codec) {
     const auto level = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
     bool opened = false;
-    for (const char* name : {"avc1", "mp4v"}) {
+    static constexpr std::array<const char*, 2> mp4{"avc1", "mp4v"}, webm{"VP90", "VP80"};
+    for (const char* name : file.extension() == ".webm" ? webm : mp4) {
         try {
             opened =
                 writer.open(file.string(), cv::CAP_FFMPEG,
@@ -65,14 +66,15 @@ VideoWriter::VideoWriter(const std::filesystem::path& path, int width, int heigh
                     path.parent_path());
     state_->path = path;
     state_->temporary =
-        path.parent_path() / ("." + path.stem().string() + ".part" + std::to_string(getpid()) + ".mp4");
+        path.parent_path() / ("." + path.stem().string() + ".part" + std::to_string(getpid()) +
+                                (path.extension() == ".webm" ? ".webm" : ".mp4"));
     state_->width = width;
     state_->height = height;
     const cv::Size size(width / 2 * 2, height / 2 * 2);
     state_->picture.create(size, CV_8UC3);
     if (!open_any_codec(state_->writer, state_->temporary, frames_per_second, size, state_->codec)) {
         std::filesystem::remove(state_->temporary, failure);
-        throw Error(ErrorCode::Unwritable, "the film cannot be written: no MP4 codec opens this file",
+        throw Error(ErrorCode::Unwritable, "the film cannot be written: no codec opens this file",
                     "check the rights of the folder and that OpenCV has FFmpeg", path);
     }
 }

@@ -1,4 +1,4 @@
-// MP4 films made of float images.
+// MP4 and WebM films (told by the file's extension) made of float images.
 #pragma once
 
 #include <filesystem>

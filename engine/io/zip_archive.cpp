@@ -97,10 +97,17 @@ std::vector<std::byte> ZipReader::read(const std::string& name, std::uint64_t mo
                     DamagedHint);
     const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
         zip_fopen_index(state_->zip.get(), static_cast<zip_uint64_t>(index), 0), zip_fclose);
+    zip_stat_t status;
+    zip_stat_init(&status);
+    zip_stat_index(state_->zip.get(), static_cast<zip_uint64_t>(index), 0, &status);
+    const bool sized = (status.valid & ZIP_STAT_SIZE) != 0;  // said by the file: a hint, not trusted
+    std::size_t piece =
+        sized ? static_cast<std::size_t>(std::min<zip_uint64_t>(status.size + 1, PieceBytes)) : PieceBytes;
     std::vector<std::byte> content;
     while (file != nullptr) {
         const std::size_t filled = content.size();
-        content.resize(filled + std::max(PieceBytes, filled / 2));
+        content.resize(filled + std::max(piece, filled / 2));
+        piece = PieceBytes;
         const zip_int64_t got = zip_fread(file.get(), content.data() + filled, content.size() - filled);
         content.resize(filled + static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
         if (got == 0) return content;

@@ -27,7 +27,7 @@ DOCTEST_TEST_CASE("applying the difference of two sets gives the second one bit 
         const RandomEdit edit = random_edit(before, seed + 1000);
         const SceneDelta delta = make_delta(before, ids, edit.after, edit.base_to_new, 5);
         const auto [set, new_ids] = apply_delta(before, ids, delta);
-        DOCTEST_CHECK(same_bits(set, edit.after));
+        DOCTEST_CHECK(bits_equal(set, edit.after));
         DOCTEST_REQUIRE(new_ids.size() == set.size());
         for (std::size_t row = 0; row < before.size(); ++row) {
             if (edit.base_to_new[row] >= 0)
@@ -51,7 +51,7 @@ DOCTEST_TEST_CASE("a delta that only moves splats shares every other array") {
     const SceneDelta delta = make_delta(before, ids, after, map, 1);
     DOCTEST_CHECK(delta.changed == std::vector<RowId>{10});
     const auto [set, unused] = apply_delta(before, ids, delta);
-    DOCTEST_CHECK(same_bits(set, after));
+    DOCTEST_CHECK(bits_equal(set, after));
     DOCTEST_CHECK(set.buffers().sh == before.buffers().sh);
     DOCTEST_CHECK(set.buffers().opacity_logit == before.buffers().opacity_logit);
     DOCTEST_CHECK(set.buffers().position != before.buffers().position);
@@ -86,7 +86,7 @@ DOCTEST_TEST_CASE("rows that are not there are passed over") {
     const SceneDelta* both[] = {&one, &two};
     const auto [together, together_ids] = apply_deltas(before, ids, both);
     const auto [after, after_ids] = apply_delta(middle, middle_ids, two);
-    DOCTEST_CHECK(same_bits(together, after));
+    DOCTEST_CHECK(bits_equal(together, after));
     DOCTEST_CHECK(together_ids == after_ids);
 }
 
@@ -116,7 +116,7 @@ DOCTEST_TEST_CASE("SH degrees are widened with zeros, in the set and in the delt
     const GaussianSet flat = random_set(20, 0, 1);
     const GaussianSet rich = random_set(20, 2, 2);
     const auto up = apply_delta(flat, ids, make_delta(flat, ids, rich, map, 1)).first;
-    DOCTEST_CHECK(same_bits(up, rich));
+    DOCTEST_CHECK(bits_equal(up, rich));
     const auto down = apply_delta(rich, ids, make_delta(rich, ids, flat, map, 1)).first;
     DOCTEST_REQUIRE(down.sh_degree() == 2);
     for (std::size_t row = 0; row < 20; ++row) DOCTEST_CHECK(same_row(down.spans(), row, flat.spans(), row));

@@ -33,7 +33,7 @@ Picture picture_of(const DocumentState& state) {
 }
 
 bool same(const Picture& a, const Picture& b) {
-    return same_bits(GaussianSet(a.rows), GaussianSet(b.rows)) && a.ids == b.ids && a.bits == b.bits &&
+    return bits_equal(GaussianSet(a.rows), GaussianSet(b.rows)) && a.ids == b.ids && a.bits == b.bits &&
            a.edits == b.edits;
 }
 

@@ -2,6 +2,8 @@
 // files.
 #pragma once
 
+#include <fmt/core.h>
+
 #include <cstring>
 #include <limits>
 #include <span>
@@ -46,14 +48,14 @@ inline GaussianSet random_set(std::size_t count, int degree, std::uint64_t seed)
     return GaussianSet(random_data(count, degree, seed));
 }
 
-inline bool same_bits(std::span<const float> a, std::span<const float> b) {
+inline bool bits_equal(std::span<const float> a, std::span<const float> b) {
     return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
 }
 
-inline bool same_bits(const GaussianSet& a, const GaussianSet& b) {
-    return a.sh_degree() == b.sh_degree() && same_bits(a.position(), b.position()) &&
-           same_bits(a.log_scale(), b.log_scale()) && same_bits(a.rotation(), b.rotation()) &&
-           same_bits(a.opacity_logit(), b.opacity_logit()) && same_bits(a.sh(), b.sh());
+inline bool bits_equal(const GaussianSet& a, const GaussianSet& b) {
+    return a.sh_degree() == b.sh_degree() && bits_equal(a.position(), b.position()) &&
+           bits_equal(a.log_scale(), b.log_scale()) && bits_equal(a.rotation(), b.rotation()) &&
+           bits_equal(a.opacity_logit(), b.opacity_logit()) && bits_equal(a.sh(), b.sh());
 }
 
 /// What an edit made of a set: rows kept in order, some of them changed, new ones at the end.
@@ -94,7 +96,7 @@ inline EditNode random_node(const DocumentState& state, std::uint64_t seed) {
     const RandomEdit edit = random_edit(state.current, seed);
     EditNode node;
     node.id = next_edit_id(state);
-    node.name = "edit " + std::to_string(node.id);
+    node.name = fmt::format("edit {}", node.id);
     node.delta = std::make_shared<const SceneDelta>(
         make_delta(state.current, *state.row_ids, edit.after, edit.base_to_new, node.id));
     return node;
@@ -115,7 +117,7 @@ inline NamedLabel random_label(const DocumentState& state, std::uint64_t seed) {
         manual[row] = static_cast<std::int8_t>(static_cast<int>(random.below(3)) - 1);
     }
     NamedLabel label;
-    label.name = "label " + std::to_string(seed);
+    label.name = fmt::format("label {}", seed);
     label.threshold = static_cast<float>(random.uniform());
     label.weight = std::make_shared<const std::vector<float>>(std::move(weight));
     label.manual = std::make_shared<const std::vector<std::int8_t>>(std::move(manual));

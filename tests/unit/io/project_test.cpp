@@ -1,0 +1,290 @@
+// Project files: everything comes back bit for bit, scenes are found again, damage is one sentence.
+#include <fstream>
+
+#include "engine/base/log.h"
+#include "engine/io/project_description.h"
+#include "engine/io/project_parts.h"
+#include "engine/io/zip_archive.h"
+#include "tests/unit/io/project_helpers.h"
+
+using namespace gse;
+using namespace gse::test;
+
+namespace {
+
+/// Warnings of these tests are expected.
+struct Quiet {
+    Quiet() { log::set_level(log::Level::Off); }
+    ~Quiet() { log::set_level(log::Level::Info); }
+};
+
+std::string text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// The project with its description changed by `change`.
+template <class F>
+std::string with_description(const std::string& project, F&& change) {
+    const io::ZipReader zip(as_bytes(project), "the project");
+    auto json = nlohmann::json::parse(text_of(zip.read("project.json", 1 << 20)));
+    const io::ProjectDescription description = io::parse_description(json.dump());
+    std::vector<std::string> names{description.thumbnail, description.base_member};
+    for (const auto& edit : description.stack) names.insert(names.end(), {edit.delta, edit.thumbnail});
+    for (const auto& label : description.labels)
+        names.insert(names.end(), {label.weight, label.manual, label.absent});
+    change(json);
+    const std::string text = json.dump();
+    std::vector<std::string> contents;
+    std::erase(names, "");
+    for (const auto& name : names) contents.push_back(text_of(zip.read(name, 1 << 30)));
+    std::vector<io::ZipMember> members{{"project.json", text, true}};
+    for (std::size_t i = 0; i < names.size(); ++i) members.push_back({names[i], contents[i], false});
+    return io::write_zip(members);
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a project comes back bit for bit") {
+    const Quiet quiet;
+    const ScratchFolder folder;
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        const auto source = saved_source(folder.path() / "scene \xc3\xa9.ply", 90 + seed * 40, seed);
+        const ProjectData project = random_project(source, seed);
+        const auto path = folder.path() / "w\xc3\xb6rk.gsep";
+        save_project(path, project);
+        const ProjectData loaded = load_project(path);
+        DOCTEST_CHECK(difference(project.state, loaded.state) == "");
+        DOCTEST_CHECK(loaded.ui == project.ui);
+        DOCTEST_CHECK(loaded.jobs == project.jobs);
+        DOCTEST_CHECK(same_picture(project.thumbnail, loaded.thumbnail));
+        DOCTEST_CHECK(loaded.warnings.empty());
+        DOCTEST_CHECK(loaded.source.path == source.path);
+        // Edits that are off come back on.
+        auto stack = loaded.state.stack;
+        stack[1].enabled = true;
+        DOCTEST_CHECK(difference(with_stack(project.state, stack), with_stack(loaded.state, stack)) == "");
+    }
+}
+
+DOCTEST_TEST_CASE("a writer that knows the arrays writes the same bytes as a new one") {
+    const ScratchFolder folder;
+    ProjectData project = random_project(saved_source(folder.path() / "scene.ply", 200, 1), 1);
+    const auto path = folder.path() / "a.gsep";
+    ProjectWriter writer;
+    DOCTEST_CHECK(writer.pack(path, project) == writer.pack(path, project));
+    for (std::uint64_t i = 0; i < 5; ++i) {
+        if (i % 2 == 0)
+            project.state.labels[0] = random_label(project.state, i);
+        else
+            project.state = with_edit(project.state, random_node(project.state, i));
+        const bool same = writer.pack(path, project) == ProjectWriter().pack(path, project);
+        DOCTEST_CHECK(same);
+    }
+}
+
+DOCTEST_TEST_CASE("the scene is found beside a project that moved, and changes are told") {
+    const Quiet quiet;
+    const ScratchFolder folder;
+    namespace fs = std::filesystem;
+    const auto source = saved_source(folder.path() / "a" / "scene.ply", 100, 2);
+    const ProjectData project = random_project(source, 2);
+    save_project(folder.path() / "a" / "work.gsep", project);
+    fs::rename(folder.path() / "a", folder.path() / "b");
+    const ProjectData moved = load_project(folder.path() / "b" / "work.gsep");
+    DOCTEST_CHECK(difference(project.state, moved.state) == "");
+    DOCTEST_REQUIRE(moved.warnings.size() == 1);
+    DOCTEST_CHECK(moved.warnings[0].find("was found at") != std::string::npos);
+    // The scene stays in another folder: its name beside the project is tried as well.
+    save_project(folder.path() / "other.gsep", moved);
+    fs::create_directories(folder.path() / "c");
+    fs::rename(folder.path() / "other.gsep", folder.path() / "c" / "other.gsep");
+    fs::rename(folder.path() / "b" / "scene.ply", folder.path() / "c" / "scene.ply");
+    DOCTEST_CHECK(difference(project.state, load_project(folder.path() / "c" / "other.gsep").state) == "");
+    // Another scene of as many splats: a warning; of fewer: an error.
+    const auto place = folder.path() / "c" / "scene.ply";
+    save_scene(place, random_scene(100, 1, 77));
+    const ProjectData changed = load_project(folder.path() / "c" / "other.gsep");
+    DOCTEST_REQUIRE(changed.warnings.size() == 1);
+    DOCTEST_CHECK(changed.warnings[0].find("has changed") != std::string::npos);
+    save_scene(place, random_scene(60, 1, 77));
+    const auto other = error_of([&] { load_project(folder.path() / "c" / "other.gsep"); });
+    DOCTEST_REQUIRE(other);
+    DOCTEST_CHECK(other->message() == "the scene has 60 splats, the project was made with one of 100");
+    fs::remove(place);
+    const auto gone = error_of([&] { load_project(folder.path() / "c" / "other.gsep"); });
+    DOCTEST_REQUIRE(gone);
+    DOCTEST_CHECK(gone->code() == ErrorCode::NotFound);
+    DOCTEST_CHECK(gone->hint() == "put \"scene.ply\" beside the project or back to its old place");
+    const ProjectSummary summary = read_project_summary(folder.path() / "c" / "other.gsep");
+    DOCTEST_CHECK_FALSE(summary.scene_found);
+    DOCTEST_CHECK(summary.stack.size() == 3);
+}
+
+DOCTEST_TEST_CASE("a repaired base is kept as its rows, any other base as a whole") {
+    const Quiet quiet;
+    const ScratchFolder folder;
+    const auto path = folder.path() / "p.gsep";
+    const auto source = saved_source(folder.path() / "scene.ply", 300, 3);
+    Scene scene;
+    std::vector<unsigned char> keep(300, 1);
+    keep[0] = keep[17] = keep[299] = 0;
+    scene.gaussians = source.loaded.filtered(keep);
+    ProjectData project;
+    project.source = source;
+    project.state = initial_state(scene, {});
+    project.state = with_edit(project.state, random_node(project.state, 1));
+    ProjectWriter writer;
+    for (int again = 0; again < 2; ++again) {
+        writer.save(path, project);
+        const ProjectData loaded = load_project(path);
+        DOCTEST_CHECK(difference(project.state, loaded.state) == "");
+        DOCTEST_CHECK(bits_equal(loaded.source.loaded, source.loaded));
+    }
+    const auto kept_bytes = std::filesystem::file_size(path);
+    // The scene's file is overwritten after it was opened: the project must not depend on it any more.
+    save_scene(source.path, random_scene(50, 1, 4));
+    writer.save(path, project);
+    DOCTEST_CHECK(std::filesystem::file_size(path) > kept_bytes);
+    DOCTEST_CHECK(difference(project.state, load_project(path).state) == "");
+    // No file at all.
+    project.source = {};
+    writer.save(path, project);
+    std::filesystem::remove(source.path);
+    const ProjectData whole = load_project(path);
+    DOCTEST_CHECK(difference(project.state, whole.state) == "");
+    save_project(path, whole);
+    DOCTEST_CHECK(difference(project.state, load_project(path).state) == "");
+}
+
+DOCTEST_TEST_CASE("unknown fields are kept, absent ones have defaults, newer formats are refused") {
+    const ScratchFolder folder;
+    const ProjectData project = random_project({{}, 0, 0, random_set(80, 1, 5)}, 5);
+    const std::string packed = ProjectWriter().pack("x.gsep", project);
+    const auto newer = with_description(packed, [](auto& json) {
+        json["mood"] = {{"of", "the day"}};
+        json["stack"][0]["colour"] = "red";
+    });
+    const ProjectData loaded = parse_project(as_bytes(newer));
+    DOCTEST_CHECK(difference(project.state, loaded.state) == "");
+    DOCTEST_CHECK(loaded.unknown["mood"]["of"] == "the day");
+    const std::string again = ProjectWriter().pack("x.gsep", loaded);
+    DOCTEST_CHECK(parse_project(as_bytes(again)).unknown == loaded.unknown);
+    const auto older = with_description(packed, [](auto& json) {
+        for (const char* key : {"ui", "jobs", "views", "info", "program", "thumbnail", "active_label"})
+            json.erase(key);
+        json["stack"][0].erase("recipe");
+    });
+    const ProjectData sparse = parse_project(as_bytes(older));
+    DOCTEST_CHECK(bits_equal(sparse.state.current, project.state.current));
+    DOCTEST_CHECK(sparse.state.views.empty());
+    DOCTEST_CHECK(sparse.state.stack[0].recipe.empty());
+    const auto future = with_description(packed, [](auto& json) { json["version"] = 2; });
+    const auto refused = error_of([&] { parse_project(as_bytes(future)); });
+    DOCTEST_REQUIRE(refused);
+    DOCTEST_CHECK(refused->code() == ErrorCode::Unsupported);
+}
+
+DOCTEST_TEST_CASE("damaged descriptions and members are one sentence each") {
+    const ProjectData project = random_project({{}, 0, 0, random_set(80, 1, 6)}, 6);
+    const std::string packed = ProjectWriter().pack("x.gsep", project);
+    using Json = nlohmann::json;
+    const std::vector<std::function<void(Json&)>> damages = {
+        [](Json& json) { json["format"] = "other"; },
+        [](Json& json) { json.erase("version"); },
+        [](Json& json) { json["scene"] = 3; },
+        [](Json& json) { json["scene"]["base"] = "cloud"; },
+        [](Json& json) { json["scene"]["fingerprint"] = "xyz"; },
+        [](Json& json) { json["scene"]["base_member"] = "nowhere"; },
+        [](Json& json) { json["scene"]["base_splats"] = 81; },
+        [](Json& json) { json["rows"] = 1; },
+        [](Json& json) { json["stack"][1]["id"] = json["stack"][0]["id"]; },
+        [](Json& json) { json["stack"][1]["id"] = 0; },
+        [](Json& json) { json["stack"][1]["id"] = -4; },
+        [](Json& json) { json["stack"][0]["delta"] = json["stack"][2]["delta"]; },
+        [](Json& json) { json["stack"][0]["delta"] = json["labels"][0]["weight"]; },
+        [](Json& json) { json["labels"][0]["weight"] = json["labels"][0]["manual"]; },
+        [](Json& json) { json["labels"][0]["threshold"] = "nan"; },
+        [](Json& json) { json["active_label"] = 2; },
+        [](Json& json) {
+            json["views"][0]["lens"] = {1, 2, 3};
+        },
+        [](Json& json) {
+            json["views"][0]["size"] = {1e9, 3};
+        },
+        [](Json& json) { json["views"][0]["rotation"][3] = "x"; },
+        [](Json& json) { json["ui"] = Json::array(); },
+        [](Json& json) {
+            Json deep = 1;
+            for (int i = 0; i < 300; ++i) deep = Json::array({deep});
+            json["ui"] = {{"deep", deep}};
+        },
+    };
+    for (std::size_t i = 0; i < damages.size(); ++i) {
+        DOCTEST_CAPTURE(i);
+        const auto error = error_of([&] { parse_project(as_bytes(with_description(packed, damages[i]))); });
+        DOCTEST_REQUIRE(error);
+        DOCTEST_CHECK_FALSE(error->message().empty());
+    }
+}
+
+DOCTEST_TEST_CASE("a project cut off or changed anywhere gives an error or what was saved, nothing else") {
+    const Quiet quiet;
+    ProjectData project = random_project({{}, 0, 0, random_set(40, 1, 7)}, 7);
+    const std::string packed = ProjectWriter().pack("x.gsep", project);
+    std::size_t refused = 0, tries = 0;
+    for (std::size_t size = 0; size < packed.size(); size += 1 + packed.size() / 200, ++tries)
+        refused += error_of([&] { parse_project(as_bytes(packed.substr(0, size))); }) ? 1 : 0;
+    DOCTEST_CHECK(refused == tries);
+    Random random(11);
+    for (int i = 0; i < 400; ++i) {
+        std::string damaged = packed;
+        const auto at = random.below(damaged.size());
+        damaged[at] = static_cast<char>(damaged[at] ^ (1 << random.below(8)));
+        std::string what;
+        const auto error =
+            error_of([&] { what = difference(project.state, parse_project(as_bytes(damaged)).state); });
+        // A bit of an optional part (a picture, a name in the directory, a time) may pass; the rows may not.
+        if (!error) DOCTEST_CHECK((what.empty() || what.starts_with("edit")));
+    }
+}
+
+DOCTEST_TEST_CASE("members that lie about their size are refused before memory is taken") {
+    io::UnpackBudget budget(1000);
+    std::string member = io::pack_member(std::string(1000, 'x'), 1);
+    DOCTEST_CHECK(io::unpack_member(as_bytes(member), io::AnySize, budget, "it").size() == 1000);
+    DOCTEST_CHECK(error_of([&] { io::unpack_member(as_bytes(member), 999, budget, "it"); }));
+    for (const std::uint64_t size :
+         {~std::uint64_t{0}, std::uint64_t{1} << 40, std::uint64_t{1001}, std::uint64_t{2000000}}) {
+        std::memcpy(member.data() + 8, &size, sizeof size);
+        DOCTEST_CHECK(error_of([&] { io::unpack_member(as_bytes(member), io::AnySize, budget, "it"); }));
+    }
+    // Counts inside a delta.
+    SceneDelta delta;
+    delta.removed = {3, 9};
+    const std::string good = io::encode_delta(delta);
+    DOCTEST_CHECK(io::decode_delta(as_bytes(good), 1, "it").removed == delta.removed);
+    for (const std::size_t offset : {0, 8, 16, 24, 28}) {
+        std::string bad = good;
+        std::memset(bad.data() + offset, 0xff, offset < 24 ? 8 : 4);
+        DOCTEST_CHECK(error_of([&] { io::decode_delta(as_bytes(bad), 1, "it"); }));
+    }
+    delta.removed = {9, 3};
+    DOCTEST_CHECK(error_of([&] { io::decode_delta(as_bytes(io::encode_delta(delta)), 1, "it"); }));
+    delta.removed.clear();
+    delta.added = {(2ull << 32) | 0};
+    delta.added_rows = gse::test::random_data(1, 0, 1);
+    DOCTEST_CHECK(error_of([&] { io::decode_delta(as_bytes(io::encode_delta(delta)), 1, "it"); }));
+}
+
+DOCTEST_TEST_CASE("what is no project is told apart") {
+    const ScratchFolder folder;
+    write_file(folder.path() / "text.txt", "hello");
+    write_file(folder.path() / "bad.gsep", "hello");
+    DOCTEST_CHECK_FALSE(is_project_file(folder.path() / "text.txt"));
+    DOCTEST_CHECK_FALSE(is_project_file(folder.path() / "none.gsep"));
+    const auto error = error_of([&] { load_project(folder.path() / "bad.gsep"); });
+    DOCTEST_REQUIRE(error);
+    DOCTEST_CHECK(error->path() == folder.path() / "bad.gsep");
+    save_project(folder.path() / "renamed.zip", random_project({{}, 0, 0, random_set(10, 0, 1)}, 1));
+    DOCTEST_CHECK(is_project_file(folder.path() / "renamed.zip"));
+}
