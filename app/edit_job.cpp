@@ -338,6 +338,28 @@ void EditJob::correct_label(const std::vector<std::uint8_t>& bits) {
     plan_ = edit::make_plan(locate_input(), located_, painter_.rasterizer());
 }
 
+void EditJob::use_label_alone() {
+    located_ = {};
+    located_.word = recipe_.request.source;
+    located_.reason = "what is labelled is changed";
+    const std::size_t rows = scene_.gaussians.size();
+    located_.label = make_label(located_.word, std::vector<float>(rows, 0.0f), 0.5f);
+    located_.weights.weight.assign(rows, 0.0f);
+    located_.weights.evidence.assign(rows, 0.0);
+    const raster::Settings settings = locate_input().settings;
+    for (const auto& view : views_) {
+        edit::ViewEvidence evidence;
+        evidence.render = painter_.paint(scene_.gaussians.spans(), view.camera, settings).colour;
+        evidence.map = Image(view.camera.width, view.camera.height, 1);
+        evidence.region = evidence.mask = Mask(view.camera.width, view.camera.height);
+        evidence.branch = "none";
+        evidence.failed = true;
+        located_.views.push_back(std::move(evidence));
+    }
+    located_.failed_views = static_cast<int>(views_.size());
+    plan_ = edit::make_plan(locate_input(), located_, painter_.rasterizer());
+}
+
 void EditJob::set_loop_settings(const edit::EditRequest& request) {
     edit::EditRequest next = edit::validated(request);
     const auto& old = recipe_.request;

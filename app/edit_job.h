@@ -103,6 +103,8 @@ public:
     void locate_again(double attention_threshold);
     /// What may change, corrected by hand (modify mode): [N] 0 or 1.
     void correct_label(const std::vector<std::uint8_t>& bits);
+    /// For words that no view shows: no masks, the label given to correct_label() alone says what may change.
+    void use_label_alone();
     /// Runs the edit loop.
     void run(const EditObserver& observer = {});
     /// Replaces where to report and what stops (a job that located goes on to edit).

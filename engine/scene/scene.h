@@ -70,6 +70,9 @@ OrbitParameters fit_orbit(const SceneStatistics& statistics, const Vec3& up);
 /// `count` views evenly spaced on the orbit, at two alternating elevations so that tops are seen.
 std::vector<View> orbit_views(const OrbitParameters& orbit, int count, int width, int height);
 
+/// [N] 1 for rows that can be drawn, 0 for those with a NaN or an infinity that means nothing.
+std::vector<std::uint8_t> usable_rows(const GaussianSet& set);
+
 /// Drops rows that cannot be drawn (NaN, illegal infinities); returns the kept rows.
 GaussianSet drop_unusable(const GaussianSet& set);
 

@@ -133,13 +133,15 @@ SceneStatistics compute_statistics(const GaussianSet& gaussians) {
     return statistics;
 }
 
-GaussianSet drop_unusable(const GaussianSet& gaussians) {
+std::vector<std::uint8_t> usable_rows(const GaussianSet& gaussians) {
     const GaussianSpans set = gaussians.spans();
     const std::size_t sh_stride = sh_stride_of(set);
-    std::vector<unsigned char> keep(set.size);
+    std::vector<std::uint8_t> keep(set.size);
     for (std::size_t row = 0; row < set.size; ++row)
         keep[row] = row_oddity(set, row, sh_stride) == Oddity::None ? 1 : 0;
-    return gaussians.filtered(keep);
+    return keep;
 }
+
+GaussianSet drop_unusable(const GaussianSet& gaussians) { return gaussians.filtered(usable_rows(gaussians)); }
 
 }  // namespace gse

@@ -1,0 +1,161 @@
+// Pictures, films, scenes and camera paths, all on the file thread.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/application.h"
+#include "app/film.h"
+#include "app/scene_tools.h"
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/io/image_file.h"
+#include "engine/io/scene_io.h"
+
+namespace gse::app {
+namespace {
+
+/// Relative names go beside the scene or project, where an artist looks for them.
+std::filesystem::path place_for(const std::string& name, const std::string& project, const std::string& scene) {
+    const std::filesystem::path path(name);
+    if (path.is_absolute()) return path;
+    const auto base = std::filesystem::path(!project.empty() ? project : scene).parent_path();
+    return base.empty() ? std::filesystem::absolute(path) : base / path;
+}
+
+/// The same view in another shape: what was visible stays visible.
+Camera fitted(const Camera& from, int width, int height) {
+    const double scale = std::min(static_cast<double>(width) / from.width, static_cast<double>(height) / from.height);
+    Camera camera = from;
+    camera.width = width;
+    camera.height = height;
+    camera.fx *= scale;
+    camera.fy *= scale;
+    camera.cx = width / 2.0 + (from.cx - from.width / 2.0) * scale;
+    camera.cy = height / 2.0 + (from.cy - from.height / 2.0) * scale;
+    return camera;
+}
+
+raster::Settings settings_of(const ui::ViewSettings& view, bool antialiased) {
+    raster::Settings settings;
+    settings.background = parse_colour(view.background);
+    settings.antialiased = antialiased;
+    settings.sh_degree = view.sh_degree;
+    return settings;
+}
+
+}  // namespace
+
+void Application::set_exports(const ui::ExportSettings& settings) { model_.exports = settings; }
+
+void Application::export_picture() {
+    if (!require_scene()) return;
+    const auto exports = model_.exports;
+    const auto path = place_for(exports.picture_path, project_path_, scene_path_);
+    auto settings = settings_of(model_.view, document_.state().info.antialiased);
+    if (exports.transparent) settings.background = {0, 0, 0};
+    const Camera camera = fitted(model_.camera, exports.width, exports.height);
+    const std::string recipe = recipe_to_json(current_recipe()).dump();
+    auto work = [=, set = shown_set_.empty() ? document_.state().current : shown_set_](const JobControl& control) {
+        control.report("rendering", 0, 1);
+        Painter painter;
+        const auto& painted = painter.paint(set.spans(), camera, settings);
+        control.report("writing", 1, 1);
+        write_png(path, exports.transparent ? transparent_picture(painted) : painted.colour,
+                  {{"Recipe", recipe}, {"Software", "GSEditPro"}});
+    };
+    auto done = [this, path](const Error* error) {
+        if (error != nullptr) return report_error(*error);
+        toast(fmt::format("Wrote {}", path.string()));
+    };
+    if (!files_.start({fmt::format("Screenshot {}", path.filename().string()), work, done}))
+        toast("Another file is being read or written; wait for it.");
+}
+
+void Application::export_turntable() {
+    if (!require_scene()) return;
+    const auto& exports = model_.exports;
+    const auto path = place_for(exports.film_path, project_path_, scene_path_);
+    auto film = std::make_shared<FilmRequest>();
+    film->first = document_.state().current;
+    if (exports.before_after) {
+        film->second = std::make_shared<const GaussianSet>(document_.state().current);
+        film->first = document_.state().base;
+    }
+    film->settings = settings_of(model_.view, document_.state().info.antialiased);
+    film->transparent = exports.transparent;
+    film->fps = exports.fps;
+    film->cameras = turn_cameras(export_orbit(), {exports.frames, exports.fps, exports.degrees, exports.ease},
+                                 exports.start_degrees, exports.width, exports.height);
+    auto done = [this, path](const Error* error) {
+        if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
+        toast(fmt::format("Wrote {}", path.string()));
+    };
+    if (!files_.start({fmt::format("Turntable {}", path.filename().string()),
+                       [film, path](const JobControl& control) { write_film(path, *film, control); }, done, true}))
+        toast("Another file is being read or written; wait for it.");
+}
+
+void Application::export_scene() {
+    if (!require_scene()) return;
+    const auto path = place_for(model_.exports.scene_path, project_path_, scene_path_);
+    auto scene = std::make_shared<Scene>();
+    scene->gaussians = document_.state().current;
+    scene->info = document_.state().info;
+    auto label = std::make_shared<Label>();
+    const int active = document_.state().active_label;
+    if (model_.exports.with_labels && active >= 0) {
+        const auto& named = document_.state().labels[static_cast<std::size_t>(active)];
+        *label = {named.name, named.weight, named.bits};
+    }
+    auto work = [=](const JobControl& control) {
+        control.report("writing", 0, 0);
+        SaveOptions save;
+        if (label->bits) save.from_label = label.get();
+        save_scene(path, *scene, save);
+    };
+    auto done = [this, path](const Error* error) {
+        if (error != nullptr) return report_error(*error);
+        toast(fmt::format("Wrote {}", path.string()));
+    };
+    if (!files_.start({fmt::format("Export {}", path.filename().string()), work, done}))
+        toast("Another file is being read or written; wait for it.");
+}
+
+void Application::add_camera_key() {
+    if (!require_scene()) return;
+    constexpr double seconds_between = 2;
+    const double time = model_.camera_keys.empty() ? 0 : model_.camera_keys.back().time + seconds_between;
+    model_.camera_keys.push_back({time, model_.camera});
+}
+
+void Application::delete_camera_key(std::size_t index) {
+    if (index < model_.camera_keys.size())
+        model_.camera_keys.erase(model_.camera_keys.begin() + static_cast<std::ptrdiff_t>(index));
+}
+
+void Application::export_camera_path(bool as_film) {
+    if (!require_scene()) return;
+    if (model_.camera_keys.empty()) return toast("Add cameras to the path first.");
+    const auto& exports = model_.exports;
+    const auto keys = model_.camera_keys;
+    const auto path = place_for(as_film ? exports.film_path : exports.camera_path_path, project_path_, scene_path_);
+    auto film = std::make_shared<FilmRequest>();
+    if (as_film) {
+        film->first = document_.state().current;
+        film->settings = settings_of(model_.view, document_.state().info.antialiased);
+        film->fps = exports.fps;
+        film->cameras = path_cameras(keys, exports.fps, exports.width, exports.height);
+    }
+    auto work = [=](const JobControl& control) {
+        if (as_film) write_film(path, *film, control);
+        else save_camera_path(path, keys);
+    };
+    auto done = [this, path](const Error* error) {
+        if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
+        toast(fmt::format("Wrote {}", path.string()));
+    };
+    if (!files_.start({fmt::format("Camera path {}", path.filename().string()), work, done, true}))
+        toast("Another file is being read or written; wait for it.");
+}
+
+}  // namespace gse::app

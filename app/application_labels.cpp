@@ -1,0 +1,213 @@
+// Labels, edit stack, undo: every change is one named step of the document.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/application.h"
+#include "engine/base/log.h"
+#include "engine/base/random.h"
+#include "engine/scene/label_ops.h"
+
+namespace gse::app {
+namespace {
+
+ScreenArea screen_area(const ui::ScreenRegion& region) { return {region.polygon, region.circles, region.radius_px}; }
+
+LabelOperation operation_of(ui::SetOperation operation) {
+    switch (operation) {
+        case ui::SetOperation::Add: return LabelOperation::Add;
+        case ui::SetOperation::Remove: return LabelOperation::Remove;
+        case ui::SetOperation::Intersect: return LabelOperation::Intersect;
+        case ui::SetOperation::Replace: return LabelOperation::Replace;
+    }
+    return LabelOperation::Add;
+}
+
+}  // namespace
+
+bool Application::require_scene() {
+    if (!document_.empty()) return true;
+    toast("Open a scene first.");
+    return false;
+}
+
+void Application::change_label(const std::string& name, const std::function<NamedLabel(NamedLabel)>& change,
+                               const std::string& merge_key) {
+    if (!require_scene()) return;
+    if (work_.running()) {
+        toast("The label can be changed when the job is done.");
+        return;
+    }
+    DocumentState state = document_.state();
+    if (state.active_label < 0 || state.active_label >= static_cast<int>(state.labels.size())) {
+        state.labels.push_back(empty_label("selection", state.current.size()));
+        state.active_label = static_cast<int>(state.labels.size()) - 1;
+    }
+    auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
+    label = change(std::move(label));
+    document_.apply(name, std::move(state), merge_key);
+}
+
+void Application::set_label_threshold(float value) {
+    change_label(fmt::format("Threshold {:.2f}", value),
+                 [&](NamedLabel label) { return with_threshold(std::move(label), value); }, "threshold");
+}
+
+void Application::set_active_label(int index) {
+    if (!require_scene()) return;
+    DocumentState state = document_.state();
+    if (index < -1 || index >= static_cast<int>(state.labels.size()) || index == state.active_label) return;
+    state.active_label = index;
+    document_.apply("Choose label", std::move(state), "choose-label");
+}
+
+void Application::add_label(const std::string& name) {
+    if (!require_scene()) return;
+    DocumentState state = document_.state();
+    state.labels.push_back(empty_label(name.empty() ? fmt::format("label {}", state.labels.size() + 1) : name,
+                                       state.current.size()));
+    state.active_label = static_cast<int>(state.labels.size()) - 1;
+    document_.apply("New label", std::move(state));
+}
+
+void Application::rename_label(int index, const std::string& name) {
+    if (!require_scene()) return;
+    DocumentState state = document_.state();
+    if (index < 0 || index >= static_cast<int>(state.labels.size()) || name.empty()) return;
+    state.labels[static_cast<std::size_t>(index)].name = name;
+    document_.apply("Rename label", std::move(state), fmt::format("rename{}", index));
+}
+
+void Application::delete_label(int index) {
+    if (!require_scene()) return;
+    DocumentState state = document_.state();
+    if (index < 0 || index >= static_cast<int>(state.labels.size())) return;
+    const std::string name = state.labels[static_cast<std::size_t>(index)].name;
+    state.labels.erase(state.labels.begin() + index);
+    if (state.active_label >= index) --state.active_label;
+    if (state.active_label < 0 && !state.labels.empty()) state.active_label = 0;
+    document_.apply(fmt::format("Delete label \"{}\"", name), std::move(state));
+}
+
+void Application::select(const ui::ScreenRegion& region, ui::SetOperation operation, bool stroke_ends) {
+    if (!require_scene()) return;
+    PickOptions options;
+    const auto depth = model_.viewport_depth;   // stays alive for the call
+    if (model_.view.front_only && depth) options.depth = depth.get();
+    const auto rows = rows_in_area(document_.state().current, model_.camera, screen_area(region), options);
+    const auto count = std::count(rows.begin(), rows.end(), std::uint8_t{1});
+    const char* names[] = {"Add to label", "Remove from label", "Intersect label", "Select"};
+    if (count > 0 || operation == ui::SetOperation::Replace || operation == ui::SetOperation::Intersect)
+        change_label(names[static_cast<int>(operation)],
+                     [&](NamedLabel label) { return combine(std::move(label), rows, operation_of(operation)); },
+                     fmt::format("stroke{}", stroke_));
+    if (stroke_ends) ++stroke_;
+}
+
+void Application::grow_label(int steps) {
+    change_label(steps > 0 ? "Grow label" : "Shrink label",
+                 [&](NamedLabel label) { return grow(std::move(label), document_.state().current, steps); });
+}
+
+void Application::invert_label() {
+    change_label("Invert label", [](NamedLabel label) { return invert(std::move(label)); });
+}
+
+void Application::clear_label() {
+    change_label("Clear label", [](NamedLabel label) { return clear(std::move(label)); });
+}
+
+void Application::change_stack(const std::string& name, const std::function<void(std::vector<EditNode>&)>& change) {
+    if (!require_scene()) return;
+    if (work_.running() || pending_) {
+        toast(pending_ ? "Apply or discard the edit first." : "The edit stack can be changed when the job is done.");
+        return;
+    }
+    auto stack = document_.state().stack;
+    change(stack);
+    document_.apply(name, with_stack(document_.state(), std::move(stack)));
+}
+
+void Application::delete_labelled_splats() {
+    if (!require_scene()) return;
+    const auto& state = document_.state();
+    if (state.active_label < 0) return;
+    const auto& bits = state.labels[static_cast<std::size_t>(state.active_label)].bits;
+    if (!bits) return;
+    SceneDelta delta;
+    for (std::size_t row = 0; row < bits->size(); ++row)
+        if ((*bits)[row] != 0) delta.removed.push_back((*state.row_ids)[row]);
+    if (delta.removed.empty()) {
+        toast("Nothing is labelled.");
+        return;
+    }
+    if (delta.removed.size() == bits->size()) {
+        toast("Every splat is labelled; an empty scene cannot be kept.");
+        return;
+    }
+    std::sort(delta.removed.begin(), delta.removed.end());
+    delta.changed_rows.sh_degree = delta.added_rows.sh_degree = state.current.sh_degree();
+    EditNode node;
+    node.id = next_edit_id_++;
+    node.name = fmt::format("Delete {} splats", delta.removed.size());
+    node.delta = std::make_shared<const SceneDelta>(std::move(delta));
+    change_stack(node.name, [&](std::vector<EditNode>& stack) { stack.push_back(node); });
+}
+
+void Application::undo() {
+    if (document_.can_undo()) document_.undo();
+}
+
+void Application::redo() {
+    if (document_.can_redo()) document_.redo();
+}
+
+void Application::go_to(std::size_t position) {
+    if (!document_.empty()) document_.go_to(position);
+}
+
+void Application::set_edit_enabled(std::uint64_t id, bool enabled) {
+    change_stack(enabled ? "Switch edit on" : "Switch edit off", [&](std::vector<EditNode>& stack) {
+        for (auto& node : stack)
+            if (node.id == id) node.enabled = enabled;
+    });
+}
+
+void Application::delete_edit(std::uint64_t id) {
+    change_stack("Delete edit", [&](std::vector<EditNode>& stack) {
+        std::erase_if(stack, [&](const EditNode& node) { return node.id == id; });
+    });
+}
+
+void Application::move_edit(std::uint64_t id, int places) {
+    change_stack("Move edit", [&](std::vector<EditNode>& stack) {
+        const auto found = std::find_if(stack.begin(), stack.end(), [&](const EditNode& node) { return node.id == id; });
+        if (found == stack.end()) return;
+        const auto from = found - stack.begin();
+        const auto to = std::clamp<std::ptrdiff_t>(from + places, 0, static_cast<std::ptrdiff_t>(stack.size()) - 1);
+        EditNode node = std::move(*found);
+        stack.erase(found);
+        stack.insert(stack.begin() + to, std::move(node));
+    });
+}
+
+void Application::repeat_edit(std::uint64_t id) {
+    if (document_.empty()) return;
+    for (const auto& node : document_.state().stack) {
+        if (node.id != id || node.recipe.empty()) continue;
+        const auto json = nlohmann::ordered_json::parse(node.recipe, nullptr, false);
+        if (!json.is_object() || !json.contains("request")) return;
+        try {
+            edit::EditRequest request;
+            fields_from_json(request, json["request"]);
+            request.seed = Random::stream(request.seed, 77).next() % 1000000;
+            set_request(request);
+            toast("The settings are in the prompt, with a new seed.");
+        } catch (const Error& error) {
+            report_error(error);
+        }
+        return;
+    }
+}
+
+}  // namespace gse::app

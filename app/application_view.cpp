@@ -1,0 +1,182 @@
+// The viewport: which splats and values are shown, from where.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "app/application.h"
+#include "app/scene_tools.h"
+#include "engine/base/log.h"
+#include "engine/localize/focus.h"
+
+namespace gse::app {
+namespace {
+
+using Values = std::shared_ptr<const std::vector<float>>;
+
+constexpr double MovingSeconds = 0.25;
+
+Values from_bits(const std::vector<std::uint8_t>& bits) {
+    return std::make_shared<const std::vector<float>>(bits.begin(), bits.end());
+}
+
+/// How far each row is from the base: 1 = a clear change of colour, place, size or opacity, or a new row.
+Values changed_values(const DocumentState& state) {
+    const auto& now = state.current;
+    const auto& base = state.base;
+    std::vector<float> values(now.size(), 0.0f);
+    const std::size_t stride_now = now.empty() ? 0 : now.sh().size() / now.size();
+    const std::size_t stride_base = base.empty() ? 0 : base.sh().size() / base.size();
+    for (std::size_t row = 0; row < now.size(); ++row) {
+        const RowId id = (*state.row_ids)[row];
+        if (id >= base.size()) {
+            values[row] = 1;
+            continue;
+        }
+        const auto old = static_cast<std::size_t>(id);
+        double change = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            change += 0.5 * std::abs(now.sh()[row * stride_now + c] - base.sh()[old * stride_base + c]);
+            const double size = std::exp(std::clamp<double>(base.log_scale()[old * 3 + c], -20, 20));
+            change += 0.2 * std::min(1.0, std::abs(now.position()[row * 3 + c] - base.position()[old * 3 + c]) / (size + 1e-12));
+            change += 0.2 * std::abs(now.log_scale()[row * 3 + c] - base.log_scale()[old * 3 + c]);
+        }
+        change += 0.1 * std::abs(now.opacity_logit()[row] - base.opacity_logit()[old]);
+        values[row] = std::isfinite(change) ? static_cast<float>(std::min(change, 1.0)) : 1.0f;
+    }
+    return std::make_shared<const std::vector<float>>(std::move(values));
+}
+
+/// Values of rows of `before` carried to another set; rows that are new get `fresh`.
+Values carried(const std::vector<float>& values, const std::vector<std::int64_t>& base_to_new, std::size_t rows, float fresh) {
+    std::vector<float> result(rows, fresh);
+    for (std::size_t row = 0; row < base_to_new.size() && row < values.size(); ++row)
+        if (base_to_new[row] >= 0) result[static_cast<std::size_t>(base_to_new[row])] = values[row];
+    return std::make_shared<const std::vector<float>>(std::move(result));
+}
+
+}  // namespace
+
+Values Application::shown_values(const GaussianSet& set, int snapshot) {
+    const auto& state = document_.state();
+    const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
+    const NamedLabel* label = state.active_label >= 0 && state.active_label < static_cast<int>(state.labels.size())
+                                  ? &state.labels[static_cast<std::size_t>(state.active_label)]
+                                  : nullptr;
+    Values values;
+    if (mode == ui::DisplayMode::Changed) {
+        if (set.shares_all_with(state.current)) return changed_values(state);
+        values = changed_values(state);
+    } else if (mode == ui::DisplayMode::Attention) {
+        if (attention_values_ && attention_set_.shares_all_with(state.current)) values = attention_values_;
+    } else if (mode == ui::DisplayMode::LabelWeight) {
+        if (label && label->weight) values = label->weight;
+    } else if (label && label->bits) {
+        values = from_bits(*label->bits);
+    }
+    if (!values || values->size() != state.current.size()) return nullptr;
+    if (set.shares_all_with(state.current)) return values;
+    const auto* rows = pending_ && snapshot < 0 ? pending_->base_to_new.get()
+                       : !snapshots_.empty()
+                           ? snapshots_[snapshot < 0 ? snapshots_.size() - 1 : static_cast<std::size_t>(snapshot)].base_to_new.get()
+                           : nullptr;
+    if (rows == nullptr || rows->size() != state.current.size()) return nullptr;
+    return carried(*values, *rows, set.size(), 1.0f);
+}
+
+PictureRequest Application::picture_request() {
+    const auto& state = document_.state();
+    const int snapshot = model_.shown_snapshot;
+    const bool live = (work_.running() || pending_) && !snapshots_.empty();
+    const ShownKey key{document_.revision(), content_, model_.view.mode, snapshot, state.active_label,
+                       model_.view.tint_labels, pending_.has_value()};
+    if (!(key == shown_key_)) {
+        shown_key_ = key;
+        shown_set_ = state.current;
+        if (live && snapshot >= 0 && snapshot < static_cast<int>(snapshots_.size()))
+            shown_set_ = *snapshots_[static_cast<std::size_t>(snapshot)].set;
+        else if (pending_)
+            shown_set_ = pending_->set;
+        else if (live)
+            shown_set_ = *snapshots_.back().set;
+        const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
+        const bool tints = mode == ui::DisplayMode::Beauty && model_.view.tint_labels && !live;
+        const bool maps = mode >= ui::DisplayMode::Labels;
+        shown_values_ = tints || maps ? shown_values(shown_set_, snapshot) : nullptr;
+    }
+    PictureRequest request;
+    request.set = shown_set_;
+    request.values = shown_values_;
+    // Before and after: a waiting or running edit is compared with the state before it, else with the scene as loaded.
+    request.original = live || pending_ ? state.current : state.base;
+    request.antialiased = state.info.antialiased;
+    request.camera = camera_.resized(std::max(viewport_width_, 1), std::max(viewport_height_, 1));
+    request.settings = model_.view;
+    request.comparison = model_.comparison;
+    request.moving = std::chrono::duration<double>(Clock::now() - last_move_).count() < MovingSeconds;
+    request.content = content_ * 1000003 + static_cast<std::uint64_t>(model_.view.mode) * 31 +
+                      (model_.view.tint_labels ? 7 : 0) + document_.revision() * 131;
+    return request;
+}
+
+void Application::set_camera(const Camera& camera) {
+    camera_ = camera;
+    last_move_ = Clock::now();
+}
+
+void Application::set_viewport_size(int width, int height) {
+    viewport_width_ = std::clamp(width, 1, 16384);
+    viewport_height_ = std::clamp(height, 1, 16384);
+}
+
+void Application::set_view_settings(const ui::ViewSettings& settings) { model_.view = settings; }
+
+void Application::set_comparison(ui::Comparison comparison) { model_.comparison = comparison; }
+
+void Application::look_through(std::size_t view) {
+    if (document_.empty() || view >= document_.state().views.size()) return;
+    // The whole view fits into the viewport, whatever their shapes are.
+    const Camera& from = document_.state().views[view].camera;
+    const int width = std::max(viewport_width_, 1), height = std::max(viewport_height_, 1);
+    const double scale = std::min(static_cast<double>(width) / from.width, static_cast<double>(height) / from.height);
+    Camera camera = from;
+    camera.width = width;
+    camera.height = height;
+    camera.fx = from.fx * scale;
+    camera.fy = from.fy * scale;
+    camera.cx = width / 2.0 + (from.cx - from.width / 2.0) * scale;
+    camera.cy = height / 2.0 + (from.cy - from.height / 2.0) * scale;
+    camera_ = camera;
+    ++camera_version_;
+    last_move_ = Clock::now();
+}
+
+void Application::add_view() {
+    if (!require_scene()) return;
+    DocumentState state = document_.state();
+    state.views.push_back({"view " + std::to_string(state.views.size() + 1), model_.camera, false});
+    document_.apply("Add view", std::move(state));
+}
+
+void Application::delete_view(std::size_t view) {
+    if (!require_scene() || view >= document_.state().views.size()) return;
+    DocumentState state = document_.state();
+    state.views.erase(state.views.begin() + static_cast<std::ptrdiff_t>(view));
+    document_.apply("Delete view", std::move(state));
+}
+
+OrbitParameters Application::export_orbit() const {
+    OrbitParameters orbit = model_.orbit;
+    const auto& state = document_.state();
+    if (model_.exports.around_label && state.active_label >= 0) {
+        const auto& bits = state.labels[static_cast<std::size_t>(state.active_label)].bits;
+        if (bits && std::any_of(bits->begin(), bits->end(), [](auto bit) { return bit != 0; })) {
+            orbit = localize::focus_orbit(state.current, *bits, orbit);
+            orbit.radius *= 1.3;   // room around
+        }
+    }
+    orbit.radius *= model_.exports.radius_factor;
+    orbit.elevation = model_.exports.elevation_degrees * std::numbers::pi / 180;
+    return orbit;
+}
+
+}  // namespace gse::app

@@ -1,0 +1,159 @@
+// Finds models in the places where artists keep them and tells what they are from their headers, without loading networks.
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+#include "app/application.h"
+#include "engine/base/file.h"
+
+namespace gse::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::uint64_t LongestHeader = 64u << 20;
+constexpr std::size_t MostModels = 200;
+
+Json read_json(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return file ? Json::parse(file, nullptr, false) : Json();
+}
+
+/// Header of a .safetensors file; a discarded value when it is none.
+Json safetensors_header(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    unsigned char raw[8] = {};
+    if (!file.read(reinterpret_cast<char*>(raw), sizeof raw)) return Json(Json::value_t::discarded);
+    std::uint64_t size = 0;
+    for (int i = 7; i >= 0; --i) size = size << 8 | raw[i];
+    if (size == 0 || size > LongestHeader) return Json(Json::value_t::discarded);
+    std::string text(size, '\0');
+    if (!file.read(text.data(), static_cast<std::streamsize>(size))) return Json(Json::value_t::discarded);
+    return Json::parse(text, nullptr, false);
+}
+
+std::uint64_t shape_at(const Json& header, const char* key, std::size_t from_end, std::uint64_t fallback) {
+    if (!header.contains(key) || !header[key].contains("shape") || header[key]["shape"].size() <= from_end) return fallback;
+    return header[key]["shape"][header[key]["shape"].size() - 1 - from_end].get<std::uint64_t>();
+}
+
+/// ux.md: told apart by keys and by the width of the cross-attention.
+void describe_checkpoint(const fs::path& path, ui::ModelView& model) {
+    const Json header = safetensors_header(path);
+    if (!header.is_object()) {
+        model.problem = "this is not a safetensors file";
+        return;
+    }
+    const auto has_prefix = [&](const char* prefix) {
+        return std::any_of(header.items().begin(), header.items().end(),
+                           [&](const auto& item) { return item.key().rfind(prefix, 0) == 0; });
+    };
+    if (has_prefix("conditioner.embedders.1")) {
+        model.structure = "Stable Diffusion XL";
+        model.problem = "SDXL is not supported; use a Stable Diffusion 1.x or 2.x checkpoint";
+        return;
+    }
+    if (!header.contains("model.diffusion_model.input_blocks.0.0.weight")) {
+        model.structure = has_prefix("lora_") ? "LoRA" : "unknown";
+        model.problem = "this is no whole model (a LoRA, a VAE or a text encoder alone cannot edit)";
+        return;
+    }
+    const auto width = shape_at(header, "model.diffusion_model.input_blocks.2.1.transformer_blocks.0.attn2.to_k.weight", 0, 0);
+    model.structure = width == 1024 ? "Stable Diffusion 2.x" : "Stable Diffusion 1.x";
+    if (shape_at(header, "model.diffusion_model.input_blocks.0.0.weight", 2, 4) == 9) {
+        model.structure += " inpainting";
+        model.problem = "inpainting models are not supported; use the plain one";
+        return;
+    }
+    model.usable = true;
+}
+
+void describe_folder(const fs::path& path, ui::ModelView& model) {
+    const Json own = read_json(path / "gseditpro.json");
+    const Json text = read_json(path / "text_encoder/config.json");
+    model.structure = own.is_object()                                             ? "starter"
+                      : text.is_object() && text.value("hidden_size", 768) >= 1024 ? "Stable Diffusion 2.x"
+                                                                                   : "Stable Diffusion 1.x";
+    if (own.is_object() && own.contains("name") && own["name"].is_string()) model.name = own["name"].get<std::string>();
+    for (const char* part : {"unet", "vae", "text_encoder", "tokenizer"})
+        if (!fs::exists(path / part)) model.problem += (model.problem.empty() ? "missing: " : ", ") + std::string(part);
+    std::error_code ignored;
+    for (const auto& entry : fs::recursive_directory_iterator(path, fs::directory_options::skip_permission_denied, ignored))
+        if (entry.is_regular_file(ignored)) model.bytes += entry.file_size(ignored);
+    model.usable = model.problem.empty();
+}
+
+ui::ModelView describe(const fs::path& path) {
+    ui::ModelView model;
+    model.path = path.string();
+    model.name = path.stem().string();
+    std::error_code failure;
+    try {
+        if (!fs::exists(path, failure)) {
+            model.problem = "it is not there any more";
+        } else if (fs::is_directory(path, failure)) {
+            describe_folder(path, model);
+        } else {
+            model.bytes = fs::file_size(path, failure);
+            if (path.extension() == ".safetensors") describe_checkpoint(path, model);
+            else model.problem = "pickled checkpoints are not opened; convert it to .safetensors";
+        }
+    } catch (const std::exception& error) {
+        model.problem = std::string("it cannot be read (") + error.what() + ")";
+    }
+    return model;
+}
+
+/// Folders of other programs and the user's own list (GSE_MODELS, separated by colons).
+std::vector<fs::path> model_folders() {
+    std::vector<fs::path> folders;
+    if (const char* own = std::getenv("GSE_MODELS")) {
+        std::string text(own);
+        for (std::size_t at = 0; at <= text.size();) {
+            const auto end = std::min(text.find(':', at), text.size());
+            if (end > at) folders.emplace_back(text.substr(at, end - at));
+            at = end + 1;
+        }
+    }
+    if (const char* home = std::getenv("HOME"))
+        for (const char* place : {"ComfyUI/models/checkpoints", "ComfyUI/models/diffusers",
+                                  "stable-diffusion-webui/models/Stable-diffusion", ".local/share/gseditpro/models"})
+            folders.push_back(fs::path(home) / place);
+    return folders;
+}
+
+}  // namespace
+
+std::vector<ui::ModelView> scan_models(const std::string& chosen) {
+    std::vector<ui::ModelView> models{describe(starter_model_path())};
+    const auto add = [&](const fs::path& path) {
+        const auto known = [&](const auto& model) { return model.path == path.string(); };
+        if (models.size() < MostModels && std::none_of(models.begin(), models.end(), known)) models.push_back(describe(path));
+    };
+    for (const auto& folder : model_folders()) {
+        std::error_code failure;
+        for (const auto& entry : fs::directory_iterator(folder, failure)) {
+            const auto extension = entry.path().extension();
+            const bool checkpoint = extension == ".safetensors" || extension == ".ckpt";
+            if (checkpoint || fs::exists(entry.path() / "model_index.json", failure)) add(entry.path());
+        }
+    }
+    if (!chosen.empty()) add(chosen);
+    for (auto& model : models) model.chosen = chosen.empty() ? &model == &models.front() : model.path == chosen;
+    return models;
+}
+
+std::vector<std::string> model_words(const fs::path& folder) {
+    std::vector<std::string> words;
+    const Json own = read_json(folder / "gseditpro.json");
+    if (!own.is_object() || !own.contains("vocabulary") || !own["vocabulary"].is_array()) return words;
+    for (const auto& word : own["vocabulary"])
+        if (word.is_string()) words.push_back(word.get<std::string>());
+    return words;
+}
+
+}  // namespace gse::app
