@@ -39,6 +39,7 @@ int run_command_line(int argc, char** argv) {
     app.add_flag("-q,--quiet", context.quiet, "No progress bar, only warnings");
     add_scene_commands(app, context);
     add_edit_commands(app, context);
+    add_project_command(app, context);
     add_training_command(app, context);
     add_bench_command(app, context);
     for (auto* command : app.get_subcommands({})) command->fallthrough();

@@ -45,6 +45,7 @@ using Command = std::function<void()>;
 
 void add_scene_commands(CLI::App& app, CommandContext& context);     // info, convert, render, turntable, synth
 void add_edit_commands(CLI::App& app, CommandContext& context);      // locate, edit
+void add_project_command(CLI::App& app, CommandContext& context);    // project
 void add_training_command(CLI::App& app, CommandContext& context);   // train-starter
 void add_bench_command(CLI::App& app, CommandContext& context);      // bench
 
