@@ -1,4 +1,4 @@
-// dlopen of the networks' library beside the program or in ../lib/gseditpro.
+// dlopen of the networks' library beside the program, above it (tests) or in ../lib/gseditpro.
 #include "app/neural_loader.h"
 
 #include <dlfcn.h>
@@ -12,7 +12,7 @@ namespace {
 
 neural::Api* load() {
     const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    const std::array<std::filesystem::path, 2> candidates{program / "libgse_neural.so",
+    const std::array<std::filesystem::path, 3> candidates{program / "libgse_neural.so", program / "../libgse_neural.so",
                                                           program / "../lib/gseditpro/libgse_neural.so"};
     for (const auto& candidate : candidates) {
         if (!std::filesystem::exists(candidate)) continue;
