@@ -79,6 +79,8 @@ public:
     virtual void export_camera_path(bool as_film) = 0;             // JSON, or the film along the path
     // Window
     virtual void dismiss_toast(std::size_t index) = 0;
+    virtual void press_toast(std::size_t) {}                       // its button
+    virtual void toggle_fullscreen() {}
     virtual void set_ui_scale(float scale) = 0;
     virtual void quit() = 0;
 };

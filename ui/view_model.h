@@ -142,6 +142,7 @@ struct Toast {
     std::string text;
     bool is_error = false;
     double age_seconds = 0;
+    std::string button;          // empty = none
 };
 
 /// Settings of a picture or film to be written (Export panel and dialogs).

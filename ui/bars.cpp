@@ -1,0 +1,187 @@
+// Tool bar at the left and job bar at the bottom.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/commands.h"
+#include "ui/menu.h"
+#include "ui/state.h"
+#include "ui/widgets/controls.h"
+#include "ui/widgets/icons.h"
+
+namespace gse::ui {
+namespace {
+
+void gap(Context& context) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x;
+    ImGui::GetWindowDrawList()->AddLine({at.x, at.y + context.em * 0.2f},
+                                        {at.x + width, at.y + context.em * 0.2f}, palette::Border);
+    ImGui::Dummy({0, context.em * 0.3f});
+}
+
+void draw_tools(Context& context) {
+    const std::string why = context.scene_open() ? "" : "Open a scene first";
+    const Tool tool = context.state.viewport.tool;
+    const auto tool_button = [&](const char* name, Icon icon, Tool which, const char* text) {
+        if (icon_button(
+                context,
+                {.name = name, .icon = icon, .tooltip = text, .active = tool == which, .why_off = why}) &&
+            tool != which)
+            set_tool(context, which);
+    };
+    tool_button("tool.orbit", Icon::Orbit, Tool::Orbit, "Orbit: left drag turns the view (Esc)");
+    tool_button("tool.brush", Icon::Brush, Tool::Brush, "Brush: paint the label (B)");
+    tool_button("tool.rectangle", Icon::Rectangle, Tool::Rectangle, "Rectangle: label what is inside (R)");
+    tool_button("tool.lasso", Icon::Lasso, Tool::Lasso, "Lasso: label what is inside (L)");
+    gap(context);
+    const bool front = context.view.front_only;
+    if (icon_button(context, {.name = "tool.front",
+                              .icon = front ? Icon::FrontOnly : Icon::Through,
+                              .tooltip = front ? "Front only: what is behind is not touched (N)"
+                                               : "All the way through (N)",
+                              .active = front})) {
+        context.view.front_only = !front;
+        context.view_changed = true;
+    }
+}
+
+/// Step, share and time left in one line.
+std::string job_text(const JobView& job) {
+    std::string text = job.stage;
+    if (job.total > 0) text += fmt::format("  {} / {}", job.step, job.total);
+    if (job.paused) return text + "  paused";
+    if (job.eta_seconds >= 0) text += fmt::format("  {} left", duration_text(job.eta_seconds));
+    return text;
+}
+
+void draw_bar(Context& context, const JobView& job, const char* name, float width) {
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const float height = ImGui::GetFrameHeight();
+    ImGui::Dummy({width, height});
+    note(context, name);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 high(low.x + width, low.y + height);
+    list->AddRectFilled(low, high, palette::Sunken, context.em * 0.2f);
+    if (job.total > 0) {
+        const float share =
+            std::clamp(static_cast<float>(job.step) / static_cast<float>(job.total), 0.0f, 1.0f);
+        list->AddRectFilled(low, {low.x + width * share, high.y},
+                            job.paused ? palette::Raised : palette::AccentDeep, context.em * 0.2f);
+    }
+    const std::string text = shortened(job_text(job), width - context.em);
+    list->AddText({low.x + context.em * 0.5f, low.y + (height - ImGui::GetFontSize()) * 0.5f}, palette::Text,
+                  text.c_str());
+}
+
+void draw_running(Context& context) {
+    const auto& job = context.model.job;
+    const float room = ImGui::GetContentRegionAvail().x;
+    bullet_dot(job.paused ? palette::Warning : palette::Accent);
+    ImGui::TextUnformatted(shortened(job.title, room * 0.3f).c_str());
+    note(context, "job.title");
+    ImGui::SameLine();
+    const float buttons =
+        (job.can_pause ? button_width("Resume") + context.em : 0) + button_width("Cancel") + context.em;
+    const float file = context.model.file_job.running ? room * 0.25f : 0;
+    draw_bar(context, job, "job.bar",
+             std::max(context.em * 4, ImGui::GetContentRegionAvail().x - buttons - file));
+    ImGui::SameLine();
+    if (job.can_pause) {
+        if (button(context, {.name = "job.pause",
+                             .text = job.paused ? "Resume" : "Pause",
+                             .width = button_width("Resume")}))
+            context.actions.pause(!job.paused);
+        ImGui::SameLine();
+    }
+    if (button(context, {.name = "job.cancel", .text = "Cancel", .tooltip = "Esc"})) cancel_job(context);
+}
+
+void draw_idle(Context& context) {
+    const auto& job = context.model.job;
+    const float file = context.model.file_job.running ? context.em * 18 : 0;
+    const float room = ImGui::GetContentRegionAvail().x - file - context.em * 2;
+    if (!job.error.empty()) {
+        bullet_dot(palette::Bad);
+        ImGui::TextUnformatted(shortened(job.error, room).c_str());
+        note(context, "job.error");
+        return tooltip(job.error);
+    }
+    bullet_dot(context.model.result_waiting ? palette::Accent : palette::Good);
+    std::string text = context.model.result_waiting ? "The edit is done: apply or discard it" : "Ready";
+    if (!job.title.empty() && !job.outcome.empty())
+        text = fmt::format("{}: {}{}", job.title, job.outcome,
+                           context.model.result_waiting ? ". Apply or discard it" : "");
+    ImGui::TextUnformatted(shortened(text, room).c_str());
+    note(context, "job.outcome");
+    tooltip(text);
+}
+
+void draw_file_job(Context& context) {
+    const auto& job = context.model.file_job;
+    if (!job.running) {
+        if (!job.error.empty() && !context.model.job.running) {
+            ImGui::SameLine();
+            coloured_text(palette::Bad, shortened(job.error, ImGui::GetContentRegionAvail().x));
+            tooltip(job.error);
+        }
+        return;
+    }
+    ImGui::SameLine();
+    const float cancel = button_width("Stop") + context.em * 0.5f;
+    const float width =
+        std::clamp(ImGui::GetContentRegionAvail().x - cancel, context.em * 3, context.em * 16);
+    JobView shown = job;
+    shown.stage = job.title.empty() ? job.stage : job.title;
+    draw_bar(context, shown, "job.file", width);
+    ImGui::SameLine();
+    if (button(context, {.name = "job.file.cancel", .text = "Stop"})) context.actions.cancel_file_job();
+}
+
+}  // namespace
+
+void draw_tool_bar(Context& context) {
+    draw_tools(context);
+    gap(context);
+    const bool open = context.scene_open();
+    const std::string why = open ? "" : "Open a scene first";
+    if (icon_button(context, {.name = "tool.frame",
+                              .icon = Icon::Frame,
+                              .tooltip = "Frame what is labelled, else the scene (F)",
+                              .why_off = why}))
+        frame_selection(context);
+    if (icon_button(context,
+                    {.name = "tool.home", .icon = Icon::Home, .tooltip = "Home (H)", .why_off = why}))
+        go_home(context);
+    gap(context);
+    const bool undo = open && context.model.document->can_undo(),
+               redo = open && context.model.document->can_redo();
+    if (icon_button(context, {.name = "tool.undo",
+                              .icon = Icon::Undo,
+                              .tooltip = "Undo (Ctrl + Z)",
+                              .why_off = undo ? "" : "There is nothing to undo"}))
+        context.actions.undo();
+    if (icon_button(context, {.name = "tool.redo",
+                              .icon = Icon::Redo,
+                              .tooltip = "Redo (Ctrl + Shift + Z)",
+                              .why_off = redo ? "" : "There is nothing to redo"}))
+        context.actions.redo();
+    gap(context);
+    if (icon_button(context, {.name = "tool.screenshot",
+                              .icon = Icon::Camera,
+                              .tooltip = "Save screenshot (F12)",
+                              .why_off = why_not_export(context, context.exports.picture_path)}))
+        context.actions.export_picture();
+}
+
+void draw_job_bar(Context& context) {
+    ImGui::AlignTextToFramePadding();
+    if (context.model.job.running)
+        draw_running(context);
+    else
+        draw_idle(context);
+    draw_file_job(context);
+}
+
+}  // namespace gse::ui

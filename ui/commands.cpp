@@ -1,0 +1,281 @@
+// What menus, keys and buttons share: when a thing can be done, why not, and doing it.
+#include "ui/commands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/random.h"
+#include "ui/state.h"
+
+namespace gse::ui {
+namespace {
+
+constexpr double AskAfterSeconds = 30;           // of work, before a cancel is asked about
+constexpr std::uint64_t LargestSeed = 1u << 31;  // still easy to read and to type
+constexpr float SmallestScale = 0.6f, LargestScale = 4.0f;
+constexpr double TrimShare = 0.02;  // of the labelled rows left out at either end of an axis when framing
+
+/// What was typed in this very frame goes first.
+void send_request(Context& context) {
+    if (context.request_changed) context.actions.set_request(context.request);
+    context.request_changed = false;
+}
+
+/// Asks whether unsaved work may go; acts at once when there is none.
+void with_unsaved_work(Context& context, const std::string& what, std::function<void()> act) {
+    if (!context.model.unsaved) return act();
+    auto& actions = context.actions;
+    auto& question = context.state.question;
+    question.title = "Unsaved changes";
+    question.text = fmt::format("{} The changes since the last save would be lost.", what);
+    question.answers.clear();
+    if (!context.model.project_path.empty())
+        question.answers.push_back({"Save, then go on", false, [&actions, act] {
+                                        actions.save_project({});
+                                        act();
+                                    }});
+    question.answers.push_back({"Go on without saving", true, act});
+    question.answers.push_back({"Stay", false, {}});
+    question.pending = true;
+}
+
+/// Centre and radius of the labelled rows, without the outermost ones.
+bool label_ball(const Context& context, Vec3& centre, double& radius) {
+    const NamedLabel* label = context.active_label();
+    if (label == nullptr || label->bits == nullptr) return false;
+    const auto& set = context.document().current;
+    const auto positions = set.position();
+    std::vector<float> axis;
+    Vec3 low, high;
+    for (int dimension = 0; dimension < 3; ++dimension) {
+        axis.clear();
+        for (std::size_t row = 0; row < std::min(label->bits->size(), set.size()); ++row)
+            if ((*label->bits)[row] != 0 &&
+                std::isfinite(positions[row * 3 + static_cast<std::size_t>(dimension)]))
+                axis.push_back(positions[row * 3 + static_cast<std::size_t>(dimension)]);
+        if (axis.empty()) return false;
+        const auto cut = static_cast<std::size_t>(static_cast<double>(axis.size()) * TrimShare);
+        std::nth_element(axis.begin(), axis.begin() + static_cast<std::ptrdiff_t>(cut), axis.end());
+        low[dimension] = axis[cut];
+        const std::size_t upper = axis.size() - 1 - cut;
+        std::nth_element(axis.begin(), axis.begin() + static_cast<std::ptrdiff_t>(upper), axis.end());
+        high[dimension] = axis[upper];
+    }
+    centre = (low + high) * 0.5;
+    radius = length(high - low) * 0.5;
+    return true;
+}
+
+}  // namespace
+
+const std::vector<std::string>& scene_extensions() {
+    static const std::vector<std::string> Endings{".ply",    ".spz",  ".sog",  ".splat",
+                                                  ".ksplat", ".json", ".gsep", ".png"};
+    return Endings;
+}
+
+const std::vector<std::string>& writable_extensions() {
+    static const std::vector<std::string> Endings{".ply", ".splat", ".spz"};
+    return Endings;
+}
+
+const std::vector<std::string>& film_extensions() {
+    static const std::vector<std::string> Endings{".mp4", ".webm"};
+    return Endings;
+}
+
+std::string why_not_locate(const Context& context) {
+    if (!context.scene_open()) return "Open a scene first";
+    if (!context.model.cannot_edit.empty()) return context.model.cannot_edit;
+    if (context.model.job.running) return fmt::format("\"{}\" is still running", context.model.job.title);
+    if (context.model.result_waiting) return "Apply or discard the finished edit first";
+    return context.state.prompt.problem;
+}
+
+std::string why_not_edit(const Context& context) { return why_not_locate(context); }
+
+std::string why_not_label(const Context& context) {
+    if (!context.scene_open()) return "Open a scene first";
+    if (context.active_label() == nullptr) return "There is no label yet: press Locate, or add one";
+    return {};
+}
+
+std::string why_not_save(const Context& context) {
+    return context.scene_open() ? std::string() : std::string("Nothing is open");
+}
+
+std::string why_not_export(const Context& context, const std::string& path) {
+    if (!context.scene_open()) return "Open a scene first";
+    if (path.empty()) return "Type where it should be written";
+    if (context.model.file_job.running)
+        return fmt::format("\"{}\" is still running", context.model.file_job.title);
+    return {};
+}
+
+void roll_seed(Context& context) {
+    context.request.seed =
+        Random(context.request.seed ^ static_cast<std::uint64_t>(ImGui::GetTime() * 1e6)).below(LargestSeed);
+    context.request_changed = true;
+}
+
+void run_locate(Context& context) {
+    if (!why_not_locate(context).empty()) return;
+    send_request(context);
+    context.actions.locate();
+    show_panel(context.state, PanelId::Attention);
+}
+
+void run_edit(Context& context) {
+    if (!why_not_edit(context).empty()) return;
+    if (!context.state.prompt.seed_locked) roll_seed(context);
+    send_request(context);
+    context.actions.edit();
+    show_panel(context.state, PanelId::Progress);
+}
+
+void cancel_job(Context& context) {
+    const auto& job = context.model.job;
+    auto& actions = context.actions;
+    if (!job.running) {
+        if (context.model.file_job.running) actions.cancel_file_job();
+        return;
+    }
+    if (job.seconds < AskAfterSeconds) return actions.cancel();
+    auto& question = context.state.question;
+    question.title = "Cancel the job?";
+    question.text = fmt::format("\"{}\" has worked for {:.0f} s. Its snapshots stay until the next run.",
+                                job.title, job.seconds);
+    question.answers = {{"Cancel the job", true, [&actions] { actions.cancel(); }},
+                        {"Let it work", false, {}}};
+    question.pending = true;
+}
+
+void open_path(Context& context, const std::string& path) {
+    auto& actions = context.actions;
+    with_unsaved_work(context, "Another scene is to be opened.",
+                      [&actions, path] { actions.open(path_of(path)); });
+}
+
+void open_sample(Context& context) {
+    auto& actions = context.actions;
+    with_unsaved_work(context, "The sample is to be opened.", [&actions] { actions.open_sample(); });
+}
+
+void ask_open(Context& context) {
+    auto* state = &context.state;
+    context.state.files.ask(
+        {.title = "Open a scene, a folder or a project",
+         .confirm = "Open",
+         .extensions = scene_extensions(),
+         .saves = false,
+         .folder_allowed = true,
+         .start = context.model.recent.empty() ? std::string() : context.model.recent.front(),
+         .answer = [state](const std::filesystem::path& path) { state->open_asked = utf8_of(path); }});
+}
+
+void save_as(Context& context) {
+    if (!context.scene_open()) return;
+    auto& actions = context.actions;
+    std::filesystem::path start = path_of(context.model.project_path);
+    if (start.empty() && !context.model.scene_path.empty())
+        start = path_of(context.model.scene_path).replace_extension(".gsep");
+    if (start.empty()) start = home_folder() / "scene.gsep";
+    context.state.files.ask(
+        {.title = "Save the project",
+         .confirm = "Save",
+         .extensions = {".gsep"},
+         .saves = true,
+         .folder_allowed = false,
+         .start = utf8_of(start),
+         .answer = [&actions](const std::filesystem::path& path) { actions.save_project(path); }});
+}
+
+void save(Context& context) {
+    if (!context.scene_open()) return;
+    if (context.model.project_path.empty()) return save_as(context);
+    context.actions.save_project({});
+}
+
+void quit(Context& context) {
+    auto& actions = context.actions;
+    with_unsaved_work(context, "The window is to be closed.", [&actions] { actions.quit(); });
+}
+
+void add_label(Context& context) {
+    if (!context.scene_open()) return;
+    const auto& labels = context.document().labels;
+    std::string name = "label";
+    for (int number = 2; std::any_of(labels.begin(), labels.end(),
+                                     [&name](const NamedLabel& label) { return label.name == name; });
+         ++number)
+        name = fmt::format("label {}", number);
+    context.actions.add_label(name);
+    context.state.labels.renamed = static_cast<int>(labels.size());
+    context.state.labels.name = name;
+    context.state.labels.focus_name = true;
+    show_panel(context.state, PanelId::Labels);
+}
+
+void set_tool(Context& context, Tool tool) {
+    auto& viewport = context.state.viewport;
+    viewport.tool = viewport.tool == tool ? Tool::Orbit : tool;
+    viewport.stroke = false;
+}
+
+void toggle_wipe(Context& context) {
+    context.actions.set_comparison(context.model.comparison == Comparison::Wipe ? Comparison::None
+                                                                                : Comparison::Wipe);
+}
+
+void frame_selection(Context& context) {
+    if (!context.scene_open()) return;
+    Vec3 centre = context.model.orbit.centre;
+    double radius = context.model.orbit.radius * 0.5;
+    const auto& statistics = context.model.statistics;
+    if (statistics.count > 0) {
+        centre = (statistics.robust_low + statistics.robust_high) * 0.5;
+        radius = length(statistics.robust_high - statistics.robust_low) * 0.5;
+    }
+    label_ball(context, centre, radius);
+    context.state.viewport.camera.frame(centre, radius);
+}
+
+void go_home(Context& context) {
+    if (!context.scene_open()) return;
+    context.state.viewport.camera.set_fov(context.view.fov_degrees * 3.14159265358979323846 / 180);
+    context.state.viewport.camera.home();
+}
+
+void step_view(Context& context, int step) {
+    if (!context.scene_open() || context.document().views.empty()) return;
+    const int count = static_cast<int>(context.document().views.size());
+    int& selected = context.state.viewport.selected_view;
+    selected = selected < 0 ? (step > 0 ? 0 : count - 1) : ((selected + step) % count + count) % count;
+    context.actions.look_through(static_cast<std::size_t>(selected));
+}
+
+void scale_ui(Context& context, float factor) {
+    const float wanted = factor == 0 ? 1.0f : context.model.ui_scale * factor;
+    context.actions.set_ui_scale(std::clamp(std::round(wanted * 20) / 20, SmallestScale, LargestScale));
+}
+
+std::size_t label_count(Context& context) {
+    auto& labels = context.state.labels;
+    const NamedLabel* label = context.active_label();
+    if (label == nullptr || label->bits == nullptr) return 0;
+    if (labels.counted != label->bits) {
+        labels.counted = label->bits;
+        labels.count = static_cast<std::size_t>(
+            std::count_if(label->bits->begin(), label->bits->end(), [](auto bit) { return bit != 0; }));
+    }
+    return labels.count;
+}
+
+void show_panel(UiState& state, PanelId panel) {
+    state.layout.show(panel);
+    state.front_changed[static_cast<std::size_t>(state.layout.place(panel).area)] = true;
+}
+
+}  // namespace gse::ui

@@ -1,0 +1,49 @@
+// What menus, keys and buttons share: when a thing can be done, why not, and doing it.
+#pragma once
+
+#include <string>
+
+#include "ui/context.h"
+
+namespace gse::ui {
+
+/// Why these are off; empty = they are on.
+std::string why_not_locate(const Context& context);
+std::string why_not_edit(const Context& context);
+std::string why_not_label(const Context& context);  // there is no label, or a job runs
+std::string why_not_save(const Context& context);
+std::string why_not_export(const Context& context, const std::string& path);
+
+/// Another seed.
+void roll_seed(Context& context);
+void run_locate(Context& context);
+void run_edit(Context& context);
+/// Cancels the running job; asks first when it has worked for more than 30 s.
+void cancel_job(Context& context);
+
+void ask_open(Context& context);
+/// Opens; asks first when there is unsaved work.
+void open_path(Context& context, const std::string& path);
+void open_sample(Context& context);
+void save(Context& context);
+void save_as(Context& context);
+void quit(Context& context);
+void add_label(Context& context);
+void set_tool(Context& context, Tool tool);
+void toggle_wipe(Context& context);
+/// Sees what is labelled, else the scene.
+void frame_selection(Context& context);
+void go_home(Context& context);
+/// View `step` places further in the list.
+void step_view(Context& context, int step);
+void scale_ui(Context& context, float factor);
+
+/// Rows of the active label that are set.
+std::size_t label_count(Context& context);
+
+/// Endings the readers know.
+const std::vector<std::string>& scene_extensions();
+const std::vector<std::string>& writable_extensions();
+const std::vector<std::string>& film_extensions();
+
+}  // namespace gse::ui

@@ -1,0 +1,61 @@
+// Where panels are, which tabs are in front and how large the areas are; saved as JSON in the project.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+
+namespace gse::ui {
+
+enum class PanelId {
+    Prompt,
+    Labels,
+    Scene,
+    Models,
+    History,
+    Views,
+    Export,
+    Settings,
+    Attention,
+    Progress,
+    Log
+};
+inline constexpr std::size_t PanelCount = 11;
+inline constexpr std::array<const char*, PanelCount> PanelNames{"Prompt",    "Labels",   "Scene",  "Models",
+                                                                "History",   "Views",    "Export", "Settings",
+                                                                "Attention", "Progress", "Log"};
+
+/// Where a tab can be: the right column is split in two, the bottom area runs below the viewport.
+enum class Area { RightTop, RightBottom, Bottom };
+inline constexpr std::size_t AreaCount = 3;
+inline constexpr std::array<const char*, AreaCount> AreaNames{"right, top", "right, bottom", "bottom"};
+
+/// Sizes are in font sizes, so that they mean the same at every scale.
+struct Layout {
+    struct Place {
+        Area area = Area::RightTop;
+        bool open = true;
+    };
+    std::array<Place, PanelCount> places{};
+    std::array<int, AreaCount> front{};  // PanelId in front of each area
+    float right_em = 25;                 // width of the right column
+    float right_split = 0.56f;           // share of its height that the upper area takes
+    float bottom_em = 19;                // height of the bottom area
+    bool panels_hidden = false;
+
+    static Layout standard();
+    std::string to_json() const;
+    /// Unknown names and values out of range are passed over; what is no JSON gives the standard layout.
+    static Layout from_json(const std::string& text);
+
+    Place& place(PanelId panel) { return places[static_cast<std::size_t>(panel)]; }
+    const Place& place(PanelId panel) const { return places[static_cast<std::size_t>(panel)]; }
+    /// True when at least one open panel lives there.
+    bool used(Area area) const;
+    /// Opens the panel and brings it to the front of its area.
+    void show(PanelId panel);
+    void move(PanelId panel, Area area);
+    void close(PanelId panel);
+};
+
+}  // namespace gse::ui

@@ -1,0 +1,256 @@
+// The menu bar: everything the window can do, with its key, and why it cannot be done now.
+#include "ui/menu.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ui/commands.h"
+#include "ui/state.h"
+#include "ui/widgets/controls.h"
+
+namespace gse::ui {
+namespace {
+
+struct Item {
+    const char* name;  // widget map
+    const char* text;
+    const char* keys = "";
+    std::string why_off = {};
+    bool checked = false;
+};
+
+bool item(Context& context, const Item& options) {
+    const bool pressed =
+        ImGui::MenuItem(options.text, options.keys, options.checked, options.why_off.empty());
+    note(context, options.name);
+    tooltip(options.why_off);
+    return pressed;
+}
+
+bool begin_menu(Context& context, const char* name) {
+    const bool open = ImGui::BeginMenu(name);
+    note(context, fmt::format("menu.{}", name));
+    return open;
+}
+
+void file_menu(Context& context) {
+    const std::string why = why_not_save(context);
+    if (item(context, {"menu.open", "Open...", "Ctrl+O"})) ask_open(context);
+    if (item(context, {"menu.sample", "Open sample"})) open_sample(context);
+    if (ImGui::BeginMenu("Open recent", !context.model.recent.empty())) {
+        for (const auto& path : context.model.recent)
+            if (ImGui::MenuItem(shortened(path, context.em * 30).c_str())) open_path(context, path);
+        ImGui::EndMenu();
+    }
+    ImGui::Separator();
+    if (item(context, {"menu.save", "Save project", "Ctrl+S", why})) save(context);
+    if (item(context, {"menu.save_as", "Save project as...", "Ctrl+Shift+S", why})) save_as(context);
+    if (item(context, {"menu.export", "Export...", "Ctrl+E", why}))
+        show_panel(context.state, PanelId::Export);
+    ImGui::Separator();
+    if (item(context, {"menu.quit", "Quit", "Ctrl+Q"})) quit(context);
+}
+
+void edit_menu(Context& context) {
+    const Document* document = context.scene_open() ? context.model.document : nullptr;
+    const auto names = document != nullptr ? document->names() : std::vector<std::string>();
+    const auto named = [&](const char* what, std::size_t at, bool possible) {
+        return possible && at < names.size() && !names[at].empty()
+                   ? fmt::format("{} {}", what, shortened(names[at], context.em * 16))
+                   : std::string(what);
+    };
+    const bool undo = document != nullptr && document->can_undo(),
+               redo = document != nullptr && document->can_redo();
+    const std::string undo_text = named("Undo", document != nullptr ? document->position() : 0, undo);
+    const std::string redo_text = named("Redo", document != nullptr ? document->position() + 1 : 0, redo);
+    if (item(context, {"menu.undo", undo_text.c_str(), "Ctrl+Z", undo ? "" : "There is nothing to undo"}))
+        context.actions.undo();
+    if (item(context,
+             {"menu.redo", redo_text.c_str(), "Ctrl+Shift+Z", redo ? "" : "There is nothing to redo"}))
+        context.actions.redo();
+    ImGui::Separator();
+    std::string why = why_not_label(context);
+    if (why.empty() && label_count(context) == 0) why = "Nothing is labelled";
+    if (item(context, {"menu.delete", "Delete labelled splats", "Del", why}))
+        context.actions.delete_labelled_splats();
+    if (item(context, {"menu.repair", "Drop what cannot be drawn", "",
+                       document != nullptr ? "" : "Open a scene first"}))
+        context.actions.repair_scene();
+    ImGui::Separator();
+    if (item(context, {"menu.settings", "Settings"})) show_panel(context.state, PanelId::Settings);
+}
+
+void select_menu(Context& context) {
+    const std::string open = why_not_save(context), label = why_not_label(context);
+    const Tool tool = context.state.viewport.tool;
+    if (item(context, {"menu.brush", "Brush", "B", open, tool == Tool::Brush}))
+        set_tool(context, Tool::Brush);
+    if (item(context, {"menu.rectangle", "Rectangle", "R", open, tool == Tool::Rectangle}))
+        set_tool(context, Tool::Rectangle);
+    if (item(context, {"menu.lasso", "Lasso", "L", open, tool == Tool::Lasso}))
+        set_tool(context, Tool::Lasso);
+    if (item(context, {"menu.front", "Front only", "N", "", context.view.front_only})) {
+        context.view.front_only = !context.view.front_only;
+        context.view_changed = true;
+    }
+    ImGui::Separator();
+    if (item(context, {"menu.grow", "Grow", "", label})) context.actions.grow_label(1);
+    if (item(context, {"menu.shrink", "Shrink", "", label})) context.actions.grow_label(-1);
+    if (item(context, {"menu.invert", "Invert", "Ctrl+I", label})) context.actions.invert_label();
+    if (item(context, {"menu.clear", "Clear", "Ctrl+D", label})) context.actions.clear_label();
+    ImGui::Separator();
+    if (item(context, {"menu.new_label", "New label", "", open})) add_label(context);
+}
+
+void flag(Context& context, const char* name, const char* text, bool& value, const char* keys = "") {
+    if (!item(context, {name, text, keys, "", value})) return;
+    value = !value;
+    context.view_changed = true;
+}
+
+void view_menu(Context& context) {
+    const std::string why = why_not_save(context);
+    if (ImGui::BeginMenu("Show")) {
+        for (int mode = 0; mode < static_cast<int>(DisplayModeNames.size()); ++mode)
+            if (ImGui::MenuItem(DisplayModeNames[static_cast<std::size_t>(mode)], nullptr,
+                                context.view.mode == mode)) {
+                context.view.mode = mode;
+                context.view_changed = true;
+            }
+        ImGui::EndMenu();
+    }
+    if (ImGui::BeginMenu("Colour detail")) {
+        for (int degree = 0; degree <= 3; ++degree)
+            if (ImGui::MenuItem(fmt::format("SH degree {}", degree).c_str(), nullptr,
+                                context.view.sh_degree == degree)) {
+                context.view.sh_degree = degree;
+                context.view_changed = true;
+            }
+        ImGui::EndMenu();
+    }
+    ImGui::Separator();
+    if (item(context, {"menu.frame", "Frame what is labelled", "F", why})) frame_selection(context);
+    if (item(context, {"menu.home", "Home", "H", why})) go_home(context);
+    if (item(context, {"menu.previous", "Previous view", "Left", why})) step_view(context, -1);
+    if (item(context, {"menu.next", "Next view", "Right", why})) step_view(context, 1);
+    if (item(context, {"menu.add_view", "Add this view", "", why})) context.actions.add_view();
+    ImGui::Separator();
+    if (item(context,
+             {"menu.wipe", "Wipe before and after", "V", why, context.model.comparison == Comparison::Wipe}))
+        toggle_wipe(context);
+    flag(context, "menu.tint", "Tint what is labelled", context.view.tint_labels, "Tab");
+    flag(context, "menu.axes", "Axes", context.view.show_axes);
+    flag(context, "menu.bounds", "Bounds", context.view.show_bounds);
+    flag(context, "menu.cameras", "Cameras", context.view.show_views);
+    flag(context, "menu.hud", "Numbers", context.view.show_hud);
+}
+
+void prompt_menu(Context& context) {
+    const auto& job = context.model.job;
+    const std::string why_waiting = context.model.result_waiting ? "" : "No finished edit waits";
+    if (item(context, {"menu.locate", "Locate", "Ctrl+L", why_not_locate(context)})) run_locate(context);
+    if (item(context, {"menu.edit", "Edit", "Shift+Enter", why_not_edit(context)})) run_edit(context);
+    ImGui::Separator();
+    if (item(context, {"menu.pause", job.paused ? "Resume" : "Pause", "",
+                       job.running && job.can_pause ? "" : "Nothing runs that can be paused"}))
+        context.actions.pause(!job.paused);
+    if (item(context, {"menu.cancel", "Cancel", "Esc", job.running ? "" : "Nothing runs"}))
+        cancel_job(context);
+    ImGui::Separator();
+    if (item(context, {"menu.apply", "Apply the result", "", why_waiting})) context.actions.apply_result();
+    if (item(context, {"menu.discard", "Discard the result", "", why_waiting}))
+        context.actions.discard_result();
+    ImGui::Separator();
+    if (item(context, {"menu.seed", "Another seed"})) roll_seed(context);
+    if (item(context, {"menu.models", "Models"})) show_panel(context.state, PanelId::Models);
+}
+
+void render_menu(Context& context) {
+    if (item(context, {"menu.screenshot", "Save screenshot", "F12",
+                       why_not_export(context, context.exports.picture_path)}))
+        context.actions.export_picture();
+    if (item(context, {"menu.turntable", "Write turntable", "Shift+F12",
+                       why_not_export(context, context.exports.film_path)}))
+        context.actions.export_turntable();
+    if (item(context, {"menu.key", "Add a camera key", "", why_not_save(context)}))
+        context.actions.add_camera_key();
+    ImGui::Separator();
+    if (item(context, {"menu.export_settings", "Sizes and files..."}))
+        show_panel(context.state, PanelId::Export);
+}
+
+void window_menu(Context& context) {
+    auto& layout = context.state.layout;
+    for (std::size_t index = 0; index < PanelCount; ++index) {
+        const auto panel = static_cast<PanelId>(index);
+        const bool open = layout.place(panel).open;
+        if (!item(context,
+                  {fmt::format("menu.panel.{}", PanelNames[index]).c_str(), PanelNames[index], "", "", open}))
+            continue;
+        if (open)
+            layout.close(panel);
+        else
+            show_panel(context.state, panel);
+    }
+    ImGui::Separator();
+    if (item(context, {"menu.hide", "Hide the panels", "Ctrl+Space", "", layout.panels_hidden}))
+        layout.panels_hidden = !layout.panels_hidden;
+    if (item(context, {"menu.fullscreen", "Full screen", "F11"})) context.actions.toggle_fullscreen();
+    if (item(context, {"menu.larger", "Larger", "Ctrl++"})) scale_ui(context, 1.1f);
+    if (item(context, {"menu.smaller", "Smaller", "Ctrl+-"})) scale_ui(context, 1 / 1.1f);
+    ImGui::Separator();
+    if (item(context, {"menu.reset_layout", "Reset layout"})) {
+        layout = Layout::standard();
+        context.state.front_changed = {true, true, true};
+    }
+}
+
+/// What is open and whether it is saved, at the right end of the bar.
+void draw_title(Context& context) {
+    if (!context.scene_open()) return;
+    const auto& model = context.model;
+    const std::string& path = model.project_path.empty() ? model.scene_path : model.project_path;
+    std::string name = path.empty() ? "untitled" : utf8_of(path_of(path).filename());
+    if (model.unsaved) name += " *";
+    const float room = ImGui::GetWindowContentRegionMax().x - ImGui::GetCursorPosX() - context.em * 2;
+    std::string text = model.saved_at.empty() ? name : fmt::format("{}   {}", name, model.saved_at);
+    if (ImGui::CalcTextSize(text.c_str()).x > room) text = shortened(name, room);
+    if (room < context.em * 4) return;
+    ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text.c_str()).x -
+                         context.em * 0.5f);
+    ImGui::PushStyleColor(ImGuiCol_Text, model.unsaved ? palette::Text : palette::TextDim);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+    note(context, "menu.title");
+    tooltip(path);
+}
+
+}  // namespace
+
+void draw_menu_bar(Context& context) {
+    if (!ImGui::BeginMenuBar()) return;
+    using Draw = void (*)(Context&);
+    constexpr std::array<std::pair<const char*, Draw>, 7> Menus{{{"File", file_menu},
+                                                                 {"Edit", edit_menu},
+                                                                 {"Select", select_menu},
+                                                                 {"View", view_menu},
+                                                                 {"Prompt", prompt_menu},
+                                                                 {"Render", render_menu},
+                                                                 {"Window", window_menu}}};
+    for (const auto& [name, draw] : Menus) {
+        if (!begin_menu(context, name)) continue;
+        draw(context);
+        ImGui::EndMenu();
+    }
+    if (begin_menu(context, "Help")) {
+        if (item(context, {"menu.keys", "Keys", "F1"})) context.state.help_open = true;
+        if (item(context, {"menu.log", "Log"})) show_panel(context.state, PanelId::Log);
+        if (item(context, {"menu.about", "About"})) context.state.about_open = true;
+        ImGui::EndMenu();
+    }
+    draw_title(context);
+    ImGui::EndMenuBar();
+}
+
+}  // namespace gse::ui

@@ -1,0 +1,213 @@
+// Attention: per view what was rendered, where the word landed, what the threshold keeps and what the view
+// voted for.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/commands.h"
+#include "ui/panels/panels.h"
+#include "ui/state.h"
+#include "ui/threshold_picture.h"
+#include "ui/widgets/controls.h"
+#include "ui/widgets/icons.h"
+
+namespace gse::ui {
+namespace {
+
+std::string branch_words(const AttentionView& view) {
+    if (view.failed) return "The word was not found here; this view does not vote.";
+    if (view.branch == "text") return "The mask was found from the word itself.";
+    if (view.branch == "points") return "The mask was cut out from clicks placed on the attention.";
+    if (view.branch == "attention") return "The mask is the attention above the threshold.";
+    if (view.branch == "anchor") return "The mask is the place where the new thing goes.";
+    if (view.branch == "none") return "There is no mask.";
+    return view.branch.empty() ? std::string() : fmt::format("The mask was made by \"{}\".", view.branch);
+}
+
+ImU32 state_colour(const AttentionView& view) {
+    if (view.failed) return palette::Bad;
+    return view.captured >= 0.5 ? palette::Good : palette::Warning;
+}
+
+void draw_strip(Context& context, float side) {
+    auto& state = context.state.attention;
+    const auto& views = context.model.attention;
+    const float height = side + ImGui::GetStyle().ScrollbarSize + ImGui::GetStyle().ItemSpacing.y;
+    if (!ImGui::BeginChild("strip", {0, height}, false, ImGuiWindowFlags_HorizontalScrollbar))
+        return ImGui::EndChild();
+    for (int index = 0; index < static_cast<int>(views.size()); ++index) {
+        const auto& view = views[static_cast<std::size_t>(index)];
+        if (index > 0) ImGui::SameLine(0, context.em * 0.25f);
+        ImGui::PushID(index);
+        const ImVec2 low = ImGui::GetCursorScreenPos();
+        if (ImGui::InvisibleButton("view", {side, side})) state.chosen = index;
+        note(context, fmt::format("attention.view.{}", index));
+        const ImVec2 high(low.x + side, low.y + side);
+        ImDrawList* list = ImGui::GetWindowDrawList();
+        const auto& picture = view.map_coloured != nullptr ? view.map_coloured : view.render;
+        if (ImGui::IsItemVisible() && picture != nullptr)
+            list->AddImageRounded(imgui_texture(context.textures.texture(picture)), low, high, {0, 0}, {1, 1},
+                                  view.failed ? IM_COL32(255, 255, 255, 90) : IM_COL32_WHITE,
+                                  context.em * 0.2f);
+        const float r = context.em * 0.22f;
+        list->AddCircleFilled({high.x - 2 * r, low.y + 2 * r}, r * 1.35f, palette::Shade);
+        list->AddCircleFilled({high.x - 2 * r, low.y + 2 * r}, r, state_colour(view));
+        if (index == state.chosen)
+            list->AddRect(low, high, palette::Accent, context.em * 0.2f, 0,
+                          std::max(2.0f, context.em * 0.14f));
+        tooltip(fmt::format("{}\n{}\nThe mask holds {} of the attention.\nDouble click: look through it.",
+                            view.name, branch_words(view), percent_text(view.captured)));
+        if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) context.actions.set_camera(view.camera);
+        ImGui::PopID();
+    }
+    ImGui::EndChild();
+}
+
+void draw_points(Context& context, const AttentionView& view, ImVec2 low, float scale) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float r = std::max(2.5f, context.em * 0.22f);
+    for (const auto& point : view.points) {
+        const ImVec2 at(low.x + static_cast<float>(point.x) * scale,
+                        low.y + static_cast<float>(point.y) * scale);
+        list->AddCircleFilled(at, r + 1.5f, IM_COL32(0, 0, 0, 200));
+        list->AddCircleFilled(at, r, point.positive ? palette::Good : palette::Bad);
+    }
+}
+
+/// One picture with its caption, as wide as `side`.
+void draw_picture(Context& context, const AttentionView& view, const std::shared_ptr<const Image>& picture,
+                  const char* caption, float side) {
+    ImGui::BeginGroup();
+    ImGui::PushStyleColor(ImGuiCol_Text, palette::TextDim);
+    ImGui::TextUnformatted(shortened(caption, side).c_str());
+    ImGui::PopStyleColor();
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    float width = side, height = side;
+    if (picture != nullptr && picture->width > 0 && picture->height > 0) {
+        const float scale = side / static_cast<float>(std::max(picture->width, picture->height));
+        width = static_cast<float>(picture->width) * scale;
+        height = static_cast<float>(picture->height) * scale;
+        list->AddImage(imgui_texture(context.textures.texture(picture)), low,
+                       {low.x + width, low.y + height});
+        if (context.state.attention.points) draw_points(context, view, low, scale);
+    } else {
+        list->AddRectFilled(low, {low.x + side, low.y + side}, palette::Sunken);
+    }
+    ImGui::Dummy({width, height});
+    note(context, fmt::format("attention.picture.{}", caption));
+    ImGui::EndGroup();
+}
+
+double shown_threshold(const Context& context) {
+    const auto& state = context.state.attention;
+    return state.threshold >= 0 ? state.threshold : context.model.attention_threshold;
+}
+
+/// The thresholded picture of the chosen view, made anew only when view or threshold changed.
+void update_picture(Context& context, const AttentionView& view) {
+    auto& state = context.state.attention;
+    const double threshold = shown_threshold(context);
+    if (view.map == nullptr || view.render == nullptr) {
+        state.picture = nullptr;
+        state.picture_of = nullptr;
+        return;
+    }
+    if (state.picture_of == view.map && state.picture_threshold == threshold) return;
+    auto result = threshold_picture(*view.render, *view.map, threshold);
+    state.picture = std::make_shared<const Image>(std::move(result.picture));
+    state.above = result.share;
+    state.picture_of = view.map;
+    state.picture_threshold = threshold;
+}
+
+void draw_controls(Context& context, const AttentionView& view) {
+    auto& state = context.state.attention;
+    dim_text("Threshold of the attention");
+    double threshold = shown_threshold(context);
+    const double low = 0, high = 1;
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+    if (ImGui::SliderScalar("##attention.threshold", ImGuiDataType_Double, &threshold, &low, &high, "%.3f",
+                            ImGuiSliderFlags_AlwaysClamp)) {
+        state.threshold = threshold;
+        context.actions.set_attention_threshold(threshold);
+    }
+    note(context, "attention.threshold");
+    tooltip("Attention above this share of the maximum counts. All views and the label follow.");
+    if (ImGui::IsItemDeactivated()) state.threshold = -1;
+    wrapped_text(fmt::format("{} of this view is above it.", percent_text(state.above)));
+    ImGui::Spacing();
+    bullet_dot(state_colour(view));
+    wrapped_text(view.name);
+    dim_text(branch_words(view));
+    if (!view.failed)
+        dim_text(fmt::format("The mask holds {} of the attention.", percent_text(view.captured)));
+    checkbox(context, "attention.points", "Points", state.points,
+             "Green: clicks inside, red: clicks outside");
+    flow(button_width("Look through"));
+    if (button(context, {.name = "attention.look",
+                         .text = "Look through",
+                         .tooltip = "Puts the camera where this view is"}))
+        context.actions.set_camera(view.camera);
+}
+
+void draw_chosen(Context& context, const AttentionView& view) {
+    constexpr int Pictures = 4;
+    const std::array<std::pair<const std::shared_ptr<const Image>*, const char*>, Pictures> shown{
+        {{&view.render, "Render"},
+         {&view.map_coloured, "Attention"},
+         {&context.state.attention.picture, "Above the threshold"},
+         {&view.mask_picture, "Mask it voted for"}}};
+    const ImVec2 space = ImGui::GetContentRegionAvail();
+    const float gap = ImGui::GetStyle().ItemSpacing.x, line = ImGui::GetTextLineHeightWithSpacing();
+    const float controls = context.em * 15;
+    const bool row = space.x > controls + context.em * 20;
+    const int columns = row ? Pictures : 2;
+    const float for_pictures = row ? space.x - controls - gap : space.x;
+    float side = (for_pictures - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns);
+    if (row)
+        side = std::min(side, std::max(context.em * 5, space.y - line - ImGui::GetStyle().ItemSpacing.y));
+    for (int at = 0; at < Pictures; ++at) {
+        if (at % columns != 0) ImGui::SameLine();
+        draw_picture(context, view, *shown[static_cast<std::size_t>(at)].first,
+                     shown[static_cast<std::size_t>(at)].second, side);
+    }
+    if (row) ImGui::SameLine();
+    ImGui::BeginGroup();
+    ImGui::PushItemWidth(-1);
+    draw_controls(context, view);
+    ImGui::PopItemWidth();
+    ImGui::EndGroup();
+}
+
+}  // namespace
+
+void draw_attention_panel(Context& context) {
+    const auto& views = context.model.attention;
+    auto& state = context.state.attention;
+    if (views.empty()) {
+        dim_text(context.model.job.running ? "Views appear here while Locate works."
+                                           : "Type what the edit is about and press Locate: every view then "
+                                             "shows where the word landed and what it voted for.");
+        if (!context.model.job.running &&
+            button(context,
+                   {.name = "attention.locate", .text = "Locate", .why_off = why_not_locate(context)}))
+            run_locate(context);
+        return;
+    }
+    state.chosen = std::clamp(state.chosen, 0, static_cast<int>(views.size()) - 1);
+    const auto voting =
+        std::count_if(views.begin(), views.end(), [](const AttentionView& view) { return !view.failed; });
+    badge(context, context.model.attention_word, palette::Accent);
+    ImGui::SameLine();
+    const std::string summary =
+        fmt::format("{}   {} of {} views vote", context.model.attention_mode, voting, views.size());
+    ImGui::TextUnformatted(shortened(summary, ImGui::GetContentRegionAvail().x).c_str());
+    draw_strip(context, context.em * 3);
+    const auto& view = views[static_cast<std::size_t>(state.chosen)];
+    update_picture(context, view);
+    draw_chosen(context, view);
+}
+
+}  // namespace gse::ui

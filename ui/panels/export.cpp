@@ -1,0 +1,238 @@
+// Export: picture, turntable, camera path and scene; says in words what will be written before it is.
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/commands.h"
+#include "ui/panels/panels.h"
+#include "ui/state.h"
+#include "ui/widgets/controls.h"
+#include "ui/widgets/fields.h"
+#include "ui/widgets/icons.h"
+
+namespace gse::ui {
+namespace {
+
+struct Size {
+    const char* name;
+    int width, height;  // 0 = as the viewport
+};
+constexpr std::array<Size, 5> Sizes{
+    {{"Current", 0, 0}, {"HD", 1920, 1080}, {"QHD", 2560, 1440}, {"4K", 3840, 2160}, {"Square", 1024, 1024}}};
+constexpr double LargestPixels = 16384.0 * 8192.0;
+
+/// A path to be written with a button that asks for it.
+void path_row(Context& context, const char* name, std::string& path, std::vector<std::string> endings) {
+    const float icon = context.em * 1.75f;
+    ImGui::SetNextItemWidth(
+        std::max(context.em * 4, ImGui::GetContentRegionAvail().x - icon - ImGui::GetStyle().ItemSpacing.x));
+    context.exports_changed |=
+        ImGui::InputTextWithHint(fmt::format("##{}", name).c_str(), "path of the file", &path);
+    note(context, name);
+    tooltip(path);
+    ImGui::SameLine();
+    if (!icon_button(context,
+                     {.name = fmt::format("{}.browse", name), .icon = Icon::Folder, .tooltip = "Choose..."}))
+        return;
+    auto& actions = context.actions;
+    std::string ExportSettings::*member =
+        &path == &context.exports.picture_path ? &ExportSettings::picture_path
+        : &path == &context.exports.film_path  ? &ExportSettings::film_path
+        : &path == &context.exports.scene_path ? &ExportSettings::scene_path
+                                               : &ExportSettings::camera_path_path;
+    const ExportSettings settings = context.exports;
+    context.state.files.ask({.title = "Where to write",
+                             .confirm = "Choose",
+                             .extensions = std::move(endings),
+                             .saves = true,
+                             .folder_allowed = false,
+                             .start = path,
+                             .answer = [&actions, settings, member](const std::filesystem::path& chosen) {
+                                 ExportSettings next = settings;
+                                 next.*member = utf8_of(chosen);
+                                 actions.set_exports(next);
+                             }});
+}
+
+std::string endings_text(const std::vector<std::string>& endings) {
+    std::string text;
+    for (const auto& ending : endings) text += (text.empty() ? "" : ", ") + ending;
+    return text;
+}
+
+/// Off because of the scene, the path or its ending.
+std::string why_not_write(const Context& context, const std::string& path,
+                          const std::vector<std::string>& endings) {
+    const std::string why = why_not_export(context, path);
+    if (!why.empty() || has_extension(path, endings)) return why;
+    return fmt::format("The name must end in {}", endings_text(endings));
+}
+
+/// What will happen, or in amber why it cannot.
+void say(const std::string& why, const std::string& what) {
+    if (why.empty()) return dim_text(what);
+    coloured_text(palette::Warning, why + ".");
+}
+
+void draw_size(Context& context) {
+    int chosen = -1;
+    for (int at = 0; at < static_cast<int>(Sizes.size()); ++at) {
+        const auto& size = Sizes[static_cast<std::size_t>(at)];
+        const int width = size.width > 0 ? size.width : context.model.viewport_width;
+        const int height = size.height > 0 ? size.height : context.model.viewport_height;
+        if (chosen < 0 && context.exports.width == width && context.exports.height == height) chosen = at;
+    }
+    std::array<const char*, Sizes.size()> names{};
+    for (std::size_t at = 0; at < Sizes.size(); ++at) names[at] = Sizes[at].name;
+    if (segmented(context, "export.size", names, chosen)) {
+        const auto& size = Sizes[static_cast<std::size_t>(chosen)];
+        context.exports.width = size.width > 0 ? size.width : std::max(16, context.model.viewport_width);
+        context.exports.height = size.height > 0 ? size.height : std::max(16, context.model.viewport_height);
+        context.exports_changed = true;
+    }
+    row_label(context, "Pixels");
+    const float width = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) * 0.5f;
+    for (int* side : {&context.exports.width, &context.exports.height}) {
+        const bool first = side == &context.exports.width;
+        ImGui::SetNextItemWidth(width);
+        if (ImGui::DragInt(first ? "##export.width" : "##export.height", side, 4, 16, 16384, "%d",
+                           ImGuiSliderFlags_AlwaysClamp))
+            context.exports_changed = true;
+        note(context, first ? "export.width" : "export.height");
+        if (first) ImGui::SameLine();
+    }
+}
+
+void draw_picture(Context& context) {
+    heading(context, "Screenshot");
+    draw_size(context);
+    if (checkbox(context, "export.transparent", "Transparent background", context.exports.transparent))
+        context.exports_changed = true;
+    path_row(context, "export.picture_path", context.exports.picture_path, {".png"});
+    std::string why = why_not_write(context, context.exports.picture_path, {".png"});
+    if (why.empty() && static_cast<double>(context.exports.width) * context.exports.height > LargestPixels)
+        why = "That many pixels cannot be written";
+    say(why, fmt::format("Writes a PNG of {} x {} pixels{} with the recipe inside: opening it again brings "
+                         "back prompt, seed and camera.",
+                         context.exports.width, context.exports.height,
+                         context.exports.transparent ? " with alpha" : ""));
+    if (button(context, {.name = "export.screenshot",
+                         .text = "Save screenshot",
+                         .why_off = why,
+                         .tooltip = "F12",
+                         .look = Look::Primary}))
+        context.actions.export_picture();
+}
+
+std::string film_text(const ExportSettings& settings) {
+    const double seconds = settings.fps > 0 ? settings.frames / settings.fps : 0;
+    const bool film = has_extension(settings.film_path, film_extensions());
+    const std::string what = film ? "a film" : "a folder of PNG pictures";
+    return fmt::format(
+        "Writes {}: {} frames of {} x {}, {:.1f} s at {:g} frames a second, turning {:g} degrees around "
+        "{}{}.",
+        what, settings.frames, settings.before_after ? settings.width * 2 : settings.width, settings.height,
+        seconds, settings.fps, settings.degrees, settings.around_label ? "what is labelled" : "the scene",
+        settings.before_after ? ", before and after side by side" : "");
+}
+
+/// A film has a known ending; without an ending the name is a folder.
+std::string why_not_film(const Context& context) {
+    const std::string why = why_not_export(context, context.exports.film_path);
+    if (!why.empty()) return why;
+    const auto ending = utf8_of(path_of(context.exports.film_path).extension());
+    if (ending.empty() || has_extension(ending, film_extensions())) return {};
+    return fmt::format("\"{}\" is no film: end the name in {}, or in nothing for a folder of PNG pictures",
+                       ending, endings_text(film_extensions()));
+}
+
+void draw_turntable(Context& context) {
+    heading(context, "Turntable");
+    const auto wanted = [](const char* name) {
+        for (const char* field : {"frames", "fps", "degrees", "start_degrees", "ease", "radius_factor",
+                                  "elevation_degrees", "around_label", "before_after"})
+            if (std::string_view(field) == name) return true;
+        return false;
+    };
+    context.exports_changed |=
+        field_rows(context, "export", context.exports, wanted, [](const char*, bool&) {});
+    path_row(context, "export.film_path", context.exports.film_path, film_extensions());
+    const std::string why = why_not_film(context);
+    say(why, film_text(context.exports));
+    if (button(context, {.name = "export.turntable",
+                         .text = "Write turntable",
+                         .why_off = why,
+                         .tooltip = "Shift + F12; works in the background",
+                         .look = Look::Primary}))
+        context.actions.export_turntable();
+}
+
+void draw_camera_path(Context& context) {
+    heading(context, "Camera path");
+    const auto& keys = context.model.camera_keys;
+    if (button(context, {.name = "export.key.add",
+                         .text = "Add key",
+                         .why_off = context.scene_open() ? "" : "Open a scene first",
+                         .tooltip = "The present camera, one second after the last key"}))
+        context.actions.add_camera_key();
+    if (keys.empty()) dim_text("Keys are cameras the path goes through.");
+    for (std::size_t at = 0; at < keys.size(); ++at) {
+        ImGui::PushID(static_cast<int>(at));
+        ImGui::AlignTextToFramePadding();
+        ImGui::Text("Key %d   %.1f s", static_cast<int>(at) + 1, keys[at].time);
+        ImGui::SameLine(ImGui::GetContentRegionAvail().x - context.em * 1.5f);
+        if (icon_button(context, {.name = fmt::format("export.key.delete.{}", at),
+                                  .icon = Icon::Trash,
+                                  .tooltip = "Delete this key",
+                                  .size_em = 1.5f}))
+            context.actions.delete_camera_key(at);
+        ImGui::PopID();
+    }
+    path_row(context, "export.camera_path_path", context.exports.camera_path_path, {".json"});
+    std::string why = why_not_write(context, context.exports.camera_path_path, {".json"});
+    if (why.empty() && keys.empty()) why = "Add a key first";
+    std::string why_film = why_not_film(context);
+    if (why_film.empty() && keys.size() < 2) why_film = "A film needs two keys";
+    if (button(context, {.name = "export.path", .text = "Save path", .why_off = why}))
+        context.actions.export_camera_path(false);
+    flow(button_width("Film along it"));
+    if (button(context, {.name = "export.path.film",
+                         .text = "Film along it",
+                         .why_off = why_film,
+                         .tooltip = "To the file of the turntable above"}))
+        context.actions.export_camera_path(true);
+}
+
+void draw_scene_file(Context& context) {
+    heading(context, "Scene");
+    path_row(context, "export.scene_path", context.exports.scene_path, writable_extensions());
+    const bool ply = has_extension(context.exports.scene_path, std::vector<std::string>{".ply"}) &&
+                     !has_extension(context.exports.scene_path, std::vector<std::string>{".compressed.ply"});
+    if (checkbox(context, "export.with_labels", "With the label as a column", context.exports.with_labels,
+                 "A float per splat; plain PLY only"))
+        context.exports_changed = true;
+    const std::string why = why_not_write(context, context.exports.scene_path, {".ply", ".splat", ".spz"});
+    std::string what = "Writes the edited scene";
+    if (context.scene_open())
+        what += fmt::format(", {} splats", count_text(context.document().current.size()));
+    if (!ply) what += ". This format rounds values; PLY keeps every bit";
+    if (context.exports.with_labels && !ply) what += "; labels are left out";
+    say(why, what + ".");
+    if (button(context,
+               {.name = "export.scene", .text = "Save scene", .why_off = why, .look = Look::Primary}))
+        context.actions.export_scene();
+}
+
+}  // namespace
+
+void draw_export_panel(Context& context) {
+    draw_picture(context);
+    draw_turntable(context);
+    draw_scene_file(context);
+    draw_camera_path(context);
+}
+
+}  // namespace gse::ui

@@ -1,0 +1,138 @@
+// History: the stack of edits that can be switched, and the list of steps to go back to.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ui/commands.h"
+#include "ui/panels/panels.h"
+#include "ui/state.h"
+#include "ui/widgets/controls.h"
+#include "ui/widgets/icons.h"
+
+namespace gse::ui {
+namespace {
+
+std::string proof_text(const EditNode& edit) {
+    if (edit.changed_outside_label > 0)
+        return fmt::format("outside the label: {} splats changed", count_text(edit.changed_outside_label));
+    const std::string psnr = std::isfinite(edit.psnr_outside_db) && edit.psnr_outside_db > 0
+                                 ? fmt::format(", {:.1f} dB", edit.psnr_outside_db)
+                                 : "";
+    return fmt::format("outside the label: 0 splats changed{}", psnr);
+}
+
+void draw_buttons(Context& context, const EditNode& edit, std::size_t place, std::size_t count) {
+    const auto id = edit.id;
+    const auto name = [id](const char* what) { return fmt::format("history.{}.{}", what, id); };
+    if (icon_button(context, {.name = name("up"),
+                              .icon = Icon::Up,
+                              .tooltip = "Apply later than the next one",
+                              .why_off = place + 1 == count ? "It is the last one already" : "",
+                              .size_em = 1.5f}))
+        context.actions.move_edit(id, 1);
+    ImGui::SameLine(0, 0);
+    if (icon_button(context, {.name = name("down"),
+                              .icon = Icon::Down,
+                              .tooltip = "Apply before the previous one",
+                              .why_off = place == 0 ? "It is the first one already" : "",
+                              .size_em = 1.5f}))
+        context.actions.move_edit(id, -1);
+    ImGui::SameLine(0, 0);
+    if (icon_button(context, {.name = name("repeat"),
+                              .icon = Icon::Repeat,
+                              .tooltip = "Its settings into the prompt, with a new seed",
+                              .why_off = edit.recipe.empty() ? "This was not made by a prompt" : "",
+                              .size_em = 1.5f})) {
+        context.actions.repeat_edit(id);
+        show_panel(context.state, PanelId::Prompt);
+    }
+    ImGui::SameLine(0, 0);
+    if (icon_button(context, {.name = name("delete"),
+                              .icon = Icon::Trash,
+                              .tooltip = "Take it off the stack (undo brings it back)",
+                              .size_em = 1.5f}))
+        context.actions.delete_edit(id);
+}
+
+void draw_edit(Context& context, std::size_t place, std::size_t count) {
+    const EditNode& edit = context.document().stack[place];
+    ImGui::PushID(static_cast<int>(edit.id));
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const float side = context.em * 3.2f;
+    if (edit.thumbnail != nullptr && edit.thumbnail->width > 0) {
+        ImGui::Image(imgui_texture(context.textures.texture(edit.thumbnail)), {side, side});
+    } else {
+        ImGui::GetWindowDrawList()->AddRectFilled(low, {low.x + side, low.y + side}, palette::Raised,
+                                                  context.em * 0.2f);
+        draw_icon(ImGui::GetWindowDrawList(), Icon::Tag, {low.x + side * 0.5f, low.y + side * 0.5f},
+                  side * 0.4f, palette::TextDim);
+        ImGui::Dummy({side, side});
+    }
+    ImGui::SameLine();
+    ImGui::BeginGroup();
+    bool enabled = edit.enabled;
+    if (checkbox(context, fmt::format("history.enabled.{}", edit.id),
+                 shortened(edit.name, ImGui::GetContentRegionAvail().x - context.em * 2), enabled,
+                 fmt::format("{}\nOn or off; the others stay as they are.", edit.name)))
+        context.actions.set_edit_enabled(edit.id, enabled);
+    const bool clean = edit.changed_outside_label == 0;
+    ImGui::PushStyleColor(ImGuiCol_Text, clean ? palette::Good : palette::Warning);
+    ImGui::TextUnformatted(shortened(proof_text(edit), ImGui::GetContentRegionAvail().x).c_str());
+    ImGui::PopStyleColor();
+    tooltip(proof_text(edit));
+    draw_buttons(context, edit, place, count);
+    if (edit.seconds > 0) {
+        ImGui::SameLine();
+        dim_text(duration_text(edit.seconds));
+    }
+    ImGui::EndGroup();
+    ImGui::PopID();
+}
+
+void draw_steps(Context& context) {
+    const auto& document = *context.model.document;
+    const auto names = document.names();
+    heading(context, "Undo");
+    if (button(context, {.name = "history.undo",
+                         .text = "Undo",
+                         .why_off = document.can_undo() ? "" : "There is nothing to undo",
+                         .tooltip = "Ctrl + Z"}))
+        context.actions.undo();
+    flow(button_width("Redo"));
+    if (button(context, {.name = "history.redo",
+                         .text = "Redo",
+                         .why_off = document.can_redo() ? "" : "There is nothing to redo",
+                         .tooltip = "Ctrl + Shift + Z"}))
+        context.actions.redo();
+    flow(context.em * 8);
+    dim_text(bytes_text(static_cast<double>(document.undo_bytes())) + " held");
+    for (std::size_t at = names.size(); at-- > 0;) {
+        ImGui::PushID(static_cast<int>(at));
+        const bool later = at > document.position();
+        if (later) ImGui::PushStyleColor(ImGuiCol_Text, palette::TextDim);
+        const std::string text =
+            shortened(names[at].empty() ? "Opened" : names[at], ImGui::GetContentRegionAvail().x);
+        if (ImGui::Selectable(text.c_str(), at == document.position()) && at != document.position())
+            context.actions.go_to(at);
+        if (later) ImGui::PopStyleColor();
+        note(context, fmt::format("history.step.{}", at));
+        ImGui::PopID();
+    }
+}
+
+}  // namespace
+
+void draw_history_panel(Context& context) {
+    if (!context.scene_open()) return dim_text("Edits and steps of undo appear here.");
+    draw_result_notice(context, "history");
+    heading(context, "Edits");
+    const auto& stack = context.document().stack;
+    for (std::size_t place = stack.size(); place-- > 0;) {
+        if (place >= context.document().stack.size()) break;  // the action changed it
+        draw_edit(context, place, stack.size());
+    }
+    dim_text(fmt::format("Original: {} splats", count_text(context.document().base.size())));
+    draw_steps(context);
+}
+
+}  // namespace gse::ui

@@ -1,0 +1,27 @@
+// The panels of the window; each draws into the current ImGui window.
+#pragma once
+
+#include "ui/context.h"
+#include "ui/layout.h"
+
+namespace gse::ui {
+
+void draw_prompt_panel(Context& context);
+void draw_labels_panel(Context& context);
+void draw_scene_panel(Context& context);
+void draw_models_panel(Context& context);
+void draw_history_panel(Context& context);
+void draw_views_panel(Context& context);
+void draw_export_panel(Context& context);
+void draw_settings_panel(Context& context);
+void draw_attention_panel(Context& context);
+void draw_progress_panel(Context& context);
+void draw_log_panel(Context& context);
+
+/// The panel of this name.
+void draw_panel(Context& context, PanelId panel);
+
+/// "Apply" and "Discard" of a finished edit, where it asks for them; nothing when no result waits.
+void draw_result_notice(Context& context, const char* prefix);
+
+}  // namespace gse::ui

@@ -1,0 +1,145 @@
+// Progress: stage, time left, curves, and the snapshots of the running or last edit.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ui/commands.h"
+#include "ui/panels/panels.h"
+#include "ui/state.h"
+#include "ui/widgets/controls.h"
+#include "ui/widgets/plot.h"
+
+namespace gse::ui {
+namespace {
+
+void draw_job(Context& context) {
+    const auto& job = context.model.job;
+    if (job.title.empty()) return dim_text("Nothing has run yet. Locate and Edit report here.");
+    if (context.fonts.bold != nullptr) ImGui::PushFont(context.fonts.bold);
+    wrapped_text(job.title);
+    if (context.fonts.bold != nullptr) ImGui::PopFont();
+    if (!job.error.empty()) {
+        coloured_text(palette::Bad, job.error);
+    } else if (!job.running) {
+        coloured_text(palette::TextDim, job.outcome);
+        return;
+    }
+    if (!job.running) return;
+    const std::string steps =
+        job.total > 0 ? fmt::format("{} / {}", job.step, job.total) : fmt::format("{}", job.step);
+    property(context, "Stage", job.paused ? job.stage + " (paused)" : job.stage);
+    property(context, "Step", steps);
+    property(context, "Time", duration_text(job.seconds));
+    property(context, "Left",
+             job.eta_seconds >= 0 ? "about " + duration_text(job.eta_seconds) : "not known yet");
+    const bool paused = job.paused;
+    if (button(context, {.name = "progress.pause",
+                         .text = paused ? "Resume" : "Pause",
+                         .why_off = job.can_pause ? "" : "This stage cannot be paused"}))
+        context.actions.pause(!paused);
+    flow(button_width("Cancel"));
+    if (button(context,
+               {.name = "progress.cancel", .text = "Cancel", .tooltip = "Esc", .look = Look::Danger}))
+        cancel_job(context);
+}
+
+void draw_snapshots(Context& context) {
+    const auto& snapshots = context.model.snapshots;
+    if (snapshots.empty()) return;
+    const int count = static_cast<int>(snapshots.size());
+    int shown = context.model.shown_snapshot < 0 || context.model.shown_snapshot >= count
+                    ? count - 1
+                    : context.model.shown_snapshot;
+    const bool newest = context.model.shown_snapshot < 0;
+    const auto& snapshot = snapshots[static_cast<std::size_t>(shown)];
+    dim_text(fmt::format("Snapshot of iteration {}, {} splats{}", snapshot.iteration,
+                         count_text(snapshot.splats), newest ? " (newest)" : ""));
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+    if (ImGui::SliderInt("##progress.snapshot", &shown, 0, std::max(0, count - 1), "",
+                         ImGuiSliderFlags_AlwaysClamp))
+        context.actions.show_snapshot(shown == count - 1 ? -1 : shown);
+    note(context, "progress.snapshot");
+    tooltip("Drag back to look at an earlier state; the edit goes on meanwhile.");
+    if (button(context,
+               {.name = "progress.newest", .text = "Newest", .why_off = newest ? "The newest is shown" : ""}))
+        context.actions.show_snapshot(-1);
+    flow(button_width("Branch from here"));
+    if (button(context, {.name = "progress.branch",
+                         .text = "Branch from here",
+                         .tooltip = "Takes this state as the result; a running edit stops."}))
+        context.actions.branch_from_snapshot(shown);
+}
+
+void draw_curves(Context& context, float height) {
+    auto& state = context.state.progress;
+    const auto& points = context.model.losses;
+    const std::array<Curve, 3> losses{
+        {{"guidance", palette::Accent, [&points](std::size_t i) { return points[i].guidance_loss; },
+          &state.losses[0]},
+         {"preservation", palette::Good, [&points](std::size_t i) { return points[i].preservation; },
+          &state.losses[1]},
+         {"anchor", palette::Warning, [&points](std::size_t i) { return points[i].anchor; },
+          &state.losses[2]}}};
+    const std::array<Curve, 2> norms{
+        {{"guidance gradient", palette::Accent, [&points](std::size_t i) { return points[i].guidance_norm; },
+          &state.norms[0]},
+         {"preservation gradient", palette::Good,
+          [&points](std::size_t i) { return points[i].preservation_norm; }, &state.norms[1]}}};
+    int marker = -1;
+    const int shown = context.model.shown_snapshot;
+    if (shown >= 0 && shown < static_cast<int>(context.model.snapshots.size()))
+        marker = context.model.snapshots[static_cast<std::size_t>(shown)].iteration;
+    const bool running_edit =
+        context.model.job.running && context.model.job.stage != "render" && !points.empty();
+    const int last = running_edit ? context.model.job.total : 0;
+    const bool beside = ImGui::GetContentRegionAvail().x > context.em * 36;
+    const float gap = ImGui::GetStyle().ItemSpacing.x;
+    const float width =
+        beside ? (ImGui::GetContentRegionAvail().x - gap) * 0.5f : ImGui::GetContentRegionAvail().x;
+    const float each = beside ? height : std::max(context.em * 6, (height - gap) * 0.5f);
+    if (ImGui::BeginChild("losses", {width, each})) {
+        checkbox(context, "progress.log", "log", state.logarithmic, "Logarithmic heights");
+        ImGui::SameLine();
+        plot(context,
+             {.name = "progress.losses",
+              .height = ImGui::GetContentRegionAvail().y,
+              .logarithmic = state.logarithmic,
+              .last_iteration = last,
+              .marker = marker},
+             points, losses);
+    }
+    ImGui::EndChild();
+    if (beside) ImGui::SameLine();
+    if (ImGui::BeginChild("norms", {width, each}))
+        plot(context,
+             {.name = "progress.norms",
+              .height = ImGui::GetContentRegionAvail().y,
+              .logarithmic = state.logarithmic,
+              .last_iteration = last,
+              .marker = marker},
+             points, norms);
+    ImGui::EndChild();
+}
+
+}  // namespace
+
+void draw_progress_panel(Context& context) {
+    const float width = ImGui::GetContentRegionAvail().x;
+    const bool beside = width > context.em * 38;
+    const float left = std::clamp(width * 0.3f, context.em * 14, context.em * 24);
+    const float height = std::max(context.em * 8, ImGui::GetContentRegionAvail().y);
+    if (beside) ImGui::BeginChild("job", {left, height});
+    draw_result_notice(context, "progress");
+    draw_job(context);
+    draw_snapshots(context);
+    if (beside) {
+        ImGui::EndChild();
+        ImGui::SameLine();
+        if (ImGui::BeginChild("curves", {0, height})) draw_curves(context, height);
+        ImGui::EndChild();
+    } else {
+        draw_curves(context, context.em * 16);
+    }
+}
+
+}  // namespace gse::ui

@@ -1,0 +1,246 @@
+// Prompt: what in the scene, the sentence after the edit, how hard, and what it will cost.
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/commands.h"
+#include "ui/panels/panels.h"
+#include "ui/sentence.h"
+#include "ui/state.h"
+#include "ui/widgets/controls.h"
+#include "ui/widgets/fields.h"
+#include "ui/widgets/icons.h"
+
+namespace gse::ui {
+namespace {
+
+/// First field of each group of the advanced settings; what comes before the first is on the panel itself.
+struct Group {
+    const char* first_field;
+    const char* title;
+};
+constexpr std::array<Group, 8> Groups{{{"views", "Views"},
+                                       {"rivals", "Localization"},
+                                       {"iterations", "Loop"},
+                                       {"anchor_first", "Anchors"},
+                                       {"rate_position", "Learning rates"},
+                                       {"densify_from", "Growth"},
+                                       {"seed_splats", "Adding"},
+                                       {"snapshot_every", "Running"}}};
+
+constexpr double LeastStrength = 0.1, MostStrength = 5;
+constexpr std::array<const char*, 3> Modes{"auto", "modify", "add"};
+constexpr std::array<const char*, 3> ModeHelp{"Modify when the scene shows the target already, else add it.",
+                                              "Change what is there: colours, material, shape of the source.",
+                                              "Put something new there, such as a hat on the bear."};
+
+void draw_source(Context& context) {
+    auto& prompt = context.state.prompt;
+    dim_text("What in the scene is it about?");
+    context.request_changed |= text_input(context, "prompt.source", context.request.source, "bear");
+    tooltip("One word. Empty: the target word itself is looked for.");
+    if (prompt.source_known) return;
+    coloured_text(palette::Warning, fmt::format("The model does not know \"{}\".", context.request.source));
+    if (prompt.source_suggestion.empty()) return;
+    const std::string text = fmt::format("Use \"{}\"", prompt.source_suggestion);
+    flow(button_width(text));
+    if (button(context, {.name = "prompt.source.suggestion", .text = text})) {
+        context.request.source = prompt.source_suggestion;
+        context.request_changed = true;
+    }
+}
+
+void draw_sentence(Context& context) {
+    auto& prompt = context.state.prompt;
+    dim_text("The scene after the edit");
+    context.request_changed |=
+        text_input(context, "prompt.sentence", context.request.prompt, "a bear wearing a red hat");
+    tooltip("One sentence. Shift + Enter or Ctrl + Enter starts the edit.");
+    if (prompt.chips.empty()) return;
+    const ChipClick click = chips(context, "prompt.chip", prompt.chips);
+    if (click.chosen >= 0) {
+        const auto& chip = prompt.chips[static_cast<std::size_t>(click.chosen)];
+        context.request.target = chip.target && !chip.guessed ? std::string() : chip.text;
+        context.request_changed = true;
+    }
+    if (click.replaced >= 0) {
+        const auto index = static_cast<std::size_t>(click.replaced);
+        const auto& chip = prompt.chips[index];
+        if (chip.target && !chip.guessed) context.request.target = chip.suggestion;
+        context.request.prompt = with_word(context.request.prompt, index, chip.suggestion);
+        context.request_changed = true;
+    }
+    const bool unknown =
+        std::any_of(prompt.chips.begin(), prompt.chips.end(), [](const Chip& chip) { return !chip.known; });
+    if (unknown) coloured_text(palette::Warning, "Words the model does not know have no effect.");
+    const bool chosen =
+        std::any_of(prompt.chips.begin(), prompt.chips.end(), [](const Chip& chip) { return chip.target; });
+    if (!chosen) dim_text("Click the word that is new: it is the target of the edit.");
+}
+
+void draw_mode(Context& context) {
+    int mode = static_cast<int>(std::find(Modes.begin(), Modes.end(), context.request.mode) - Modes.begin());
+    row_label(context, "Mode", "auto: modify when the scene shows the target already, else add it.");
+    if (segmented(context, "prompt.mode", Modes, mode)) {
+        context.request.mode = Modes[static_cast<std::size_t>(mode)];
+        context.request_changed = true;
+    }
+    if (mode >= 0 && mode < static_cast<int>(ModeHelp.size()))
+        tooltip(ModeHelp[static_cast<std::size_t>(mode)]);
+}
+
+void draw_strength(Context& context) {
+    row_label(context, "Strength",
+              "How hard the model pulls, against keeping the rest as it is. 1 is normal.");
+    context.request_changed |=
+        ImGui::SliderScalar("##prompt.strength", ImGuiDataType_Double, &context.request.guidance_weight,
+                            &LeastStrength, &MostStrength, "%.2f", ImGuiSliderFlags_Logarithmic);
+    note(context, "prompt.strength");
+    row_label(context, "Iterations", "Optimisation steps. More = closer to the sentence, and longer.");
+    const int least = 1;
+    if (ImGui::DragInt("##prompt.iterations", &context.request.iterations, 5, least, 100000, "%d",
+                       ImGuiSliderFlags_AlwaysClamp))
+        context.request_changed = true;
+    note(context, "prompt.iterations");
+}
+
+void draw_seed(Context& context) {
+    auto& prompt = context.state.prompt;
+    row_label(context, "Seed", "The same seed, sentence and settings give the same edit.");
+    const float buttons = context.em * 1.75f * 2 + ImGui::GetStyle().ItemSpacing.x * 2;
+    ImGui::SetNextItemWidth(std::max(context.em * 3, ImGui::GetContentRegionAvail().x - buttons));
+    context.request_changed |= ImGui::InputScalar("##prompt.seed", ImGuiDataType_U64, &context.request.seed);
+    note(context, "prompt.seed");
+    ImGui::SameLine();
+    if (icon_button(context, {.name = "prompt.seed.lock",
+                              .icon = prompt.seed_locked ? Icon::Lock : Icon::Unlock,
+                              .tooltip = prompt.seed_locked ? "Locked: every edit uses this seed"
+                                                            : "Open: every edit gets another seed",
+                              .active = prompt.seed_locked}))
+        prompt.seed_locked = !prompt.seed_locked;
+    ImGui::SameLine();
+    if (icon_button(context, {.name = "prompt.seed.dice", .icon = Icon::Dice, .tooltip = "Another seed"}))
+        roll_seed(context);
+}
+
+void draw_estimate(Context& context) {
+    const auto& estimate = context.model.estimate;
+    if (estimate.seconds < 0 && estimate.memory_mb < 0) return;
+    const bool tight =
+        estimate.memory_mb > 0 && estimate.memory_free_mb > 0 && estimate.memory_mb > estimate.memory_free_mb;
+    std::string text = "Estimate: ";
+    if (estimate.seconds >= 0) text += fmt::format("about {}", duration_text(estimate.seconds));
+    if (estimate.memory_mb >= 0) {
+        if (estimate.seconds >= 0) text += ", ";
+        text += bytes_text(estimate.memory_mb * 1e6);
+        if (estimate.memory_free_mb >= 0)
+            text += fmt::format(" of {} free", bytes_text(estimate.memory_free_mb * 1e6));
+    }
+    coloured_text(tight ? palette::Bad : palette::TextDim, text);
+    if (tight)
+        coloured_text(palette::Bad,
+                      "That is more memory than is free: fewer views or a smaller image size help.");
+}
+
+void draw_run(Context& context) {
+    const std::string why_locate = why_not_locate(context), why_edit = why_not_edit(context);
+    const float spacing = ImGui::GetStyle().ItemSpacing.x;
+    const float width = (ImGui::GetContentRegionAvail().x - spacing) * 0.5f;
+    const bool stacked = width < button_width("Locate") || width < button_width("Cancel");
+    if (button(context, {.name = "prompt.locate",
+                         .text = "Locate",
+                         .why_off = why_locate,
+                         .tooltip = "Find the source in the scene and label it (Ctrl + L)",
+                         .width = stacked ? -1 : width}))
+        run_locate(context);
+    if (!stacked) ImGui::SameLine();
+    if (context.model.job.running) {
+        if (button(context, {.name = "prompt.cancel",
+                             .text = "Cancel",
+                             .tooltip = "Stop the job (Esc)",
+                             .look = Look::Danger,
+                             .width = stacked ? -1 : width}))
+            cancel_job(context);
+    } else if (button(context, {.name = "prompt.edit",
+                                .text = "Edit",
+                                .why_off = why_edit,
+                                .tooltip = "Change the scene (Shift + Enter)",
+                                .look = Look::Primary,
+                                .width = stacked ? -1 : width})) {
+        run_edit(context);
+    }
+    // What stands in the way is also said without hovering, once something was typed.
+    if (!why_edit.empty() && !context.model.job.running && context.scene_open()) dim_text(fmt::format("{}.", why_edit));
+}
+
+void draw_advanced(Context& context) {
+    if (!ImGui::CollapsingHeader("All settings###prompt.advanced")) {
+        note(context, "prompt.advanced");
+        return;
+    }
+    note(context, "prompt.advanced");
+    if (button(context, {.name = "prompt.defaults",
+                         .text = "Back to the defaults",
+                         .tooltip = "All settings below; words and seed stay"})) {
+        edit::EditRequest fresh;
+        fresh.source = context.request.source, fresh.prompt = context.request.prompt,
+        fresh.target = context.request.target;
+        fresh.mode = context.request.mode, fresh.seed = context.request.seed;
+        context.request = fresh;
+        context.request_changed = true;
+    }
+    bool in_groups = false, tree_open = false;
+    const auto before = [&](const char* name, bool& shown) {
+        for (const auto& group : Groups) {
+            if (std::string_view(group.first_field) != name) continue;
+            if (tree_open) ImGui::TreePop();
+            tree_open = ImGui::TreeNodeEx(group.title, ImGuiTreeNodeFlags_SpanAvailWidth);
+            note(context, fmt::format("prompt.group.{}", group.title));
+            in_groups = true;
+        }
+        shown = in_groups && tree_open;
+    };
+    context.request_changed |= field_rows(
+        context, "request", context.request, [](const char*) { return true; }, before);
+    if (tree_open) ImGui::TreePop();
+}
+
+}  // namespace
+
+void draw_prompt_panel(Context& context) {
+    draw_result_notice(context, "prompt");
+    draw_source(context);
+    ImGui::Spacing();
+    draw_sentence(context);
+    ImGui::Spacing();
+    draw_mode(context);
+    draw_strength(context);
+    draw_seed(context);
+    ImGui::Spacing();
+    draw_estimate(context);
+    draw_run(context);
+    ImGui::Spacing();
+    draw_advanced(context);
+}
+
+void draw_result_notice(Context& context, const char* prefix) {
+    if (!context.model.result_waiting) return;
+    begin_notice(context, fmt::format("{}.result", prefix), palette::Accent);
+    wrapped_text("The edit is done. Look at it: V wipes between before and after, hold ` to flip.");
+    if (button(context, {.name = fmt::format("{}.apply", prefix),
+                         .text = "Apply",
+                         .tooltip = "Keep it as an entry of the edit stack",
+                         .look = Look::Primary}))
+        context.actions.apply_result();
+    flow(button_width("Discard"));
+    if (button(context, {.name = fmt::format("{}.discard", prefix),
+                         .text = "Discard",
+                         .tooltip = "Leave the scene as it was"}))
+        context.actions.discard_result();
+    end_notice();
+}
+
+}  // namespace gse::ui

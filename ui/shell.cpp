@@ -1,0 +1,292 @@
+// The whole window: menu, tools, viewport and panels.
+#include "ui/shell.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/file.h"
+#include "ui/commands.h"
+#include "ui/deferred_actions.h"
+#include "ui/menu.h"
+#include "ui/panels/panels.h"
+#include "ui/sentence.h"
+#include "ui/state.h"
+#include "ui/viewport/viewport.h"
+#include "ui/widgets/controls.h"
+#include "ui/widgets/splitter.h"
+
+namespace gse::ui {
+namespace {
+
+constexpr float ToolBarEm = 2.65f;
+constexpr float SplitterEm = 0.35f;
+constexpr float LeastViewportEm = 14;
+
+constexpr ImGuiWindowFlags HostFlags =
+    ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_MenuBar | ImGuiWindowFlags_NoScrollWithMouse;
+
+/// A surface of its own with padding, at a place of the window.
+bool begin_surface(const char* name, ImVec2 low, ImVec2 size, ImU32 colour) {
+    ImGui::SetCursorScreenPos(low);
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, colour);
+    const bool shown =
+        ImGui::BeginChild(name, {std::max(1.0f, size.x), std::max(1.0f, size.y)}, false,
+                          ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NoScrollbar |
+                              ImGuiWindowFlags_NoScrollWithMouse);
+    ImGui::PopStyleColor();
+    return shown;
+}
+
+/// Facts about the sentence, made anew only when words or the model changed.
+void update_sentence(Context& context) {
+    auto& prompt = context.state.prompt;
+    const auto& request = context.request;
+    const std::string key = fmt::format("{}\n{}\n{}\n{}\n{}", request.source, request.prompt, request.target,
+                                        request.mode, context.model.known_words.size());
+    if (key == prompt.key) return;
+    prompt.key = key;
+    SentenceFacts facts = facts_of(request, context.model.known_words);
+    prompt.chips = std::move(facts.chips);
+    prompt.problem = std::move(facts.problem);
+    prompt.source_suggestion = std::move(facts.source_suggestion);
+    prompt.source_known = facts.source_known;
+    prompt.guessed_target = std::move(facts.guessed_target);
+}
+
+struct Box {
+    ImVec2 low, high;
+    ImVec2 size() const { return {high.x - low.x, high.y - low.y}; }
+};
+
+/// Where everything lies in the space below the menu.
+struct Plan {
+    Box tools, viewport, bottom, right_top, right_bottom, job;
+    Box split_right, split_bottom, split_column;
+    bool right = false, bottom_used = false, column_split = false;
+};
+
+Plan plan_of(const Context& context, const Layout& layout, Box space) {
+    const float em = context.em, split = std::round(em * SplitterEm);
+    const float job = std::round(ImGui::GetFrameHeight() + em * 0.6f), tools = std::round(em * ToolBarEm);
+    Plan plan;
+    plan.job = {{space.low.x, space.high.y - job}, space.high};
+    const Box middle{space.low, {space.high.x, plan.job.low.y - 1}};
+    plan.tools = {middle.low, {middle.low.x + tools, middle.high.y}};
+    const bool hidden = layout.panels_hidden;
+    plan.right = !hidden && (layout.used(Area::RightTop) || layout.used(Area::RightBottom));
+    plan.bottom_used = !hidden && layout.used(Area::Bottom);
+    const float width = middle.high.x - plan.tools.high.x;
+    const float most_right = std::max(width * 0.3f, std::min(width * 0.6f, width - em * LeastViewportEm));
+    const float right = plan.right ? std::round(std::min(layout.right_em * em, most_right)) : 0;
+    const float right_edge = middle.high.x - right;
+    plan.split_right = {{right_edge - (plan.right ? split : 0), middle.low.y}, {right_edge, middle.high.y}};
+    const float height = middle.high.y - middle.low.y;
+    const float most_bottom = std::max(height * 0.25f, std::min(height * 0.6f, height - em * 10));
+    const float bottom = plan.bottom_used ? std::round(std::min(layout.bottom_em * em, most_bottom)) : 0;
+    const float bottom_edge = middle.high.y - bottom;
+    plan.split_bottom = {{plan.tools.high.x, bottom_edge - (plan.bottom_used ? split : 0)},
+                         {plan.split_right.low.x, bottom_edge}};
+    plan.viewport = {{plan.tools.high.x, middle.low.y}, {plan.split_right.low.x, plan.split_bottom.low.y}};
+    plan.bottom = {{plan.tools.high.x, bottom_edge}, {plan.split_right.low.x, middle.high.y}};
+    plan.column_split = plan.right && layout.used(Area::RightTop) && layout.used(Area::RightBottom);
+    const float share = plan.column_split ? layout.right_split : layout.used(Area::RightTop) ? 1.0f : 0.0f;
+    const float cut = std::round(middle.low.y + height * share);
+    plan.right_top = {{right_edge, middle.low.y},
+                      {middle.high.x, plan.column_split ? cut - split * 0.5f : cut}};
+    plan.split_column = {{right_edge, cut - split * 0.5f}, {middle.high.x, cut + split * 0.5f}};
+    plan.right_bottom = {{right_edge, plan.column_split ? cut + split * 0.5f : cut}, middle.high};
+    return plan;
+}
+
+void drag_splitters(Context& context, const Plan& plan) {
+    auto& layout = context.state.layout;
+    if (plan.right) {
+        const float drag = splitter(context, "split.right", plan.split_right.low, plan.split_right.high);
+        if (drag != 0)
+            layout.right_em =
+                std::clamp(plan.right_top.size().x / context.em - drag / context.em, 14.0f, 80.0f);
+    }
+    if (plan.bottom_used) {
+        const float drag = splitter(context, "split.bottom", plan.split_bottom.low, plan.split_bottom.high);
+        if (drag != 0)
+            layout.bottom_em = std::clamp(plan.bottom.size().y / context.em - drag / context.em, 6.0f, 80.0f);
+    }
+    if (plan.column_split) {
+        const float drag = splitter(context, "split.column", plan.split_column.low, plan.split_column.high);
+        const float height = plan.right_bottom.high.y - plan.right_top.low.y;
+        if (drag != 0)
+            layout.right_split = std::clamp(layout.right_split + drag / std::max(1.0f, height), 0.1f, 0.9f);
+    }
+}
+
+}  // namespace
+
+Shell::Shell() : state_(std::make_unique<UiState>()), deferred_(std::make_unique<DeferredActions>()) {}
+Shell::~Shell() = default;
+
+bool Shell::animating() const { return state_->animating; }
+std::string Shell::layout() const { return state_->layout.to_json(); }
+void Shell::set_layout(const std::string& json) {
+    state_->layout = Layout::from_json(json);
+    state_->front_changed = {true, true, true};
+}
+void Shell::reset_layout() {
+    state_->layout = Layout::standard();
+    state_->front_changed = {true, true, true};
+}
+void Shell::show(PanelId panel) { show_panel(*state_, panel); }
+void Shell::request_quit() { state_->quit_asked = true; }
+void Shell::request_open(const std::filesystem::path& path) { state_->open_asked = utf8_of(path); }
+
+void Shell::write_widgets(const std::filesystem::path& path) const {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (const auto& [name, rect] : widgets_)
+        json[name] = {{"x", rect.x},
+                      {"y", rect.y},
+                      {"width", rect.width},
+                      {"height", rect.height},
+                      {"visible", rect.visible},
+                      {"enabled", rect.enabled}};
+    write_file(path, json.dump(1));
+}
+
+void Shell::answer_requests(Context& context) {
+    if (state_->quit_asked) quit(context);
+    state_->quit_asked = false;
+    if (state_->open_asked.empty()) return;
+    open_path(context, state_->open_asked);
+    state_->open_asked.clear();
+}
+
+void Shell::draw_tab_menu(Context& context, PanelId panel) {
+    if (!ImGui::BeginPopupContextItem()) return;
+    auto& layout = state_->layout;
+    for (std::size_t area = 0; area < AreaCount; ++area) {
+        const bool here = layout.place(panel).area == static_cast<Area>(area);
+        if (!ImGui::MenuItem(fmt::format("Move to the {}", AreaNames[area]).c_str(), nullptr, here, !here))
+            continue;
+        layout.move(panel, static_cast<Area>(area));
+        state_->front_changed[area] = true;
+    }
+    if (ImGui::MenuItem("Close")) layout.close(panel);
+    ImGui::EndPopup();
+}
+
+void Shell::draw_area(Context& context, Area area) {
+    auto& layout = state_->layout;
+    const auto index = static_cast<std::size_t>(area);
+    if (!ImGui::BeginTabBar(AreaNames[index], ImGuiTabBarFlags_Reorderable |
+                                                  ImGuiTabBarFlags_FittingPolicyScroll |
+                                                  ImGuiTabBarFlags_NoTooltip))
+        return;
+    const bool bring = state_->front_changed[index];
+    for (std::size_t at = 0; at < PanelCount; ++at) {
+        const auto panel = static_cast<PanelId>(at);
+        if (!layout.place(panel).open || layout.place(panel).area != area) continue;
+        const bool wanted = bring && layout.front[index] == static_cast<int>(at);
+        const bool shown = ImGui::BeginTabItem(
+            PanelNames[at], nullptr, wanted ? ImGuiTabItemFlags_SetSelected : ImGuiTabItemFlags_None);
+        note(context, fmt::format("tab.{}", PanelNames[at]));
+        draw_tab_menu(context, panel);
+        if (!shown) continue;
+        if (!bring) layout.front[index] = static_cast<int>(at);
+        if (ImGui::BeginChild(PanelNames[at], {0, 0}, false)) draw_panel(context, panel);
+        ImGui::EndChild();
+        note(context, fmt::format("panel.{}", PanelNames[at]));
+        ImGui::EndTabItem();
+    }
+    // SetSelected takes effect in the frame after: the front is only read again then.
+    state_->front_changed[index] = false;
+    ImGui::EndTabBar();
+}
+
+void Shell::draw_areas(Context& context) {
+    const ImVec2 origin = ImGui::GetCursorScreenPos();
+    const ImVec2 screen = ImGui::GetIO().DisplaySize;
+    const Plan plan = plan_of(context, state_->layout, {{0, origin.y}, screen});
+    const auto surface = [&](const char* name, const Box& box, ImU32 colour, auto draw) {
+        if (begin_surface(name, box.low, box.size(), colour)) draw();
+        ImGui::EndChild();
+    };
+    surface("tools", plan.tools, palette::Panel, [&] { draw_tool_bar(context); });
+    surface("viewport", plan.viewport, palette::Panel, [&] { draw_viewport(context); });
+    if (plan.bottom_used)
+        surface("bottom", plan.bottom, palette::Panel, [&] { draw_area(context, Area::Bottom); });
+    if (plan.right && state_->layout.used(Area::RightTop))
+        surface("right top", plan.right_top, palette::Panel, [&] { draw_area(context, Area::RightTop); });
+    if (plan.right && state_->layout.used(Area::RightBottom))
+        surface("right bottom", plan.right_bottom, palette::Panel,
+                [&] { draw_area(context, Area::RightBottom); });
+    surface("job", plan.job, palette::Window, [&] { draw_job_bar(context); });
+    drag_splitters(context, plan);
+}
+
+void Shell::draw_window(Context& context) {
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize(ImGui::GetIO().DisplaySize);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, palette::Window);
+    ImGui::Begin("GSEditPro", nullptr, HostFlags);
+    ImGui::PopStyleColor();
+    ImGui::PopStyleVar(3);
+    draw_menu_bar(context);
+    draw_areas(context);
+    ImGui::End();
+    draw_result_bar(context);
+    draw_toasts(context);
+    draw_dialogs(context);
+}
+
+void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
+    const float em = ImGui::GetFontSize();
+    if (em != styled_em_) apply_theme(ImGui::GetStyle(), em);
+    styled_em_ = em;
+    widgets_.clear();
+    Context context{model,           *deferred_, textures,   *state_,       widgets_,
+                    current_fonts(), em,         model.view, model.request, model.exports};
+    state_->animating = false;
+    update_sentence(context);
+    handle_keys(context);
+    answer_requests(context);
+    draw_window(context);
+    if (context.request_changed) deferred_->set_request(context.request);
+    if (context.view_changed) deferred_->set_view_settings(context.view);
+    if (context.exports_changed) deferred_->set_exports(context.exports);
+    state_->animating |= !deferred_->empty();
+    deferred_->run(actions);
+}
+
+void draw_panel(Context& context, PanelId panel) {
+    switch (panel) {
+        case PanelId::Prompt:
+            return draw_prompt_panel(context);
+        case PanelId::Labels:
+            return draw_labels_panel(context);
+        case PanelId::Scene:
+            return draw_scene_panel(context);
+        case PanelId::Models:
+            return draw_models_panel(context);
+        case PanelId::History:
+            return draw_history_panel(context);
+        case PanelId::Views:
+            return draw_views_panel(context);
+        case PanelId::Export:
+            return draw_export_panel(context);
+        case PanelId::Settings:
+            return draw_settings_panel(context);
+        case PanelId::Attention:
+            return draw_attention_panel(context);
+        case PanelId::Progress:
+            return draw_progress_panel(context);
+        case PanelId::Log:
+            return draw_log_panel(context);
+    }
+}
+
+}  // namespace gse::ui

@@ -1,0 +1,66 @@
+// The whole window: menu, tools, viewport and panels. A frame is a function of the view model; what an artist
+// asks for goes to the actions after the frame is drawn.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "ui/actions.h"
+#include "ui/context.h"
+#include "ui/layout.h"
+#include "ui/view_model.h"
+
+namespace gse::ui {
+
+class DeferredActions;
+
+class Shell {
+public:
+    Shell();
+    ~Shell();
+    Shell(const Shell&) = delete;
+    Shell& operator=(const Shell&) = delete;
+
+    /// Call between ImGui::NewFrame() and ImGui::Render(). The style follows the font size by itself; the
+    /// fonts are those of build_fonts() (theme.h). Actions are called at the end, never while the model is
+    /// being read.
+    void draw(const ViewModel& model, Actions& actions, Textures& textures);
+
+    /// True when the next frame will look different even without input: a camera glides, a key is held.
+    bool animating() const;
+
+    /// Sizes, places and front tabs of the panels as JSON; unknown parts are passed over.
+    std::string layout() const;
+    void set_layout(const std::string& json);
+    void reset_layout();
+    /// Brings a panel to the front.
+    void show(PanelId panel);
+
+    /// As if chosen from the menu: asks when there is unsaved work. For the window's close button and for
+    /// dropped files.
+    void request_quit();
+    void request_open(const std::filesystem::path& path);
+
+    /// Where the important widgets of the last frame are, in window coordinates: "prompt.edit", "tool.brush",
+    /// "viewport"...
+    const WidgetMap& widgets() const { return widgets_; }
+    /// The same as a JSON file, for scripts that click.
+    void write_widgets(const std::filesystem::path& path) const;
+
+    UiState& state() { return *state_; }
+
+private:
+    void draw_window(Context& context);
+    void draw_areas(Context& context);
+    void draw_area(Context& context, Area area);
+    void draw_tab_menu(Context& context, PanelId panel);
+    void answer_requests(Context& context);
+
+    std::unique_ptr<UiState> state_;
+    std::unique_ptr<DeferredActions> deferred_;
+    WidgetMap widgets_;
+    float styled_em_ = 0;
+};
+
+}  // namespace gse::ui

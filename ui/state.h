@@ -1,0 +1,127 @@
+// What the window itself remembers between frames: tools, open dialogs, caches of widgets. Never the
+// document.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ui/context.h"
+#include "ui/layout.h"
+#include "ui/viewport/camera_control.h"
+#include "ui/widgets/chips.h"
+#include "ui/widgets/file_browser.h"
+#include "ui/widgets/histogram.h"
+
+namespace gse::ui {
+
+/// A question in the middle of the window; every answer closes it.
+struct Question {
+    struct Answer {
+        std::string text;
+        bool dangerous = false;
+        std::function<void()> act;  // empty = nothing happens
+    };
+    std::string title, text;
+    std::vector<Answer> answers;
+    bool pending = false;
+};
+
+/// Viewport: camera, tools and what is being drawn with the mouse.
+struct ViewportState {
+    CameraControl camera;
+    SentCameras sent;
+    bool camera_known = false;
+    double fov_setting = 0;  // last seen, to notice a change in Settings
+    OrbitParameters home;    // last seen
+    Tool tool = Tool::Orbit;
+    SetOperation operation = SetOperation::Add;  // without keys held
+    bool stroke = false;                         // a tool's drag goes on
+    SetOperation stroke_operation = SetOperation::Add;
+    ImVec2 stroke_start{};
+    std::vector<std::array<float, 2>> path;  // of the drag, in window coordinates
+    int sent_width = 0, sent_height = 0;     // last asked for
+    ImVec2 low{}, high{};                    // of the picture on the screen
+    int selected_view = -1;
+    bool flipped = false;  // ` is held
+    Comparison before_flip = Comparison::None;
+    bool wipe_dragged = false;
+    int drag_button = -1;  // mouse button that navigates, -1 = none
+};
+
+/// What is known about the sentence, kept until it changes.
+struct PromptState {
+    std::string key;  // what the rest was computed from
+    std::vector<Chip> chips;
+    std::string problem;  // why the request cannot be run; empty = it can
+    std::string source_suggestion;
+    bool source_known = true;
+    std::string guessed_target;
+    bool seed_locked = true;  // open: every edit gets another seed
+    bool advanced = false;
+};
+
+struct AttentionState {
+    int chosen = 0;
+    double threshold = -1;                    // while dragged, else negative
+    std::shared_ptr<const Image> picture;     // thresholded map over the render
+    std::shared_ptr<const Image> picture_of;  // the map it was made from
+    double picture_threshold = -1;
+    double above = 0;  // share of the picture above the threshold
+    bool points = true;
+};
+
+struct LabelsState {
+    WeightHistogram histogram;
+    float threshold = -1;  // while dragged, else negative
+    int renamed = -1;
+    std::string name;
+    bool focus_name = false;
+    std::shared_ptr<const std::vector<std::uint8_t>> counted;
+    std::size_t count = 0;
+    int steps = 1;
+};
+
+struct ProgressState {
+    bool logarithmic = true;
+    std::array<bool, 3> losses{true, true, true};
+    std::array<bool, 2> norms{true, true};
+};
+
+struct LogState {
+    std::array<bool, 4> shown{false, true, true, true};  // Debug, Info, Warning, Error
+    std::string filter;
+    std::size_t lines_seen = 0;
+    bool follow = true;
+};
+
+struct HistoryState {
+    std::uint64_t chosen = 0;  // identity of an edit
+};
+
+struct UiState {
+    Layout layout = Layout::standard();
+    ViewportState viewport;
+    PromptState prompt;
+    AttentionState attention;
+    LabelsState labels;
+    ProgressState progress;
+    LogState log;
+    HistoryState history;
+    FileBrowser files;
+    Question question;
+    std::array<bool, AreaCount> front_changed{true, true, true};  // a tab has to be brought to the front
+    bool help_open = false, about_open = false;
+    bool quit_asked = false;
+    std::string open_asked;  // path to open, from outside; empty = none
+    std::string model_path;
+    std::string focus;  // widget that takes the keyboard next frame
+    bool animating = false;
+};
+
+/// Brings a panel to the front.
+void show_panel(UiState& state, PanelId panel);
+
+}  // namespace gse::ui

@@ -1,0 +1,216 @@
+// Camera of the viewport: orbit, pan, zoom to the cursor, fly, frame; glides to where it is sent and then
+// stands still.
+#include "ui/viewport/camera_control.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace gse::ui {
+namespace {
+
+constexpr double GlideRate = 14;       // per second: a glide is over after about a third of a second
+constexpr double LongestStep = 0.1;    // seconds; a slow frame must not throw the camera
+constexpr double ArrivedShare = 5e-4;  // of the distance: below a pixel on any screen
+constexpr double ArrivedAngle = 5e-4;  // radians
+constexpr double ZoomPerNotch = 0.86;
+constexpr double NearestShare = 1e-4, FarthestShare = 1e4;  // of the home radius
+constexpr double PoleMargin = 0.02;  // radians the view keeps from straight up and down
+constexpr double FrameMargin = 1.15;
+
+/// Rotation by `angle` about a unit axis (Rodrigues).
+Mat3 about(const Vec3& axis, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle), t = 1 - c;
+    const auto& [x, y, z] = axis;
+    return {{t * x * x + c, t * x * y - s * z, t * x * z + s * y, t * x * y + s * z, t * y * y + c,
+             t * y * z - s * x, t * x * z - s * y, t * y * z + s * x, t * z * z + c}};
+}
+
+Vec3 row(const Mat3& m, int index) { return {m(index, 0), m(index, 1), m(index, 2)}; }
+
+/// Shortest way between two rotations, `share` of it.
+Quat slerp(const Quat& a, Quat b, double share) {
+    double cosine = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
+    if (cosine < 0) {
+        b = {-b.w, -b.x, -b.y, -b.z};
+        cosine = -cosine;
+    }
+    const double angle = std::acos(std::min(1.0, cosine));
+    double from = 1 - share, to = share;
+    if (angle > 1e-6) {
+        from = std::sin((1 - share) * angle) / std::sin(angle);
+        to = std::sin(share * angle) / std::sin(angle);
+    }
+    return {from * a.w + to * b.w, from * a.x + to * b.x, from * a.y + to * b.y, from * a.z + to * b.z};
+}
+
+double angle_between(const Mat3& a, const Mat3& b) {
+    const Mat3 difference = a * b.transposed();
+    const double trace = difference(0, 0) + difference(1, 1) + difference(2, 2);
+    return std::acos(std::clamp((trace - 1) / 2, -1.0, 1.0));
+}
+
+}  // namespace
+
+Vec3 CameraPose::eye() const { return pivot - row(rotation, 2) * distance; }
+
+void CameraControl::set_size(int width, int height) {
+    width_ = std::max(1, width);
+    height_ = std::max(1, height);
+}
+
+double CameraControl::focal_px() const { return width_ / (2 * std::tan(fov_x_ / 2)); }
+
+void CameraControl::arrive() {
+    now_ = target_;
+    gliding_ = false;
+}
+
+void CameraControl::go(const CameraPose& target) {
+    target_ = target;
+    gliding_ = true;
+}
+
+void CameraControl::adopt(const Camera& camera) {
+    if (camera.width > 0 && camera.fx > 0) fov_x_ = 2 * std::atan(camera.width / (2 * camera.fx));
+    const Vec3 eye = camera.centre();
+    const double along = dot(home_.centre - eye, camera.forward());
+    target_.rotation = camera.rotation;
+    target_.distance = along > home_.radius * 0.05 ? along : std::max(home_.radius, 1e-6);
+    target_.pivot = eye + camera.forward() * target_.distance;
+    arrive();
+    moved_ = false;
+}
+
+void CameraControl::rotate(const Mat3& world_rotation) {
+    // world -> camera after the camera's frame was turned in the world: R (W)^T
+    const Mat3 turned = world_rotation.transposed();
+    now_.rotation = now_.rotation * turned;
+    target_.rotation = target_.rotation * turned;
+    moved_ = true;
+}
+
+void CameraControl::orbit(double dx_px, double dy_px) {
+    const double per_px = std::numbers::pi / height_;
+    const Vec3 up = normalized(home_.up);
+    if (dx_px != 0) rotate(about(up, -dx_px * per_px));
+    if (dy_px == 0) return;
+    const Vec3 forward = row(now_.rotation, 2);
+    const double height = std::acos(std::clamp(dot(forward, up), -1.0, 1.0));  // 0 = looks straight up
+    // Dragging down lifts the camera: it looks more downwards, the angle to up grows.
+    const double wanted = std::clamp(height + dy_px * per_px, PoleMargin, std::numbers::pi - PoleMargin);
+    const Vec3 axis = normalized(cross(forward, up));
+    if (length(axis) > 0) rotate(about(axis, height - wanted));
+}
+
+void CameraControl::pan(double dx_px, double dy_px) {
+    const double per_px = now_.distance / focal_px();
+    const Vec3 shift = row(now_.rotation, 0) * (-dx_px * per_px) + row(now_.rotation, 1) * (-dy_px * per_px);
+    now_.pivot = now_.pivot + shift;
+    target_.pivot = target_.pivot + shift;
+    moved_ = true;
+}
+
+Vec3 CameraControl::unproject(double x_px, double y_px, double depth) const {
+    const double focal = focal_px();
+    const Vec3 in_camera{(x_px - width_ * 0.5) / focal * depth, (y_px - height_ * 0.5) / focal * depth,
+                         depth};
+    return now_.eye() + now_.rotation.transposed() * in_camera;
+}
+
+void CameraControl::zoom(double notches, double x_px, double y_px, double depth) {
+    const Vec3 point = unproject(x_px, y_px, depth > 0 ? depth : now_.distance);
+    const double nearest = home_.radius * NearestShare, farthest = home_.radius * FarthestShare;
+    const double wanted = std::clamp(target_.distance * std::pow(ZoomPerNotch, notches), nearest, farthest);
+    const double factor = wanted / target_.distance;
+    CameraPose next = target_;
+    next.pivot = point + (target_.pivot - point) * factor;
+    next.distance = wanted;
+    go(next);
+}
+
+void CameraControl::fly(const Vec3& direction, double seconds, double speed) {
+    const double step = home_.radius * speed * std::min(seconds, LongestStep);
+    const Vec3 shift = now_.rotation.transposed() * (direction * step);
+    now_.pivot = now_.pivot + shift;
+    target_.pivot = target_.pivot + shift;
+    moved_ = true;
+}
+
+void CameraControl::frame(const Vec3& centre, double radius) {
+    const double fov_y = 2 * std::atan(std::tan(fov_x_ / 2) * height_ / width_);
+    CameraPose next = target_;
+    next.pivot = centre;
+    next.distance =
+        std::max(radius, home_.radius * NearestShare) * FrameMargin / std::sin(std::min(fov_x_, fov_y) / 2);
+    go(next);
+}
+
+void CameraControl::home() {
+    const Camera camera = orbit_camera(home_, 0, width_, height_);
+    go({home_.centre, std::max(home_.radius, 1e-9), camera.rotation});
+}
+
+void CameraControl::set_pivot(const Vec3& point) {
+    const double along = dot(point - now_.eye(), row(now_.rotation, 2));
+    if (along <= 0) return;
+    CameraPose next = target_;
+    next.pivot = point;
+    next.distance = along;
+    go(next);
+}
+
+bool CameraControl::update(double seconds) {
+    bool moves = moved_;
+    moved_ = false;
+    if (!gliding_) return moves;
+    const double share = 1 - std::exp(-GlideRate * std::clamp(seconds, 0.0, LongestStep));
+    now_.pivot = now_.pivot + (target_.pivot - now_.pivot) * share;
+    now_.distance += (target_.distance - now_.distance) * share;
+    now_.rotation = rotation_matrix(slerp(quaternion(now_.rotation), quaternion(target_.rotation), share));
+    const double tolerance = ArrivedShare * target_.distance;
+    if (length(now_.pivot - target_.pivot) < tolerance &&
+        std::abs(now_.distance - target_.distance) < tolerance &&
+        angle_between(now_.rotation, target_.rotation) < ArrivedAngle)
+        arrive();
+    return true;
+}
+
+Camera CameraControl::camera() const {
+    Camera camera;
+    camera.width = width_;
+    camera.height = height_;
+    camera.fx = camera.fy = focal_px();
+    camera.cx = width_ * 0.5;
+    camera.cy = height_ * 0.5;
+    camera.rotation = now_.rotation;
+    camera.translation = -(now_.rotation * now_.eye());
+    return camera;
+}
+
+bool same_view(const Camera& a, const Camera& b) {
+    constexpr double Tolerance = 1e-6;  // doubles that went through at most a resize
+    for (int at = 0; at < 9; ++at)
+        if (std::abs(a.rotation.m[static_cast<std::size_t>(at)] -
+                     b.rotation.m[static_cast<std::size_t>(at)]) > Tolerance)
+            return false;
+    if (length(a.translation - b.translation) > Tolerance * (1 + length(a.translation))) return false;
+    if (a.width <= 0 || b.width <= 0) return false;
+    return std::abs(a.fx / a.width - b.fx / b.width) < Tolerance * (1 + a.fx / a.width);
+}
+
+void SentCameras::sent(const Camera& camera) {
+    if (sent_.size() >= Limit) sent_.erase(sent_.begin());
+    sent_.push_back(camera);
+}
+
+bool SentCameras::is_foreign(const Camera& shown) {
+    for (std::size_t at = sent_.size(); at-- > 0;) {
+        if (!same_view(sent_[at], shown)) continue;
+        sent_.erase(sent_.begin(), sent_.begin() + static_cast<std::ptrdiff_t>(at));
+        return false;
+    }
+    return true;
+}
+
+}  // namespace gse::ui

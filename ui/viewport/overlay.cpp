@@ -1,0 +1,213 @@
+// What is drawn over the picture with lines: axes, bounds, cameras, the wipe, and the numbers in the corner.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "ui/commands.h"
+#include "ui/state.h"
+#include "ui/viewport/viewport.h"
+#include "ui/widgets/controls.h"
+
+namespace gse::ui {
+namespace {
+
+constexpr std::array<ImU32, 3> AxisColours{IM_COL32(226, 104, 98, 255), IM_COL32(124, 196, 104, 255),
+                                           IM_COL32(98, 150, 232, 255)};
+constexpr double FrustumShare = 0.07;  // length of a camera's drawn frustum, of the scene's radius
+constexpr float PickRadiusEm = 0.8f;
+
+double near_of(const Context& context) { return std::max(1e-9, context.model.orbit.radius * 1e-3); }
+
+/// A line of the world, cut at the near plane; nothing when it is behind.
+void world_line(const Context& context, ImDrawList* list, const Vec3& a, const Vec3& b, ImU32 colour,
+                float width) {
+    const Camera& camera = context.model.camera;
+    Vec3 from = camera.to_camera(a), to = camera.to_camera(b);
+    const double near = near_of(context);
+    if (from.z < near && to.z < near) return;
+    if (from.z < near) from = from + (to - from) * ((near - from.z) / (to.z - from.z));
+    if (to.z < near) to = to + (from - to) * ((near - to.z) / (from.z - to.z));
+    const auto project = [&](const Vec3& p) {
+        return to_screen(context, camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy);
+    };
+    list->AddLine(project(from), project(to), colour, width);
+}
+
+std::optional<ImVec2> project(const Context& context, const Vec3& world) {
+    const Camera& camera = context.model.camera;
+    const Vec3 p = camera.to_camera(world);
+    if (p.z < near_of(context)) return std::nullopt;
+    return to_screen(context, camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy);
+}
+
+/// The world's axes in the lower left corner, turned as the camera is.
+void draw_axes(Context& context, ImDrawList* list) {
+    const auto& state = context.state.viewport;
+    const float size = context.em * 1.9f;
+    const ImVec2 centre(state.low.x + size * 1.5f, state.high.y - size * 1.5f);
+    std::array<int, 3> order{0, 1, 2};
+    const Mat3& rotation = context.model.camera.rotation;
+    std::sort(order.begin(), order.end(),
+              [&](int a, int b) { return rotation(2, a) > rotation(2, b); });  // far ones first
+    for (const int axis : order) {
+        const ImVec2 end(centre.x + static_cast<float>(rotation(0, axis)) * size,
+                         centre.y + static_cast<float>(rotation(1, axis)) * size);
+        const ImU32 colour =
+            with_alpha(AxisColours[static_cast<std::size_t>(axis)], rotation(2, axis) > 0.2 ? 0.55f : 1);
+        list->AddLine(centre, end, colour, std::max(1.5f, context.em * 0.13f));
+        list->AddCircleFilled(end, context.em * 0.46f, colour);
+        const char letter[2] = {"xyz"[axis], 0};
+        const ImVec2 text = ImGui::CalcTextSize(letter);
+        list->AddText({end.x - text.x * 0.5f, end.y - text.y * 0.54f}, IM_COL32(20, 20, 22, 255), letter);
+    }
+}
+
+void draw_bounds(Context& context, ImDrawList* list) {
+    const Vec3 low = context.model.statistics.robust_low, high = context.model.statistics.robust_high;
+    const auto corner = [&](int bits) {
+        return Vec3{bits & 1 ? high.x : low.x, bits & 2 ? high.y : low.y, bits & 4 ? high.z : low.z};
+    };
+    for (int from = 0; from < 8; ++from)
+        for (const int bit : {1, 2, 4})
+            if ((from & bit) == 0)
+                world_line(context, list, corner(from), corner(from | bit), with_alpha(palette::Text, 0.45f),
+                           1);
+}
+
+void draw_view(Context& context, ImDrawList* list, const View& view, bool selected) {
+    const Camera& camera = view.camera;
+    const Mat3 to_world = camera.rotation.transposed();
+    const Vec3 eye = camera.centre();
+    const double length = context.model.orbit.radius * FrustumShare;
+    std::array<Vec3, 4> corners;
+    for (std::size_t at = 0; at < 4; ++at) {
+        const double x = at == 0 || at == 3 ? 0 : camera.width, y = at < 2 ? 0 : camera.height;
+        corners[at] =
+            eye + to_world * (Vec3{(x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy, 1} * length);
+    }
+    const ImU32 colour = selected ? palette::Accent : with_alpha(palette::Text, 0.55f);
+    const float width = selected ? std::max(2.0f, context.em * 0.14f) : std::max(1.0f, context.em * 0.07f);
+    for (std::size_t at = 0; at < 4; ++at) {
+        world_line(context, list, eye, corners[at], colour, width);
+        world_line(context, list, corners[at], corners[(at + 1) % 4], colour, width);
+    }
+    const auto apex = project(context, eye);
+    if (apex) list->AddCircleFilled(*apex, context.em * (selected ? 0.26f : 0.18f), colour);
+    if (apex && selected)
+        list->AddText({apex->x + context.em * 0.5f, apex->y - context.em * 0.5f}, palette::Text,
+                      view.name.c_str());
+}
+
+void draw_views(Context& context, ImDrawList* list) {
+    const auto& views = context.document().views;
+    for (std::size_t index = 0; index < views.size(); ++index)
+        draw_view(context, list, views[index],
+                  static_cast<int>(index) == context.state.viewport.selected_view);
+}
+
+void shaded_text(Context& context, ImDrawList* list, ImVec2 at, const std::string& text,
+                 ImU32 colour = palette::Text) {
+    const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+    const float pad = context.em * 0.4f;
+    list->AddRectFilled({at.x, at.y}, {at.x + size.x + 2 * pad, at.y + size.y + pad}, palette::Shade,
+                        context.em * 0.2f);
+    list->AddText({at.x + pad, at.y + pad * 0.5f}, colour, text.c_str());
+}
+
+void draw_hud(Context& context, ImDrawList* list) {
+    const auto& model = context.model;
+    const auto& state = context.state.viewport;
+    std::string text = fmt::format("{:.0f} fps   {:.1f} ms   {} splats", model.frames_per_second,
+                                   model.render_ms, count_text(context.document().current.size()));
+    if (model.labelled > 0) text += fmt::format("   {} labelled", count_text(model.labelled));
+    const float room = state.high.x - state.low.x - context.em * 2;
+    if (!model.renderer.empty() && ImGui::CalcTextSize((text + "   " + model.renderer).c_str()).x < room)
+        text += "   " + model.renderer;
+    shaded_text(context, list, {state.low.x + context.em * 0.5f, state.low.y + context.em * 0.5f},
+                shortened(text, room));
+}
+
+void draw_wipe(Context& context, ImDrawList* list) {
+    const auto& state = context.state.viewport;
+    const float x = std::round(state.low.x + context.view.wipe * (state.high.x - state.low.x));
+    const float middle = (state.low.y + state.high.y) * 0.5f, r = context.em * 0.75f;
+    list->AddLine({x, state.low.y}, {x, state.high.y}, IM_COL32(255, 255, 255, 220),
+                  std::max(1.5f, context.em * 0.12f));
+    list->AddCircleFilled({x, middle}, r, palette::Window);
+    list->AddCircle({x, middle}, r, IM_COL32(255, 255, 255, 220), 0, std::max(1.5f, context.em * 0.12f));
+    for (const float side : {-1.0f, 1.0f})
+        list->AddTriangleFilled({x + side * r * 0.65f, middle}, {x + side * r * 0.2f, middle - r * 0.35f},
+                                {x + side * r * 0.2f, middle + r * 0.35f}, palette::Text);
+    const float y = state.high.y - context.em * 2.2f;
+    const float before = ImGui::CalcTextSize("before").x + context.em * 1.2f;
+    shaded_text(context, list, {x - before - context.em * 0.3f, y}, "before");
+    shaded_text(context, list, {x + context.em * 0.6f, y}, "after");
+    note_rect(context, "viewport.wipe", {x - r, middle - r}, {x + r, middle + r});
+}
+
+/// One line at the lower edge: what the active tool does, and with which keys.
+void draw_hint(Context& context, ImDrawList* list) {
+    const auto& state = context.state.viewport;
+    if (state.tool == Tool::Orbit) return;
+    const char* what = state.tool == Tool::Brush       ? "Brush: drag to paint, [ ] size"
+                       : state.tool == Tool::Rectangle ? "Rectangle: drag a box"
+                                                       : "Lasso: drag around";
+    const std::string text =
+        fmt::format("{}   Shift add, Ctrl remove, Alt intersect   N: {}   middle drag orbits   Esc leaves",
+                    what, context.view.front_only ? "front only" : "all the way through");
+    const float room = state.high.x - state.low.x - context.em * 8;
+    const std::string fitting = shortened(text, room);
+    const float width = ImGui::CalcTextSize(fitting.c_str()).x + context.em * 0.8f;
+    shaded_text(context, list,
+                {(state.low.x + state.high.x - width) * 0.5f, state.high.y - context.em * 2.2f}, fitting);
+}
+
+}  // namespace
+
+ImVec2 to_screen(const Context& context, double x_px, double y_px) {
+    const auto& state = context.state.viewport;
+    const auto& camera = context.model.camera;
+    return {
+        state.low.x + static_cast<float>(x_px / std::max(1, camera.width)) * (state.high.x - state.low.x),
+        state.low.y + static_cast<float>(y_px / std::max(1, camera.height)) * (state.high.y - state.low.y)};
+}
+
+int view_at(const Context& context, ImVec2 point) {
+    const auto& views = context.document().views;
+    int nearest = -1;
+    float least = context.em * PickRadiusEm;
+    for (std::size_t index = 0; index < views.size(); ++index) {
+        const auto at = project(context, views[index].camera.centre());
+        if (!at) continue;
+        const float distance = std::hypot(at->x - point.x, at->y - point.y);
+        if (distance >= least) continue;
+        least = distance;
+        nearest = static_cast<int>(index);
+    }
+    return nearest;
+}
+
+void draw_overlays(Context& context, ImDrawList* list) {
+    const auto& state = context.state.viewport;
+    list->PushClipRect(state.low, state.high, true);
+    if (context.model.camera.width > 0) {
+        if (context.view.show_bounds) draw_bounds(context, list);
+        if (context.view.show_views) draw_views(context, list);
+        if (context.view.show_axes) draw_axes(context, list);
+    }
+    if (context.model.comparison == Comparison::Wipe) draw_wipe(context, list);
+    if (context.model.comparison == Comparison::Original) {
+        const std::string text = "original";
+        shaded_text(
+            context, list,
+            {(state.low.x + state.high.x) * 0.5f - context.em * 2.2f, state.low.y + context.em * 0.5f}, text,
+            palette::Warning);
+    }
+    if (context.view.show_hud) draw_hud(context, list);
+    draw_hint(context, list);
+    list->PopClipRect();
+}
+
+}  // namespace gse::ui

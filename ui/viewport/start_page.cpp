@@ -1,0 +1,110 @@
+// What the viewport shows while nothing is open: what can be dropped, recent scenes, the sample, what a crash
+// left.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ui/commands.h"
+#include "ui/state.h"
+#include "ui/viewport/viewport.h"
+#include "ui/widgets/controls.h"
+#include "ui/widgets/icons.h"
+
+namespace gse::ui {
+namespace {
+
+constexpr std::size_t MostRecent = 8;
+
+void draw_recoverable(Context& context) {
+    const auto& projects = context.model.recoverable;
+    for (std::size_t index = 0; index < projects.size(); ++index) {
+        begin_notice(context, fmt::format("start.recovery.{}", index), palette::Warning);
+        wrapped_text("The program ended without saving. There is unsaved work in");
+        wrapped_text(shortened(projects[index], ImGui::GetContentRegionAvail().x - context.em));
+        if (button(
+                context,
+                {.name = fmt::format("start.recover.{}", index), .text = "Recover", .look = Look::Primary}))
+            context.actions.recover(projects[index]);
+        flow(button_width("Discard"));
+        if (button(context, {.name = fmt::format("start.discard.{}", index),
+                             .text = "Discard",
+                             .tooltip = "The unsaved work is deleted"})) {
+            auto& actions = context.actions;
+            auto& question = context.state.question;
+            const std::string project = projects[index];
+            question.title = "Discard the unsaved work?";
+            question.text = project;
+            question.answers = {{"Discard", true, [&actions, project] { actions.discard_recovery(project); }},
+                                {"Keep", false, {}}};
+            question.pending = true;
+        }
+        end_notice();
+    }
+}
+
+void draw_recent(Context& context) {
+    if (context.model.recent.empty()) return;
+    heading(context, "Recent");
+    const std::size_t count = std::min(MostRecent, context.model.recent.size());
+    for (std::size_t index = 0; index < count; ++index) {
+        const auto& recent = context.model.recent[index];
+        const auto path = path_of(recent);
+        ImGui::PushID(static_cast<int>(index));
+        if (ImGui::Selectable(utf8_of(path.filename()).c_str())) open_path(context, recent);
+        note(context, fmt::format("start.recent.{}", index));
+        tooltip(recent);
+        ImGui::SameLine(context.em * 13);
+        ImGui::PushStyleColor(ImGuiCol_Text, palette::TextDim);
+        ImGui::TextUnformatted(
+            shortened(utf8_of(path.parent_path()), ImGui::GetContentRegionAvail().x).c_str());
+        ImGui::PopStyleColor();
+        ImGui::PopID();
+    }
+}
+
+void draw_loading(Context& context) {
+    const auto& job = context.model.file_job;
+    wrapped_text(job.title.empty() ? "Opening" : job.title);
+    const float share = job.total > 0 ? static_cast<float>(job.step) / static_cast<float>(job.total) : 0;
+    ImGui::ProgressBar(std::clamp(share, 0.0f, 1.0f), {-1, 0}, job.stage.c_str());
+    if (button(context, {.name = "start.cancel", .text = "Cancel"})) context.actions.cancel_file_job();
+}
+
+}  // namespace
+
+void draw_start_page(Context& context) {
+    const ImVec2 space = ImGui::GetContentRegionAvail();
+    const float width = std::min(context.em * 32, space.x - context.em * 2);
+    const float lines = 9.0f + static_cast<float>(std::min(MostRecent, context.model.recent.size())) +
+                        5.0f * static_cast<float>(context.model.recoverable.size());
+    const float top = std::max(context.em, (space.y - lines * ImGui::GetTextLineHeightWithSpacing()) * 0.4f);
+    ImGui::SetCursorPos({std::max(0.0f, (space.x - width) * 0.5f), top});
+    ImGui::BeginChild("page", {width, std::max(context.em * 3, space.y - top)}, false);
+    if (context.model.file_job.running) {
+        draw_loading(context);
+        return ImGui::EndChild();
+    }
+    draw_recoverable(context);
+    heading(context, "Drop a scene here");
+    wrapped_text(
+        "PLY, compressed PLY, SPZ, SOG or splat files; a folder with a scene and its cameras; a project "
+        "(.gsep); or a screenshot that this program saved.");
+    ImGui::Spacing();
+    if (button(context,
+               {.name = "start.open", .text = "Open...", .tooltip = "Ctrl + O", .look = Look::Primary}))
+        ask_open(context);
+    flow(button_width("Open sample"));
+    if (button(context, {.name = "start.sample",
+                         .text = "Open sample",
+                         .tooltip = "A small scene that comes with the program"}))
+        open_sample(context);
+    ImGui::Spacing();
+    draw_recent(context);
+    if (context.model.recent.empty())
+        dim_text(
+            "Then: type what to change on the right, press Locate, correct the label, press Edit. F1 lists "
+            "the keys.");
+    ImGui::EndChild();
+}
+
+}  // namespace gse::ui

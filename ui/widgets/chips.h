@@ -1,0 +1,29 @@
+// A sentence as chips, one per word, that wrap and can be clicked.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "ui/context.h"
+
+namespace gse::ui {
+
+/// One word of a sentence.
+struct Chip {
+    std::string text;
+    bool known = true;       // the model knows it
+    bool target = false;     // what the edit is about
+    bool guessed = false;    // target because nothing was chosen
+    bool source = false;     // what is looked for in the scene
+    std::string suggestion;  // nearest known word, empty = none
+};
+
+struct ChipClick {
+    int chosen = -1;    // left click: the word becomes the target
+    int replaced = -1;  // its suggestion was taken
+};
+
+ChipClick chips(Context& context, std::string_view name, std::span<const Chip> words);
+
+}  // namespace gse::ui

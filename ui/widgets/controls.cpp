@@ -1,0 +1,285 @@
+// The small controls all panels are made of: buttons that say why they are off, rows, badges, numbers in
+// words.
+#include "ui/widgets/controls.h"
+
+#include <fmt/format.h>
+#include <imgui_internal.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gse::ui {
+namespace {
+
+constexpr float LabelShare = 0.42f;  // of a row, for its label
+
+void push_look(Look look) {
+    const auto push = [](ImU32 normal, ImU32 hovered, ImU32 active) {
+        ImGui::PushStyleColor(ImGuiCol_Button, normal);
+        ImGui::PushStyleColor(ImGuiCol_ButtonHovered, hovered);
+        ImGui::PushStyleColor(ImGuiCol_ButtonActive, active);
+    };
+    if (look == Look::Primary) push(palette::AccentDeep, IM_COL32(56, 112, 170, 255), palette::Accent);
+    if (look == Look::Danger) push(IM_COL32(92, 45, 44, 255), IM_COL32(122, 54, 52, 255), palette::Bad);
+    if (look == Look::Quiet) push(IM_COL32(0, 0, 0, 0), palette::Raised, palette::RaisedHover);
+    if (look == Look::Normal) push(palette::Raised, palette::RaisedHover, palette::AccentDeep);
+}
+
+ImVec2 text_size(std::string_view text) {
+    return ImGui::CalcTextSize(text.data(), text.data() + text.size());
+}
+
+std::string identified(std::string_view text, std::string_view name) {
+    return fmt::format("{}##{}", text, name);
+}
+
+}  // namespace
+
+void note_rect(Context& context, std::string_view name, ImVec2 low, ImVec2 high) {
+    const ImRect clip = ImGui::GetCurrentWindow()->ClipRect;
+    const ImVec2 middle((low.x + high.x) * 0.5f, (low.y + high.y) * 0.5f);
+    Rect rect{low.x, low.y, high.x - low.x, high.y - low.y, clip.Contains(middle), true, 0};
+    const auto found = context.widgets.find(name);
+    if (found != context.widgets.end()) {
+        found->second = rect;
+    } else {
+        context.widgets.emplace(std::string(name), rect);
+    }
+}
+
+void note(Context& context, std::string_view name, float text_width) {
+    note_rect(context, name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
+    auto& rect = context.widgets.find(name)->second;
+    rect.text_width = text_width;
+    rect.enabled = (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) == 0;
+}
+
+bool button(Context& context, const ButtonOptions& options) {
+    const bool off = !options.why_off.empty();
+    if (off) ImGui::BeginDisabled();
+    push_look(options.look);
+    const std::string label = identified(options.text, options.name);
+    const float width = options.width < 0 ? ImGui::GetContentRegionAvail().x : options.width;
+    const bool pressed = ImGui::Button(label.c_str(), {width, 0});
+    ImGui::PopStyleColor(3);
+    note(context, options.name, text_size(options.text).x);
+    if (off) ImGui::EndDisabled();
+    tooltip(off ? options.why_off : options.tooltip);
+    return pressed;
+}
+
+float button_width(std::string_view text) { return text_size(text).x + ImGui::GetStyle().FramePadding.x * 2; }
+
+void flow(float width) {
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    const float next = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width;
+    if (next <= right) ImGui::SameLine();
+}
+
+void tooltip(std::string_view text) {
+    if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
+    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+void heading(Context& context, std::string_view text) {
+    ImGui::Dummy({0, ImGui::GetStyle().ItemSpacing.y * 0.25f});
+    if (context.fonts.bold != nullptr) ImGui::PushFont(context.fonts.bold);
+    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    if (context.fonts.bold != nullptr) ImGui::PopFont();
+}
+
+void wrapped_text(std::string_view text) {
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    ImGui::PopTextWrapPos();
+}
+
+void coloured_text(ImU32 colour, std::string_view text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colour);
+    wrapped_text(text);
+    ImGui::PopStyleColor();
+}
+
+void dim_text(std::string_view text) { coloured_text(palette::TextDim, text); }
+
+void badge(Context& context, std::string_view text, ImU32 colour) {
+    const ImVec2 size = text_size(text);
+    const float pad_x = context.em * 0.4f, pad_y = context.em * 0.1f;
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const ImVec2 high(low.x + size.x + 2 * pad_x, low.y + size.y + 2 * pad_y);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled(low, high, with_alpha(colour, 0.18f), context.em * 0.25f);
+    list->AddText({low.x + pad_x, low.y + pad_y}, colour, text.data(), text.data() + text.size());
+    ImGui::Dummy({high.x - low.x, high.y - low.y});
+}
+
+void bullet_dot(ImU32 colour) {
+    const float em = ImGui::GetFontSize();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddCircleFilled({at.x + em * 0.4f, at.y + em * 0.52f}, em * 0.24f, colour);
+    ImGui::Dummy({em * 0.8f, em});
+    ImGui::SameLine(0, em * 0.35f);
+}
+
+void property(Context& context, std::string_view label, std::string_view value) {
+    const float start = ImGui::GetCursorPosX();
+    const float width = ImGui::GetContentRegionAvail().x;
+    ImGui::PushStyleColor(ImGuiCol_Text, palette::TextDim);
+    ImGui::TextUnformatted(label.data(), label.data() + label.size());
+    ImGui::PopStyleColor();
+    const float value_at = start + std::max(width * LabelShare, text_size(label).x + context.em * 0.6f);
+    ImGui::SameLine(value_at);
+    wrapped_text(value);
+}
+
+bool checkbox(Context& context, std::string_view name, std::string_view label, bool& value,
+              std::string_view help) {
+    const bool changed = ImGui::Checkbox(identified(label, name).c_str(), &value);
+    note(context, name);
+    tooltip(help);
+    return changed;
+}
+
+bool segmented(Context& context, std::string_view name, std::span<const char* const> choices, int& chosen) {
+    bool changed = false;
+    ImGui::PushID(name.data(), name.data() + name.size());
+    for (int index = 0; index < static_cast<int>(choices.size()); ++index) {
+        const char* text = choices[static_cast<std::size_t>(index)];
+        if (index > 0) {
+            const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+            if (ImGui::GetItemRectMax().x + 1 + button_width(text) <= right) ImGui::SameLine(0, 1);
+        }
+        push_look(index == chosen ? Look::Primary : Look::Normal);
+        if (ImGui::Button(text) && index != chosen) {
+            chosen = index;
+            changed = true;
+        }
+        ImGui::PopStyleColor(3);
+        note(context, fmt::format("{}.{}", name, text), text_size(text).x);
+    }
+    ImGui::PopID();
+    return changed;
+}
+
+bool combo(Context& context, std::string_view name, std::span<const char* const> choices, int& chosen,
+           float width) {
+    bool changed = false;
+    ImGui::SetNextItemWidth(width > 0 ? width : ImGui::GetContentRegionAvail().x);
+    const bool valid = chosen >= 0 && chosen < static_cast<int>(choices.size());
+    const bool opened = ImGui::BeginCombo(identified("", name).c_str(),
+                                          valid ? choices[static_cast<std::size_t>(chosen)] : "",
+                                          ImGuiComboFlags_HeightLarge);
+    note(context, name);
+    if (!opened) return false;
+    for (int index = 0; index < static_cast<int>(choices.size()); ++index) {
+        if (ImGui::Selectable(choices[static_cast<std::size_t>(index)], index == chosen)) {
+            changed = index != chosen;
+            chosen = index;
+        }
+        note(context, fmt::format("{}.{}", name, choices[static_cast<std::size_t>(index)]));
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+bool text_input(Context& context, std::string_view name, std::string& text, std::string_view hint,
+                ImGuiInputTextFlags flags) {
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+    const std::string hint_text(hint);
+    const bool changed =
+        ImGui::InputTextWithHint(identified("", name).c_str(), hint_text.c_str(), &text, flags);
+    note(context, name);
+    return changed;
+}
+
+void row_label(Context& context, std::string_view label, std::string_view help) {
+    const float start = ImGui::GetCursorPosX();
+    const float width = ImGui::GetContentRegionAvail().x;
+    ImGui::AlignTextToFramePadding();
+    const std::string fitting = shortened(label, width * LabelShare - context.em * 0.4f);
+    ImGui::PushStyleColor(ImGuiCol_Text, palette::TextDim);
+    ImGui::TextUnformatted(fitting.c_str());
+    ImGui::PopStyleColor();
+    if (!help.empty()) tooltip(help);
+    ImGui::SameLine(start + width * LabelShare);
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
+}
+
+void begin_notice(Context& context, std::string_view name, ImU32 colour) {
+    ImGui::PushID(name.data(), name.data() + name.size());
+    ImGui::GetWindowDrawList()->ChannelsSplit(2);
+    ImGui::GetWindowDrawList()->ChannelsSetCurrent(1);
+    ImGui::BeginGroup();
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImGui::GetStyle().ItemSpacing);
+    ImGui::GetStateStorage()->SetInt(ImGui::GetID("colour"), static_cast<int>(colour));
+    ImGui::Dummy({0, context.em * 0.1f});
+    ImGui::Indent(context.em * 0.7f);
+}
+
+void end_notice() {
+    const float em = ImGui::GetFontSize();
+    ImGui::Unindent(em * 0.7f);
+    ImGui::Dummy({0, em * 0.1f});
+    ImGui::PopStyleVar();
+    ImGui::EndGroup();
+    const auto colour = static_cast<ImU32>(ImGui::GetStateStorage()->GetInt(ImGui::GetID("colour")));
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 low = ImGui::GetItemRectMin();
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    const ImVec2 high(right, ImGui::GetItemRectMax().y);
+    list->ChannelsSetCurrent(0);
+    list->AddRectFilled(low, high, with_alpha(colour, 0.12f), em * 0.2f);
+    list->AddRectFilled(low, {low.x + em * 0.2f, high.y}, colour, em * 0.1f);
+    list->ChannelsMerge();
+    ImGui::PopID();
+    ImGui::Spacing();
+}
+
+std::string count_text(std::size_t count) {
+    std::string digits = std::to_string(count);
+    for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
+        digits.insert(static_cast<std::size_t>(at), " ");
+    return digits;
+}
+
+std::string duration_text(double seconds) {
+    if (!(seconds >= 0)) return "unknown";
+    if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);
+    const auto whole = static_cast<long>(std::lround(seconds));
+    if (whole < 60) return fmt::format("{} s", whole);
+    if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
+    return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
+}
+
+std::string bytes_text(double bytes) {
+    if (bytes < 1e3) return fmt::format("{:.0f} B", bytes);
+    if (bytes < 1e6) return fmt::format("{:.0f} kB", bytes / 1e3);
+    if (bytes < 1e9) return fmt::format("{:.0f} MB", bytes / 1e6);
+    return fmt::format("{:.1f} GB", bytes / 1e9);
+}
+
+std::string percent_text(double share) { return fmt::format("{:.0f} %", share * 100); }
+
+std::string shortened(std::string_view text, float width_px) {
+    if (text_size(text).x <= width_px) return std::string(text);
+    constexpr std::string_view Dots = "...";
+    // Cut at code points: a byte of the form 10xxxxxx continues one.
+    const auto continues = [&text](std::size_t at) { return at < text.size() && (text[at] & 0xC0) == 0x80; };
+    std::size_t kept = text.size();
+    while (kept > 4) {
+        kept -= std::max<std::size_t>(1, kept / 16);
+        std::size_t head = kept / 3, tail = text.size() - (kept - kept / 3);
+        while (head > 0 && continues(head)) --head;
+        while (continues(tail)) ++tail;
+        std::string result = fmt::format("{}{}{}", text.substr(0, head), Dots, text.substr(tail));
+        if (text_size(result).x <= width_px) return result;
+    }
+    return std::string(Dots);
+}
+
+}  // namespace gse::ui

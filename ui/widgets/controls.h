@@ -1,0 +1,73 @@
+// The small controls all panels are made of: buttons that say why they are off, rows, badges, numbers in
+// words.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "ui/context.h"
+
+namespace gse::ui {
+
+enum class Look { Normal, Primary, Danger, Quiet };
+
+/// A button. `why_off` not empty = disabled, and the tooltip says it.
+struct ButtonOptions {
+    std::string_view name;  // for the widget map, and the ImGui identity
+    std::string_view text;
+    std::string_view why_off = {};
+    std::string_view tooltip = {};
+    Look look = Look::Normal;
+    float width = 0;  // pixels; 0 = as the text needs, negative = all there is
+};
+
+bool button(Context& context, const ButtonOptions& options);
+
+/// Keeps the next item on this line when `width` pixels are left, else starts a new one.
+void flow(float width);
+/// Width a button with this text takes.
+float button_width(std::string_view text);
+
+/// Tooltip of the last item, also when it is disabled; wrapped. Empty text shows nothing.
+void tooltip(std::string_view text);
+
+void heading(Context& context, std::string_view text);
+void dim_text(std::string_view text);  // wrapped, grey
+void wrapped_text(std::string_view text);
+void coloured_text(ImU32 colour, std::string_view text);  // wrapped
+void badge(Context& context, std::string_view text, ImU32 colour);
+void bullet_dot(ImU32 colour);  // a status dot before a line, then stays on the line
+
+/// "name    value" with the values of all rows below each other.
+void property(Context& context, std::string_view label, std::string_view value);
+
+bool checkbox(Context& context, std::string_view name, std::string_view label, bool& value,
+              std::string_view help = {});
+
+/// One of a few, as joined buttons; wraps when the line is too short. True when another one was chosen.
+bool segmented(Context& context, std::string_view name, std::span<const char* const> choices, int& chosen);
+
+/// A list to drop down; `width` pixels, 0 = all there is.
+bool combo(Context& context, std::string_view name, std::span<const char* const> choices, int& chosen,
+           float width = 0);
+
+/// One line of text. True while it changes.
+bool text_input(Context& context, std::string_view name, std::string& text, std::string_view hint = {},
+                ImGuiInputTextFlags flags = 0);
+
+/// Label on the left of a row, the control takes the rest; call before the control.
+void row_label(Context& context, std::string_view label, std::string_view help = {});
+
+/// A box with a coloured edge and wrapped text: news that wait for an answer.
+void begin_notice(Context& context, std::string_view name, ImU32 colour);
+void end_notice();
+
+// Numbers in words
+std::string count_text(std::size_t count);                     // "1 234 567"
+std::string duration_text(double seconds);                     // "7 min 05 s"
+std::string bytes_text(double bytes);                          // "1.7 GB"
+std::string percent_text(double share);                        // "43 %"
+std::string shortened(std::string_view text, float width_px);  // middle replaced by ... to fit
+
+}  // namespace gse::ui
