@@ -204,7 +204,8 @@ struct ViewModel {
     std::vector<std::string> recoverable;        // projects that can be recovered after a crash
     // Viewport
     TextureId viewport = 0;                      // the rendered picture
-    int viewport_width = 0, viewport_height = 0; // of the texture
+    TextureId viewport_original = 0;             // to draw left of the wipe; 0 = the picture holds both sides already
+    int viewport_width = 0, viewport_height = 0; // pixels of `camera`; the texture may have fewer while moving
     std::shared_ptr<const Image> viewport_depth; // [H,W,1] may be null; for front-only selection and picking
     Camera camera;                               // of the picture shown
     OrbitParameters orbit;                       // home: the fitted orbit

@@ -94,6 +94,11 @@ void draw_picture(Context& context, ImVec2 size) {
     const bool hovered = ImGui::IsItemHovered();
     if (context.model.viewport != 0)
         list->AddImage(imgui_texture(context.model.viewport), state.low, state.high);
+    if (context.model.viewport_original != 0 && context.model.comparison == Comparison::Wipe) {
+        const float share = context.view.wipe;
+        list->AddImage(imgui_texture(context.model.viewport_original), state.low,
+                       {state.low.x + share * (state.high.x - state.low.x), state.high.y}, {0, 0}, {share, 1});
+    }
     navigate(context, hovered);
     const bool keys_free =
         !ImGui::GetIO().WantTextInput && !context.state.files.is_open() &&

@@ -1,0 +1,67 @@
+// Pictures of the window in every state, size and scale, drawn without a device; the tests only ask that they are not empty.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "engine/io/image_file.h"
+#include "tests/test_paths.h"
+#include "tests/ui/support/harness.h"
+
+namespace gse::test {
+namespace {
+
+std::filesystem::path gallery_folder() {
+    const auto folder = std::filesystem::path(GSE_BINARY_DIR) / "ui_gallery";
+    std::filesystem::create_directories(folder);
+    return folder;
+}
+
+struct Shot {
+    const char* name;
+    Situation situation;
+    std::vector<ui::PanelId> panels;
+};
+
+const std::vector<Shot>& shots() {
+    using ui::PanelId;
+    static const std::vector<Shot> All{
+        {"start", Situation::Nothing, {}},
+        {"scene", Situation::Scene, {PanelId::Prompt, PanelId::Views, PanelId::Log}},
+        {"located", Situation::Located, {PanelId::Labels, PanelId::History, PanelId::Attention}},
+        {"editing", Situation::Editing, {PanelId::Prompt, PanelId::History, PanelId::Progress}},
+        {"result", Situation::ResultWaiting, {PanelId::Scene, PanelId::Export, PanelId::Progress}},
+        {"failed", Situation::Failed, {PanelId::Models, PanelId::Settings, PanelId::Log}},
+    };
+    return All;
+}
+
+void take(const Shot& shot, int width, int height, float scale) {
+    Harness harness({width, height, scale, shot.situation, true});
+    for (const auto panel : shot.panels) harness.shell.show(panel);
+    if (shot.situation == Situation::ResultWaiting) harness.application.model().comparison = ui::Comparison::Wipe;
+    if (shot.situation == Situation::Editing) harness.application.model().view.show_views = true;
+    harness.frame(6);
+    const Image picture = harness.picture();
+    float brightest = 0;
+    for (const float value : picture.data) brightest = std::max(brightest, value);
+    DOCTEST_CHECK(brightest > 0.5f);
+    write_png(gallery_folder() / fmt::format("{}_{}x{}_{}.png", shot.name, width, height, scale), picture);
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("the window in every state") {
+    const char* only = std::getenv("GSE_GALLERY");
+    for (const auto& shot : shots()) {
+        if (only != nullptr && std::string(only).find(shot.name) == std::string::npos) continue;
+        take(shot, 1280, 720, 1);
+        if (std::getenv("GSE_GALLERY_ALL") == nullptr) continue;
+        take(shot, 1920, 1080, 1);
+        take(shot, 2560, 1440, 2);
+        take(shot, 800, 600, 1);
+    }
+}
+
+}  // namespace gse::test

@@ -1,0 +1,341 @@
+// An application that only remembers what it was asked for, with a small real scene behind its view model.
+#include "tests/ui/support/fake_application.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/random.h"
+#include "engine/base/thread_pool.h"
+#include "engine/raster/rasterizer.h"
+#include "engine/synth/synth.h"
+
+namespace gse::test {
+
+/// The engine's rasterizer on one thread.
+struct FakeApplication::Renderer {
+    ThreadPool pool{1};
+    std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(pool);
+    raster::ForwardOutput output;
+    Image values;
+
+    const raster::ForwardOutput& draw(const GaussianSet& set, const Camera& camera) {
+        raster::Settings settings;
+        settings.background = {0.114f, 0.122f, 0.141f};
+        rasterizer->forward(set.spans(), camera, settings, output);
+        return output;
+    }
+    const Image& draw_values(const GaussianSet& set, const Camera& camera, std::span<const float> of) {
+        rasterizer->forward_values(set.spans(), camera, {}, of, values);
+        return values;
+    }
+};
+
+namespace {
+
+constexpr int ViewCount = 24, ViewSide = 96;
+
+synth::SynthScene make_synth() {
+    synth::SceneSpec spec;
+    spec.object = "bear";
+    spec.material = "red";
+    spec.accessory = "hat";
+    spec.seed = 3;
+    spec.gaussian_budget = 6000;
+    return synth::generate(spec);
+}
+
+/// Blue over green to yellow, as attention is usually shown.
+std::array<float, 3> false_colour(float v) {
+    return {std::clamp(1.8f * v - 0.5f, 0.0f, 1.0f), std::clamp(1.4f * v, 0.0f, 1.0f) * 0.9f, std::clamp(0.55f + 0.6f * v - 1.6f * v * v, 0.05f, 0.8f)};
+}
+
+Image coloured_map(const Image& render, const Image& map) {
+    Image result(render.width, render.height, 3);
+    for (int y = 0; y < render.height; ++y)
+        for (int x = 0; x < render.width; ++x) {
+            const auto colour = false_colour(map.at(x, y, 0));
+            for (int c = 0; c < 3; ++c) result.at(x, y, c) = 0.35f * render.at(x, y, c) + 0.65f * colour[static_cast<std::size_t>(c)];
+        }
+    return result;
+}
+
+Image masked(const Image& render, const Image& values) {
+    Image result = render;
+    for (int y = 0; y < render.height; ++y)
+        for (int x = 0; x < render.width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const bool inside = values.at(x, y, 0) > 0.5f;
+                result.at(x, y, c) = inside ? render.at(x, y, c) * 0.5f + (c == 1 ? 0.4f : 0.1f) : render.at(x, y, c) * 0.4f;
+            }
+    return result;
+}
+
+}  // namespace
+
+FakeApplication::FakeApplication(Situation situation) : document_(std::make_unique<Document>()), renderer_(std::make_unique<Renderer>()) {
+    model_.recent = {"/home/mira/scenes/garden.ply", "/home/mira/scenes/b\xC3\xA4r im Wald.gsep", "/home/mira/scenes/kitchen.spz"};
+    make_rest();
+    if (situation == Situation::Nothing) {
+        model_.recoverable = {"/home/mira/scenes/garden.gsep"};
+        return;
+    }
+    make_scene();
+    if (situation != Situation::Scene) make_attention();
+    if (situation == Situation::Editing) make_work(true);
+    if (situation == Situation::ResultWaiting) make_work(false);
+    if (situation == Situation::Failed) {
+        model_.job.title = "Edit: a bear wearing a red hat";
+        model_.job.error = "The word \"hta\" was found in none of the views; check its spelling, or click another word of the sentence.";
+        model_.toasts.push_back({model_.job.error, true, 2, {}});
+    }
+}
+
+FakeApplication::~FakeApplication() = default;
+
+void FakeApplication::make_scene() {
+    const auto synth = make_synth();
+    model_.statistics = compute_statistics(synth.scene.gaussians);
+    model_.statistics.invisible_rows = 12;
+    model_.orbit = fit_orbit(model_.statistics, synth.scene.info.up);
+    auto views = orbit_views(model_.orbit, ViewCount, ViewSide, ViewSide);
+    auto state = initial_state(synth.scene, std::move(views));
+    std::vector<float> weight(synth.parts.size());
+    Random random(1);
+    for (std::size_t row = 0; row < weight.size(); ++row) {
+        const bool object = synth.parts[row] == synth::Part::Object;
+        weight[row] = static_cast<float>(object ? 1 - 0.35 * std::pow(random.uniform(), 2) : 0.25 * std::pow(random.uniform(), 3));
+    }
+    NamedLabel label;
+    label.name = "bear";
+    label.weight = std::make_shared<const std::vector<float>>(std::move(weight));
+    NamedLabel empty;
+    empty.name = "hat";
+    empty.bits = std::make_shared<const std::vector<std::uint8_t>>(synth.parts.size(), std::uint8_t{0});
+    state.labels = {with_bits(label), empty};
+    state.active_label = 0;
+    *document_ = Document(state);
+    EditNode node;
+    node.id = 7;
+    node.name = "a red bear on the grass";
+    node.recipe = "{}";
+    node.seconds = 61;
+    node.psnr_outside_db = 61.3;
+    node.delta = std::make_shared<const SceneDelta>();
+    node.thumbnail = std::make_shared<const Image>(renderer_->draw(state.current, state.views[0].camera).colour);
+    state.stack.push_back(node);
+    document_->apply("Edit: a red bear on the grass", state);
+    document_->apply("Grow the label", state);
+    document_->apply("Brush", state);
+    document_->undo();
+    model_.document = document_.get();
+    model_.scene_path = "/home/mira/scenes/bear/scene.ply";
+    model_.project_path = "/home/mira/scenes/bear.gsep";
+    model_.unsaved = true;
+    model_.saved_at = "saved 14:02 (autosave on)";
+    model_.labelled = static_cast<std::size_t>(std::count(state.labels[0].bits->begin(), state.labels[0].bits->end(), 1));
+    model_.camera = orbit_camera(model_.orbit, 0.5, 640, 480);
+    model_.frames_per_second = 60;
+    model_.render_ms = 6.2;
+    model_.renderer = "native AVX-512";
+    model_.cannot_edit.clear();
+}
+
+void FakeApplication::make_attention() {
+    const auto& state = document_->state();
+    const auto& bits = *state.labels[0].bits;
+    std::vector<float> values(bits.begin(), bits.end());
+    Random random(5);
+    for (std::size_t index = 0; index < state.views.size(); ++index) {
+        const auto& view = state.views[index];
+        ui::AttentionView shown;
+        shown.name = view.name.empty() ? fmt::format("view {:02}", index) : view.name;
+        shown.camera = view.camera;
+        const Image render = renderer_->draw(state.current, view.camera).colour;
+        const Image& object = renderer_->draw_values(state.current, view.camera, values);
+        Image map(render.width, render.height, 1);
+        for (int y = 0; y < map.height; ++y)
+            for (int x = 0; x < map.width; ++x) {
+                const float dx = static_cast<float>(x - map.width / 2) / 30, dy = static_cast<float>(y - map.height / 2) / 30;
+                map.at(x, y, 0) = std::clamp((0.15f + 0.85f * object.at(x, y, 0)) * std::exp(-(dx * dx + dy * dy)) + 0.05f * static_cast<float>(random.uniform()), 0.0f, 1.0f);
+            }
+        shown.render = std::make_shared<const Image>(render);
+        shown.map_coloured = std::make_shared<const Image>(coloured_map(render, map));
+        shown.mask_picture = std::make_shared<const Image>(masked(render, object));
+        shown.map = std::make_shared<const Image>(std::move(map));
+        for (int point = 0; point < 4; ++point) shown.points.push_back({38.0 + 7 * point, 44.0 + 5 * (point % 2), true});
+        for (int point = 0; point < 3; ++point) shown.points.push_back({12.0 + 32 * point, 82.0, false});
+        shown.branch = index % 5 == 3 ? "attention" : "points";
+        shown.captured = index % 5 == 3 ? 0.46 : 0.83;
+        shown.failed = index == 10;
+        model_.attention.push_back(std::move(shown));
+    }
+    model_.attention_word = "bear";
+    model_.attention_mode = "modify: the scene shows a bear";
+    model_.attention_threshold = 0.35;
+    model_.job.title = "Locate";
+    model_.job.outcome = "done in 8.4 s";
+}
+
+void FakeApplication::make_work(bool running) {
+    Random random(9);
+    for (int iteration = 0; iteration < (running ? 212 : 400); ++iteration) {
+        const auto fall = static_cast<float>(std::exp(-iteration / 120.0));
+        model_.losses.push_back({iteration, 0.02f + 0.05f * fall + 0.004f * static_cast<float>(random.uniform()), 0.003f * (1 - fall),
+                                 0.4f + 0.6f * fall + 0.2f * static_cast<float>(random.uniform()), 1.5f * fall + 0.4f * static_cast<float>(random.uniform()), 0.3f + 0.1f * fall});
+        if (iteration % 20 == 0) model_.snapshots.push_back({iteration, 6000u + static_cast<std::size_t>(iteration) * 3});
+    }
+    model_.job = {};
+    model_.job.title = "Edit: a bear wearing a red hat";
+    if (running) {
+        model_.job.running = model_.job.can_pause = true;
+        model_.job.stage = "edit";
+        model_.job.step = 212;
+        model_.job.total = 400;
+        model_.job.seconds = 33;
+        model_.job.eta_seconds = 29;
+        model_.file_job.running = true;
+        model_.file_job.title = "Turntable turn.mp4";
+        model_.file_job.stage = "frames";
+        model_.file_job.step = 31;
+        model_.file_job.total = 120;
+        model_.file_job.eta_seconds = 40;
+        return;
+    }
+    model_.job.outcome = "done in 61 s";
+    model_.result_waiting = true;
+}
+
+void FakeApplication::make_rest() {
+    model_.cannot_edit = "";
+    model_.request.source = "bear";
+    model_.request.prompt = "a bear wearing a red hta";
+    model_.request.target = "";
+    for (const char* word : {"a", "bear", "wearing", "red", "hat", "blue", "golden", "statue", "on", "the", "grass", "dog", "made", "of", "stone"})
+        model_.known_words.emplace_back(word);
+    model_.words_known = true;
+    model_.estimate = {62, 850, 14200};
+    model_.models = {{"starter", "/usr/share/gseditpro/models/starter", "starter, 64 px", 48u << 20, true, "", true},
+                     {"stable-diffusion-v1-5", "/home/mira/ComfyUI/models/checkpoints/v1-5-pruned-emaonly.safetensors", "Stable Diffusion 1.x", 4270000000u, true, "Slow without a graphics card: about 40 min for an edit.", false},
+                     {"sd_xl_base", "/home/mira/ComfyUI/models/checkpoints/sd_xl_base_1.0.safetensors", "Stable Diffusion XL", 6900000000u, false, "SDXL is not supported; use a Stable Diffusion 1.x or 2.x model.", false}};
+    using log::Level;
+    model_.log = {{Level::Info, "14:01:12", "opened /home/mira/scenes/bear/scene.ply: 6 000 splats in 0.04 s"},
+                  {Level::Warning, "14:01:12", "the file does not state an up axis; -y is taken, as in COLMAP worlds"},
+                  {Level::Info, "14:02:07", "autosaved to /home/mira/scenes/.bear.gsep.autosave"},
+                  {Level::Error, "14:03:20", "could not write /mnt/full/turn.mp4: no space is left on the device"},
+                  {Level::Debug, "14:03:21", "preview: 6000 splats, 3412 pairs"}};
+    model_.toasts = {{"Up axis guessed from 24 cameras", false, 1, "Flip"}};
+    model_.camera_keys = {{0, {}}, {1, {}}};
+}
+
+void FakeApplication::refresh(bool pictures) {
+    if (!pictures || document_->empty()) return;
+    const Camera camera = model_.viewport_width > 0 ? model_.camera.resized(model_.viewport_width, model_.viewport_height) : model_.camera;
+    if (viewport_picture_ != nullptr && camera.width == rendered_.width && camera.height == rendered_.height && camera.rotation == rendered_.rotation && camera.translation == rendered_.translation) return;
+    const auto& output = renderer_->draw(document_->state().current, camera);
+    auto depth = std::make_shared<Image>(output.depth);
+    for (std::size_t at = 0; at < depth->data.size(); ++at)
+        depth->data[at] = output.alpha.data[at] > 0.5f ? depth->data[at] / output.alpha.data[at] : 0.0f;
+    Image picture = output.colour;
+    const auto& bits = *document_->state().labels[0].bits;
+    const std::vector<float> values(bits.begin(), bits.end());
+    const Image& tint = renderer_->draw_values(document_->state().current, camera, values);
+    for (std::size_t at = 0; at < picture.pixel_count(); ++at)
+        for (std::size_t c = 0; c < 3; ++c)
+            picture.data[at * 3 + c] += 0.35f * tint.data[at] * ((c == 2 ? 0.95f : c == 1 ? 0.6f : 0.2f) - picture.data[at * 3 + c]);
+    model_.viewport_depth = depth;
+    viewport_picture_ = std::make_shared<const Image>(std::move(picture));
+    model_.viewport = texture(viewport_picture_);
+    model_.camera = rendered_ = camera;
+}
+
+const Image* FakeApplication::picture(std::uint64_t id) const {
+    const auto found = textures_.find(id);
+    return found == textures_.end() ? nullptr : found->second.get();
+}
+
+ui::TextureId FakeApplication::texture(const std::shared_ptr<const Image>& image) {
+    if (image == nullptr) return 0;
+    const auto found = ids_.find(image.get());
+    if (found != ids_.end()) return found->second;
+    textures_[next_id_] = image;
+    ids_[image.get()] = next_id_;
+    return next_id_++;
+}
+
+bool FakeApplication::asked(const std::string& start) const {
+    return std::any_of(calls.begin(), calls.end(), [&start](const std::string& call) { return call.starts_with(start); });
+}
+
+void FakeApplication::set_attention_threshold(double value) {
+    calls.push_back(fmt::format("set_attention_threshold {:.3f}", value));
+    model_.attention_threshold = value;
+}
+
+void FakeApplication::set_label_threshold(float value) {
+    calls.push_back(fmt::format("set_label_threshold {:.3f}", value));
+    auto state = document_->state();
+    auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
+    label.threshold = value;
+    label = with_bits(label);
+    document_->apply("Threshold", state, "threshold");
+}
+
+/// At once, as badly timed as it can be: the window must not be reading the list now.
+void FakeApplication::delete_label(int index) {
+    calls.push_back("delete_label " + std::to_string(index));
+    auto state = document_->state();
+    state.labels.erase(state.labels.begin() + index);
+    state.active_label = state.labels.empty() ? -1 : 0;
+    document_->apply("Delete label", state);
+}
+
+void FakeApplication::select(const ui::ScreenRegion& region, ui::SetOperation operation, bool stroke_ends) {
+    calls.push_back(fmt::format("select {} {} {}{}", region.polygon.size(), region.circles.size(), static_cast<int>(operation), stroke_ends ? " end" : ""));
+    regions.push_back(region);
+    operations.push_back(operation);
+}
+
+void FakeApplication::set_camera(const Camera& camera) {
+    calls.push_back("set_camera");
+    model_.camera = camera;
+}
+
+void FakeApplication::set_view_settings(const ui::ViewSettings& settings) {
+    calls.push_back("set_view_settings");
+    model_.view = settings;
+}
+
+void FakeApplication::set_comparison(ui::Comparison comparison) {
+    calls.push_back("set_comparison " + std::to_string(static_cast<int>(comparison)));
+    model_.comparison = comparison;
+}
+
+void FakeApplication::look_through(std::size_t view) {
+    calls.push_back("look_through " + std::to_string(view));
+    model_.camera = document_->state().views[view].camera;
+}
+
+void FakeApplication::set_viewport_size(int width, int height) {
+    calls.push_back(fmt::format("set_viewport_size {} {}", width, height));
+    model_.viewport_width = width;
+    model_.viewport_height = height;
+}
+
+void FakeApplication::set_request(const edit::EditRequest& request) {
+    calls.push_back("set_request");
+    model_.request = request;
+}
+
+void FakeApplication::set_exports(const ui::ExportSettings& settings) {
+    calls.push_back("set_exports");
+    model_.exports = settings;
+}
+
+void FakeApplication::set_ui_scale(float scale) {
+    calls.push_back(fmt::format("set_ui_scale {:.2f}", scale));
+    model_.ui_scale = scale;
+}
+
+}  // namespace gse::test
