@@ -55,7 +55,7 @@ DOCTEST_TEST_CASE("an autosave is offered once its process is gone, while it is 
     DOCTEST_CHECK(found.project.empty());
     DOCTEST_CHECK(found.scene == project.source.path);
     DOCTEST_CHECK(found.saved_at > 1600000000);
-    DOCTEST_CHECK(difference(load_project(found.file).state, project.state) == "");
+    DOCTEST_CHECK(difference(project.state, load_project(found.file).state) == "");
     // The artist names the project: the autosave moves with it, the nameless one goes.
     autosave.write(project, project_path, writer);
     DOCTEST_CHECK_FALSE(fs::exists(unsaved));
