@@ -114,6 +114,8 @@ void Device::read_info() {
     const auto needed = vk::SubgroupFeatureFlagBits::eVote | vk::SubgroupFeatureFlagBits::eBallot;
     info_.subgroup_vote_and_broadcast = (subgroup.supportedStages & vk::ShaderStageFlagBits::eCompute) &&
                                         (subgroup.supportedOperations & needed) == needed;
+    info_.subgroup_arithmetic = (subgroup.supportedStages & vk::ShaderStageFlagBits::eCompute) &&
+                                (subgroup.supportedOperations & vk::SubgroupFeatureFlagBits::eArithmetic);
     info_.storage_range = properties.limits.maxStorageBufferRange;
     info_.texel_elements = properties.limits.maxTexelBufferElements;
     info_.image_size = properties.limits.maxImageDimension2D;

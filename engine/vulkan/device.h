@@ -59,6 +59,7 @@ struct DeviceInfo {
     bool is_cpu = false;
     std::uint32_t subgroup_size = 1;
     bool subgroup_vote_and_broadcast = false;  // in compute shaders
+    bool subgroup_arithmetic = false;          // in compute shaders
     std::uint64_t storage_range = 0;           // bytes of one storage-buffer binding
     std::uint32_t texel_elements = 0;          // of one texel buffer
     std::uint32_t image_size = 0;              // pixels a side

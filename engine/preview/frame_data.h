@@ -1,0 +1,23 @@
+// Camera and display -> the numbers the shaders read.
+#pragma once
+
+#include "engine/preview/splat_renderer.h"
+#include "engine/preview/workspace.h"
+#include "shared.h"
+
+namespace gse::preview {
+
+/// `middle`: of the scene, for the scale of the depth colours.
+shaders::FrameData frame_data(const FrameRequest& request, const Division& division, const Vec3& middle);
+
+/// Division of the work for a device and a picture's size.
+Division divide(const vulkan::DeviceInfo& info, bool portable, std::size_t rows, std::uint64_t pixels);
+
+/// Entries of the largest matrix of counts the passes need.
+std::uint64_t matrix_entries(const Division& division, int width, int height);
+
+inline std::uint32_t tiles_across(int pixels, std::uint32_t tile) {
+    return (static_cast<std::uint32_t>(pixels) + tile - 1) / tile;
+}
+
+}  // namespace gse::preview

@@ -1,0 +1,138 @@
+// Draws Gaussians with Vulkan compute: the image formation of engine/raster, several ways of showing it, only
+// when something has changed. Belongs to the thread of its device.
+//
+//   SplatRenderer renderer(device);
+//   renderer.upload(set);                          // slice by slice in render(); the old scene is shown
+//   meanwhile each frame: renderer.render(window.commands(), request);   // records nothing when nothing
+//   changed ImGui::Image(id of renderer.view())            // add the view again when revision() changes
+#pragma once
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/image.h"
+#include "engine/math/camera.h"
+#include "engine/scene/gaussian_set.h"
+
+namespace gse::vulkan {
+class Device;
+}
+
+namespace gse::preview {
+
+/// How splats are shown; the order is that of ui::DisplayMode.
+enum class Mode : std::uint32_t {
+    Beauty,
+    Centres,
+    Rings,
+    Ellipsoids,
+    Depth,
+    Opacity,
+    Labels,       // beauty tinted by the value
+    LabelWeight,  // the value in false colour over the dimmed picture
+    Attention,
+    Changed
+};
+
+struct Display {
+    Mode mode = Mode::Beauty;
+    int sh_degree = 3;
+    bool antialiased = false;  // for scenes trained with the opacity compensation
+    float near_plane = 0.2f;
+    std::array<float, 3> background{0, 0, 0};
+    bool transparent = false;  // alpha instead of the background, not premultiplied
+    std::array<float, 3> tint{1.0f, 0.45f, 0.1f};
+    float tint_strength = 0;  // beauty, centres, rings, ellipsoids, labels: how strongly the value tints
+    float depth_scale =
+        0;  // world units in the middle of the depth colours; 0 = distance to the scene's middle
+    float centre_radius_px = 1.5f;
+
+    friend bool operator==(const Display&, const Display&) = default;
+};
+
+struct FrameRequest {
+    Camera camera;  // width and height are the picture's
+    Display display;
+    bool want_depth = false;  // depth() is wanted for this picture
+};
+
+/// What the last picture cost and left out. Pairs are known one frame later.
+struct FrameStatistics {
+    std::uint32_t visible = 0;
+    std::uint64_t pairs = 0;            // tile-splat pairs
+    std::uint64_t dropped_pairs = 0;    // did not fit into a device's largest buffer
+    std::uint32_t unfinished_rows = 0;  // left out because a software device gives up on long loops
+    std::vector<std::pair<std::string, double>> pass_ms;  // device time, when `time_passes` is set
+};
+
+struct Pick {
+    std::size_t row = 0;
+    double depth = 0;  // camera z
+};
+
+struct RendererOptions {
+    bool always_stage = false;    // upload as a discrete GPU needs it (tests)
+    bool portable_blend = false;  // the blend pass that makes no use of subgroups (tests)
+    bool time_passes = false;
+    std::uint64_t pair_capacity = 0;  // to begin with; 0 = from the scene's size
+};
+
+class SplatRenderer {
+public:
+    explicit SplatRenderer(vulkan::Device& device, const RendererOptions& options = {});
+    ~SplatRenderer();
+    SplatRenderer(const SplatRenderer&) = delete;
+    SplatRenderer& operator=(const SplatRenderer&) = delete;
+
+    /// Begins an upload; only arrays that are other objects than those shown are sent. Replaces an upload
+    /// under way.
+    void upload(const GaussianSet& set);
+    /// One number per row for labels, maps and tints; null = none. Waits for an upload of that size if one is
+    /// under way.
+    void set_values(std::shared_ptr<const std::vector<float>> values);
+    bool uploading() const;
+    void finish_upload();  // waits
+
+    /// Records what is needed to show `request`, if it is not shown already; true when it recorded something.
+    /// Goes on with an upload for about `upload_ms`.
+    bool render(VkCommandBuffer commands, const FrameRequest& request, double upload_ms = 4);
+    /// The next render() starts from nothing.
+    void invalidate();
+    /// The last picture left something out because it met more pairs than expected: render again (it does not
+    /// skip).
+    bool incomplete();
+
+    VkImageView view() const;  // RGBA8, layout eShaderReadOnlyOptimal
+    std::uint64_t revision() const;
+    int width() const;
+    int height() const;
+    const Camera& camera() const;  // of the picture
+    std::size_t size() const;      // rows of the scene shown
+    std::uint64_t device_bytes() const;
+    FrameStatistics statistics();
+
+    /// Newest depth that has arrived: [H,W,1] camera z of what is seen (alpha-weighted mean), 0 = nothing.
+    /// Null at first.
+    std::shared_ptr<const Image> depth();
+
+    // The following submit their own commands and wait: for tests, export and clicks.
+    /// Renders until complete and reads the picture: [H,W,4] RGBA in 0..1.
+    Image draw(const FrameRequest& request);
+    /// Sums per pixel before any colour mapping: [H,W,6] red, green, blue, alpha, depth, value.
+    Image draw_light(const FrameRequest& request);
+    /// The splat that contributes most at a pixel of the picture shown.
+    std::optional<Pick> pick(int x, int y);
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace gse::preview
