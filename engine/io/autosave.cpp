@@ -105,6 +105,7 @@ Autosave::Autosave(std::filesystem::path folder) : folder_(std::move(folder)), s
 
 void Autosave::write(const ProjectData& project, const std::filesystem::path& project_path,
                      ProjectWriter& writer) {
+    const std::lock_guard lock(mutex_);
     const std::string saved_as = absolute_name(project_path);
     const std::string head = saved_as.empty() ? "unsaved" : fmt::format("{:016x}", io::hash_bytes(saved_as));
     const std::filesystem::path path = folder_ / fmt::format("{}-{}.gsep", head, session_);
@@ -127,6 +128,7 @@ void Autosave::write(const ProjectData& project, const std::filesystem::path& pr
 }
 
 void Autosave::discard() {
+    const std::lock_guard lock(mutex_);
     if (!path_.empty()) remove_pair(path_);
     path_.clear();
 }

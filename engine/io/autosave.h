@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,8 @@ namespace gse {
 /// state_folder()/autosave.
 std::filesystem::path autosave_folder();
 
-/// The autosave of one open document. Call from one thread at a time; destroying it leaves the files (a
-/// program that ends well calls discard).
+/// The autosave of one open document. Safe to use from any thread, one call at a time runs; destroying it
+/// leaves the files (a program that ends well calls discard).
 class Autosave {
 public:
     explicit Autosave(std::filesystem::path folder = autosave_folder());
@@ -30,9 +31,13 @@ public:
     /// The work is saved elsewhere, or the artist wants none of it.
     void discard();
     /// Where the last one was written; empty = none.
-    const std::filesystem::path& path() const { return path_; }
+    std::filesystem::path path() const {
+        const std::lock_guard lock(mutex_);
+        return path_;
+    }
 
 private:
+    mutable std::mutex mutex_;
     std::filesystem::path folder_;
     std::string session_;
     std::filesystem::path path_;

@@ -2,11 +2,9 @@
 #include "engine/io/fingerprint.h"
 
 #include <algorithm>
+#include <fstream>
 #include <string>
 #include <vector>
-
-#include "engine/base/error.h"
-#include "engine/base/file.h"
 
 namespace gse::io {
 namespace {
@@ -20,16 +18,26 @@ std::uint64_t hash_number(std::uint64_t number, std::uint64_t state) {
     return hash_bytes({reinterpret_cast<const char*>(&number), sizeof number}, state);
 }
 
-Fingerprint of_file(const std::filesystem::path& path) {
-    const MappedFile file(path);
-    const std::string_view text = file.text();
-    std::uint64_t value = hash_number(text.size(), hash_bytes(""));
-    value = hash_bytes(text.substr(0, EndBytes), value);
-    if (text.size() > EndBytes) value = hash_bytes(text.substr(text.size() - EndBytes), value);
-    if (text.size() > 2 * EndBytes)
-        for (std::size_t page = 1; page <= Pages; ++page)
-            value = hash_bytes(text.substr(text.size() / (Pages + 1) * page, PageBytes), value);
-    return {text.size(), value};
+/// Reads with a stream, not a map: somebody may be cutting the file off at this moment.
+std::optional<Fingerprint> of_file(const std::filesystem::path& path) {
+    std::error_code failure;
+    const std::uint64_t size = std::filesystem::file_size(path, failure);
+    std::ifstream stream(path, std::ios::binary);
+    if (failure || !stream) return std::nullopt;
+    std::uint64_t value = hash_number(size, hash_bytes(""));
+    std::string piece;
+    const auto take = [&](std::uint64_t offset, std::size_t bytes) {
+        piece.resize(bytes);
+        stream.seekg(static_cast<std::streamoff>(offset));
+        stream.read(piece.data(), static_cast<std::streamsize>(bytes));
+        value = hash_bytes({piece.data(), static_cast<std::size_t>(stream.gcount())}, value);
+        stream.clear();
+    };
+    take(0, static_cast<std::size_t>(std::min<std::uint64_t>(size, EndBytes)));
+    if (size > EndBytes) take(size - EndBytes, EndBytes);
+    if (size > 2 * EndBytes)
+        for (std::size_t page = 1; page <= Pages; ++page) take(size / (Pages + 1) * page, PageBytes);
+    return Fingerprint{size, value};
 }
 
 Fingerprint of_folder(const std::filesystem::path& path) {
@@ -58,9 +66,9 @@ std::uint64_t hash_bytes(std::string_view bytes, std::uint64_t state) {
 std::optional<Fingerprint> fingerprint(const std::filesystem::path& path) {
     try {
         std::error_code failure;
-        return std::filesystem::is_directory(path, failure) ? of_folder(path) : of_file(path);
-    } catch (const Error&) {
-        return std::nullopt;
+        if (std::filesystem::is_directory(path, failure)) return of_folder(path);
+        if (!std::filesystem::is_regular_file(path, failure)) return std::nullopt;
+        return of_file(path);
     } catch (const std::filesystem::filesystem_error&) {
         return std::nullopt;
     }

@@ -75,6 +75,7 @@ private:
     std::mutex mutex_;
     std::unordered_map<std::string, Member> members_;
     std::uint64_t saves_ = 0;
+    std::filesystem::path warned_of_;  // scene that was said to be gone
 };
 
 /// One save without a cache.

@@ -3,6 +3,7 @@
 
 #include <cstring>
 #include <optional>
+#include <utility>
 
 #include "engine/base/check.h"
 #include "engine/base/file.h"
@@ -130,12 +131,13 @@ private:
                                        [&] { return io::pack_member(io::encode_set(base), 4); });
     }
 
-    static bool still_there(const SceneSource& source) {
+    bool still_there(const SceneSource& source) const {
         const auto now = io::fingerprint(source.path);
         if (now && now->bytes == source.bytes && now->value == source.fingerprint) return true;
-        log::warning(
-            "{} is gone or has changed since it was opened; the project keeps its own copy of the scene",
-            source.path.string());
+        if (std::exchange(writer_.warned_of_, source.path) != source.path)  // once, not with every autosave
+            log::warning(
+                "{} is gone or has changed since it was opened, the project keeps its own copy of the scene",
+                source.path.string());
         return false;
     }
 

@@ -213,6 +213,7 @@ SceneDelta make_delta(const GaussianSet& before, std::span<const RowId> before_i
     GSE_CHECK_EQ(base_to_new.size(), before.size());
     GSE_CHECK(edit_id > 0 && edit_id < (std::uint64_t{1} << EditShift));
     const GaussianSpans old_rows = before.spans(), new_rows = after.spans();
+    const bool same_arrays = before.shares_all_with(after);
     SceneDelta delta;
     std::vector<std::pair<RowId, std::size_t>> changed;  // identity, row of `after`
     std::vector<std::uint8_t> has_origin(after.size(), 0);
@@ -224,6 +225,7 @@ SceneDelta make_delta(const GaussianSet& before, std::span<const RowId> before_i
         const auto to = static_cast<std::size_t>(base_to_new[row]);
         GSE_CHECK(to < after.size() && has_origin[to] == 0);
         has_origin[to] = 1;
+        if (same_arrays && row == to) continue;
         if (!same_row(old_rows, row, new_rows, to)) changed.emplace_back(before_ids[row], to);
     }
     std::sort(delta.removed.begin(), delta.removed.end());
