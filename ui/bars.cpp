@@ -31,7 +31,7 @@ void draw_tools(Context& context) {
             tool != which)
             set_tool(context, which);
     };
-    tool_button("tool.orbit", Icon::Orbit, Tool::Orbit, "Orbit: left drag turns the view (Esc)");
+    tool_button("tool.orbit", Icon::Pointer, Tool::Orbit, "Orbit: left drag turns the view (Esc)");
     tool_button("tool.brush", Icon::Brush, Tool::Brush, "Brush: paint the label (B)");
     tool_button("tool.rectangle", Icon::Rectangle, Tool::Rectangle, "Rectangle: label what is inside (R)");
     tool_button("tool.lasso", Icon::Lasso, Tool::Lasso, "Lasso: label what is inside (L)");
@@ -63,12 +63,12 @@ void draw_bar(Context& context, const JobView& job, const char* name, float widt
     note(context, name);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 high(low.x + width, low.y + height);
-    list->AddRectFilled(low, high, palette::Sunken, context.em * 0.2f);
+    list->AddRectFilled(low, high, palette::Raised, context.em * 0.2f);
     if (job.total > 0) {
         const float share =
             std::clamp(static_cast<float>(job.step) / static_cast<float>(job.total), 0.0f, 1.0f);
         list->AddRectFilled(low, {low.x + width * share, high.y},
-                            job.paused ? palette::Raised : palette::AccentDeep, context.em * 0.2f);
+                            job.paused ? palette::RaisedHover : palette::AccentDeep, context.em * 0.2f);
     }
     const std::string text = shortened(job_text(job), width - context.em);
     list->AddText({low.x + context.em * 0.5f, low.y + (height - ImGui::GetFontSize()) * 0.5f}, palette::Text,

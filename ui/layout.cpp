@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr float LeastRightEm = 14, MostRightEm = 80, LeastBottomEm = 6, MostBottomEm = 80;
+constexpr float LeastRightEm = 14, MostRightEm = 80;
 
 int index_of_panel(const std::string& name) {
     const auto found = std::find(PanelNames.begin(), PanelNames.end(), name);
@@ -61,7 +61,7 @@ std::string Layout::to_json() const {
     Json json;
     json["right_em"] = right_em;
     json["right_split"] = right_split;
-    json["bottom_em"] = bottom_em;
+    json["bottom_share"] = bottom_share;
     for (std::size_t panel = 0; panel < PanelCount; ++panel)
         json["panels"][PanelNames[panel]] = {{"area", static_cast<int>(places[panel].area)},
                                              {"open", places[panel].open}};
@@ -76,8 +76,7 @@ Layout Layout::from_json(const std::string& text) {
     if (json.is_discarded() || !json.is_object()) return layout;
     layout.right_em = std::clamp(number_or(json, "right_em", layout.right_em), LeastRightEm, MostRightEm);
     layout.right_split = std::clamp(number_or(json, "right_split", layout.right_split), 0.1f, 0.9f);
-    layout.bottom_em =
-        std::clamp(number_or(json, "bottom_em", layout.bottom_em), LeastBottomEm, MostBottomEm);
+    layout.bottom_share = std::clamp(number_or(json, "bottom_share", layout.bottom_share), 0.08f, 0.9f);
     read_places(json, layout);
     read_front(json, layout);
     return layout;

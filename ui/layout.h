@@ -39,8 +39,8 @@ struct Layout {
     std::array<Place, PanelCount> places{};
     std::array<int, AreaCount> front{};  // PanelId in front of each area
     float right_em = 25;                 // width of the right column
-    float right_split = 0.56f;           // share of its height that the upper area takes
-    float bottom_em = 19;                // height of the bottom area
+    float right_split = 0.62f;           // share of its height that the upper area takes
+    float bottom_share = 0.4f;           // of the height, taken by the bottom area
     bool panels_hidden = false;
 
     static Layout standard();

@@ -19,6 +19,19 @@ bool is_known(const std::vector<std::string>& known, const std::string& word) {
     return known.empty() || contains(known, word);
 }
 
+/// The nearest known word; letters that changed places count as near, whatever the length.
+std::string suggestion_of(const std::string& word, const std::vector<std::string>& known) {
+    for (const auto& candidate : known) {
+        if (candidate.size() != word.size()) continue;
+        const auto [here, there] = std::mismatch(word.begin(), word.end(), candidate.begin());
+        std::string swapped = word;
+        const auto at = static_cast<std::size_t>(here - word.begin());
+        if (at + 1 < word.size()) std::swap(swapped[at], swapped[at + 1]);
+        if (swapped == candidate) return candidate;
+    }
+    return nearest_word(word, known);
+}
+
 std::string first_letter_up(std::string text) {
     if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     return text;
@@ -50,14 +63,14 @@ SentenceFacts facts_of(const edit::EditRequest& request, const std::vector<std::
         Chip chip;
         chip.text = word;
         chip.known = is_known(known, word);
-        if (!chip.known) chip.suggestion = nearest_word(word, known);
+        if (!chip.known) chip.suggestion = suggestion_of(word, known);
         chip.source = contains(source, word);
         facts.chips.push_back(std::move(chip));
     }
     for (const auto& word : source) {
         if (is_known(known, word)) continue;
         facts.source_known = false;
-        facts.source_suggestion = nearest_word(word, known);
+        facts.source_suggestion = suggestion_of(word, known);
     }
     facts.problem = problem_of(request, facts);
     const auto target = edit::words_of(request.target.empty() ? facts.guessed_target : request.target);

@@ -57,6 +57,13 @@ void update_sentence(Context& context) {
     prompt.guessed_target = std::move(facts.guessed_target);
 }
 
+/// The accent below the tab in front.
+void underline_tab(Context& context) {
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const float width = std::max(2.0f, std::round(context.em * 0.14f));
+    ImGui::GetWindowDrawList()->AddRectFilled({low.x, high.y - width}, high, palette::Accent);
+}
+
 struct Box {
     ImVec2 low, high;
     ImVec2 size() const { return {high.x - low.x, high.y - low.y}; }
@@ -86,7 +93,10 @@ Plan plan_of(const Context& context, const Layout& layout, Box space) {
     plan.split_right = {{right_edge - (plan.right ? split : 0), middle.low.y}, {right_edge, middle.high.y}};
     const float height = middle.high.y - middle.low.y;
     const float most_bottom = std::max(height * 0.25f, std::min(height * 0.6f, height - em * 10));
-    const float bottom = plan.bottom_used ? std::round(std::min(layout.bottom_em * em, most_bottom)) : 0;
+    const float bottom =
+        plan.bottom_used
+            ? std::round(std::clamp(layout.bottom_share * height, std::min(em * 6, most_bottom), most_bottom))
+            : 0;
     const float bottom_edge = middle.high.y - bottom;
     plan.split_bottom = {{plan.tools.high.x, bottom_edge - (plan.bottom_used ? split : 0)},
                          {plan.split_right.low.x, bottom_edge}};
@@ -112,8 +122,10 @@ void drag_splitters(Context& context, const Plan& plan) {
     }
     if (plan.bottom_used) {
         const float drag = splitter(context, "split.bottom", plan.split_bottom.low, plan.split_bottom.high);
+        const float height = plan.tools.size().y;
         if (drag != 0)
-            layout.bottom_em = std::clamp(plan.bottom.size().y / context.em - drag / context.em, 6.0f, 80.0f);
+            layout.bottom_share =
+                std::clamp((plan.bottom.size().y - drag) / std::max(1.0f, height), 0.08f, 0.9f);
     }
     if (plan.column_split) {
         const float drag = splitter(context, "split.column", plan.split_column.low, plan.split_column.high);
@@ -187,9 +199,12 @@ void Shell::draw_area(Context& context, Area area) {
     for (std::size_t at = 0; at < PanelCount; ++at) {
         const auto panel = static_cast<PanelId>(at);
         if (!layout.place(panel).open || layout.place(panel).area != area) continue;
-        const bool wanted = bring && layout.front[index] == static_cast<int>(at);
+        const bool front = layout.front[index] == static_cast<int>(at);
+        ImGui::PushStyleColor(ImGuiCol_Text, front ? palette::Text : palette::TextDim);
         const bool shown = ImGui::BeginTabItem(
-            PanelNames[at], nullptr, wanted ? ImGuiTabItemFlags_SetSelected : ImGuiTabItemFlags_None);
+            PanelNames[at], nullptr, bring && front ? ImGuiTabItemFlags_SetSelected : ImGuiTabItemFlags_None);
+        ImGui::PopStyleColor();
+        if (shown) underline_tab(context);
         note(context, fmt::format("tab.{}", PanelNames[at]));
         draw_tab_menu(context, panel);
         if (!shown) continue;

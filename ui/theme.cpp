@@ -59,6 +59,7 @@ void set_sizes(ImGuiStyle& style, float em) {
     style.ScrollbarRounding = px(0.4f);
     style.GrabRounding = px(0.2f);
     style.TabRounding = px(0.25f);
+    style.SelectableTextAlign = {0, 0.5f};
     style.WindowBorderSize = 1;
     style.ChildBorderSize = 1;
     style.PopupBorderSize = 1;
@@ -108,11 +109,11 @@ void set_control_colours(ImVec4* colours) {
     colours[ImGuiCol_HeaderActive] = vector_of(with_alpha(palette::Accent, 0.45f));
     colours[ImGuiCol_SeparatorHovered] = accent;
     colours[ImGuiCol_SeparatorActive] = accent;
-    colours[ImGuiCol_Tab] = vector_of(palette::Window);
+    colours[ImGuiCol_Tab] = {0, 0, 0, 0};
     colours[ImGuiCol_TabHovered] = vector_of(palette::RaisedHover);
-    colours[ImGuiCol_TabActive] = vector_of(palette::Panel);
-    colours[ImGuiCol_TabUnfocused] = vector_of(palette::Window);
-    colours[ImGuiCol_TabUnfocusedActive] = vector_of(palette::Panel);
+    colours[ImGuiCol_TabActive] = vector_of(palette::Raised);
+    colours[ImGuiCol_TabUnfocused] = {0, 0, 0, 0};
+    colours[ImGuiCol_TabUnfocusedActive] = vector_of(palette::Raised);
     colours[ImGuiCol_PlotLines] = accent;
     colours[ImGuiCol_PlotHistogram] = accent;
     colours[ImGuiCol_TextSelectedBg] = vector_of(with_alpha(palette::Accent, 0.4f));

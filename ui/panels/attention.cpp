@@ -157,7 +157,7 @@ void draw_chosen(Context& context, const AttentionView& view) {
     const std::array<std::pair<const std::shared_ptr<const Image>*, const char*>, Pictures> shown{
         {{&view.render, "Render"},
          {&view.map_coloured, "Attention"},
-         {&context.state.attention.picture, "Above the threshold"},
+         {&context.state.attention.picture, "Above threshold"},
          {&view.mask_picture, "Mask it voted for"}}};
     const ImVec2 space = ImGui::GetContentRegionAvail();
     const float gap = ImGui::GetStyle().ItemSpacing.x, line = ImGui::GetTextLineHeightWithSpacing();

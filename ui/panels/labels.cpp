@@ -60,7 +60,7 @@ void draw_label_row(Context& context, int index) {
     tooltip("Click: show and correct this label. Double click: rename.");
     ImGui::SameLine();
     if (icon_button(context, {.name = fmt::format("labels.rename.{}", index),
-                              .icon = Icon::Tag,
+                              .icon = Icon::Pencil,
                               .tooltip = "Rename",
                               .size_em = 1.5f})) {
         labels.renamed = index;

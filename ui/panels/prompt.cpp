@@ -126,23 +126,36 @@ void draw_seed(Context& context) {
         roll_seed(context);
 }
 
-void draw_estimate(Context& context) {
-    const auto& estimate = context.model.estimate;
-    if (estimate.seconds < 0 && estimate.memory_mb < 0) return;
-    const bool tight =
-        estimate.memory_mb > 0 && estimate.memory_free_mb > 0 && estimate.memory_mb > estimate.memory_free_mb;
+std::string estimate_text(const Estimate& estimate) {
+    if (estimate.seconds < 0 && estimate.memory_mb < 0) return {};
     std::string text = "Estimate: ";
     if (estimate.seconds >= 0) text += fmt::format("about {}", duration_text(estimate.seconds));
-    if (estimate.memory_mb >= 0) {
-        if (estimate.seconds >= 0) text += ", ";
-        text += bytes_text(estimate.memory_mb * 1e6);
-        if (estimate.memory_free_mb >= 0)
-            text += fmt::format(" of {} free", bytes_text(estimate.memory_free_mb * 1e6));
-    }
-    coloured_text(tight ? palette::Bad : palette::TextDim, text);
-    if (tight)
-        coloured_text(palette::Bad,
-                      "That is more memory than is free: fewer views or a smaller image size help.");
+    if (estimate.memory_mb < 0) return text;
+    if (estimate.seconds >= 0) text += ", ";
+    text += bytes_text(estimate.memory_mb * 1e6);
+    if (estimate.memory_free_mb >= 0)
+        text += fmt::format(" of {} free", bytes_text(estimate.memory_free_mb * 1e6));
+    return text;
+}
+
+std::string memory_warning(const Estimate& estimate) {
+    const bool tight =
+        estimate.memory_mb > 0 && estimate.memory_free_mb > 0 && estimate.memory_mb > estimate.memory_free_mb;
+    return tight ? "That is more memory than is free: fewer views or a smaller image size help." : "";
+}
+
+/// What stands in the way is said without hovering too.
+std::string obstacle_text(const Context& context) {
+    if (!context.scene_open() || context.model.job.running) return {};
+    const std::string why = why_not_edit(context);
+    return why.empty() ? why : fmt::format("{}.", why);
+}
+
+void draw_estimate(Context& context) {
+    const std::string text = estimate_text(context.model.estimate),
+                      warning = memory_warning(context.model.estimate);
+    if (!text.empty()) dim_text(text);
+    if (!warning.empty()) coloured_text(palette::Bad, warning);
 }
 
 void draw_run(Context& context) {
@@ -172,8 +185,8 @@ void draw_run(Context& context) {
                                 .width = stacked ? -1 : width})) {
         run_edit(context);
     }
-    // What stands in the way is also said without hovering, once something was typed.
-    if (!why_edit.empty() && !context.model.job.running && context.scene_open()) dim_text(fmt::format("{}.", why_edit));
+    const std::string obstacle = obstacle_text(context);
+    if (!obstacle.empty()) dim_text(obstacle);
 }
 
 void draw_advanced(Context& context) {
@@ -208,22 +221,39 @@ void draw_advanced(Context& context) {
     if (tree_open) ImGui::TreePop();
 }
 
-}  // namespace
-
-void draw_prompt_panel(Context& context) {
+void draw_words(Context& context) {
     draw_result_notice(context, "prompt");
     draw_source(context);
-    ImGui::Spacing();
     draw_sentence(context);
     ImGui::Spacing();
     draw_mode(context);
     draw_strength(context);
     draw_seed(context);
-    ImGui::Spacing();
+    draw_advanced(context);
+}
+
+/// Estimate, buttons, and why they are off: as high as they are, so that they end at the panel's edge.
+float footer_height(Context& context) {
+    const float width = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.y;
+    float height = ImGui::GetFrameHeight() + gap;
+    const auto add = [&](const std::string& text) {
+        if (!text.empty()) height += ImGui::CalcTextSize(text.c_str(), nullptr, false, width).y + gap;
+    };
+    add(estimate_text(context.model.estimate));
+    add(memory_warning(context.model.estimate));
+    add(obstacle_text(context));
+    return height + context.em * 0.2f;
+}
+
+}  // namespace
+
+void draw_prompt_panel(Context& context) {
+    // The buttons stay in sight, whatever is scrolled above them.
+    const float height = std::max(context.em * 4, ImGui::GetContentRegionAvail().y - footer_height(context));
+    if (ImGui::BeginChild("words", {0, height}, false)) draw_words(context);
+    ImGui::EndChild();
     draw_estimate(context);
     draw_run(context);
-    ImGui::Spacing();
-    draw_advanced(context);
 }
 
 void draw_result_notice(Context& context, const char* prefix) {

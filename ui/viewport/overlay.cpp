@@ -81,6 +81,8 @@ void draw_view(Context& context, ImDrawList* list, const View& view, bool select
     const Mat3 to_world = camera.rotation.transposed();
     const Vec3 eye = camera.centre();
     const double length = context.model.orbit.radius * FrustumShare;
+    // From inside a frustum only stray lines would be seen.
+    if (gse::length(eye - context.model.camera.centre()) < 1.5 * length) return;
     std::array<Vec3, 4> corners;
     for (std::size_t at = 0; at < 4; ++at) {
         const double x = at == 0 || at == 3 ? 0 : camera.width, y = at < 2 ? 0 : camera.height;

@@ -97,7 +97,8 @@ void draw_picture(Context& context, ImVec2 size) {
     if (context.model.viewport_original != 0 && context.model.comparison == Comparison::Wipe) {
         const float share = context.view.wipe;
         list->AddImage(imgui_texture(context.model.viewport_original), state.low,
-                       {state.low.x + share * (state.high.x - state.low.x), state.high.y}, {0, 0}, {share, 1});
+                       {state.low.x + share * (state.high.x - state.low.x), state.high.y}, {0, 0},
+                       {share, 1});
     }
     navigate(context, hovered);
     const bool keys_free =

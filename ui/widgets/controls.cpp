@@ -121,7 +121,9 @@ void badge(Context& context, std::string_view text, ImU32 colour) {
 void bullet_dot(ImU32 colour) {
     const float em = ImGui::GetFontSize();
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    ImGui::GetWindowDrawList()->AddCircleFilled({at.x + em * 0.4f, at.y + em * 0.52f}, em * 0.24f, colour);
+    const float base = ImGui::GetCurrentWindow()->DC.CurrLineTextBaseOffset;
+    ImGui::GetWindowDrawList()->AddCircleFilled({at.x + em * 0.4f, at.y + base + em * 0.54f}, em * 0.24f,
+                                                colour);
     ImGui::Dummy({em * 0.8f, em});
     ImGui::SameLine(0, em * 0.35f);
 }

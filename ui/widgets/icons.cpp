@@ -61,9 +61,13 @@ private:
 
 void draw_tool(const Pen& pen, Icon icon) {
     switch (icon) {
-        case Icon::Orbit:
-            pen.circle(0, 0, 0.42f);
-            pen.ellipse(0, 0, 0.92f, 0.34f);
+        case Icon::Pointer:
+            pen.fill({{-0.5f, -0.85f}, {-0.5f, 0.6f}, {-0.12f, 0.28f}, {0.6f, 0.22f}});
+            pen.fill({{-0.16f, 0.2f}, {0.08f, 0.1f}, {0.38f, 0.78f}, {0.14f, 0.88f}});
+            break;
+        case Icon::Pencil:
+            pen.path({{-0.75f, 0.75f}, {-0.6f, 0.2f}, {0.4f, -0.8f}, {0.8f, -0.4f}, {-0.2f, 0.6f}}, true);
+            pen.path({{0.15f, -0.55f}, {0.55f, -0.15f}});
             break;
         case Icon::Brush:
             pen.path({{-0.2f, 0.15f}, {0.75f, -0.8f}});

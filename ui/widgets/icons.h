@@ -8,7 +8,8 @@
 namespace gse::ui {
 
 enum class Icon {
-    Orbit,
+    Pointer,
+    Pencil,
     Brush,
     Rectangle,
     Lasso,

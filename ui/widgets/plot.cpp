@@ -13,6 +13,8 @@
 namespace gse::ui {
 namespace {
 
+constexpr double MostDecades = 4;  // shown of a logarithmic axis
+
 /// Data to pixels.
 struct Axes {
     ImVec2 low, high;
@@ -43,7 +45,8 @@ Axes fit(const PlotOptions& options, std::span<const LossPoint> points, std::spa
         }
     }
     if (lowest > highest) lowest = 0, highest = 1;
-    if (!options.logarithmic) lowest = std::min(lowest, 0.0);
+    // A curve that starts at zero must not squeeze the others.
+    lowest = options.logarithmic ? std::max(lowest, highest - MostDecades) : std::min(lowest, 0.0);
     const double margin = std::max((highest - lowest) * 0.08, 1e-9);
     axes.y_low = lowest - (options.logarithmic ? margin : 0);
     axes.y_high = highest + margin;
