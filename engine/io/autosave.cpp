@@ -120,7 +120,6 @@ void Autosave::write(const ProjectData& project, const std::filesystem::path& pr
                            {"scene", project.source.path.string()},
                            {"time", std::chrono::duration_cast<std::chrono::seconds>(now).count()}};
         write_file(sidecar_of(path), json.dump(1, ' ', false, Json::error_handler_t::replace));
-        remove_stale_temporaries(folder_);
     }
     writer.save(path, project);
     path_ = path;

@@ -196,6 +196,7 @@ std::string ProjectWriter::pack(const std::filesystem::path& path, const Project
 
 void ProjectWriter::save(const std::filesystem::path& path, const ProjectData& project) {
     write_file(path, pack(path, project));
+    remove_stale_temporaries(path.has_parent_path() ? path.parent_path() : std::filesystem::path("."));
 }
 
 void save_project(const std::filesystem::path& path, const ProjectData& project) {
