@@ -1,29 +1,41 @@
-// From the light of a pixel to the colour shown: shaders/resolve.glsl in C++, for pictures the own rasterizer
-// makes.
+// The sums of a pixel -> the colour shown, on the CPU: for pictures made by engine/raster. The same formulas
+// as shaders/resolve.glsl; a test holds both together.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <vector>
 
-#include "engine/preview/splat_renderer.h"
+#include "engine/base/image.h"
+#include "engine/base/thread_pool.h"
+#include "engine/preview/display.h"
 
 namespace gse::preview {
 
-/// Sums over the splats of a pixel, before a background: rgb = sum(alpha T c), alpha = 1 - T, depth =
-/// sum(alpha T z), value = sum(alpha T v).
-struct Light {
-    std::array<float, 3> rgb{};
-    float alpha = 0, depth = 0, value = 0;
+/// Sums over the splats of a pixel, not normalised, without a background: colour [H,W,3]
+/// (raster::Settings::background = 0), alpha [H,W,1], depth and value [H,W,1] or null where the mode does not
+/// need them.
+struct LightSums {
+    const Image* colour = nullptr;
+    const Image* alpha = nullptr;
+    const Image* depth = nullptr;  // Mode::Depth
+    const Image* value = nullptr;  // tints and maps
 };
 
-/// rgb with alpha, not premultiplied; alpha is 1 unless the display is transparent. `depth_middle` (world
-/// units) has the middle colour in depth pictures. Modes that change the shape of splats resolve like beauty.
-std::array<float, 4> resolve(const Light& light, const Display& display, float depth_middle);
+/// Whether the picture needs `value` (raster::Rasterizer::forward_values) or `depth`.
+bool needs_value(const Display& display);
+bool needs_depth(const Display& display);
 
-/// The same as RGBA8: value * 255, rounded, clamped.
-void resolve_bytes(const Light& light, const Display& display, float depth_middle, std::uint8_t* rgba);
+/// Colour 0..1 with alpha, not premultiplied. `depth_scale` as in Display, > 0.
+struct PixelSums {
+    float red = 0, green = 0, blue = 0, alpha = 0, depth = 0, value = 0;
+};
+std::array<float, 4> resolve_pixel(const PixelSums& sums, const Display& display, float depth_scale);
 
-/// Display::depth_scale, or the distance from the camera to the scene's robust middle.
-float depth_scale(const GaussianSet& set, const Camera& camera, const Display& display);
+/// The false colour of t in 0..1.
+std::array<float, 3> map_colour(float t);
+
+/// RGBA8, row by row. Centres, rings and ellipsoids look like beauty here: they need another blend.
+void resolve(const LightSums& sums, const Display& display, float depth_scale, ThreadPool& pool,
+             std::vector<std::uint8_t>& rgba);
 
 }  // namespace gse::preview

@@ -59,7 +59,7 @@ struct SplatRenderer::State {
     State(vulkan::Device& on, const RendererOptions& wanted)
         : device(on),
           options(wanted),
-          passes(on),
+          passes(on.shared<Passes>()),
           workspace(on, passes),
           clock(on, wanted.time_passes),
           recorder(on, passes, workspace, clock),
@@ -78,7 +78,7 @@ struct SplatRenderer::State {
 
     vulkan::Device& device;
     RendererOptions options;
-    Passes passes;
+    Passes& passes;
     Workspace workspace;
     PassClock clock;
     FrameRecorder recorder;
@@ -145,6 +145,7 @@ void SplatRenderer::State::record(vk::CommandBuffer commands, const FrameRequest
     size.matrix = matrix_entries(next.division, request.camera.width, request.camera.height);
     size.depth = request.want_depth;
     size.light = light;
+    store.flush(commands);
     if (workspace.reserve(size)) ++revision;
     next.data.counts.x = static_cast<std::uint32_t>(rows);
     next.data.counts.y = static_cast<std::uint32_t>(workspace.pair_capacity());

@@ -59,6 +59,7 @@ Device::~Device() {
         device_->waitIdle();
     } catch (const std::exception&) {  // lost: everything is destroyed all the same
     }
+    shared_.clear();
     retired_.clear();
     recycled_.clear();
 }

@@ -8,6 +8,8 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <typeindex>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -120,6 +122,15 @@ public:
                               vk::MemoryPropertyFlags required) const;
     void name(vk::ObjectType type, std::uint64_t handle, const char* text);
 
+    /// The one T of this device (pipelines that several users share), made when first asked for; lives as
+    /// long as the device.
+    template <class T>
+    T& shared() {
+        auto& slot = shared_[std::type_index(typeid(T))];
+        if (!slot) slot = std::make_shared<T>(*this);
+        return *static_cast<T*>(slot.get());
+    }
+
     /// For tests of recovery: the next submission reports a lost device.
     void pretend_lost() { pretend_lost_ = true; }
 
@@ -152,6 +163,7 @@ private:
     std::size_t open_recordings_ = 0;
     Ticket open_ticket_;  // of everything that ends when no recording is open any more
     std::vector<std::pair<std::uint64_t, vk::raii::CommandBuffer>> recycled_;
+    std::unordered_map<std::type_index, std::shared_ptr<void>> shared_;
     std::vector<Retired> retired_;  // dies first of all
 };
 

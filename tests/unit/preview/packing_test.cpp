@@ -1,0 +1,90 @@
+// Halfs and packed rows.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "engine/base/random.h"
+#include "engine/preview/packing.h"
+#include "engine/preview/resolve.h"
+
+using namespace gse;
+
+namespace {
+
+double value_of(std::uint16_t half) {
+    const int exponent = half >> 10 & 31, mantissa = half & 1023;
+    const double sign = (half & 0x8000) != 0 ? -1 : 1;
+    if (exponent == 31) return mantissa != 0 ? NAN : sign * INFINITY;
+    return sign * (exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024 + mantissa, exponent - 25));
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("halfs are the nearest ones, in long and in short runs") {
+    Random random(1);
+    std::vector<float> values{0, -0.0f, 1, -1, 65504, 65520, 1e9f, -1e9f, 5.9604645e-8f, 2.9e-8f, 6.1e-5f, 0.333333f};
+    for (int i = 0; i < 5000; ++i)
+        values.push_back(static_cast<float>(random.normal() * std::exp2(random.uniform(-26, 17))));
+    std::vector<std::uint16_t> long_run(values.size());
+    preview::to_half(values.data(), values.size(), long_run.data());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        std::uint16_t single = 0;
+        preview::to_half(&values[i], 1, &single);  // the plain version
+        DOCTEST_CHECK(single == long_run[i]);
+        const double limited = std::min(std::max(static_cast<double>(values[i]), -65504.0), 65504.0);
+        const double step = std::max(std::exp2(std::floor(std::log2(std::abs(limited) + 1e-300)) - 10), std::exp2(-24));
+        DOCTEST_CHECK(std::abs(value_of(single) - limited) <= step / 2);
+    }
+}
+
+DOCTEST_TEST_CASE("packed geometry is activated, and rows that cannot be drawn are invisible") {
+    GaussianData data;
+    data.resize(3);
+    data.position = {1, 2, 3, NAN, 0, 0, 0, 0, 0};
+    data.log_scale = {0, std::log(2.0f), -1e30f, 0, 0, 0, 50, 0, 0};
+    data.rotation = {0, 3, 0, 4, 1, 0, 0, 0, 0, 0, 0, 0};
+    data.opacity_logit = {0, 5, std::numeric_limits<float>::infinity()};
+    const GaussianSet set{data};
+    std::vector<float> out(36);
+    preview::pack_geometry(set, 0, 3, out.data());
+    DOCTEST_CHECK(out[2] == 3);
+    DOCTEST_CHECK(out[3] == 0.5f);
+    DOCTEST_CHECK(out[5] == doctest::Approx(0.6));
+    DOCTEST_CHECK(out[7] == doctest::Approx(0.8));
+    DOCTEST_CHECK(out[9] == doctest::Approx(2));
+    DOCTEST_CHECK(out[10] == 0);
+    DOCTEST_CHECK(out[12 + 3] == 0);  // NaN position
+    DOCTEST_CHECK(out[24 + 3] == 1);  // certain
+    DOCTEST_CHECK(out[24 + 4] == 1);  // zero quaternion: identity
+    DOCTEST_CHECK(std::isfinite(out[24 + 8]));
+}
+
+DOCTEST_TEST_CASE("the colour map grows lighter") {
+    float before = -1;
+    for (int i = 0; i <= 100; ++i) {
+        const auto colour = preview::map_colour(static_cast<float>(i) / 100);
+        const float lightness = 0.2126f * colour[0] + 0.7152f * colour[1] + 0.0722f * colour[2];
+        DOCTEST_CHECK(lightness > before);
+        before = lightness;
+    }
+}
+
+DOCTEST_TEST_CASE("labels tint in proportion, and what is transparent keeps its colour") {
+    preview::Display display;
+    display.mode = preview::Mode::Labels;
+    display.tint = {1, 0, 0};
+    display.tint_strength = 0.5f;
+    preview::PixelSums sums{0.4f, 0.4f, 0.4f, 0.8f, 0, 0.8f};  // grey 0.5, all of it labelled
+    const auto all = preview::resolve_pixel(sums, display, 1);
+    DOCTEST_CHECK(all[0] == doctest::Approx(0.8 * 0.75));
+    DOCTEST_CHECK(all[1] == doctest::Approx(0.8 * 0.25));
+    sums.value = 0;
+    display.transparent = true;
+    const auto none = preview::resolve_pixel(sums, display, 1);
+    DOCTEST_CHECK(none[0] == doctest::Approx(0.5));
+    DOCTEST_CHECK(none[3] == doctest::Approx(0.8));
+}
