@@ -114,10 +114,12 @@ void Application::update(PreviewHost& preview) {
     preview.want(picture_request());
     const auto picture = preview.state();
     model_.viewport = picture.texture;
-    model_.viewport_width = picture.width;
-    model_.viewport_height = picture.height;
+    model_.viewport_original = picture.original;
+    // Overlays and tools work in pixels of the whole viewport; while moving the picture has fewer and is stretched.
+    model_.camera = picture.camera.width > 0 ? picture.camera : camera_.resized(viewport_width_, viewport_height_);
+    model_.viewport_width = model_.camera.width;
+    model_.viewport_height = model_.camera.height;
     model_.viewport_depth = picture.depth;
-    model_.camera = camera_.resized(std::max(viewport_width_, 1), std::max(viewport_height_, 1));
     model_.render_ms = picture.render_ms;
     model_.renderer = picture.renderer;
 }

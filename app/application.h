@@ -148,6 +148,7 @@ private:
     // application_files.cpp
     void take_loaded(Loaded loaded);
     void autosave_if_due();
+    std::filesystem::path default_project_path() const;
     std::uint64_t content_live() const;
     nlohmann::json ui_json() const;
     void ui_from_json(const nlohmann::json& json);
@@ -207,7 +208,7 @@ private:
 
     // View
     Camera camera_;
-    int viewport_width_ = 0, viewport_height_ = 0;
+    int viewport_width_ = 1, viewport_height_ = 1;
     Clock::time_point last_move_ = Clock::now() - std::chrono::seconds(10), last_frame_ = Clock::now();
     std::uint64_t content_ = 1, stroke_ = 0, camera_version_ = 0, document_seen_ = 0;
     struct ShownKey {

@@ -19,7 +19,8 @@ std::filesystem::path place_for(const std::string& name, const std::string& proj
     const std::filesystem::path path(name);
     if (path.is_absolute()) return path;
     const auto base = std::filesystem::path(!project.empty() ? project : scene).parent_path();
-    return base.empty() ? std::filesystem::absolute(path) : base / path;
+    const bool bundled = base.string().rfind(assets_path().string(), 0) == 0;   // not a place for an artist's files
+    return base.empty() || bundled ? std::filesystem::absolute(path) : base / path;
 }
 
 /// The same view in another shape: what was visible stays visible.

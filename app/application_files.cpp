@@ -277,10 +277,17 @@ void Application::autosave_if_due() {
                   }});
 }
 
+/// Beside the scene; for the bundled one in the working folder.
+std::filesystem::path Application::default_project_path() const {
+    const auto beside = std::filesystem::path(scene_path_).replace_extension(".gsep");
+    const bool bundled = scene_path_.rfind(assets_path().string(), 0) == 0;
+    return bundled ? std::filesystem::absolute("sample.gsep") : beside;
+}
+
 void Application::save_project(const std::filesystem::path& path) {
     if (!require_scene()) return;
     auto target = path.empty() ? std::filesystem::path(project_path_) : std::filesystem::absolute(path);
-    if (target.empty()) target = std::filesystem::path(scene_path_).replace_extension(".gsep");
+    if (target.empty()) target = default_project_path();
     if (target.extension() != ".gsep") target += ".gsep";
     auto data = std::make_shared<ProjectData>();
     data->state = document_.state();

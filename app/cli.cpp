@@ -1,6 +1,8 @@
 // Builds the command line and dispatches.
 #include "app/cli.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -34,9 +36,12 @@ JobControl CommandContext::job() const {
 int run_command_line(int argc, char** argv) {
     CLI::App app{"GSEditPro: text-driven editing of 3D Gaussian Splatting scenes"};
     app.set_version_flag("--version", std::string("gseditpro ") + GSE_VERSION);
-    app.require_subcommand(1);
+    app.require_subcommand(0, 1);
     CommandContext context;
     app.add_flag("-q,--quiet", context.quiet, "No progress bar, only warnings");
+#ifdef GSE_WINDOW
+    add_window_command(app, context);
+#endif
     add_scene_commands(app, context);
     add_edit_commands(app, context);
     add_project_command(app, context);
@@ -51,6 +56,14 @@ int run_command_line(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         const int code = app.exit(error);
         return code == 0 ? 0 : 2;
+    }
+    if (app.get_subcommands().empty()) {
+#ifdef GSE_WINDOW
+        run_default_window();
+#else
+        fmt::print("{}", app.help());
+        return 2;
+#endif
     }
     return 0;
 }

@@ -43,6 +43,8 @@ struct CommandContext {
 
 using Command = std::function<void()>;
 
+void add_window_command(CLI::App& app, CommandContext& context);     // open (builds with a window)
+void run_default_window();                                           // the program without a command
 void add_scene_commands(CLI::App& app, CommandContext& context);     // info, convert, render, turntable, synth
 void add_edit_commands(CLI::App& app, CommandContext& context);      // locate, edit
 void add_project_command(CLI::App& app, CommandContext& context);    // project

@@ -27,6 +27,7 @@ struct PictureRequest {
 /// The picture that is there.
 struct PictureState {
     ui::TextureId texture = 0;
+    ui::TextureId original = 0;                           // the other side of a wipe, where it is a picture of its own
     int width = 0, height = 0;
     Camera camera;
     std::shared_ptr<const Image> depth;                   // [H,W,1] alpha-normalised, 0 = nothing; may be null

@@ -3,12 +3,15 @@
 
 #include <signal.h>
 #include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
+#include <string>
 #include <thread>
 
 namespace gse::app {
@@ -53,6 +56,24 @@ double peak_rss_mb() {
     struct rusage usage {};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+double process_seconds() {
+    // Start of the process in clock ticks since boot: field 22 of /proc/self/stat, counted after the name in parentheses.
+    std::ifstream file("/proc/self/stat");
+    std::string text;
+    std::getline(file, text);
+    const auto close = text.rfind(')');
+    if (close == std::string::npos) return 0;
+    std::istringstream fields(text.substr(close + 2));
+    std::string field;
+    constexpr int start_field = 20;
+    for (int i = 0; i < start_field && fields >> field; ++i) {
+    }
+    struct timespec now {};
+    clock_gettime(CLOCK_BOOTTIME, &now);
+    const double ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - std::atof(field.c_str()) / ticks;
 }
 
 double current_rss_mb() {

@@ -11,6 +11,9 @@ std::stop_token interrupt_token();
 /// Largest resident memory so far, in MiB.
 double peak_rss_mb();
 
+/// Seconds since the process started (to a hundredth), restarts by exec included.
+double process_seconds();
+
 /// Memory of this process now, in MB.
 double current_rss_mb();
 

@@ -1,0 +1,198 @@
+// gseditpro open: the window, its frame loop, and what ties its parts together.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+#include "app/application.h"
+#include "app/cli.h"
+#include "app/process.h"
+#include "app/viewport.h"
+#include "app/window.h"
+#include "app/window_textures.h"
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/log.h"
+#include "engine/io/image_file.h"
+#include "engine/vulkan/error.h"
+#include "ui/shell.h"
+#include "ui/theme.h"
+
+namespace gse::app {
+namespace {
+
+struct OpenOptions {
+    std::filesystem::path path;
+    std::string preview = "auto", device;
+    int width = 1600, height = 900;
+    float scale = 0;
+    bool sample = false, validate = false;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
+
+constexpr double IdleWait = 0.5;      // nothing happens: the window only wakes for input
+constexpr double WorkingWait = 0.1;   // a job runs: its numbers move, the processor belongs to it
+constexpr double ActiveSeconds = 0.6; // after input every frame is drawn
+
+/// The window and everything in it.
+class Editor {
+public:
+    explicit Editor(const OpenOptions& options)
+        : window_(window_options(options)),
+          viewport_(window_, parse_backend(options.preview)),
+          textures_(window_),
+          app_({.wake = [] { Window::wake(); },
+                .on_scale = [this](float scale) { window_.set_ui_scale(scale); },
+                .on_fullscreen = [this] { window_.set_fullscreen(!window_.fullscreen()); }}) {
+        if (const char* map = std::getenv("GSE_UI_MAP")) widget_map_ = map;
+        if (options.scale > 0) app_.set_ui_scale(options.scale);
+        else if (app_.model().ui_scale > 0) window_.set_ui_scale(app_.model().ui_scale);
+        if (options.sample) app_.open_sample();
+        else if (!options.path.empty()) app_.open(options.path);
+    }
+
+    /// Runs until the artist leaves.
+    void run() {
+        while (!app_.wants_to_quit()) {
+            wait();
+            if (window_.should_close() || interrupt_token().stop_requested()) {
+                window_.set_should_close(false);
+                if (interrupt_token().stop_requested()) break;
+                shell_.request_quit();
+            }
+            try {
+                frame();
+            } catch (const vulkan::DeviceLost& lost) {
+                log::warning("the graphics device was lost and is set up again ({})", lost.what());
+                window_.rebuild_device();
+            }
+        }
+        app_.set_layout(shell_.layout());
+        app_.shut_down();
+        if (window_.validation_messages() > 0)
+            log::warning("the validation layers reported {} messages", window_.validation_messages());
+    }
+
+    std::size_t validation_messages() const { return window_.validation_messages(); }
+
+private:
+    WindowOptions window_options(const OpenOptions& options) {
+        WindowOptions window;
+        window.width = options.width;
+        window.height = options.height;
+        window.ui_scale = options.scale;
+        window.device = options.device;
+        window.validation = options.validate;
+        window.dress = ui::dress;
+        window.on_drop = [this](const std::vector<std::filesystem::path>& paths) {
+            if (!paths.empty()) shell_.request_open(paths.front());
+        };
+        return window;
+    }
+
+    void wait() {
+        const bool moving = viewport_.busy() || textures_.uploads_waiting() || shell_.animating() ||
+                            seconds_since(last_input_) < ActiveSeconds;
+        const auto before = Clock::now();
+        const double patience = moving ? 0 : app_.busy() ? WorkingWait : IdleWait;
+        if (patience <= 0) {
+            window_.poll();
+            return;
+        }
+        window_.wait(patience);
+        if (seconds_since(before) < patience * 0.9) last_input_ = Clock::now();   // something came in
+    }
+
+    void frame() {
+        if (app_.layout_changed()) shell_.set_layout(app_.layout());
+        app_.update(viewport_);
+        if (!window_.begin_frame()) return;
+        viewport_.record();
+        shell_.draw(app_.model(), app_, textures_);
+        const bool captures = capture_wanted();
+        if (captures) window_.request_capture();
+        window_.end_frame();
+        set_title();
+        if (captures) write_capture();
+        write_map();
+        if (frames_++ == 0) log::debug("first frame {:.0f} ms after the start", process_seconds() * 1000);
+        if (frames_ == 1 && std::getenv("GSE_UI_FIRST_FRAME") != nullptr)
+            write_file(std::getenv("GSE_UI_FIRST_FRAME"), fmt::format("{:.4f}\n", process_seconds()));
+    }
+
+    void set_title() {
+        const auto& model = app_.model();
+        const auto path = !model.project_path.empty() ? model.project_path : model.scene_path;
+        std::string title = "GSEditPro";
+        if (!path.empty()) title = std::filesystem::path(path).filename().string() + (model.unsaved ? "* - " : " - ") + title;
+        if (title == title_) return;
+        title_ = title;
+        window_.set_title(title);
+    }
+
+    /// For scripts that drive the window: places of the widgets as JSON, and a picture of the window on request.
+    void write_map() {
+        if (widget_map_.empty() || seconds_since(map_written_) < 0.1) return;
+        map_written_ = Clock::now();
+        shell_.write_widgets(widget_map_);
+    }
+    bool capture_wanted() const {
+        return !widget_map_.empty() && std::filesystem::exists(widget_map_.string() + ".capture");
+    }
+    void write_capture() {
+        const auto picture = window_.take_capture();
+        if (!picture) return;
+        const std::filesystem::path request = widget_map_.string() + ".capture";
+        std::string target = read_file(request);
+        while (!target.empty() && (target.back() == '\n' || target.back() == ' ')) target.pop_back();
+        if (!target.empty()) write_png(target, *picture);
+        std::filesystem::remove(request);
+    }
+
+    ui::Shell shell_;   // before the window: dropped files reach it
+    Window window_;
+    Viewport viewport_;
+    WindowTextures textures_;
+    Application app_;
+    std::filesystem::path widget_map_;
+    std::string title_;
+    Clock::time_point last_input_ = Clock::now(), map_written_{};
+    std::size_t frames_ = 0;
+};
+
+void run_open(const OpenOptions& options) {
+    if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr)
+        throw Error(ErrorCode::Unsupported, "there is no display to open a window on",
+                    "work without one: gseditpro edit --demo --headless");
+    Editor editor(options);
+    editor.run();
+    if (options.validate && editor.validation_messages() > 0)
+        throw Error(ErrorCode::Foreign, fmt::format("the validation layers reported {} messages", editor.validation_messages()),
+                    "see the log");
+}
+
+}  // namespace
+
+void add_window_command(CLI::App& app, CommandContext&) {
+    auto options = std::make_shared<OpenOptions>();
+    auto* command = app.add_subcommand("open", "Open the editor's window (what happens without a command, too)");
+    command->add_option("file", options->path, "Scene, folder, project or a picture with a recipe in it");
+    command->add_flag("--sample", options->sample, "Open the bundled scene");
+    command->add_option("--preview", options->preview, "Who paints the viewport: auto, vulkan or native")->capture_default_str();
+    command->add_option("--device", options->device, "Graphics device: number or part of its name");
+    command->add_option("--width", options->width, "Width of the window")->check(CLI::Range(320, 16384))->capture_default_str();
+    command->add_option("--height", options->height, "Height of the window")->check(CLI::Range(240, 16384))->capture_default_str();
+    command->add_option("--scale", options->scale, "Size of text and controls; 0 = as the desktop says")
+        ->check(CLI::Range(0.0, 4.0));
+    command->add_flag("--validate", options->validate, "Vulkan validation layers; any message is an error at the end");
+    command->callback([options] { run_open(*options); });
+}
+
+void run_default_window() { run_open({}); }
+
+}  // namespace gse::app

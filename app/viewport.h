@@ -1,0 +1,62 @@
+// Who paints the viewport: the Vulkan renderer, or the own rasterizer where the Vulkan device is a processor.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "app/preview_host.h"
+#include "app/preview_native.h"
+#include "app/window.h"
+#include "app/window_textures.h"
+#include "engine/preview/splat_renderer.h"
+
+namespace gse::app {
+
+enum class PreviewBackend { Auto, Vulkan, Native };
+
+/// "auto", "vulkan" or "native". Throws Error.
+PreviewBackend parse_backend(const std::string& text);
+
+class Viewport : public PreviewHost, public DeviceClient {
+public:
+    Viewport(Window& window, PreviewBackend backend);
+    ~Viewport() override;
+
+    void want(const PictureRequest& request) override;
+    PictureState state() override;
+    /// Between begin_frame() and the panels: uploads the newest native picture, or records the compute work.
+    void record();
+    /// A picture is being made or uploaded: draw another frame soon.
+    bool busy() const;
+
+    void drop_device() override;
+    void make_device(vulkan::Device& device) override;
+
+private:
+    /// A renderer with the handle of its picture.
+    struct Side {
+        std::unique_ptr<preview::SplatRenderer> renderer;
+        GaussianSet set;
+        bool has_set = false;
+        std::uint64_t revision = ~std::uint64_t{0};
+        ui::TextureId texture = 0;
+        double scale = 1;
+    };
+    bool native_wanted() const;
+    void record_native();
+    void record_vulkan();
+    void render_side(Side& side, const GaussianSet& set, std::shared_ptr<const std::vector<float>> values);
+    void forget(Side& side);
+
+    Window& window_;
+    PreviewBackend backend_;
+    NativePreview native_;
+    StreamedPicture picture_;
+    PictureRequest request_;
+    PictureState state_;
+    Side current_, original_;
+    bool has_request_ = false, vulkan_busy_ = false;
+    double vulkan_ms_ = 0;
+};
+
+}  // namespace gse::app
