@@ -87,7 +87,7 @@ Plan plan_of(const Context& context, const Layout& layout, Box space) {
     plan.right = !hidden && (layout.used(Area::RightTop) || layout.used(Area::RightBottom));
     plan.bottom_used = !hidden && layout.used(Area::Bottom);
     const float width = middle.high.x - plan.tools.high.x;
-    const float most_right = std::max(width * 0.3f, std::min(width * 0.6f, width - em * LeastViewportEm));
+    const float most_right = std::max(width * 0.3f, std::min(width * 0.46f, width - em * LeastViewportEm));
     const float right = plan.right ? std::round(std::min(layout.right_em * em, most_right)) : 0;
     const float right_edge = middle.high.x - right;
     plan.split_right = {{right_edge - (plan.right ? split : 0), middle.low.y}, {right_edge, middle.high.y}};

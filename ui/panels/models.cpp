@@ -61,7 +61,7 @@ void draw_models_panel(Context& context) {
     if (context.model.words_known)
         dim_text(words.empty() ? "The chosen model takes any word."
                                : fmt::format("The chosen model knows {} words.", words.size()));
-    if (!words.empty() && ImGui::CollapsingHeader("Words it knows###models.words")) {
+    if (!words.empty() && folding(context, "models.words", "Words it knows")) {
         for (const auto& word : words) {
             if (&word != &words.front()) flow(ImGui::CalcTextSize(word.c_str()).x);
             ImGui::TextUnformatted(word.c_str());

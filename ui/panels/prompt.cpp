@@ -190,11 +190,7 @@ void draw_run(Context& context) {
 }
 
 void draw_advanced(Context& context) {
-    if (!ImGui::CollapsingHeader("All settings###prompt.advanced")) {
-        note(context, "prompt.advanced");
-        return;
-    }
-    note(context, "prompt.advanced");
+    if (!folding(context, "prompt.advanced", "All settings")) return;
     if (button(context, {.name = "prompt.defaults",
                          .text = "Back to the defaults",
                          .tooltip = "All settings below; words and seed stay"})) {

@@ -69,8 +69,7 @@ void draw_background(Context& context) {
 }
 
 void draw_keys(Context& context) {
-    if (!ImGui::CollapsingHeader("Keys###settings.keys")) return note(context, "settings.keys");
-    note(context, "settings.keys");
+    if (!folding(context, "settings.keys", "Keys")) return;
     const char* group = "";
     for (const auto& line : KeyTable) {
         if (std::string_view(group) != line.group) {

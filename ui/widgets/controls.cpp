@@ -199,6 +199,15 @@ bool text_input(Context& context, std::string_view name, std::string& text, std:
     return changed;
 }
 
+bool folding(Context& context, std::string_view name, std::string_view text) {
+    ImGui::PushStyleColor(ImGuiCol_Header, palette::Raised);
+    ImGui::PushStyleColor(ImGuiCol_HeaderHovered, palette::RaisedHover);
+    const bool open = ImGui::CollapsingHeader(fmt::format("{}###{}", text, name).c_str());
+    ImGui::PopStyleColor(2);
+    note(context, name);
+    return open;
+}
+
 void row_label(Context& context, std::string_view label, std::string_view help) {
     const float start = ImGui::GetCursorPosX();
     const float width = ImGui::GetContentRegionAvail().x;

@@ -56,6 +56,9 @@ bool combo(Context& context, std::string_view name, std::span<const char* const>
 bool text_input(Context& context, std::string_view name, std::string& text, std::string_view hint = {},
                 ImGuiInputTextFlags flags = 0);
 
+/// A group that folds; true while it is open.
+bool folding(Context& context, std::string_view name, std::string_view text);
+
 /// Label on the left of a row, the control takes the rest; call before the control.
 void row_label(Context& context, std::string_view label, std::string_view help = {});
 

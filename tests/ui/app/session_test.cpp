@@ -1,5 +1,5 @@
-// An artist's session driven through the application: open, locate, correct, edit, pause, cancel, apply, undo, export, save,
-// reopen, recover.
+// An artist's session driven through the application: open, locate, correct, edit, pause, cancel, apply,
+// undo, export, save, reopen, recover.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 #include <unistd.h>
@@ -129,7 +129,7 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         DOCTEST_CHECK(app.model().job.error.empty());
         DOCTEST_REQUIRE(app.model().result_waiting);
         DOCTEST_CHECK(app.model().losses.size() == 30);
-        DOCTEST_CHECK_FALSE(session.preview.last.set.shares_all_with(base));   // the waiting result is shown
+        DOCTEST_CHECK_FALSE(session.preview.last.set.shares_all_with(base));  // the waiting result is shown
         const auto label = *app.document().state().labels[active].bits;
         app.apply_result();
         const auto& state = app.document().state();
@@ -151,7 +151,8 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         DOCTEST_CHECK(app.document().state().current.shares_all_with(base));
         app.undo();
         applied_rows = app.document().state().current.size();
-        applied_colours.assign(app.document().state().current.sh().begin(), app.document().state().current.sh().end());
+        applied_colours.assign(app.document().state().current.sh().begin(),
+                               app.document().state().current.sh().end());
         app.save_project(place.folder / "bear.gsep");
         DOCTEST_REQUIRE(session.idle());
         session.until([&] { return !app.model().unsaved; }, 5);
@@ -164,7 +165,8 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
     DOCTEST_REQUIRE(again.until([&] { return again.app.model().document != nullptr; }));
     const auto& current = again.app.document().state().current;
     DOCTEST_REQUIRE(current.size() == applied_rows);
-    DOCTEST_CHECK(std::equal(current.sh().begin(), current.sh().end(), applied_colours.begin(), applied_colours.end()));
+    DOCTEST_CHECK(
+        std::equal(current.sh().begin(), current.sh().end(), applied_colours.begin(), applied_colours.end()));
     DOCTEST_CHECK(again.app.model().request.prompt == "a blue bear on the grass");
 }
 
@@ -179,7 +181,7 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
     session.app.edit();
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().snapshots.size() >= 2; }));
     session.app.pause(true);
-    std::this_thread::sleep_for(300ms);   // the step under way may end
+    std::this_thread::sleep_for(300ms);  // the step under way may end
     session.app.update(session.preview);
     const auto standing = session.app.model().losses.size();
     std::this_thread::sleep_for(300ms);
@@ -245,7 +247,7 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     const Image shot = read_image(place.folder / "shot.png");
     DOCTEST_CHECK(shot.width == 96);
     DOCTEST_CHECK(shot.channels == 4);
-    DOCTEST_CHECK(shot.data[3] == 0);   // the corner shows nothing
+    DOCTEST_CHECK(shot.data[3] == 0);  // the corner shows nothing
     DOCTEST_CHECK(read_png_text(place.folder / "shot.png").count("Recipe") == 1);
     session.app.export_turntable();
     DOCTEST_REQUIRE(session.idle());
@@ -261,7 +263,8 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     }
     session.app.export_scene();
     DOCTEST_REQUIRE(session.idle());
-    DOCTEST_CHECK(load_scene(place.folder / "out.spz").gaussians.size() == session.app.document().state().current.size());
+    DOCTEST_CHECK(load_scene(place.folder / "out.spz").gaussians.size() ==
+                  session.app.document().state().current.size());
     session.app.add_camera_key();
     session.app.add_camera_key();
     session.app.export_camera_path(false);
@@ -280,5 +283,5 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     DOCTEST_REQUIRE(session.idle());
     session.app.update(session.preview);
     DOCTEST_CHECK(session.app.model().toasts.back().is_error);
-    DOCTEST_CHECK(session.app.model().document != nullptr);   // the open scene stays
+    DOCTEST_CHECK(session.app.model().document != nullptr);  // the open scene stays
 }

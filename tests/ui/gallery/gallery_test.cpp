@@ -1,4 +1,5 @@
-// Pictures of the window in every state, size and scale, drawn without a device; the tests only ask that they are not empty.
+// Pictures of the window in every state, size and scale, drawn without a device; the tests only ask that they
+// are not empty.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -40,7 +41,8 @@ const std::vector<Shot>& shots() {
 void take(const Shot& shot, int width, int height, float scale) {
     Harness harness({width, height, scale, shot.situation, true});
     for (const auto panel : shot.panels) harness.shell.show(panel);
-    if (shot.situation == Situation::ResultWaiting) harness.application.model().comparison = ui::Comparison::Wipe;
+    if (shot.situation == Situation::ResultWaiting)
+        harness.application.model().comparison = ui::Comparison::Wipe;
     if (shot.situation == Situation::Editing) harness.application.model().view.show_views = true;
     harness.frame(6);
     const Image picture = harness.picture();

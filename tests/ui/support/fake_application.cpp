@@ -48,7 +48,8 @@ synth::SynthScene make_synth() {
 
 /// Blue over green to yellow, as attention is usually shown.
 std::array<float, 3> false_colour(float v) {
-    return {std::clamp(1.8f * v - 0.5f, 0.0f, 1.0f), std::clamp(1.4f * v, 0.0f, 1.0f) * 0.9f, std::clamp(0.55f + 0.6f * v - 1.6f * v * v, 0.05f, 0.8f)};
+    return {std::clamp(1.8f * v - 0.5f, 0.0f, 1.0f), std::clamp(1.4f * v, 0.0f, 1.0f) * 0.9f,
+            std::clamp(0.55f + 0.6f * v - 1.6f * v * v, 0.05f, 0.8f)};
 }
 
 Image coloured_map(const Image& render, const Image& map) {
@@ -56,7 +57,8 @@ Image coloured_map(const Image& render, const Image& map) {
     for (int y = 0; y < render.height; ++y)
         for (int x = 0; x < render.width; ++x) {
             const auto colour = false_colour(map.at(x, y, 0));
-            for (int c = 0; c < 3; ++c) result.at(x, y, c) = 0.35f * render.at(x, y, c) + 0.65f * colour[static_cast<std::size_t>(c)];
+            for (int c = 0; c < 3; ++c)
+                result.at(x, y, c) = 0.35f * render.at(x, y, c) + 0.65f * colour[static_cast<std::size_t>(c)];
         }
     return result;
 }
@@ -67,15 +69,18 @@ Image masked(const Image& render, const Image& values) {
         for (int x = 0; x < render.width; ++x)
             for (int c = 0; c < 3; ++c) {
                 const bool inside = values.at(x, y, 0) > 0.5f;
-                result.at(x, y, c) = inside ? render.at(x, y, c) * 0.5f + (c == 1 ? 0.4f : 0.1f) : render.at(x, y, c) * 0.4f;
+                result.at(x, y, c) =
+                    inside ? render.at(x, y, c) * 0.5f + (c == 1 ? 0.4f : 0.1f) : render.at(x, y, c) * 0.4f;
             }
     return result;
 }
 
 }  // namespace
 
-FakeApplication::FakeApplication(Situation situation) : document_(std::make_unique<Document>()), renderer_(std::make_unique<Renderer>()) {
-    model_.recent = {"/home/mira/scenes/garden.ply", "/home/mira/scenes/b\xC3\xA4r im Wald.gsep", "/home/mira/scenes/kitchen.spz"};
+FakeApplication::FakeApplication(Situation situation)
+    : document_(std::make_unique<Document>()), renderer_(std::make_unique<Renderer>()) {
+    model_.recent = {"/home/mira/scenes/garden.ply", "/home/mira/scenes/b\xC3\xA4r im Wald.gsep",
+                     "/home/mira/scenes/kitchen.spz"};
     make_rest();
     if (situation == Situation::Nothing) {
         model_.recoverable = {"/home/mira/scenes/garden.gsep"};
@@ -87,7 +92,9 @@ FakeApplication::FakeApplication(Situation situation) : document_(std::make_uniq
     if (situation == Situation::ResultWaiting) make_work(false);
     if (situation == Situation::Failed) {
         model_.job.title = "Edit: a bear wearing a red hat";
-        model_.job.error = "The word \"hta\" was found in none of the views; check its spelling, or click another word of the sentence.";
+        model_.job.error =
+            "The word \"hta\" was found in none of the views; check its spelling, or click another word of "
+            "the sentence.";
         model_.toasts.push_back({model_.job.error, true, 2, {}});
     }
 }
@@ -105,7 +112,8 @@ void FakeApplication::make_scene() {
     Random random(1);
     for (std::size_t row = 0; row < weight.size(); ++row) {
         const bool object = synth.parts[row] == synth::Part::Object;
-        weight[row] = static_cast<float>(object ? 1 - 0.35 * std::pow(random.uniform(), 2) : 0.25 * std::pow(random.uniform(), 3));
+        weight[row] = static_cast<float>(object ? 1 - 0.35 * std::pow(random.uniform(), 2)
+                                                : 0.25 * std::pow(random.uniform(), 3));
     }
     NamedLabel label;
     label.name = "bear";
@@ -123,7 +131,8 @@ void FakeApplication::make_scene() {
     node.seconds = 61;
     node.psnr_outside_db = 61.3;
     node.delta = std::make_shared<const SceneDelta>();
-    node.thumbnail = std::make_shared<const Image>(renderer_->draw(state.current, state.views[0].camera).colour);
+    node.thumbnail =
+        std::make_shared<const Image>(renderer_->draw(state.current, state.views[0].camera).colour);
     state.stack.push_back(node);
     document_->apply("Edit: a red bear on the grass", state);
     document_->apply("Grow the label", state);
@@ -134,7 +143,8 @@ void FakeApplication::make_scene() {
     model_.project_path = "/home/mira/scenes/bear.gsep";
     model_.unsaved = true;
     model_.saved_at = "saved 14:02 (autosave on)";
-    model_.labelled = static_cast<std::size_t>(std::count(state.labels[0].bits->begin(), state.labels[0].bits->end(), 1));
+    model_.labelled =
+        static_cast<std::size_t>(std::count(state.labels[0].bits->begin(), state.labels[0].bits->end(), 1));
     model_.camera = orbit_camera(model_.orbit, 0.5, 640, 480);
     model_.frames_per_second = 60;
     model_.render_ms = 6.2;
@@ -157,14 +167,19 @@ void FakeApplication::make_attention() {
         Image map(render.width, render.height, 1);
         for (int y = 0; y < map.height; ++y)
             for (int x = 0; x < map.width; ++x) {
-                const float dx = static_cast<float>(x - map.width / 2) / 30, dy = static_cast<float>(y - map.height / 2) / 30;
-                map.at(x, y, 0) = std::clamp((0.15f + 0.85f * object.at(x, y, 0)) * std::exp(-(dx * dx + dy * dy)) + 0.05f * static_cast<float>(random.uniform()), 0.0f, 1.0f);
+                const float dx = static_cast<float>(x - map.width / 2) / 30,
+                            dy = static_cast<float>(y - map.height / 2) / 30;
+                map.at(x, y, 0) =
+                    std::clamp((0.15f + 0.85f * object.at(x, y, 0)) * std::exp(-(dx * dx + dy * dy)) +
+                                   0.05f * static_cast<float>(random.uniform()),
+                               0.0f, 1.0f);
             }
         shown.render = std::make_shared<const Image>(render);
         shown.map_coloured = std::make_shared<const Image>(coloured_map(render, map));
         shown.mask_picture = std::make_shared<const Image>(masked(render, object));
         shown.map = std::make_shared<const Image>(std::move(map));
-        for (int point = 0; point < 4; ++point) shown.points.push_back({38.0 + 7 * point, 44.0 + 5 * (point % 2), true});
+        for (int point = 0; point < 4; ++point)
+            shown.points.push_back({38.0 + 7 * point, 44.0 + 5 * (point % 2), true});
         for (int point = 0; point < 3; ++point) shown.points.push_back({12.0 + 32 * point, 82.0, false});
         shown.branch = index % 5 == 3 ? "attention" : "points";
         shown.captured = index % 5 == 3 ? 0.46 : 0.83;
@@ -182,9 +197,12 @@ void FakeApplication::make_work(bool running) {
     Random random(9);
     for (int iteration = 0; iteration < (running ? 212 : 400); ++iteration) {
         const auto fall = static_cast<float>(std::exp(-iteration / 120.0));
-        model_.losses.push_back({iteration, 0.02f + 0.05f * fall + 0.004f * static_cast<float>(random.uniform()), 0.003f * (1 - fall),
-                                 0.4f + 0.6f * fall + 0.2f * static_cast<float>(random.uniform()), 1.5f * fall + 0.4f * static_cast<float>(random.uniform()), 0.3f + 0.1f * fall});
-        if (iteration % 20 == 0) model_.snapshots.push_back({iteration, 6000u + static_cast<std::size_t>(iteration) * 3});
+        model_.losses.push_back(
+            {iteration, 0.02f + 0.05f * fall + 0.004f * static_cast<float>(random.uniform()),
+             0.003f * (1 - fall), 0.4f + 0.6f * fall + 0.2f * static_cast<float>(random.uniform()),
+             1.5f * fall + 0.4f * static_cast<float>(random.uniform()), 0.3f + 0.1f * fall});
+        if (iteration % 20 == 0)
+            model_.snapshots.push_back({iteration, 6000u + static_cast<std::size_t>(iteration) * 3});
     }
     model_.job = {};
     model_.job.title = "Edit: a bear wearing a red hat";
@@ -212,27 +230,39 @@ void FakeApplication::make_rest() {
     model_.request.source = "bear";
     model_.request.prompt = "a bear wearing a red hta";
     model_.request.target = "";
-    for (const char* word : {"a", "bear", "wearing", "red", "hat", "blue", "golden", "statue", "on", "the", "grass", "dog", "made", "of", "stone"})
+    for (const char* word : {"a", "bear", "wearing", "red", "hat", "blue", "golden", "statue", "on", "the",
+                             "grass", "dog", "made", "of", "stone"})
         model_.known_words.emplace_back(word);
     model_.words_known = true;
     model_.estimate = {62, 850, 14200};
-    model_.models = {{"starter", "/usr/share/gseditpro/models/starter", "starter, 64 px", 48u << 20, true, "", true},
-                     {"stable-diffusion-v1-5", "/home/mira/ComfyUI/models/checkpoints/v1-5-pruned-emaonly.safetensors", "Stable Diffusion 1.x", 4270000000u, true, "Slow without a graphics card: about 40 min for an edit.", false},
-                     {"sd_xl_base", "/home/mira/ComfyUI/models/checkpoints/sd_xl_base_1.0.safetensors", "Stable Diffusion XL", 6900000000u, false, "SDXL is not supported; use a Stable Diffusion 1.x or 2.x model.", false}};
+    model_.models = {
+        {"starter", "/usr/share/gseditpro/models/starter", "starter, 64 px", 48u << 20, true, "", true},
+        {"stable-diffusion-v1-5", "/home/mira/ComfyUI/models/checkpoints/v1-5-pruned-emaonly.safetensors",
+         "Stable Diffusion 1.x", 4270000000u, true, "Slow without a graphics card: about 40 min for an edit.",
+         false},
+        {"sd_xl_base", "/home/mira/ComfyUI/models/checkpoints/sd_xl_base_1.0.safetensors",
+         "Stable Diffusion XL", 6900000000u, false,
+         "SDXL is not supported; use a Stable Diffusion 1.x or 2.x model.", false}};
     using log::Level;
-    model_.log = {{Level::Info, "14:01:12", "opened /home/mira/scenes/bear/scene.ply: 6 000 splats in 0.04 s"},
-                  {Level::Warning, "14:01:12", "the file does not state an up axis; -y is taken, as in COLMAP worlds"},
-                  {Level::Info, "14:02:07", "autosaved to /home/mira/scenes/.bear.gsep.autosave"},
-                  {Level::Error, "14:03:20", "could not write /mnt/full/turn.mp4: no space is left on the device"},
-                  {Level::Debug, "14:03:21", "preview: 6000 splats, 3412 pairs"}};
+    model_.log = {
+        {Level::Info, "14:01:12", "opened /home/mira/scenes/bear/scene.ply: 6 000 splats in 0.04 s"},
+        {Level::Warning, "14:01:12", "the file does not state an up axis; -y is taken, as in COLMAP worlds"},
+        {Level::Info, "14:02:07", "autosaved to /home/mira/scenes/.bear.gsep.autosave"},
+        {Level::Error, "14:03:20", "could not write /mnt/full/turn.mp4: no space is left on the device"},
+        {Level::Debug, "14:03:21", "preview: 6000 splats, 3412 pairs"}};
     model_.toasts = {{"Up axis guessed from 24 cameras", false, 1, "Flip"}};
     model_.camera_keys = {{0, {}}, {1, {}}};
 }
 
 void FakeApplication::refresh(bool pictures) {
     if (!pictures || document_->empty()) return;
-    const Camera camera = model_.viewport_width > 0 ? model_.camera.resized(model_.viewport_width, model_.viewport_height) : model_.camera;
-    if (viewport_picture_ != nullptr && camera.width == rendered_.width && camera.height == rendered_.height && camera.rotation == rendered_.rotation && camera.translation == rendered_.translation) return;
+    const Camera camera = model_.viewport_width > 0
+                              ? model_.camera.resized(model_.viewport_width, model_.viewport_height)
+                              : model_.camera;
+    if (viewport_picture_ != nullptr && camera.width == rendered_.width &&
+        camera.height == rendered_.height && camera.rotation == rendered_.rotation &&
+        camera.translation == rendered_.translation)
+        return;
     const auto& output = renderer_->draw(document_->state().current, camera);
     auto depth = std::make_shared<Image>(output.depth);
     for (std::size_t at = 0; at < depth->data.size(); ++at)
@@ -243,7 +273,11 @@ void FakeApplication::refresh(bool pictures) {
     const Image& tint = renderer_->draw_values(document_->state().current, camera, values);
     for (std::size_t at = 0; at < picture.pixel_count(); ++at)
         for (std::size_t c = 0; c < 3; ++c)
-            picture.data[at * 3 + c] += 0.35f * tint.data[at] * ((c == 2 ? 0.95f : c == 1 ? 0.6f : 0.2f) - picture.data[at * 3 + c]);
+            picture.data[at * 3 + c] += 0.35f * tint.data[at] *
+                                        ((c == 2   ? 0.95f
+                                          : c == 1 ? 0.6f
+                                                   : 0.2f) -
+                                         picture.data[at * 3 + c]);
     model_.viewport_depth = depth;
     viewport_picture_ = std::make_shared<const Image>(std::move(picture));
     model_.viewport = texture(viewport_picture_);
@@ -265,7 +299,8 @@ ui::TextureId FakeApplication::texture(const std::shared_ptr<const Image>& image
 }
 
 bool FakeApplication::asked(const std::string& start) const {
-    return std::any_of(calls.begin(), calls.end(), [&start](const std::string& call) { return call.starts_with(start); });
+    return std::any_of(calls.begin(), calls.end(),
+                       [&start](const std::string& call) { return call.starts_with(start); });
 }
 
 void FakeApplication::set_attention_threshold(double value) {
@@ -292,7 +327,8 @@ void FakeApplication::delete_label(int index) {
 }
 
 void FakeApplication::select(const ui::ScreenRegion& region, ui::SetOperation operation, bool stroke_ends) {
-    calls.push_back(fmt::format("select {} {} {}{}", region.polygon.size(), region.circles.size(), static_cast<int>(operation), stroke_ends ? " end" : ""));
+    calls.push_back(fmt::format("select {} {} {}{}", region.polygon.size(), region.circles.size(),
+                                static_cast<int>(operation), stroke_ends ? " end" : ""));
     regions.push_back(region);
     operations.push_back(operation);
 }

@@ -36,9 +36,13 @@ public:
 
     void open(const std::filesystem::path& path) override { calls.push_back("open " + path.string()); }
     void open_sample() override { calls.push_back("open_sample"); }
-    void save_project(const std::filesystem::path& path) override { calls.push_back("save_project " + path.string()); }
+    void save_project(const std::filesystem::path& path) override {
+        calls.push_back("save_project " + path.string());
+    }
     void recover(const std::string& project) override { calls.push_back("recover " + project); }
-    void discard_recovery(const std::string& project) override { calls.push_back("discard_recovery " + project); }
+    void discard_recovery(const std::string& project) override {
+        calls.push_back("discard_recovery " + project);
+    }
     void set_up_axis(const std::string& up) override { calls.push_back("set_up_axis " + up); }
     void repair_scene() override { calls.push_back("repair_scene"); }
     void locate() override { calls.push_back("locate"); }
@@ -49,12 +53,18 @@ public:
     void apply_result() override { calls.push_back("apply_result"); }
     void discard_result() override { calls.push_back("discard_result"); }
     void show_snapshot(int index) override { calls.push_back("show_snapshot " + std::to_string(index)); }
-    void branch_from_snapshot(int index) override { calls.push_back("branch_from_snapshot " + std::to_string(index)); }
+    void branch_from_snapshot(int index) override {
+        calls.push_back("branch_from_snapshot " + std::to_string(index));
+    }
     void set_attention_threshold(double value) override;
     void set_label_threshold(float value) override;
-    void set_active_label(int index) override { calls.push_back("set_active_label " + std::to_string(index)); }
+    void set_active_label(int index) override {
+        calls.push_back("set_active_label " + std::to_string(index));
+    }
     void add_label(const std::string& name) override { calls.push_back("add_label " + name); }
-    void rename_label(int index, const std::string& name) override { calls.push_back("rename_label " + std::to_string(index) + " " + name); }
+    void rename_label(int index, const std::string& name) override {
+        calls.push_back("rename_label " + std::to_string(index) + " " + name);
+    }
     void delete_label(int index) override;
     void select(const ui::ScreenRegion& region, ui::SetOperation operation, bool stroke_ends) override;
     void grow_label(int steps) override { calls.push_back("grow_label " + std::to_string(steps)); }
@@ -64,9 +74,13 @@ public:
     void undo() override { calls.push_back("undo"); }
     void redo() override { calls.push_back("redo"); }
     void go_to(std::size_t position) override { calls.push_back("go_to " + std::to_string(position)); }
-    void set_edit_enabled(std::uint64_t id, bool on) override { calls.push_back("set_edit_enabled " + std::to_string(id) + (on ? " on" : " off")); }
+    void set_edit_enabled(std::uint64_t id, bool on) override {
+        calls.push_back("set_edit_enabled " + std::to_string(id) + (on ? " on" : " off"));
+    }
     void delete_edit(std::uint64_t id) override { calls.push_back("delete_edit " + std::to_string(id)); }
-    void move_edit(std::uint64_t id, int places) override { calls.push_back("move_edit " + std::to_string(id) + " " + std::to_string(places)); }
+    void move_edit(std::uint64_t id, int places) override {
+        calls.push_back("move_edit " + std::to_string(id) + " " + std::to_string(places));
+    }
     void repeat_edit(std::uint64_t id) override { calls.push_back("repeat_edit " + std::to_string(id)); }
     void set_camera(const Camera& camera) override;
     void set_view_settings(const ui::ViewSettings& settings) override;
@@ -82,9 +96,15 @@ public:
     void export_turntable() override { calls.push_back("export_turntable"); }
     void export_scene() override { calls.push_back("export_scene"); }
     void add_camera_key() override { calls.push_back("add_camera_key"); }
-    void delete_camera_key(std::size_t index) override { calls.push_back("delete_camera_key " + std::to_string(index)); }
-    void export_camera_path(bool as_film) override { calls.push_back(as_film ? "export_camera_path film" : "export_camera_path"); }
-    void dismiss_toast(std::size_t index) override { calls.push_back("dismiss_toast " + std::to_string(index)); }
+    void delete_camera_key(std::size_t index) override {
+        calls.push_back("delete_camera_key " + std::to_string(index));
+    }
+    void export_camera_path(bool as_film) override {
+        calls.push_back(as_film ? "export_camera_path film" : "export_camera_path");
+    }
+    void dismiss_toast(std::size_t index) override {
+        calls.push_back("dismiss_toast " + std::to_string(index));
+    }
     void press_toast(std::size_t index) override { calls.push_back("press_toast " + std::to_string(index)); }
     void toggle_fullscreen() override { calls.push_back("toggle_fullscreen"); }
     void set_ui_scale(float scale) override;

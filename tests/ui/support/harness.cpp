@@ -148,7 +148,9 @@ ImVec2 Harness::middle(const std::string& name) const {
 Image Harness::picture() const {
     ImGui::SetCurrentContext(context_);
     return render_draw_data(*ImGui::GetDrawData(), [this](ImTextureID id) -> const Image* {
-        return id == nullptr ? &font_ : application.picture(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(id)));
+        return id == nullptr
+                   ? &font_
+                   : application.picture(static_cast<std::uint64_t>(reinterpret_cast<std::uintptr_t>(id)));
     });
 }
 

@@ -17,7 +17,7 @@ public:
         int width = 1280, height = 720;
         float scale = 1;
         Situation situation = Situation::Scene;
-        bool pictures = false;       // render the viewport, attention and so on
+        bool pictures = false;  // render the viewport, attention and so on
     };
     explicit Harness(const Options& options);
     ~Harness();
@@ -40,7 +40,7 @@ public:
     void type(const std::string& text);
 
     const ui::Rect* find(const std::string& name) const;
-    ui::Rect rect(const std::string& name) const;      // fails the test when absent
+    ui::Rect rect(const std::string& name) const;  // fails the test when absent
     ImVec2 middle(const std::string& name) const;
     Image picture() const;
 

@@ -1,4 +1,5 @@
-// Draws what ImGui emits into an image on the processor, so that tests can look at the window without a device.
+// Draws what ImGui emits into an image on the processor, so that tests can look at the window without a
+// device.
 #include "tests/ui/support/soft_renderer.h"
 
 #include <algorithm>
@@ -26,7 +27,8 @@ Colour texel(const Image& picture, int x, int y) {
 
 Colour sample(const Image* picture, float u, float v) {
     if (picture == nullptr || picture->width == 0) return {};
-    const float x = u * static_cast<float>(picture->width) - 0.5f, y = v * static_cast<float>(picture->height) - 0.5f;
+    const float x = u * static_cast<float>(picture->width) - 0.5f,
+                y = v * static_cast<float>(picture->height) - 0.5f;
     const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
     const float fx = x - static_cast<float>(x0), fy = y - static_cast<float>(y0);
     Colour sum{0, 0, 0, 0};
@@ -42,11 +44,13 @@ Colour sample(const Image* picture, float u, float v) {
 struct Target {
     Image& image;
     ImVec2 origin;
-    ImVec4 clip;             // pixels: left, top, right, bottom
+    ImVec4 clip;  // pixels: left, top, right, bottom
     const Image* texture;
 };
 
-float edge(const ImVec2& a, const ImVec2& b, float x, float y) { return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x); }
+float edge(const ImVec2& a, const ImVec2& b, float x, float y) {
+    return (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x);
+}
 
 /// Fill rule of graphics devices: a pixel on the shared side of two triangles belongs to one of them.
 bool top_left(const ImVec2& a, const ImVec2& b) { return a.y == b.y ? b.x > a.x : b.y < a.y; }
@@ -83,8 +87,11 @@ void fill_triangle(const Target& target, std::array<ImDrawVert, 3> v) {
                 inside = weight[side] > 0 || (weight[side] == 0 && top_left(a, b));
             }
             if (!inside) continue;
-            const auto mix = [&](auto get) { return (weight[0] * get(0) + weight[1] * get(1) + weight[2] * get(2)) / area; };
-            Colour c = sample(target.texture, mix([&](std::size_t i) { return v[i].uv.x; }), mix([&](std::size_t i) { return v[i].uv.y; }));
+            const auto mix = [&](auto get) {
+                return (weight[0] * get(0) + weight[1] * get(1) + weight[2] * get(2)) / area;
+            };
+            Colour c = sample(target.texture, mix([&](std::size_t i) { return v[i].uv.x; }),
+                              mix([&](std::size_t i) { return v[i].uv.y; }));
             c.r *= mix([&](std::size_t i) { return colours[i].r; });
             c.g *= mix([&](std::size_t i) { return colours[i].g; });
             c.b *= mix([&](std::size_t i) { return colours[i].b; });
@@ -110,7 +117,9 @@ Image render_draw_data(const ImDrawData& data, const TextureLookup& textures) {
             const Target target{image, data.DisplayPos, clip, textures(command.GetTexID())};
             for (unsigned at = 0; at + 2 < command.ElemCount; at += 3) {
                 const auto vertex = [&](unsigned offset) {
-                    return list.VtxBuffer[static_cast<int>(command.VtxOffset + list.IdxBuffer[static_cast<int>(command.IdxOffset + at + offset)])];
+                    return list.VtxBuffer[static_cast<int>(
+                        command.VtxOffset +
+                        list.IdxBuffer[static_cast<int>(command.IdxOffset + at + offset)])];
                 };
                 fill_triangle(target, {vertex(0), vertex(1), vertex(2)});
             }
@@ -124,7 +133,8 @@ Image font_picture(ImFontAtlas& atlas) {
     int width = 0, height = 0;
     atlas.GetTexDataAsAlpha8(&pixels, &width, &height);
     Image image(width, height, 4, 1.0f);
-    for (std::size_t at = 0; at < image.pixel_count(); ++at) image.data[at * 4 + 3] = static_cast<float>(pixels[at]) / 255;
+    for (std::size_t at = 0; at < image.pixel_count(); ++at)
+        image.data[at * 4 + 3] = static_cast<float>(pixels[at]) / 255;
     return image;
 }
 

@@ -1,0 +1,307 @@
+// Clicks and keys on the window ask the application for the right things.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "tests/ui/support/harness.h"
+#include "ui/keys.h"
+
+namespace gse::test {
+namespace {
+
+namespace key = ui::key;
+constexpr int Wide = 1920, High = 1080;
+
+/// True when the click on the widget asked for `call`.
+bool asks(Harness& harness, const std::string& widget, const std::string& call) {
+    harness.application.calls.clear();
+    harness.click(widget);
+    return harness.application.asked(call);
+}
+
+bool key_asks(Harness& harness, int index, const std::string& call) {
+    harness.application.calls.clear();
+    harness.key(index);
+    return harness.application.asked(call);
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("the start page opens, recovers and discards") {
+    Harness harness({Wide, High, 1, Situation::Nothing, false});
+    DOCTEST_CHECK(asks(harness, "start.sample", "open_sample"));
+    DOCTEST_CHECK(asks(harness, "start.recover.0", "recover /home/mira/scenes/garden.gsep"));
+    DOCTEST_CHECK(asks(harness, "start.recent.1", "open /home/mira/scenes/b\xC3\xA4r im Wald.gsep"));
+    harness.click("start.discard.0");
+    DOCTEST_CHECK(!harness.application.asked("discard_recovery"));
+    DOCTEST_CHECK(asks(harness, "question.0", "discard_recovery"));
+}
+
+DOCTEST_TEST_CASE("prompt: words, chips, suggestion, mode, seed") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& request = harness.application.model().request;
+    harness.click("prompt.source");
+    harness.type("s");
+    DOCTEST_CHECK(request.source == "bears");
+    harness.key(key::Backspace);
+    harness.key(key::Enter);
+    DOCTEST_CHECK(request.source == "bear");
+    harness.click("prompt.chip.4");
+    DOCTEST_CHECK(request.target == "red");
+    harness.click("prompt.chip.4");
+    DOCTEST_CHECK(request.target.empty());
+    harness.click("prompt.chip.5.suggestion");
+    DOCTEST_CHECK(request.prompt == "a bear wearing a red hat");
+    harness.click("prompt.chip.5");
+    DOCTEST_CHECK(request.target == "hat");
+    harness.click("prompt.mode.add");
+    DOCTEST_CHECK(request.mode == "add");
+    const auto seed = request.seed;
+    harness.click("prompt.seed.dice");
+    DOCTEST_CHECK(request.seed != seed);
+    DOCTEST_CHECK(asks(harness, "prompt.locate", "locate"));
+    DOCTEST_CHECK(asks(harness, "prompt.edit", "edit"));
+}
+
+DOCTEST_TEST_CASE("an open seed changes with every edit, a locked one does not") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& request = harness.application.model().request;
+    harness.click("prompt.edit");
+    DOCTEST_CHECK(request.seed == 0);
+    harness.shell.show(ui::PanelId::Prompt);
+    harness.click("prompt.seed.lock");
+    harness.application.calls.clear();
+    harness.click("prompt.edit");
+    DOCTEST_CHECK(request.seed != 0);
+    DOCTEST_REQUIRE(harness.application.calls.size() >= 2);
+    // The seed goes first, then the edit that uses it.
+    DOCTEST_CHECK(harness.application.calls[0] == "set_request");
+    DOCTEST_CHECK(harness.application.calls[1] == "edit");
+}
+
+DOCTEST_TEST_CASE("Edit is off for a reason and then does nothing") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    harness.application.model().cannot_edit = "No model was found";
+    harness.frame(2);
+    DOCTEST_CHECK(!harness.rect("prompt.edit").enabled);
+    DOCTEST_CHECK(!asks(harness, "prompt.edit", "edit"));
+    harness.modifiers(true, false, false);
+    DOCTEST_CHECK(!key_asks(harness, key::Enter, "edit"));
+    harness.modifiers(false, false, false);
+    harness.application.model().cannot_edit.clear();
+    harness.application.model().request.prompt = "a blue hat";
+    harness.application.model().request.target = "golden";
+    harness.frame(2);
+    DOCTEST_CHECK(!harness.rect("prompt.edit").enabled);
+    harness.application.model().request.target = "blue";
+    harness.frame(2);
+    DOCTEST_CHECK(harness.rect("prompt.edit").enabled);
+}
+
+DOCTEST_TEST_CASE("Shift and Ctrl with Enter edit, also while the sentence is typed") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    harness.application.model().request.prompt = "a bear wearing a red hat";
+    harness.click("prompt.sentence");
+    harness.modifiers(true, false, false);
+    DOCTEST_CHECK(key_asks(harness, key::Enter, "edit"));
+    harness.modifiers(false, true, false);
+    DOCTEST_CHECK(key_asks(harness, key::Enter, "edit"));
+    harness.modifiers(false, false, false);
+    harness.key(key::Escape);
+    // Plain letters that are typed are not keys.
+    harness.click("prompt.sentence");
+    DOCTEST_CHECK(!key_asks(harness, 'V', "set_comparison"));
+}
+
+DOCTEST_TEST_CASE("labels: threshold, names, operations") {
+    Harness harness({Wide, High, 1, Situation::Located, false});
+    harness.shell.show(ui::PanelId::Labels);
+    harness.frame(3);
+    const auto bar = harness.rect("labels.threshold");
+    harness.drag({bar.x + bar.width * 0.5f, bar.y + 10}, {bar.x + bar.width * 0.9f, bar.y + 10});
+    DOCTEST_CHECK(harness.application.asked("set_label_threshold 0."));
+    DOCTEST_CHECK(harness.application.document().state().labels[0].threshold ==
+                  doctest::Approx(0.9).epsilon(0.01));
+    DOCTEST_CHECK(asks(harness, "labels.row.1", "set_active_label 1"));
+    DOCTEST_CHECK(asks(harness, "labels.grow", "grow_label 1"));
+    DOCTEST_CHECK(asks(harness, "labels.shrink", "grow_label -1"));
+    DOCTEST_CHECK(asks(harness, "labels.invert", "invert_label"));
+    DOCTEST_CHECK(asks(harness, "labels.clear", "clear_label"));
+    DOCTEST_CHECK(asks(harness, "labels.delete_splats", "delete_labelled_splats"));
+    DOCTEST_CHECK(asks(harness, "labels.add", "add_label label"));
+    harness.key(key::Escape);
+    harness.click("labels.rename.0");
+    harness.frame(3);
+    harness.type("teddy");
+    harness.application.calls.clear();
+    harness.key(key::Enter);
+    DOCTEST_CHECK(harness.application.asked("rename_label 0 teddy"));
+    // The fake deletes at once: the frame must not stumble over it.
+    DOCTEST_CHECK(asks(harness, "labels.delete.1", "delete_label 1"));
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "labels.delete.0", "delete_label 0"));
+    harness.frame(3);
+    DOCTEST_CHECK(!harness.rect("labels.grow").enabled);
+}
+
+DOCTEST_TEST_CASE("attention: choosing a view and the threshold") {
+    Harness harness({Wide, High, 1, Situation::Located, false});
+    harness.click("attention.view.3");
+    const auto bar = harness.rect("attention.threshold");
+    harness.drag({bar.x + bar.width * 0.35f, bar.y + 8}, {bar.x + bar.width * 0.6f, bar.y + 8});
+    DOCTEST_CHECK(harness.application.asked("set_attention_threshold 0.6"));
+    DOCTEST_CHECK(harness.application.model().attention_threshold == doctest::Approx(0.6).epsilon(0.05));
+    DOCTEST_CHECK(asks(harness, "attention.look", "set_camera"));
+}
+
+DOCTEST_TEST_CASE("progress: pause, snapshots, cancel") {
+    Harness harness({Wide, High, 1, Situation::Editing, false});
+    harness.shell.show(ui::PanelId::Progress);
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "progress.pause", "pause"));
+    harness.application.model().job.paused = true;
+    harness.frame(2);
+    DOCTEST_CHECK(asks(harness, "job.pause", "resume"));
+    const auto bar = harness.rect("progress.snapshot");
+    harness.drag({bar.x + bar.width - 8, bar.y + 8}, {bar.x + 8, bar.y + 8});
+    DOCTEST_CHECK(harness.application.asked("show_snapshot 0"));
+    DOCTEST_CHECK(asks(harness, "progress.branch", "branch_from_snapshot"));
+    // 33 s of work: asked first.
+    DOCTEST_CHECK(!asks(harness, "job.cancel", "cancel"));
+    DOCTEST_CHECK(asks(harness, "question.0", "cancel"));
+    harness.application.model().job.seconds = 3;
+    DOCTEST_CHECK(asks(harness, "job.cancel", "cancel"));
+    DOCTEST_CHECK(key_asks(harness, key::Escape, "cancel"));
+    DOCTEST_CHECK(asks(harness, "job.file.cancel", "cancel_file_job"));
+}
+
+DOCTEST_TEST_CASE("a result that waits is applied or discarded") {
+    Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
+    DOCTEST_CHECK(asks(harness, "result.apply", "apply_result"));
+    DOCTEST_CHECK(asks(harness, "result.discard", "discard_result"));
+    DOCTEST_CHECK(asks(harness, "result.compare", "set_comparison 1"));
+    DOCTEST_CHECK(!harness.rect("prompt.edit").enabled);
+}
+
+DOCTEST_TEST_CASE("history: stack and steps") {
+    Harness harness({Wide, High, 1, Situation::Located, false});
+    DOCTEST_CHECK(asks(harness, "history.enabled.7", "set_edit_enabled 7 off"));
+    DOCTEST_CHECK(asks(harness, "history.repeat.7", "repeat_edit 7"));
+    DOCTEST_CHECK(asks(harness, "history.delete.7", "delete_edit 7"));
+    DOCTEST_CHECK(asks(harness, "history.undo", "undo"));
+    DOCTEST_CHECK(asks(harness, "history.redo", "redo"));
+    DOCTEST_CHECK(asks(harness, "history.step.0", "go_to 0"));
+    harness.modifiers(false, true, false);
+    DOCTEST_CHECK(key_asks(harness, 'Z', "undo"));
+    DOCTEST_CHECK(key_asks(harness, 'Y', "redo"));
+    harness.modifiers(true, true, false);
+    DOCTEST_CHECK(key_asks(harness, 'Z', "redo"));
+}
+
+DOCTEST_TEST_CASE("views, export, scene, models, settings") {
+    Harness harness({Wide, High * 2, 1, Situation::Scene, false});
+    harness.shell.show(ui::PanelId::Views);
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "views.row.2", "look_through 2"));
+    DOCTEST_CHECK(asks(harness, "views.next", "look_through 3"));
+    DOCTEST_CHECK(asks(harness, "views.add", "add_view"));
+    DOCTEST_CHECK(asks(harness, "views.delete.1", "delete_view 1"));
+    harness.shell.show(ui::PanelId::Export);
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "export.size.4K", "set_exports"));
+    DOCTEST_CHECK(harness.application.model().exports.width == 3840);
+    DOCTEST_CHECK(asks(harness, "export.screenshot", "export_picture"));
+    DOCTEST_CHECK(asks(harness, "export.turntable", "export_turntable"));
+    DOCTEST_CHECK(asks(harness, "export.scene", "export_scene"));
+    harness.application.model().exports.film_path = "film.avi";
+    harness.application.model().exports.picture_path.clear();
+    harness.frame(2);
+    DOCTEST_CHECK(!harness.rect("export.turntable").enabled);
+    DOCTEST_CHECK(!harness.rect("export.screenshot").enabled);
+    harness.shell.show(ui::PanelId::Scene);
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "scene.up.z", "set_up_axis z"));
+    harness.shell.show(ui::PanelId::Models);
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "models.use.1", "choose_model /home/mira/ComfyUI"));
+    DOCTEST_CHECK(!asks(harness, "models.use.2", "choose_model"));
+    harness.shell.show(ui::PanelId::Settings);
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "settings.show_bounds", "set_view_settings"));
+    DOCTEST_CHECK(harness.application.model().view.show_bounds);
+    DOCTEST_CHECK(asks(harness, "settings.scale.200 %", "set_ui_scale 2.00"));
+}
+
+DOCTEST_TEST_CASE("menus reach what the panels reach") {
+    Harness harness({Wide, High, 1, Situation::Located, false});
+    harness.click("menu.Select");
+    DOCTEST_CHECK(asks(harness, "menu.grow", "grow_label 1"));
+    harness.click("menu.Prompt");
+    DOCTEST_CHECK(asks(harness, "menu.locate", "locate"));
+    harness.click("menu.View");
+    DOCTEST_CHECK(asks(harness, "menu.wipe", "set_comparison 1"));
+    harness.click("menu.Window");
+    harness.click("menu.panel.Prompt");
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("tab.Prompt") == nullptr);
+    harness.click("menu.Window");
+    harness.click("menu.reset_layout");
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("tab.Prompt") != nullptr);
+    harness.key(key::F1);
+    harness.frame(3);
+    harness.key(key::Escape);
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "tool.undo", "undo"));
+}
+
+DOCTEST_TEST_CASE("unsaved work is asked about before it goes") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    harness.shell.request_quit();
+    harness.frame(3);
+    DOCTEST_CHECK(!harness.application.asked("quit"));
+    harness.click("question.2");
+    DOCTEST_CHECK(!harness.application.asked("quit"));
+    harness.shell.request_quit();
+    harness.frame(3);
+    harness.application.calls.clear();
+    harness.click("question.0");
+    DOCTEST_REQUIRE(harness.application.calls.size() >= 2);
+    DOCTEST_CHECK(harness.application.calls[0] == "save_project ");
+    DOCTEST_CHECK(harness.application.calls[1] == "quit");
+    harness.shell.request_open("/tmp/x.ply");
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "question.1", "open /tmp/x.ply"));
+    harness.application.model().unsaved = false;
+    harness.application.calls.clear();
+    harness.shell.request_open("/tmp/y.ply");
+    harness.frame(3);
+    DOCTEST_CHECK(harness.application.asked("open /tmp/y.ply"));
+}
+
+DOCTEST_TEST_CASE("keys of files and exports") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    DOCTEST_CHECK(key_asks(harness, key::F12, "export_picture"));
+    harness.modifiers(true, false, false);
+    DOCTEST_CHECK(key_asks(harness, key::F12, "export_turntable"));
+    harness.modifiers(false, true, false);
+    DOCTEST_CHECK(key_asks(harness, 'S', "save_project "));
+    DOCTEST_CHECK(key_asks(harness, 'L', "locate"));
+    DOCTEST_CHECK(key_asks(harness, '=', "set_ui_scale 1.10"));
+    harness.modifiers(false, false, false);
+    DOCTEST_CHECK(key_asks(harness, key::F11, "toggle_fullscreen"));
+    DOCTEST_CHECK(key_asks(harness, 'N', "set_view_settings"));
+    DOCTEST_CHECK(!harness.application.model().view.front_only);
+    DOCTEST_CHECK(key_asks(harness, key::Tab, "set_view_settings"));
+    DOCTEST_CHECK(!harness.application.model().view.tint_labels);
+    DOCTEST_CHECK(key_asks(harness, key::Right, "look_through 0"));
+    DOCTEST_CHECK(key_asks(harness, key::Right, "look_through 1"));
+    DOCTEST_CHECK(key_asks(harness, key::Left, "look_through 0"));
+}
+
+DOCTEST_TEST_CASE("toasts are closed and pressed") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    DOCTEST_CHECK(asks(harness, "toast.0.button", "press_toast 0"));
+    DOCTEST_CHECK(asks(harness, "toast.0.close", "dismiss_toast 0"));
+}
+
+}  // namespace gse::test

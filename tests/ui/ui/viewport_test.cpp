@@ -1,0 +1,318 @@
+// Mouse in the viewport: camera, tools, set operations, wipe and flip.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "tests/ui/support/harness.h"
+#include "ui/keys.h"
+#include "ui/state.h"
+
+namespace gse::test {
+namespace {
+
+namespace key = ui::key;
+
+Harness::Options with_depth() { return {1280, 720, 1, Situation::Located, true}; }
+
+ImVec2 in_viewport(const Harness& harness, float x, float y) {
+    const auto rect = harness.rect("viewport");
+    return {std::floor(rect.x + rect.width * x), std::floor(rect.y + rect.height * y)};
+}
+
+Vec3 pixel(const Camera& camera, const Vec3& world) {
+    const Vec3 p = camera.to_camera(world);
+    return {(camera.fx * p.x / p.z + camera.cx) / camera.width,
+            (camera.fy * p.y / p.z + camera.cy) / camera.height, p.z};
+}
+
+double turned(const Camera& a, const Camera& b) {
+    return std::acos(std::min(1.0, dot(a.forward(), b.forward())));
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("the viewport asks for its size in pixels once") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    const auto rect = harness.rect("viewport");
+    DOCTEST_CHECK(harness.application.model().viewport_width == static_cast<int>(rect.width));
+    DOCTEST_CHECK(harness.application.model().viewport_height == static_cast<int>(rect.height));
+    DOCTEST_CHECK(rect.x == std::floor(rect.x));
+    harness.application.calls.clear();
+    harness.frame(5);
+    DOCTEST_CHECK(!harness.application.asked("set_viewport_size"));
+}
+
+DOCTEST_TEST_CASE("left drag orbits, right drag pans, middle drag orbits or pans") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    const auto from = in_viewport(harness, 0.5f, 0.5f), to = in_viewport(harness, 0.6f, 0.55f);
+    const auto& camera = harness.application.model().camera;
+    Camera before = camera;
+    harness.drag(from, to, 0);
+    DOCTEST_CHECK(turned(before, camera) > 0.05);
+    before = camera;
+    harness.drag(from, to, 1);
+    DOCTEST_CHECK(turned(before, camera) < 1e-6);
+    DOCTEST_CHECK(length(before.centre() - camera.centre()) > 0.01);
+    before = camera;
+    harness.drag(from, to, 2);
+    DOCTEST_CHECK(turned(before, camera) > 0.05);
+    before = camera;
+    harness.modifiers(true, false, false);
+    harness.drag(from, to, 2);
+    DOCTEST_CHECK(turned(before, camera) < 1e-6);
+}
+
+DOCTEST_TEST_CASE("the wheel zooms to what is under the cursor, then everything rests") {
+    Harness harness(with_depth());
+    harness.frame(3);
+    const auto at = in_viewport(harness, 0.45f, 0.6f);
+    const auto rect = harness.rect("viewport");
+    const auto& model = harness.application.model();
+    const double x = (at.x - rect.x) / rect.width, y = (at.y - rect.y) / rect.height;
+    const double depth = model.viewport_depth->at(static_cast<int>(x * model.viewport_depth->width),
+                                                  static_cast<int>(y * model.viewport_depth->height), 0);
+    DOCTEST_REQUIRE(depth > 0);
+    const Camera before = model.camera;
+    const Vec3 in_camera{(x * before.width - before.cx) / before.fx * depth,
+                         (y * before.height - before.cy) / before.fy * depth, depth};
+    const Vec3 point = before.centre() + before.rotation.transposed() * in_camera;
+    harness.move(at.x, at.y);
+    harness.wheel(3);
+    const Vec3 now = pixel(model.camera, point);
+    DOCTEST_CHECK(now.z < depth * 0.8);
+    DOCTEST_CHECK(now.x == doctest::Approx(x).epsilon(1e-3));
+    DOCTEST_CHECK(now.y == doctest::Approx(y).epsilon(1e-3));
+    harness.frame(60);
+    harness.application.calls.clear();
+    harness.frame(20);
+    DOCTEST_CHECK(!harness.application.asked("set_camera"));
+    DOCTEST_CHECK(!harness.shell.animating());
+}
+
+DOCTEST_TEST_CASE("a double click turns around what was hit") {
+    Harness harness(with_depth());
+    harness.frame(3);
+    const auto at = in_viewport(harness, 0.45f, 0.6f);
+    const Vec3 before = harness.shell.state().viewport.camera.pose().pivot;
+    harness.move(at.x, at.y);
+    for (int press = 0; press < 2; ++press) {
+        harness.press();
+        harness.release();
+    }
+    harness.frame(60);
+    DOCTEST_CHECK(length(harness.shell.state().viewport.camera.pose().pivot - before) > 1e-3);
+}
+
+DOCTEST_TEST_CASE("a camera that the application sets is taken over, our own late ones are not") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    auto& model = harness.application.model();
+    const Camera view = harness.application.document().state().views[5].camera;
+    model.camera = view;
+    harness.frame(2);
+    DOCTEST_CHECK(ui::same_view(harness.shell.state().viewport.camera.camera(), view));
+    DOCTEST_CHECK(harness.shell.state().viewport.selected_view == 5);
+    const Camera old = model.camera;
+    harness.drag(in_viewport(harness, 0.5f, 0.5f), in_viewport(harness, 0.7f, 0.5f));
+    const Camera newest = harness.shell.state().viewport.camera.camera();
+    DOCTEST_CHECK(turned(old, newest) > 0.05);
+    DOCTEST_CHECK(ui::same_view(model.camera, newest));
+}
+
+DOCTEST_TEST_CASE("keys fly, frame and go home") {
+    Harness harness({1280, 720, 1, Situation::Located, false});
+    const auto& camera = harness.application.model().camera;
+    Vec3 before = camera.centre();
+    harness.hold('W', true);
+    harness.frame(10);
+    harness.hold('W', false);
+    DOCTEST_CHECK(dot(camera.centre() - before, camera.forward()) > 0.01);
+    before = camera.centre();
+    harness.hold('E', true);
+    harness.frame(10);
+    harness.hold('E', false);
+    DOCTEST_CHECK(dot(camera.centre() - before, harness.application.model().orbit.up) > 0.01);
+    harness.key('F');
+    harness.frame(90);
+    // The bear is smaller than the scene with its ground: the camera went nearer.
+    DOCTEST_CHECK(harness.shell.state().viewport.camera.pose().distance <
+                  harness.application.model().orbit.radius);
+    harness.key('H');
+    harness.frame(90);
+    DOCTEST_CHECK(length(harness.shell.state().viewport.camera.pose().pivot -
+                         harness.application.model().orbit.centre) < 1e-6);
+    // With Ctrl they are commands, not flight.
+    before = camera.centre();
+    harness.modifiers(false, true, false);
+    harness.hold('S', true);
+    harness.frame(5);
+    harness.hold('S', false);
+    DOCTEST_CHECK(length(camera.centre() - before) < 1e-12);
+}
+
+DOCTEST_TEST_CASE("the brush paints with the operation of the keys") {
+    Harness harness({1280, 720, 1, Situation::Located, false});
+    const auto from = in_viewport(harness, 0.4f, 0.4f), to = in_viewport(harness, 0.6f, 0.4f);
+    auto& application = harness.application;
+    harness.key('B');
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Brush);
+    harness.drag(from, to);
+    DOCTEST_REQUIRE(!application.regions.empty());
+    DOCTEST_CHECK(application.calls.back().ends_with("end"));
+    // Without gaps: neighbouring circles overlap, over the whole way.
+    float reached = 0;
+    std::array<float, 2> last = application.regions.front().circles.front();
+    const float scale = application.regions.front().radius_px / application.model().view.brush_px;
+    for (const auto& region : application.regions)
+        for (const auto& circle : region.circles) {
+            DOCTEST_CHECK(std::hypot(circle[0] - last[0], circle[1] - last[1]) < region.radius_px);
+            last = circle;
+            reached = std::max(reached, circle[0]);
+        }
+    const auto rect = harness.rect("viewport");
+    DOCTEST_CHECK(reached == doctest::Approx((to.x - rect.x) * scale).epsilon(0.05));
+    for (const auto operation : harness.application.operations)
+        DOCTEST_CHECK(operation == ui::SetOperation::Add);
+    harness.application.operations.clear();
+    harness.modifiers(false, true, false);
+    harness.drag(from, to);
+    for (const auto operation : harness.application.operations)
+        DOCTEST_CHECK(operation == ui::SetOperation::Remove);
+    // An intersection needs the whole stroke: one call.
+    for (const bool alt : {true, false}) {
+        harness.application.operations.clear();
+        harness.modifiers(!alt, !alt, alt);
+        harness.drag(from, to);
+        DOCTEST_CHECK(harness.application.operations ==
+                      std::vector<ui::SetOperation>{ui::SetOperation::Intersect});
+    }
+    harness.modifiers(false, false, false);
+    harness.key(key::Escape);
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
+}
+
+DOCTEST_TEST_CASE("rectangle and lasso send one polygon in texture pixels") {
+    Harness harness({1280, 720, 1, Situation::Located, false});
+    const auto rect = harness.rect("viewport");
+    auto& application = harness.application;
+    // A texture at half the size, as while moving.
+    application.model().viewport_width /= 2;
+    application.model().viewport_height /= 2;
+    harness.click("tool.rectangle");
+    harness.drag(in_viewport(harness, 0.25f, 0.25f), in_viewport(harness, 0.5f, 0.75f));
+    DOCTEST_REQUIRE(application.regions.size() == 1);
+    DOCTEST_REQUIRE(application.regions[0].polygon.size() == 4);
+    DOCTEST_CHECK(application.regions[0].polygon[2][0] == doctest::Approx(rect.width * 0.25).epsilon(0.02));
+    DOCTEST_CHECK(application.regions[0].polygon[2][1] == doctest::Approx(rect.height * 0.375).epsilon(0.02));
+    harness.key('L');
+    const auto at = in_viewport(harness, 0.5f, 0.5f);
+    harness.move(at.x, at.y);
+    harness.press();
+    for (int step = 0; step < 20; ++step) {
+        const float angle = 0.314f * static_cast<float>(step);
+        ImGui::GetIO().MousePos = {at.x + 60 * std::cos(angle), at.y + 60 * std::sin(angle)};
+        harness.frame();
+    }
+    harness.release();
+    DOCTEST_REQUIRE(application.regions.size() == 2);
+    DOCTEST_CHECK(application.regions[1].polygon.size() > 10);
+    // Escape while dragging: nothing is sent.
+    harness.press();
+    harness.hold(key::Escape, true);
+    harness.release();
+    harness.hold(key::Escape, false);
+    DOCTEST_CHECK(application.regions.size() == 2);
+}
+
+DOCTEST_TEST_CASE("painting without a label makes one first") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    auto state = harness.application.document().state();
+    state.labels.clear();
+    state.active_label = -1;
+    harness.application.document().apply("none", state);
+    harness.key('B');
+    harness.application.calls.clear();
+    harness.drag(in_viewport(harness, 0.4f, 0.4f), in_viewport(harness, 0.5f, 0.4f));
+    DOCTEST_REQUIRE(harness.application.calls.size() >= 2);
+    DOCTEST_CHECK(harness.application.calls[0] == "add_label label");
+    DOCTEST_CHECK(harness.application.calls[1].starts_with("select"));
+}
+
+DOCTEST_TEST_CASE("brush size by keys and wheel") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    const float before = harness.application.model().view.brush_px;
+    harness.key(key::RightBracket);
+    DOCTEST_CHECK(harness.application.model().view.brush_px > before);
+    harness.key(key::LeftBracket);
+    DOCTEST_CHECK(harness.application.model().view.brush_px == doctest::Approx(before));
+    const auto at = in_viewport(harness, 0.5f, 0.5f);
+    harness.move(at.x, at.y);
+    harness.modifiers(false, false, true);
+    harness.wheel(2);
+    DOCTEST_CHECK(harness.application.model().view.brush_px > before);
+}
+
+DOCTEST_TEST_CASE("the wipe is dragged, the flip is held") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    harness.key('V');
+    harness.frame(2);
+    DOCTEST_CHECK(harness.application.model().comparison == ui::Comparison::Wipe);
+    const Camera before = harness.application.model().camera;
+    harness.drag(harness.middle("viewport.wipe"), in_viewport(harness, 0.8f, 0.5f));
+    DOCTEST_CHECK(harness.application.model().view.wipe == doctest::Approx(0.8).epsilon(0.02));
+    DOCTEST_CHECK(ui::same_view(before, harness.application.model().camera));
+    harness.hold(key::Grave, true);
+    DOCTEST_CHECK(harness.application.model().comparison == ui::Comparison::Original);
+    harness.frame(10);
+    harness.hold(key::Grave, false);
+    DOCTEST_CHECK(harness.application.model().comparison == ui::Comparison::Wipe);
+    harness.key('V');
+    DOCTEST_CHECK(harness.application.model().comparison == ui::Comparison::None);
+}
+
+DOCTEST_TEST_CASE("the mouse over a toast or a menu does not reach the scene") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    const Camera before = harness.application.model().camera;
+    const auto toast = harness.middle("toast.0");
+    harness.drag(toast, {toast.x + 40, toast.y});
+    DOCTEST_CHECK(ui::same_view(before, harness.application.model().camera));
+    harness.click("menu.View");
+    harness.move(harness.middle("menu.home").x, harness.middle("menu.home").y);
+    harness.wheel(2);
+    DOCTEST_CHECK(ui::same_view(before, harness.application.model().camera));
+}
+
+DOCTEST_TEST_CASE("cameras are chosen by a click and looked through by two") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    harness.application.model().view.show_views = true;
+    harness.wheel(0);
+    const auto at = in_viewport(harness, 0.5f, 0.5f);
+    harness.move(at.x, at.y);
+    harness.wheel(-8);
+    // Some view's centre that is seen now.
+    const auto& camera = harness.application.model().camera;
+    const auto rect = harness.rect("viewport");
+    const auto& views = harness.application.document().state().views;
+    for (std::size_t index = 0; index < views.size(); ++index) {
+        const Vec3 on = pixel(camera, views[index].camera.centre());
+        const auto* toast = harness.find("toast.0");
+        if (on.z < 0 || on.x < 0.1 || on.x > 0.6 || on.y < 0.2 || on.y > 0.6 || toast == nullptr) continue;
+        const float x = rect.x + static_cast<float>(on.x) * rect.width,
+                    y = rect.y + static_cast<float>(on.y) * rect.height;
+        harness.click(x, y);
+        const int chosen = harness.shell.state().viewport.selected_view;
+        DOCTEST_REQUIRE(chosen >= 0);
+        harness.application.calls.clear();
+        harness.frame(40);
+        harness.move(x, y);
+        for (int press = 0; press < 2; ++press) {
+            harness.press();
+            harness.release();
+        }
+        DOCTEST_CHECK(harness.application.asked("look_through " + std::to_string(chosen)));
+        return;
+    }
+    DOCTEST_CHECK_MESSAGE(false, "no view was in the picture");
+}
+
+}  // namespace gse::test
