@@ -2,9 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
+#ifdef GSE_WINDOW
+#include "app/bench_preview.h"
+#endif
 #include "app/cli.h"
 #include "app/scene_tools.h"
 #include "app/starter_bench.h"
@@ -121,12 +125,45 @@ void add_starter_bench(CLI::App& bench, CommandContext& context) {
     });
 }
 
+#ifdef GSE_WINDOW
+void add_preview_bench(CLI::App& bench) {
+    struct Options {
+        std::filesystem::path scene, output;
+        std::string size = "1280x720";
+        PreviewBenchOptions bench;
+    };
+    auto options = std::make_shared<Options>();
+    auto* command = bench.add_subcommand("preview", "A turn around the scene with the preview's renderers, with their error");
+    command->add_option("scene", options->scene, "Scene file")->required();
+    command->add_option("--backend", options->bench.backend, "vulkan, native or both")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"vulkan", "native", "both"}));
+    command->add_option("--size", options->size, "Picture size, WIDTHxHEIGHT")->capture_default_str();
+    command->add_option("--frames", options->bench.frames, "Frames of the turn")->capture_default_str()->check(CLI::Range(1, 10000));
+    command->add_flag("--compare,!--no-compare", options->bench.compare_plain, "Measure the error against the double version");
+    command->add_flag("--validation", options->bench.validation, "With Vulkan's validation layers (slow); counts messages");
+    command->add_option("--out", options->output, "Also write the JSON to this file");
+    command->callback([options] {
+        char rest = 0;
+        if (std::sscanf(options->size.c_str(), "%dx%d%c", &options->bench.width, &options->bench.height, &rest) != 2 ||
+            options->bench.width < 1 || options->bench.height < 1 || options->bench.width > 16384 || options->bench.height > 16384)
+            throw Error(ErrorCode::InvalidArgument, "the size \"" + options->size + "\" is not understood", "write it like 1280x720");
+        const auto json = bench_preview(load_scene(options->scene), options->bench);
+        if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
+        fmt::print("{}\n", json.dump(2));
+    });
+}
+#endif
+
 }  // namespace
 
 void add_bench_command(CLI::App& app, CommandContext& context) {
     auto* bench = app.add_subcommand("bench", "Measure run time against error");
     bench->require_subcommand(1);
     add_raster_bench(*bench);
+#ifdef GSE_WINDOW
+    add_preview_bench(*bench);
+#endif
     add_starter_bench(*bench, context);
 }
 
