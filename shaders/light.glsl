@@ -18,7 +18,7 @@ void blend_splat(vec4 a, vec2 b, vec4 colour, float z, vec2 first) {
     for (int k = 0; k < PIXELS; ++k) {
         const float u = u0 + a.z * float(k);
         const float power = base - u * u;
-        const float alpha = splat_alpha(power, b.y, own_reach);
+        const float alpha = splat_alpha(power, b.y, own_reach, splat_slope(a.z, a.w, b.x, u, v));
         // `running` goes on shrinking behind the cut; it is monotone, so a finished pixel stays finished.
         const float light = alpha * running[k];
         running[k] -= light;

@@ -21,7 +21,9 @@ void main() {
         const vec2 b = records_b[row].xy;
         const vec2 d = vec2(push.x, push.y) + 0.5 - a.xy;
         const float u = a.z * d.x + a.w * d.y, v = b.x * d.y;
-        const float weight = splat_alpha(b.y - u * u - v * v, b.y, splat_reach(b.y)) * running;
+        const float alpha =
+            splat_alpha(b.y - u * u - v * v, b.y, splat_reach(b.y), splat_slope(a.z, a.w, b.x, u, v));
+        const float weight = alpha * running;
         running -= weight;
         if (weight > most && running > TransmittanceCut) {
             most = weight;

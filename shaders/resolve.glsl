@@ -20,7 +20,8 @@ vec4 resolve(vec3 rgb, float alpha, float depth, float value, uint mode) {
     float cover = alpha;
     if (mode == ModeDepth) {
         const float z = depth * inverse;
-        shown = map_colour(1.0 - z / (z + frame.optics.w));
+        const float scale = frame.optics.w;
+        shown = map_colour(scale * scale / (scale * scale + z * z));
     } else if (mode == ModeOpacity) {
         shown = vec3(alpha);
         cover = 1.0;

@@ -57,7 +57,7 @@ GSE_CONSTANT(uint, ModeChanged, 9u);
 
 // Look of the modes.
 GSE_CONSTANT(float, RingReach, 2.8853900817779268f);  // u^2 + v^2 at two standard deviations, log2 units
-GSE_CONSTANT(float, RingInner, 0.7f);                 // of the reach: where the ring begins
+GSE_CONSTANT(float, RingWidthPx, 1.3f);
 GSE_CONSTANT(float, RingAlpha, 0.85f);
 GSE_CONSTANT(float, RingFill, 0.12f);        // of the splat's own alpha inside its ring
 GSE_CONSTANT(float, CentreAlpha, 0.9f);

@@ -1,14 +1,21 @@
 // alpha of a splat at a pixel, for every way of showing it. power = log2 alpha, before the limits.
 
-float splat_alpha(float power, float log2_opacity, float own_reach) {
+float splat_alpha(float power, float log2_opacity, float own_reach, float slope) {
     if (Mode == ModeCentres) return power >= -Log2Of255 ? CentreAlpha : 0.0;
     if (Mode == ModeRings || Mode == ModeEllipsoids) {
         const float distance = log2_opacity - power;  // u^2 + v^2
-        if (Mode == ModeEllipsoids) return distance <= own_reach ? AlphaLimit : 0.0;
-        const float fill = RingFill * min(exp2(power), AlphaLimit);
-        return distance > own_reach ? 0.0 : distance >= RingInner * own_reach ? RingAlpha : fill;
+        if (distance > own_reach) return 0.0;
+        if (Mode == ModeEllipsoids) return AlphaLimit;
+        const bool rim = sqrt(own_reach) - sqrt(distance) <= RingWidthPx * slope;
+        return rim ? RingAlpha : RingFill * min(exp2(power), AlphaLimit);
     }
     return power >= -Log2Of255 ? min(exp2(power), AlphaLimit) : 0.0;
+}
+
+/// Change of sqrt(u^2 + v^2) per pixel, for rings of one width everywhere.
+float splat_slope(float l1, float l2, float l3, float u, float v) {
+    if (Mode != ModeRings) return 0.0;
+    return length(vec2(l1 * u, l2 * u + l3 * v)) * inversesqrt(max(u * u + v * v, 1e-12));
 }
 
 /// How bright the splat's colour is there: ellipsoids have a dark rim.

@@ -65,7 +65,7 @@ std::array<float, 4> resolve_pixel(const PixelSums& sums, const Display& display
     float cover = sums.alpha;
     if (display.mode == Mode::Depth) {
         const float z = sums.depth * inverse;
-        shown = map_colour(1.0f - z / (z + depth_scale));
+        shown = map_colour(depth_scale * depth_scale / (depth_scale * depth_scale + z * z));
     } else if (display.mode == Mode::Opacity) {
         shown = {sums.alpha, sums.alpha, sums.alpha};
         cover = 1.0f;

@@ -10,10 +10,12 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <thread>
 
 #include "app/window.h"
 #include "app/window_textures.h"
+#include "engine/preview/splat_renderer.h"
 #include "engine/vulkan/device.h"
 
 using namespace gse;
@@ -69,6 +71,82 @@ std::shared_ptr<const Image> coloured(std::array<float, 3> colour) {
     auto image = std::make_shared<Image>(8, 8, 3);
     for (std::size_t i = 0; i < image->data.size(); ++i) image->data[i] = colour[i % 3];
     return image;
+}
+
+/// A renderer in the window, the way an application holds it.
+class Viewport final : public app::DeviceClient {
+public:
+    Viewport(app::Window& window, const GaussianSet& set) : window_(window), set_(set) {
+        window_.add_client(this);
+        make_device(window_.device());
+    }
+    ~Viewport() override {
+        window_.remove_client(this);
+        drop_device();
+    }
+    void drop_device() override {
+        if (id_ != 0) window_.remove_texture(id_);
+        id_ = 0;
+        revision_ = 0;
+        renderer_.reset();
+    }
+    void make_device(vulkan::Device& device) override {
+        renderer_.emplace(device);
+        renderer_->upload(set_);
+    }
+    /// Call between begin_frame() and end_frame().
+    ui::TextureId draw(const preview::FrameRequest& request) {
+        renderer_->render(window_.commands(), request);
+        if (renderer_->revision() != revision_) {
+            if (id_ != 0) window_.remove_texture(id_);
+            id_ = window_.add_texture(renderer_->view());
+            revision_ = renderer_->revision();
+        }
+        return id_;
+    }
+
+private:
+    app::Window& window_;
+    GaussianSet set_;
+    std::optional<preview::SplatRenderer> renderer_;
+    ui::TextureId id_ = 0;
+    std::uint64_t revision_ = 0;
+};
+
+/// A large white splat in the middle is seen at the middle of the picture, at any size, also after a lost
+/// device.
+void check_preview(app::Window& window) {
+    GaussianData data;
+    data.resize(1);
+    data.position = {0, 0, 2};
+    data.log_scale = {-1, -1, -1};
+    data.rotation = {1, 0, 0, 0};
+    data.opacity_logit = {8};
+    data.sh = {2, 2, 2};
+    Viewport viewport(window, GaussianSet{data});
+    const auto check = [&](int size) {
+        preview::FrameRequest request;
+        request.camera.width = request.camera.height = size;
+        request.camera.fx = request.camera.fy = size;
+        request.camera.cx = request.camera.cy = 0.5 * size;
+        ui::TextureId id = 0;
+        for (int i = 0; i < 3; ++i) {
+            window.poll();
+            DOCTEST_REQUIRE(window.begin_frame());
+            id = viewport.draw(request);
+            window.end_frame();
+        }
+        const Image seen = captured(window, id);
+        DOCTEST_CHECK(seen.at(32, 32, 0) > 0.95f);
+        DOCTEST_CHECK(seen.at(2, 2, 0) < 0.2f);
+    };
+    check(64);
+    check(33);
+    window.device().pretend_lost();
+    DOCTEST_CHECK_THROWS_AS(frame(window, 0), vulkan::DeviceLost);
+    window.rebuild_device();
+    check(33);
+    check(128);
 }
 
 }  // namespace
@@ -138,6 +216,7 @@ DOCTEST_TEST_CASE("window shows pictures, survives resizing and a lost device") 
         const Image seen = captured(window, stream.id());
         DOCTEST_CHECK(seen.at(30, 30, 0) > 0.5f);
     }
+    DOCTEST_SUBCASE("splats in the window, before and after the device is lost") { check_preview(window); }
     DOCTEST_SUBCASE("waking from another thread") {
         const std::jthread waker([] {
             std::this_thread::sleep_for(std::chrono::milliseconds(50));
