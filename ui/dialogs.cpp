@@ -39,7 +39,7 @@ void draw_help(Context& context) {
     bool& open = context.state.help_open;
     if (open && !ImGui::IsPopupOpen("Keys")) ImGui::OpenPopup("Keys");
     if (!open) return;
-    centre_next({context.em * 62, context.em * 40});
+    centre_next({context.em * 62, context.em * 44});
     if (!ImGui::BeginPopupModal("Keys", &open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) return;
     const bool wide = ImGui::GetContentRegionAvail().x > context.em * 48;
     if (ImGui::BeginTable("columns", wide ? 2 : 1)) {

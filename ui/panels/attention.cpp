@@ -30,38 +30,49 @@ ImU32 state_colour(const AttentionView& view) {
     return view.captured >= 0.5 ? palette::Good : palette::Warning;
 }
 
-void draw_strip(Context& context, float side) {
+/// One thumbnail: the map over the render, a dot for the vote, a frame when chosen.
+void draw_thumbnail(Context& context, int index, float side) {
     auto& state = context.state.attention;
-    const auto& views = context.model.attention;
-    const float height = side + ImGui::GetStyle().ScrollbarSize + ImGui::GetStyle().ItemSpacing.y;
-    if (!ImGui::BeginChild("strip", {0, height}, false, ImGuiWindowFlags_HorizontalScrollbar))
-        return ImGui::EndChild();
-    for (int index = 0; index < static_cast<int>(views.size()); ++index) {
-        const auto& view = views[static_cast<std::size_t>(index)];
-        if (index > 0) ImGui::SameLine(0, context.em * 0.25f);
-        ImGui::PushID(index);
-        const ImVec2 low = ImGui::GetCursorScreenPos();
-        if (ImGui::InvisibleButton("view", {side, side})) state.chosen = index;
-        note(context, fmt::format("attention.view.{}", index));
-        const ImVec2 high(low.x + side, low.y + side);
-        ImDrawList* list = ImGui::GetWindowDrawList();
-        const auto& picture = view.map_coloured != nullptr ? view.map_coloured : view.render;
-        if (ImGui::IsItemVisible() && picture != nullptr)
-            list->AddImageRounded(imgui_texture(context.textures.texture(picture)), low, high, {0, 0}, {1, 1},
-                                  view.failed ? IM_COL32(255, 255, 255, 90) : IM_COL32_WHITE,
-                                  context.em * 0.2f);
-        const float r = context.em * 0.22f;
-        list->AddCircleFilled({high.x - 2 * r, low.y + 2 * r}, r * 1.35f, palette::Shade);
-        list->AddCircleFilled({high.x - 2 * r, low.y + 2 * r}, r, state_colour(view));
-        if (index == state.chosen)
-            list->AddRect(low, high, palette::Accent, context.em * 0.2f, 0,
-                          std::max(2.0f, context.em * 0.14f));
-        tooltip(fmt::format("{}\n{}\nThe mask holds {} of the attention.\nDouble click: look through it.",
-                            view.name, branch_words(view), percent_text(view.captured)));
-        if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) context.actions.set_camera(view.camera);
-        ImGui::PopID();
-    }
+    const auto& view = context.model.attention[static_cast<std::size_t>(index)];
+    ImGui::PushID(index);
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    if (ImGui::InvisibleButton("view", {side, side})) state.chosen = index;
+    note(context, fmt::format("attention.view.{}", index));
+    const ImVec2 high(low.x + side, low.y + side);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const auto& picture = view.map_coloured != nullptr ? view.map_coloured : view.render;
+    const float round = context.em * 0.2f;
+    list->AddRectFilled(low, high, palette::Sunken, round);
+    if (ImGui::IsItemVisible() && picture != nullptr)
+        list->AddImageRounded(imgui_texture(context.textures.texture(picture)), low, high, {0, 0}, {1, 1},
+                              view.failed ? IM_COL32(255, 255, 255, 90) : IM_COL32_WHITE, round);
+    const float r = context.em * 0.22f;
+    list->AddCircleFilled({high.x - 2 * r, low.y + 2 * r}, r * 1.35f, palette::Shade);
+    list->AddCircleFilled({high.x - 2 * r, low.y + 2 * r}, r, state_colour(view));
+    if (index == state.chosen)
+        list->AddRect(low, high, palette::Accent, round, 0, std::max(2.0f, context.em * 0.14f));
+    tooltip(fmt::format("{}\n{}\nThe mask holds {} of the attention.\nDouble click: look through it.",
+                        view.name, branch_words(view), percent_text(view.captured)));
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) context.actions.set_camera(view.camera);
+    ImGui::PopID();
+}
+
+/// All views: a line that scrolls sideways, or (upright) a few columns that scroll down.
+void draw_strip(Context& context, ImVec2 size, bool upright) {
+    const float side = context.em * 3, gap = context.em * 0.25f;
+    const int columns =
+        upright
+            ? std::max(1, static_cast<int>((size.x - ImGui::GetStyle().ScrollbarSize + gap) / (side + gap)))
+            : 1 << 20;
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, gap));
+    const auto flags = upright ? ImGuiWindowFlags_None : ImGuiWindowFlags_HorizontalScrollbar;
+    if (ImGui::BeginChild("strip", size, false, flags))
+        for (int index = 0; index < static_cast<int>(context.model.attention.size()); ++index) {
+            if (index % columns != 0) ImGui::SameLine();
+            draw_thumbnail(context, index, side);
+        }
     ImGui::EndChild();
+    ImGui::PopStyleVar();
 }
 
 void draw_points(Context& context, const AttentionView& view, ImVec2 low, float scale) {
@@ -152,33 +163,70 @@ void draw_controls(Context& context, const AttentionView& view) {
         context.actions.set_camera(view.camera);
 }
 
-void draw_chosen(Context& context, const AttentionView& view) {
-    constexpr int Pictures = 4;
-    const std::array<std::pair<const std::shared_ptr<const Image>*, const char*>, Pictures> shown{
+/// Word, mode and how many views vote.
+void draw_summary(Context& context) {
+    const auto& views = context.model.attention;
+    const auto voting =
+        std::count_if(views.begin(), views.end(), [](const AttentionView& view) { return !view.failed; });
+    badge(context, context.model.attention_word, palette::Accent);
+    ImGui::SameLine();
+    const std::string votes = fmt::format("{} of {} views vote", voting, views.size());
+    ImGui::TextUnformatted(shortened(votes, ImGui::GetContentRegionAvail().x).c_str());
+    tooltip(context.model.attention_mode);
+}
+
+/// The chosen view's pictures, `columns` beside each other; the first is left out where they would get too
+/// small.
+void draw_pictures(Context& context, const AttentionView& view, ImVec2 space, int columns) {
+    const std::array<std::pair<const std::shared_ptr<const Image>*, const char*>, 4> all{
         {{&view.render, "Render"},
          {&view.map_coloured, "Attention"},
          {&context.state.attention.picture, "Above threshold"},
-         {&view.mask_picture, "Mask it voted for"}}};
-    const ImVec2 space = ImGui::GetContentRegionAvail();
+         {&view.mask_picture, "Voted mask"}}};
     const float gap = ImGui::GetStyle().ItemSpacing.x, line = ImGui::GetTextLineHeightWithSpacing();
-    const float controls = context.em * 15;
-    const bool row = space.x > controls + context.em * 20;
-    const int columns = row ? Pictures : 2;
-    const float for_pictures = row ? space.x - controls - gap : space.x;
-    float side = (for_pictures - gap * static_cast<float>(columns - 1)) / static_cast<float>(columns);
-    if (row)
-        side = std::min(side, std::max(context.em * 5, space.y - line - ImGui::GetStyle().ItemSpacing.y));
-    for (int at = 0; at < Pictures; ++at) {
-        if (at % columns != 0) ImGui::SameLine();
-        draw_picture(context, view, *shown[static_cast<std::size_t>(at)].first,
-                     shown[static_cast<std::size_t>(at)].second, side);
+    const auto side_of = [&](int count) {
+        return (space.x - gap * static_cast<float>(count - 1)) / static_cast<float>(count);
+    };
+    const bool row = columns > 2;
+    int first = 0;
+    if (row && side_of(4) < std::min(context.em * 10, space.y - line)) first = 1;
+    const int in_row = row ? 4 - first : columns;
+    float side = side_of(in_row);
+    if (row) side = std::min(side, std::max(context.em * 5, space.y - line));
+    for (int at = first; at < 4; ++at) {
+        if ((at - first) % in_row != 0) ImGui::SameLine();
+        draw_picture(context, view, *all[static_cast<std::size_t>(at)].first,
+                     all[static_cast<std::size_t>(at)].second, std::floor(side));
     }
-    if (row) ImGui::SameLine();
-    ImGui::BeginGroup();
-    ImGui::PushItemWidth(-1);
+}
+
+/// Thumbnails, pictures and controls beside each other.
+void draw_wide(Context& context, const AttentionView& view) {
+    const ImVec2 space = ImGui::GetContentRegionAvail();
+    const float gap = ImGui::GetStyle().ItemSpacing.x;
+    const int columns = space.y < context.em * 18 ? 2 : 3;
+    const float strip = context.em * 3.25f * static_cast<float>(columns) + ImGui::GetStyle().ScrollbarSize;
+    const float controls = std::clamp(space.x * 0.26f, context.em * 13, context.em * 22);
+    const float pictures = space.x - strip - controls - 2 * gap;
+    draw_strip(context, {strip, space.y}, true);
+    ImGui::SameLine();
+    if (ImGui::BeginChild("pictures", {pictures, space.y}, false, ImGuiWindowFlags_NoScrollbar))
+        draw_pictures(context, view, {pictures, space.y}, 4);
+    ImGui::EndChild();
+    ImGui::SameLine();
+    if (ImGui::BeginChild("controls", {0, space.y}, false)) {
+        draw_summary(context);
+        draw_controls(context, view);
+    }
+    ImGui::EndChild();
+}
+
+/// One below the other, for a narrow place.
+void draw_narrow(Context& context, const AttentionView& view) {
+    draw_summary(context);
+    draw_strip(context, {0, context.em * 3.1f + ImGui::GetStyle().ScrollbarSize}, false);
     draw_controls(context, view);
-    ImGui::PopItemWidth();
-    ImGui::EndGroup();
+    draw_pictures(context, view, ImGui::GetContentRegionAvail(), 2);
 }
 
 }  // namespace
@@ -197,17 +245,13 @@ void draw_attention_panel(Context& context) {
         return;
     }
     state.chosen = std::clamp(state.chosen, 0, static_cast<int>(views.size()) - 1);
-    const auto voting =
-        std::count_if(views.begin(), views.end(), [](const AttentionView& view) { return !view.failed; });
-    badge(context, context.model.attention_word, palette::Accent);
-    ImGui::SameLine();
-    const std::string summary =
-        fmt::format("{}   {} of {} views vote", context.model.attention_mode, voting, views.size());
-    ImGui::TextUnformatted(shortened(summary, ImGui::GetContentRegionAvail().x).c_str());
-    draw_strip(context, context.em * 3);
     const auto& view = views[static_cast<std::size_t>(state.chosen)];
     update_picture(context, view);
-    draw_chosen(context, view);
+    const ImVec2 space = ImGui::GetContentRegionAvail();
+    if (space.x > context.em * 42)
+        draw_wide(context, view);
+    else
+        draw_narrow(context, view);
 }
 
 }  // namespace gse::ui

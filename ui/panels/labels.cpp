@@ -84,7 +84,7 @@ void draw_threshold(Context& context, const NamedLabel& label) {
     } else {
         labels.histogram.update(label.weight);
         float threshold = labels.threshold >= 0 ? labels.threshold : label.threshold;
-        const auto drag = histogram(context, "labels.threshold", labels.histogram, context.em * 5, threshold);
+        const auto drag = histogram(context, "labels.threshold", labels.histogram, context.em * 4, threshold);
         tooltip(
             "How sure the views are about each splat. Drag the line: splats right of it belong to the "
             "label.");

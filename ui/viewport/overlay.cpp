@@ -149,21 +149,23 @@ void draw_wipe(Context& context, ImDrawList* list) {
     note_rect(context, "viewport.wipe", {x - r, middle - r}, {x + r, middle + r});
 }
 
-/// One line at the lower edge: what the active tool does, and with which keys.
+/// A line below the numbers: what the active tool does, and with which keys; as much as fits.
 void draw_hint(Context& context, ImDrawList* list) {
     const auto& state = context.state.viewport;
     if (state.tool == Tool::Orbit) return;
-    const char* what = state.tool == Tool::Brush       ? "Brush: drag to paint, [ ] size"
+    std::string text = state.tool == Tool::Brush       ? "Brush: drag to paint"
                        : state.tool == Tool::Rectangle ? "Rectangle: drag a box"
                                                        : "Lasso: drag around";
-    const std::string text =
-        fmt::format("{}   Shift add, Ctrl remove, Alt intersect   N: {}   middle drag orbits   Esc leaves",
-                    what, context.view.front_only ? "front only" : "all the way through");
-    const float room = state.high.x - state.low.x - context.em * 8;
-    const std::string fitting = shortened(text, room);
-    const float width = ImGui::CalcTextSize(fitting.c_str()).x + context.em * 0.8f;
-    shaded_text(context, list,
-                {(state.low.x + state.high.x - width) * 0.5f, state.high.y - context.em * 2.2f}, fitting);
+    const float room = state.high.x - state.low.x - context.em * 2;
+    for (const char* part :
+         {"Shift add", "Ctrl remove", "Alt intersect",
+          context.view.front_only ? "N: front only" : "N: all the way through",
+          state.tool == Tool::Brush ? "[ ] size" : "", "middle drag orbits", "Esc leaves"}) {
+        const std::string longer = fmt::format("{}   {}", text, part);
+        if (*part != 0 && ImGui::CalcTextSize(longer.c_str()).x < room) text = longer;
+    }
+    const float below = context.view.show_hud ? 2.3f : 0.5f;
+    shaded_text(context, list, {state.low.x + context.em * 0.5f, state.low.y + context.em * below}, text);
 }
 
 }  // namespace

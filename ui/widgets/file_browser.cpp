@@ -35,7 +35,7 @@ bool is_there(const std::filesystem::path& path) {
 
 /// Keeps the list clear of what stands below it.
 float footer_height(Context& context, bool saves) {
-    return ImGui::GetFrameHeightWithSpacing() * (saves ? 2.0f : 1.0f) + context.em * 1.6f;
+    return ImGui::GetFrameHeightWithSpacing() * (saves ? 2.0f : 1.0f) + context.em * 0.2f;
 }
 
 }  // namespace
@@ -202,7 +202,7 @@ void FileBrowser::draw_entry(Context& context, int index) {
     draw_icon(ImGui::GetWindowDrawList(), entry.is_folder ? Icon::Folder : Icon::File,
               {at.x + context.em * 0.6f, at.y + line * 0.5f}, context.em * 0.85f,
               entry.is_folder ? palette::Accent : palette::TextDim);
-    ImGui::SameLine(context.em * 1.5f);
+    ImGui::SetCursorScreenPos({at.x + context.em * 1.5f, at.y});
     ImGui::TextUnformatted(entry.name.c_str());
     ImGui::TableNextColumn();
     if (!entry.is_folder) ImGui::TextUnformatted(bytes_text(static_cast<double>(entry.bytes)).c_str());

@@ -59,33 +59,8 @@ private:
     float width_;
 };
 
-void draw_tool(const Pen& pen, Icon icon) {
+void draw_place(const Pen& pen, Icon icon) {
     switch (icon) {
-        case Icon::Pointer:
-            pen.fill({{-0.5f, -0.85f}, {-0.5f, 0.6f}, {-0.12f, 0.28f}, {0.6f, 0.22f}});
-            pen.fill({{-0.16f, 0.2f}, {0.08f, 0.1f}, {0.38f, 0.78f}, {0.14f, 0.88f}});
-            break;
-        case Icon::Pencil:
-            pen.path({{-0.75f, 0.75f}, {-0.6f, 0.2f}, {0.4f, -0.8f}, {0.8f, -0.4f}, {-0.2f, 0.6f}}, true);
-            pen.path({{0.15f, -0.55f}, {0.55f, -0.15f}});
-            break;
-        case Icon::Brush:
-            pen.path({{-0.2f, 0.15f}, {0.75f, -0.8f}});
-            pen.path({{0.05f, 0.4f}, {0.9f, -0.65f}});
-            pen.fill({{-0.75f, 0.8f}, {-0.45f, 0.2f}, {-0.1f, 0.05f}, {0.12f, 0.35f}, {-0.1f, 0.65f}});
-            break;
-        case Icon::Rectangle:
-            for (const float side : {-0.7f, 0.7f})
-                for (const float from : {-0.7f, -0.15f, 0.4f}) {
-                    pen.path({{from, side}, {from + 0.3f, side}});
-                    pen.path({{side, from}, {side, from + 0.3f}});
-                }
-            break;
-        case Icon::Lasso:
-            pen.ellipse(0.05f, -0.25f, 0.8f, 0.5f);
-            pen.circle(-0.45f, 0.3f, 0.17f);
-            pen.path({{-0.45f, 0.47f}, {-0.35f, 0.7f}, {-0.6f, 0.9f}});
-            break;
         case Icon::FrontOnly:
             pen.path({{-0.8f, -0.5f}, {0.3f, -0.5f}, {0.3f, 0.6f}, {-0.8f, 0.6f}}, true);
             pen.fill({{-0.8f, -0.5f}, {0.3f, -0.5f}, {0.3f, 0.6f}, {-0.8f, 0.6f}});
@@ -119,6 +94,38 @@ void draw_tool(const Pen& pen, Icon icon) {
             break;
         default:
             break;
+    }
+}
+
+void draw_tool(const Pen& pen, Icon icon) {
+    switch (icon) {
+        case Icon::Pointer:
+            pen.fill({{-0.5f, -0.85f}, {-0.5f, 0.6f}, {-0.12f, 0.28f}, {0.6f, 0.22f}});
+            pen.fill({{-0.16f, 0.2f}, {0.08f, 0.1f}, {0.38f, 0.78f}, {0.14f, 0.88f}});
+            break;
+        case Icon::Pencil:
+            pen.path({{-0.75f, 0.75f}, {-0.6f, 0.2f}, {0.4f, -0.8f}, {0.8f, -0.4f}, {-0.2f, 0.6f}}, true);
+            pen.path({{0.15f, -0.55f}, {0.55f, -0.15f}});
+            break;
+        case Icon::Brush:
+            pen.path({{-0.2f, 0.15f}, {0.75f, -0.8f}});
+            pen.path({{0.05f, 0.4f}, {0.9f, -0.65f}});
+            pen.fill({{-0.75f, 0.8f}, {-0.45f, 0.2f}, {-0.1f, 0.05f}, {0.12f, 0.35f}, {-0.1f, 0.65f}});
+            break;
+        case Icon::Rectangle:
+            for (const float side : {-0.7f, 0.7f})
+                for (const float from : {-0.7f, -0.15f, 0.4f}) {
+                    pen.path({{from, side}, {from + 0.3f, side}});
+                    pen.path({{side, from}, {side, from + 0.3f}});
+                }
+            break;
+        case Icon::Lasso:
+            pen.ellipse(0.05f, -0.25f, 0.8f, 0.5f);
+            pen.circle(-0.45f, 0.3f, 0.17f);
+            pen.path({{-0.45f, 0.47f}, {-0.35f, 0.7f}, {-0.6f, 0.9f}});
+            break;
+        default:
+            draw_place(pen, icon);
     }
 }
 

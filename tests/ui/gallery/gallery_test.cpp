@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <functional>
 
 #include "engine/io/image_file.h"
 #include "tests/test_paths.h"
 #include "tests/ui/support/harness.h"
+#include "ui/keys.h"
 
 namespace gse::test {
 namespace {
@@ -23,6 +25,7 @@ struct Shot {
     const char* name;
     Situation situation;
     std::vector<ui::PanelId> panels;
+    std::function<void(Harness&)> act = {};
 };
 
 const std::vector<Shot>& shots() {
@@ -33,6 +36,45 @@ const std::vector<Shot>& shots() {
         {"located", Situation::Located, {PanelId::Labels, PanelId::History, PanelId::Attention}},
         {"editing", Situation::Editing, {PanelId::Prompt, PanelId::History, PanelId::Progress}},
         {"result", Situation::ResultWaiting, {PanelId::Scene, PanelId::Export, PanelId::Progress}},
+        {"help", Situation::Scene, {}, [](Harness& harness) { harness.key(ui::key::F1); }},
+        {"files",
+         Situation::Scene,
+         {},
+         [](Harness& harness) {
+             harness.application.model().recent = {GSE_SOURCE_DIR "/assets/scenes/bear/scene.ply"};
+             harness.modifiers(false, true, false);
+             harness.key('O');
+             harness.modifiers(false, false, false);
+             harness.frame(3);
+             harness.key(ui::key::Down);
+         }},
+        {"settings",
+         Situation::Scene,
+         {PanelId::Prompt, PanelId::Settings},
+         [](Harness& harness) {
+             harness.click("prompt.advanced");
+             harness.frame(2);
+             if (harness.find("prompt.group.Localization") != nullptr)
+                 harness.click("prompt.group.Localization");
+             auto layout = ui::Layout::from_json(harness.shell.layout());
+             layout.right_split = 0.8f;
+             harness.shell.set_layout(layout.to_json());
+         }},
+        {"brush",
+         Situation::Located,
+         {PanelId::Labels, PanelId::Export},
+         [](Harness& harness) {
+             harness.key('B');
+             const auto view = harness.rect("viewport");
+             harness.move(view.x + view.width * 0.45f, view.y + view.height * 0.5f);
+             harness.press();
+             harness.move(view.x + view.width * 0.55f, view.y + view.height * 0.45f);
+         }},
+        {"menu", Situation::Located, {PanelId::Scene}, [](Harness& harness) { harness.click("menu.View"); }},
+        {"question",
+         Situation::Editing,
+         {PanelId::Attention},
+         [](Harness& harness) { harness.click("job.cancel"); }},
         {"failed", Situation::Failed, {PanelId::Models, PanelId::Settings, PanelId::Log}},
     };
     return All;
@@ -45,6 +87,8 @@ void take(const Shot& shot, int width, int height, float scale) {
         harness.application.model().comparison = ui::Comparison::Wipe;
     if (shot.situation == Situation::Editing) harness.application.model().view.show_views = true;
     harness.frame(6);
+    if (shot.act) shot.act(harness);
+    harness.frame(3);
     const Image picture = harness.picture();
     float brightest = 0;
     for (const float value : picture.data) brightest = std::max(brightest, value);

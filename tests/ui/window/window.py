@@ -1,0 +1,175 @@
+"""Drives the editor's window: starts Xvfb and the program, clicks and types with xdotool, looks at its state."""
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+PROGRAM = os.environ["GSE_PROGRAM"]
+PICTURES = pathlib.Path(os.environ.get("GSE_PICTURES", "window_pictures"))
+WIDTH, HEIGHT = 1280, 720
+
+
+def free_display():
+    for number in range(120, 160):
+        if not pathlib.Path(f"/tmp/.X11-unix/X{number}").exists() and not pathlib.Path(f"/tmp/.X{number}-lock").exists():
+            return f":{number}"
+    raise RuntimeError("no free display")
+
+
+class Window:
+    """One run of the program on a display of its own."""
+
+    def __init__(self, folder, *arguments, width=WIDTH, height=HEIGHT):
+        self.folder = pathlib.Path(folder)
+        self.map = self.folder / "widgets.json"
+        for old in (self.map, pathlib.Path(str(self.map) + ".state"), self.folder / "first_frame"):
+            old.unlink(missing_ok=True)
+        self.display = free_display()
+        self.server = subprocess.Popen(["Xvfb", self.display, "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp"],
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        socket = pathlib.Path("/tmp/.X11-unix/X" + self.display[1:])
+        self._until(socket.exists, 20, "the X server did not start")
+        self.environment = dict(os.environ, DISPLAY=self.display, GSE_UI_MAP=str(self.map),
+                                GSE_UI_FIRST_FRAME=str(self.folder / "first_frame"),
+                                GSE_CONFIG_DIR=str(self.folder / "config"), GSE_STATE_DIR=str(self.folder / "state"))
+        self.log = open(self.folder / "window.log", "ab")
+        self.process = subprocess.Popen([PROGRAM, "open", "--width", str(width), "--height", str(height), *map(str, arguments)],
+                                        env=self.environment, cwd=self.folder, stdout=self.log, stderr=self.log)
+        self._until(lambda: pathlib.Path(str(self.map) + ".state").exists(), 60, "the window did not come up")
+
+    # Looking
+    def _read(self, path):
+        for _ in range(50):
+            try:
+                return json.loads(pathlib.Path(path).read_text())
+            except (json.JSONDecodeError, FileNotFoundError):
+                time.sleep(0.02)
+        raise AssertionError(f"{path} cannot be read")
+
+    def widgets(self):
+        return self._read(self.map)
+
+    def state(self):
+        return self._read(str(self.map) + ".state")
+
+    def _until(self, condition, seconds, message):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if condition():
+                return
+            if hasattr(self, "process") and self.process.poll() is not None:
+                raise AssertionError(f"the program ended with {self.process.returncode}: "
+                                     + (self.folder / "window.log").read_text()[-2000:])
+            time.sleep(0.05)
+        raise AssertionError(message + (f": {self.state()}" if hasattr(self, "process") else ""))
+
+    def wait(self, condition, message, seconds=120):
+        """Until condition(state) holds."""
+        self._until(lambda: condition(self.state()), seconds, message)
+
+    def wait_widget(self, name, seconds=20, enabled=True):
+        self._until(lambda: self.widgets().get(name, {}).get("visible") and
+                    (not enabled or self.widgets()[name]["enabled"]), seconds, f"{name} is not there")
+
+    def idle(self, seconds=180):
+        time.sleep(0.3)
+        self.wait(lambda s: not s["job"]["running"] and not s["file_job"]["running"], "the job did not end", seconds)
+
+    # Doing
+    def xdotool(self, *arguments):
+        subprocess.run(["xdotool", *map(str, arguments)], env=self.environment, check=True, stdout=subprocess.DEVNULL)
+
+    def place(self, name, x=0.5, y=0.5):
+        rect = self.widgets()[name]
+        return round(rect["x"] + x * rect["width"]), round(rect["y"] + y * rect["height"])
+
+    def click(self, name, x=0.5, y=0.5, count=1):
+        self.wait_widget(name)
+        px, py = self.place(name, x, y)
+        self.xdotool("mousemove", px, py)
+        time.sleep(0.25)
+        for _ in range(count):
+            self.xdotool("mousedown", 1)
+            time.sleep(0.1)
+            self.xdotool("mouseup", 1)
+            time.sleep(0.1)
+        time.sleep(0.25)
+
+    def drag(self, name, path, button=1, keys=()):
+        """Presses at the first place (shares of the widget), moves along the others, releases."""
+        points = [self.place(name, *share) for share in path]
+        for key in keys:
+            self.xdotool("keydown", key)
+        self.xdotool("mousemove", *points[0])
+        time.sleep(0.25)
+        self.xdotool("mousedown", button)
+        for point in points[1:]:
+            time.sleep(0.15)
+            self.xdotool("mousemove", *point)
+        time.sleep(0.25)
+        self.xdotool("mouseup", button)
+        for key in keys:
+            self.xdotool("keyup", key)
+        time.sleep(0.3)
+
+    def key(self, *keys):
+        for key in keys:
+            self.xdotool("key", key)
+            time.sleep(0.25)
+
+    def write(self, name, text):
+        """Replaces the text of a field."""
+        self.click(name)
+        self.key("ctrl+a")
+        self.xdotool("type", "--delay", "40", text)
+        time.sleep(0.3)
+
+    def picture(self, name):
+        """A screenshot of the window, drawn by the program itself."""
+        PICTURES.mkdir(parents=True, exist_ok=True)
+        target = PICTURES / f"{name}.png"
+        target.unlink(missing_ok=True)
+        request = pathlib.Path(str(self.map) + ".capture")
+        request.write_text(str(target))
+        self._until(lambda: target.exists() and not request.exists(), 30, f"no screenshot {name}")
+        return target
+
+    # Ending
+    def close(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+            try:
+                self.process.wait(60)
+            except subprocess.TimeoutExpired:
+                self.process.kill()
+                self.process.wait()
+        self.server.terminate()
+        self.server.wait()
+        self.log.close()
+        return self.process.returncode
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+        self.server.terminate()
+        self.server.wait()
+        self.log.close()
+
+
+class WindowTest(unittest.TestCase):
+    def setUp(self):
+        for tool in ("Xvfb", "xdotool"):
+            if shutil.which(tool) is None:
+                self.skipTest(f"[skip] {tool} is not installed")
+        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="gse-window-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+
+    def open(self, *arguments, **sizes):
+        window = Window(self.folder, *arguments, **sizes)
+        self.addCleanup(lambda: window.process.poll() is None and window.close())
+        return window
