@@ -2,6 +2,7 @@
 // 8 splats at a time and hands them round, because loads are what costs on software devices.
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
 #extension GL_KHR_shader_subgroup_vote : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #include "frame.glsl"
@@ -23,7 +24,7 @@ void main() {
         const vec4 colour = vec4(unpackHalf2x16(floatBitsToUint(b.z)), unpackHalf2x16(floatBitsToUint(b.w)));
         const float z = WithDepth != 0 ? uintBitsToFloat(texelFetch(fetch_keys, int(row)).x) : 0.0;
         if (at + lane >= range.y) b.y = -1e9;  // nothing
-        for (uint j = 0; j < 8; ++j)
+        [[unroll]] for (uint j = 0; j < 8; ++j)
             blend_splat(subgroupBroadcast(a, j), subgroupBroadcast(b.xy, j), subgroupBroadcast(colour, j),
                         WithDepth != 0 ? subgroupBroadcast(z, j) : 0.0, first);
         if (!subgroupAny(alive())) break;
