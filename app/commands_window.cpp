@@ -140,6 +140,36 @@ private:
         if (widget_map_.empty() || seconds_since(map_written_) < 0.1) return;
         map_written_ = Clock::now();
         shell_.write_widgets(widget_map_);
+        write_file(widget_map_.string() + ".state", state_json().dump(1));
+    }
+    nlohmann::ordered_json state_json() const {
+        const auto& model = app_.model();
+        nlohmann::ordered_json state;
+        state["scene"] = model.scene_path;
+        state["project"] = model.project_path;
+        state["unsaved"] = model.unsaved;
+        state["labelled"] = model.labelled;
+        state["splats"] = app_.document().empty() ? 0 : app_.document().state().current.size();
+        state["stack"] = app_.document().empty() ? 0 : app_.document().state().stack.size();
+        state["undo_position"] = app_.document().empty() ? 0 : app_.document().position();
+        state["views_attended"] = model.attention.size();
+        state["job"] = {{"running", model.job.running}, {"paused", model.job.paused},   {"title", model.job.title},
+                        {"stage", model.job.stage},     {"step", model.job.step},       {"outcome", model.job.outcome},
+                        {"error", model.job.error}};
+        state["file_job"] = {{"running", model.file_job.running}, {"title", model.file_job.title},
+                             {"outcome", model.file_job.outcome}, {"error", model.file_job.error}};
+        state["losses"] = model.losses.size();
+        state["snapshots"] = model.snapshots.size();
+        state["result_waiting"] = model.result_waiting;
+        state["comparison"] = static_cast<int>(model.comparison);
+        state["mode"] = model.view.mode;
+        state["frames"] = frames_;
+        state["busy"] = viewport_.busy();
+        state["recoverable"] = model.recoverable.size();
+        state["validation_messages"] = window_.validation_messages();
+        state["toasts"] = nlohmann::ordered_json::array();
+        for (const auto& toast : model.toasts) state["toasts"].push_back(toast.text);
+        return state;
     }
     bool capture_wanted() const {
         return !widget_map_.empty() && std::filesystem::exists(widget_map_.string() + ".capture");

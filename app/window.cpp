@@ -70,6 +70,13 @@ struct Window::State {
 
     WindowOptions options;
     Glfw glfw;
+    struct KeyEvent {
+        int key = 0, code = 0, action = 0, modifiers = 0;
+    };
+    void on_key(const KeyEvent& event);
+    void release_keys();
+    bool key_pressed = false;  // since the last frame began
+    std::vector<KeyEvent> late_releases, due_releases;  // not seen pressed yet; to be handed on before the next frame
     GLFWwindow* window = nullptr;
     std::optional<vulkan::Instance> instance;
     std::optional<vk::raii::SurfaceKHR> surface;
@@ -99,7 +106,30 @@ Window::State::State(const WindowOptions& wanted) : options(wanted), wanted_scal
     io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
     io.IniFilename = options.layout_file.empty() ? nullptr : options.layout_file.c_str();
     ImGui_ImplGlfw_InitForVulkan(window, true);
+    glfwSetKeyCallback(window, [](GLFWwindow* target, int key, int code, int action, int modifiers) {
+        static_cast<State*>(glfwGetWindowUserPointer(target))->on_key({key, code, action, modifiers});
+    });
     make_device();
+}
+
+void Window::State::on_key(const KeyEvent& event) {
+    // ImGui 1.86 only sees which keys are down when a frame begins: a key that is pressed and released between two frames, or
+    // whose modifier is, would be lost. Releases wait until a frame has seen the press.
+    if (event.action == GLFW_PRESS) {
+        key_pressed = true;
+        release_keys();
+    }
+    if (event.action == GLFW_RELEASE && key_pressed) {
+        late_releases.push_back(event);
+        return;
+    }
+    ImGui_ImplGlfw_KeyCallback(window, event.key, event.code, event.action, event.modifiers);
+}
+
+void Window::State::release_keys() {
+    for (const KeyEvent& event : due_releases)
+        ImGui_ImplGlfw_KeyCallback(window, event.key, event.code, event.action, event.modifiers);
+    due_releases.clear();
 }
 
 Window::State::~State() {
@@ -204,8 +234,12 @@ bool Window::State::start_frame() {
     device->wait(slot().serial);
     if (!commands) commands.emplace(device->begin_commands());  // else those of an abandoned frame go on
     update_scale();
+    release_keys();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
+    key_pressed = false;
+    due_releases.swap(late_releases);
+    if (!due_releases.empty()) glfwPostEmptyEvent();  // the next frame shows them released
     frame_open = true;
     return true;
 }

@@ -38,6 +38,43 @@ std::vector<std::string> words_of(const std::string& sentence) {
     return words;
 }
 
+namespace {
+
+using Words = std::vector<std::string>;
+
+const Words Articles{"a", "an", "the", "its", "his", "her", "their", "some", "this", "that", "photo", "picture", "of"};
+const Words Joiners{"wearing", "with", "holding", "has", "having", "carrying", "plus", "and", "made", "into", "as"};
+const Words Stops{"on", "in", "at", "under", "beside", "near", "behind", "over", "by", "from", "to", "is", "of", "standing"};
+
+/// Last word of the noun phrase that begins at `first`: articles and the "of" of "made of" are passed over.
+std::string head_of_phrase(const Words& words, std::size_t first) {
+    while (first < words.size() && contains(Articles, words[first])) ++first;
+    std::string head;
+    for (std::size_t i = first; i < words.size() && !contains(Joiners, words[i]) && !contains(Stops, words[i]); ++i)
+        head = words[i];
+    return head;
+}
+
+}  // namespace
+
+std::string guessed_target(const std::string& prompt, const std::string& source) {
+    const auto words = words_of(prompt);
+    const auto found = std::find(words.begin(), words.end(), source);
+    if (source.empty() || found == words.end()) {
+        const auto head = head_of_phrase(words, 0);
+        return head.empty() && !words.empty() ? words.back() : head;
+    }
+    const auto at = static_cast<std::size_t>(found - words.begin());
+    for (std::size_t i = at + 1; i < words.size(); ++i) {
+        if (!contains(Joiners, words[i])) continue;
+        const auto head = head_of_phrase(words, i + 1);
+        if (!head.empty()) return head;
+    }
+    const bool described = at > 0 && !contains(Articles, words[at - 1]) && !contains(Stops, words[at - 1]) &&
+                           !contains(Joiners, words[at - 1]);
+    return described ? words[at - 1] : source;
+}
+
 EditRequest validated(EditRequest request) {
     const auto words = words_of(request.prompt);
     if (words.empty())
@@ -49,7 +86,7 @@ EditRequest validated(EditRequest request) {
         if (request.source.empty())
             throw Error(ErrorCode::InvalidArgument, "neither a source nor a target word is given",
                         "name what the edit is about with --source, and what is new with --target");
-        request.target = request.source;
+        request.target = guessed_target(request.prompt, request.source);
     }
     request.target = single_word(request.target, "target");
     if (!contains(words, request.target))

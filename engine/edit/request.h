@@ -185,6 +185,10 @@ enum class EditMode { Modify, Add };
 /// Lower-case words of a sentence, without punctuation.
 std::vector<std::string> words_of(const std::string& sentence);
 
+/// The word of the prompt that is new, guessed from the sentence: what the source is "wearing", "with" or "made of", else the
+/// word before it ("golden" statue), else, where the prompt does not name the source, the first thing it names.
+std::string guessed_target(const std::string& prompt, const std::string& source);
+
 /// Fills what the request leaves open (target and source word) and checks it. Throws Error with one sentence:
 /// an empty prompt, a target that is not in the prompt, an unknown mode.
 EditRequest validated(EditRequest request);

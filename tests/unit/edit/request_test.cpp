@@ -109,3 +109,18 @@ DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") 
     request.mode = "add";
     DOCTEST_CHECK(edit::decide_mode(request, 1.0).first == EditMode::Add);
 }
+
+DOCTEST_TEST_CASE("the target is guessed from the sentence") {
+    using edit::guessed_target;
+    DOCTEST_CHECK(guessed_target("a bear wearing a red hat", "bear") == "hat");
+    DOCTEST_CHECK(guessed_target("a red bear wearing a blue hat on the grass", "bear") == "hat");
+    DOCTEST_CHECK(guessed_target("a bear with white wings", "bear") == "wings");
+    DOCTEST_CHECK(guessed_target("a blue bear on the grass", "bear") == "blue");
+    DOCTEST_CHECK(guessed_target("a golden statue", "statue") == "golden");
+    DOCTEST_CHECK(guessed_target("a chair made of stone", "chair") == "stone");
+    DOCTEST_CHECK(guessed_target("turn the bear into a panda", "bear") == "panda");
+    DOCTEST_CHECK(guessed_target("a panda on the grass", "bear") == "panda");
+    DOCTEST_CHECK(guessed_target("a photo of a bear", "bear") == "bear");
+    DOCTEST_CHECK(guessed_target("bear", "bear") == "bear");
+    DOCTEST_CHECK(guessed_target("a bear with", "bear") == "bear");
+}
