@@ -54,10 +54,11 @@ shaders::FrameData frame_data(const FrameRequest& request, const Division& divis
     return data;
 }
 
-Division divide(const vulkan::DeviceInfo& info, bool portable, std::size_t rows, std::uint64_t pixels) {
+Division divide(const vulkan::DeviceInfo& info, bool few_threads, bool portable, std::size_t rows,
+                std::uint64_t pixels) {
     Division division;
     division.tile = portable ? 16 : 8;
-    if (info.is_cpu) {  // few threads: long stretches, wide digits
+    if (few_threads) {  // few threads: long stretches, wide digits
         division.group = std::clamp<std::uint32_t>(info.subgroup_size, 1, 64);
         division.digit_bits = 11;
         // Several groups a thread; loops shorter than llvmpipe's limit.

@@ -10,8 +10,9 @@ namespace gse::preview {
 /// `middle`: of the scene, for the scale of the depth colours.
 shaders::FrameData frame_data(const FrameRequest& request, const Division& division, const Vec3& middle);
 
-/// Division of the work for a device and a picture's size.
-Division divide(const vulkan::DeviceInfo& info, bool portable, std::size_t rows, std::uint64_t pixels);
+/// Division of the work for a scene and a picture's size; `few_threads`: of a CPU.
+Division divide(const vulkan::DeviceInfo& info, bool few_threads, bool portable, std::size_t rows,
+                std::uint64_t pixels);
 
 /// Entries of the largest matrix of counts the passes need.
 std::uint64_t matrix_entries(const Division& division, int width, int height);

@@ -26,6 +26,10 @@ PassClock::PassClock(vulkan::Device& device, bool enabled) : device_(device) {
         pool_ = vk::raii::QueryPool(device.handle(), {{}, vk::QueryType::eTimestamp, Most});
 }
 
+PassClock::~PassClock() {
+    if (*pool_) device_.retire(std::move(pool_));
+}
+
 void PassClock::start(vk::CommandBuffer commands) {
     if (!*pool_) return;
     names_.clear();

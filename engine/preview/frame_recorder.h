@@ -25,6 +25,9 @@ struct FramePlan {
 class PassClock {
 public:
     PassClock(vulkan::Device& device, bool enabled);
+    ~PassClock();
+    PassClock(const PassClock&) = delete;
+    PassClock& operator=(const PassClock&) = delete;
     void start(vk::CommandBuffer commands);
     void mark(vk::CommandBuffer commands, const char* name);
     /// Waits for the last picture.

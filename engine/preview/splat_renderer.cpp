@@ -122,7 +122,8 @@ FramePlan SplatRenderer::State::plan_frame(const FrameRequest& request, bool lig
     FramePlan result;
     const auto pixels = static_cast<std::uint64_t>(camera.width) * static_cast<std::uint64_t>(camera.height);
     result.portable = portable || pixels > LargestFinePicture;
-    result.division = divide(device.info(), result.portable, store.shown().size(), pixels);
+    result.division = divide(device.info(), device.info().is_cpu && !options.many_parts, result.portable,
+                             store.shown().size(), pixels);
     result.mode = request.display.mode;
     result.stored_degree = store.shown().sh_degree();
     result.used_degree = std::clamp(request.display.sh_degree, 0, result.stored_degree);

@@ -50,6 +50,7 @@ struct Pick {
 struct RendererOptions {
     bool always_stage = false;    // upload as a discrete GPU needs it (tests)
     bool portable_blend = false;  // the blend pass that makes no use of subgroups (tests)
+    bool many_parts = false;      // work divided as for a GPU (tests)
     bool time_passes = false;
     std::uint64_t pair_capacity = 0;  // to begin with; 0 = from the scene's size
 };

@@ -102,6 +102,7 @@ const Case Cases[] = {
     {"large splats", {.count = 200, .seed = 8, .log_scale = 0}, 120, 90},
     {"opaque", {.count = 3000, .seed = 9, .opacity = 6}, 120, 90},
     {"faint", {.count = 3000, .seed = 10, .opacity = -4}, 120, 90},
+    {"many small ones", {.count = 30000, .seed = 13, .sh_degree = 1, .log_scale = -4.5}, 200, 150},
     {"one splat", {.count = 1, .seed = 11, .log_scale = -1, .opacity = 3}, 64, 48},
     {"one pixel", {.count = 300, .seed = 12}, 1, 1},
 };
@@ -115,6 +116,14 @@ DOCTEST_TEST_CASE("the preview agrees with the plain rasterizer") {
         DOCTEST_CAPTURE(portable);
         for (const auto& one : Cases) check_case(*shared->device, one, {.portable_blend = portable});
     }
+    DOCTEST_CHECK(shared->instance->message_count() == 0);
+}
+
+DOCTEST_TEST_CASE("the division of work for a GPU gives the same pictures") {
+    auto* shared = test::test_device();
+    if (shared == nullptr) return;
+    for (const std::size_t i : {1u, 3u, 8u, 11u})
+        check_case(*shared->device, Cases[i], {.portable_blend = true, .many_parts = true});
     DOCTEST_CHECK(shared->instance->message_count() == 0);
 }
 
