@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/base/random.h"
+#include "ui/sentence.h"
 #include "ui/state.h"
 
 namespace gse::ui {
@@ -86,15 +87,23 @@ const std::vector<std::string>& film_extensions() {
     return Endings;
 }
 
-std::string why_not_locate(const Context& context) {
+std::string why_not_work(const Context& context) {
     if (!context.scene_open()) return "Open a scene first";
     if (!context.model.cannot_edit.empty()) return context.model.cannot_edit;
     if (context.model.job.running) return fmt::format("\"{}\" is still running", context.model.job.title);
     if (context.model.result_waiting) return "Apply or discard the finished edit first";
-    return context.state.prompt.problem;
+    return {};
 }
 
-std::string why_not_edit(const Context& context) { return why_not_locate(context); }
+std::string why_not_locate(const Context& context) {
+    const std::string why = why_not_work(context);
+    return why.empty() ? context.state.prompt.locate_problem : why;
+}
+
+std::string why_not_edit(const Context& context) {
+    const std::string why = why_not_work(context);
+    return why.empty() ? context.state.prompt.problem : why;
+}
 
 std::string why_not_label(const Context& context) {
     if (!context.scene_open()) return "Open a scene first";
@@ -122,8 +131,11 @@ void roll_seed(Context& context) {
 
 void run_locate(Context& context) {
     if (!why_not_locate(context).empty()) return;
-    send_request(context);
+    // Only this run sees the sentence that was made up for it.
+    context.actions.set_request(locate_request(context.request));
     context.actions.locate();
+    context.actions.set_request(context.request);
+    context.request_changed = false;
     show_panel(context.state, PanelId::Attention);
 }
 

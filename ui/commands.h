@@ -8,6 +8,7 @@
 namespace gse::ui {
 
 /// Why these are off; empty = they are on.
+std::string why_not_work(const Context& context);  // what is common to both
 std::string why_not_locate(const Context& context);
 std::string why_not_edit(const Context& context);
 std::string why_not_label(const Context& context);  // there is no label, or a job runs

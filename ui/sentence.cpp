@@ -73,12 +73,27 @@ SentenceFacts facts_of(const edit::EditRequest& request, const std::vector<std::
         facts.source_suggestion = suggestion_of(word, known);
     }
     facts.problem = problem_of(request, facts);
+    facts.locate_problem = source.size() == 1 ? std::string() : facts.problem;
     const auto target = edit::words_of(request.target.empty() ? facts.guessed_target : request.target);
     for (auto& chip : facts.chips) {
         chip.target = contains(target, chip.text);
         chip.guessed = chip.target && request.target.empty();
     }
     return facts;
+}
+
+edit::EditRequest locate_request(const edit::EditRequest& request) {
+    try {
+        edit::validated(request);
+        return request;
+    } catch (const Error&) {
+        const auto source = edit::words_of(request.source);
+        edit::EditRequest alone = request;
+        alone.target = source.empty() ? std::string() : source.front();
+        alone.prompt = "a " + alone.target;
+        alone.mode = "modify";
+        return alone;
+    }
 }
 
 std::string with_word(const std::string& sentence, std::size_t index, const std::string& word) {

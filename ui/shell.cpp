@@ -52,6 +52,7 @@ void update_sentence(Context& context) {
     SentenceFacts facts = facts_of(request, context.model.known_words);
     prompt.chips = std::move(facts.chips);
     prompt.problem = std::move(facts.problem);
+    prompt.locate_problem = std::move(facts.locate_problem);
     prompt.source_suggestion = std::move(facts.source_suggestion);
     prompt.source_known = facts.source_known;
     prompt.guessed_target = std::move(facts.guessed_target);

@@ -48,6 +48,7 @@ struct ViewportState {
     bool flipped = false;  // ` is held
     Comparison before_flip = Comparison::None;
     bool wipe_dragged = false;
+    double moved_at = -10;  // ImGui time of the last move
     int drag_button = -1;  // mouse button that navigates, -1 = none
 };
 
@@ -55,7 +56,8 @@ struct ViewportState {
 struct PromptState {
     std::string key;  // what the rest was computed from
     std::vector<Chip> chips;
-    std::string problem;  // why the request cannot be run; empty = it can
+    std::string problem;         // why the request cannot be run; empty = it can
+    std::string locate_problem;  // the same for Locate alone
     std::string source_suggestion;
     bool source_known = true;
     std::string guessed_target;

@@ -151,6 +151,7 @@ void update_camera(Context& context, bool keys_free) {
     if (keys_free) fly(context);
     moved |= state.camera.update(ImGui::GetIO().DeltaTime);
     if (moved) send(context);
+    if (moved) state.moved_at = ImGui::GetTime();
     context.state.animating |= moved || state.camera.gliding();
 }
 

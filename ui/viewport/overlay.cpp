@@ -16,6 +16,7 @@ namespace {
 constexpr std::array<ImU32, 3> AxisColours{IM_COL32(226, 104, 98, 255), IM_COL32(124, 196, 104, 255),
                                            IM_COL32(98, 150, 232, 255)};
 constexpr double FrustumShare = 0.07;  // length of a camera's drawn frustum, of the scene's radius
+constexpr double RateSeconds = 1;       // the frame rate is shown this long after the last move
 constexpr float PickRadiusEm = 0.8f;
 
 double near_of(const Context& context) { return std::max(1e-9, context.model.orbit.radius * 1e-3); }
@@ -121,8 +122,10 @@ void shaded_text(Context& context, ImDrawList* list, ImVec2 at, const std::strin
 void draw_hud(Context& context, ImDrawList* list) {
     const auto& model = context.model;
     const auto& state = context.state.viewport;
-    std::string text = fmt::format("{:.0f} fps   {:.1f} ms   {} splats", model.frames_per_second,
-                                   model.render_ms, count_text(context.document().current.size()));
+    // At rest nothing is drawn, and a rate would say how often nobody looked.
+    const bool moving = ImGui::GetTime() - state.moved_at < RateSeconds;
+    std::string text = moving ? fmt::format("{:.0f} fps   ", model.frames_per_second) : std::string();
+    text += fmt::format("{:.1f} ms   {} splats", model.render_ms, count_text(context.document().current.size()));
     if (model.labelled > 0) text += fmt::format("   {} labelled", count_text(model.labelled));
     const float room = state.high.x - state.low.x - context.em * 2;
     if (!model.renderer.empty() && ImGui::CalcTextSize((text + "   " + model.renderer).c_str()).x < room)

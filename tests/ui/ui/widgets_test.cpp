@@ -1,0 +1,233 @@
+// The parts of the window that are plain functions: counts, listings, sentences, pictures, words for numbers.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "engine/base/file.h"
+#include "engine/base/random.h"
+#include "tests/test_paths.h"
+#include "tests/ui/support/harness.h"
+#include "ui/keys.h"
+#include "ui/sentence.h"
+#include "ui/state.h"
+#include "ui/threshold_picture.h"
+#include "ui/widgets/controls.h"
+
+namespace gse::test {
+
+DOCTEST_TEST_CASE("the histogram counts what is above, to a bin") {
+    Random random(2);
+    auto weight = std::make_shared<std::vector<float>>(5000);
+    for (auto& value : *weight) value = static_cast<float>(random.uniform());
+    weight->push_back(1.0f);
+    weight->push_back(0.0f);
+    ui::WeightHistogram histogram;
+    histogram.update(weight);
+    for (const float threshold : {0.0f, 0.1f, 0.5f, 0.93f, 1.0f}) {
+        std::size_t above = 0, near = 0;
+        for (const float value : *weight) {
+            above += value > threshold ? 1 : 0;
+            near += std::abs(value - threshold) <= 1.0f / ui::WeightHistogram::Bins ? 1 : 0;
+        }
+        const auto counted = histogram.above(threshold);
+        DOCTEST_CHECK(counted + near >= above);
+        DOCTEST_CHECK(counted <= above + near);
+    }
+    histogram.update(nullptr);
+    DOCTEST_CHECK(histogram.above(0) == 0);
+}
+
+DOCTEST_TEST_CASE("a listing has folders first, known files only, and names in any script") {
+    const ScratchFolder scratch;
+    const auto root = scratch.path();
+    std::filesystem::create_directories(root / "zebra");
+    std::filesystem::create_directories(root / ui::path_of("\xD0\xBC\xD0\xB8\xD1\x88\xD0\xBA\xD0\xB0"));
+    for (const char* name : {"b.PLY", "a.spz", "notes.txt", ".hidden.ply", "b\xC3\xA4r.ply"})
+        write_file(root / ui::path_of(name), "x");
+    const std::vector<std::string> endings{".ply", ".spz"};
+    const auto listing = ui::list_folder(root, endings);
+    DOCTEST_REQUIRE(listing.entries.size() == 5);
+    DOCTEST_CHECK(listing.entries[0].is_folder);
+    DOCTEST_CHECK(listing.entries[1].is_folder);
+    DOCTEST_CHECK(listing.entries[2].name == "a.spz");
+    DOCTEST_CHECK(listing.entries[3].name == "b.PLY");
+    DOCTEST_CHECK(listing.entries[4].name == "b\xC3\xA4r.ply");
+    DOCTEST_CHECK(ui::list_folder(root, {}).entries.size() == 6);
+    DOCTEST_CHECK(!ui::list_folder(root / "nowhere", {}).problem.empty());
+    const std::string base = root.string();
+    DOCTEST_CHECK(ui::completed_path(base + "/ze") == base + "/zebra/");
+    DOCTEST_CHECK(ui::completed_path(base + "/no") == base + "/notes.txt");
+    DOCTEST_CHECK(ui::completed_path(base + "/b") == base + "/b");
+    DOCTEST_CHECK(ui::completed_path(base + "/q") == base + "/q");
+}
+
+DOCTEST_TEST_CASE("the file browser opens, goes up, completes and saves") {
+    const ScratchFolder scratch;
+    std::filesystem::create_directories(scratch.path() / "inner");
+    write_file(scratch.path() / "inner" / "b\xC3\xA4r.ply", "x");
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    harness.application.model().unsaved = false;
+    harness.application.model().recent = {(scratch.path() / "inner" / "b\xC3\xA4r.ply").string()};
+    const auto ask = [&harness] {
+        harness.modifiers(false, true, false);
+        harness.key('O');
+        harness.modifiers(false, false, false);
+        harness.frame(3);
+    };
+    ask();
+    harness.click("files.entry.b\xC3\xA4r.ply");
+    harness.click("files.confirm");
+    harness.frame(3);
+    DOCTEST_CHECK(
+        harness.application.asked("open " + (scratch.path() / "inner" / "b\xC3\xA4r.ply").string()));
+    // By keys alone: up, into the folder, the file.
+    harness.application.calls.clear();
+    ask();
+    harness.key(ui::key::Backspace);
+    harness.type("inn");
+    harness.key(ui::key::Enter);
+    harness.key(ui::key::Down);
+    harness.key(ui::key::Enter);
+    harness.frame(3);
+    DOCTEST_CHECK(
+        harness.application.asked("open " + (scratch.path() / "inner" / "b\xC3\xA4r.ply").string()));
+    // The folder itself.
+    harness.application.calls.clear();
+    ask();
+    harness.click("files.confirm");
+    harness.frame(3);
+    DOCTEST_CHECK(harness.application.asked("open " + (scratch.path() / "inner").string()));
+    // Escape does nothing but close.
+    harness.application.calls.clear();
+    ask();
+    harness.key(ui::key::Escape);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("files.confirm") == nullptr);
+    DOCTEST_CHECK(!harness.application.asked("open"));
+}
+
+DOCTEST_TEST_CASE("saving asks for a name, and before it overwrites") {
+    const ScratchFolder scratch;
+    write_file(scratch.path() / "there.gsep", "x");
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    harness.application.model().project_path = (scratch.path() / "there.gsep").string();
+    harness.modifiers(true, true, false);
+    harness.key('S');
+    harness.modifiers(false, false, false);
+    harness.frame(3);
+    harness.click("files.confirm");
+    DOCTEST_CHECK(!harness.application.asked("save_project"));
+    harness.click("files.confirm");
+    harness.frame(3);
+    DOCTEST_CHECK(harness.application.asked("save_project " + (scratch.path() / "there.gsep").string()));
+}
+
+DOCTEST_TEST_CASE("what is said about a sentence") {
+    const std::vector<std::string> known{"a", "bear", "wearing", "red", "hat", "golden"};
+    edit::EditRequest request;
+    request.source = "baer";
+    request.prompt = "A bear wearing a red hta!";
+    request.target = "red";
+    const auto facts = ui::facts_of(request, known);
+    DOCTEST_REQUIRE(facts.chips.size() == 6);
+    DOCTEST_CHECK(facts.chips[0].known);
+    DOCTEST_CHECK(facts.chips[4].target);
+    DOCTEST_CHECK(!facts.chips[4].guessed);
+    DOCTEST_CHECK(!facts.chips[5].known);
+    DOCTEST_CHECK(facts.chips[5].suggestion == "hat");
+    DOCTEST_CHECK(!facts.source_known);
+    DOCTEST_CHECK(facts.source_suggestion == "bear");
+    DOCTEST_CHECK(facts.problem.empty());
+    // A model without a list of words knows every word.
+    for (const auto& chip : ui::facts_of(request, {}).chips) DOCTEST_CHECK(chip.known);
+    DOCTEST_CHECK(ui::with_word("A bear, wearing", 1, "dog") == "a dog wearing");
+    request.prompt.clear();
+    DOCTEST_CHECK(!ui::facts_of(request, known).problem.empty());
+    // Locate needs no sentence, Edit does.
+    DOCTEST_CHECK(ui::facts_of(request, known).locate_problem.empty());
+    request.source = "bear";
+    DOCTEST_CHECK(ui::locate_request(request).prompt == "a bear");
+    request.prompt = "a golden bear";
+    request.target = "golden";
+    DOCTEST_CHECK(ui::locate_request(request).prompt == "a golden bear");
+    request.source = "two words";
+    request.prompt.clear();
+    DOCTEST_CHECK(!ui::facts_of(request, known).locate_problem.empty());
+}
+
+DOCTEST_TEST_CASE("the thresholded picture keeps what is above and darkens the rest") {
+    Image render(40, 30, 3, 0.5f), map(20, 15, 1, 0.1f);
+    for (int y = 4; y < 10; ++y)
+        for (int x = 5; x < 15; ++x) map.at(x, y, 0) = 0.8f;
+    map.at(0, 0, 0) = std::numeric_limits<float>::quiet_NaN();
+    const auto result = ui::threshold_picture(render, map, 0.5);
+    DOCTEST_CHECK(result.share == doctest::Approx(60.0 / 300));
+    DOCTEST_CHECK(result.picture.at(20, 14, 0) > result.picture.at(1, 25, 0));
+    DOCTEST_CHECK(result.picture.at(0, 0, 0) < 0.5f);
+    DOCTEST_CHECK(ui::threshold_picture(render, map, 0.9).share == 0);
+    DOCTEST_CHECK(ui::threshold_picture(render, map, 0).share > 0.99);
+    DOCTEST_CHECK(ui::threshold_picture(Image(), map, 0.5).picture.data.empty());
+}
+
+DOCTEST_TEST_CASE("the thresholded picture follows the slider in the same frame") {
+    Harness harness({1920, 1080, 1, Situation::Located, false});
+    const auto bar = harness.rect("attention.threshold");
+    const auto before = harness.shell.state().attention.above;
+    harness.move(bar.x + bar.width * 0.35f, bar.y + 8);
+    harness.press();
+    ImGui::GetIO().MousePos.x = bar.x + bar.width * 0.02f;
+    harness.frame(2);
+    DOCTEST_CHECK(harness.shell.state().attention.above > before);
+    harness.release();
+}
+
+DOCTEST_TEST_CASE("numbers in words") {
+    DOCTEST_CHECK(ui::count_text(0) == "0");
+    DOCTEST_CHECK(ui::count_text(999) == "999");
+    DOCTEST_CHECK(ui::count_text(1234567) == "1 234 567");
+    DOCTEST_CHECK(ui::duration_text(4.25) == "4.2 s");
+    DOCTEST_CHECK(ui::duration_text(62) == "1 min 02 s");
+    DOCTEST_CHECK(ui::duration_text(3725) == "1 h 02 min");
+    DOCTEST_CHECK(ui::duration_text(-1) == "unknown");
+    DOCTEST_CHECK(ui::bytes_text(850e6) == "850 MB");
+    DOCTEST_CHECK(ui::bytes_text(9.1e9) == "9.1 GB");
+}
+
+DOCTEST_TEST_CASE("shortened text fits, keeps both ends and whole letters") {
+    Harness harness({800, 600, 1, Situation::Nothing, false});
+    ImGui::NewFrame();
+    const std::string text =
+        "/home/\xD0\xBC\xD0\xB8\xD1\x88\xD0\xBA\xD0\xB0/a very long name of a "
+        "folder/\xC3\xA4\xC3\xB6\xC3\xBC.ply";
+    for (float width = 20; width < 400; width += 7) {
+        const std::string fit = ui::shortened(text, width);
+        DOCTEST_CHECK((ImGui::CalcTextSize(fit.c_str()).x <= width || fit == "..."));
+        for (std::size_t at = 0; at < fit.size(); ++at)
+            if ((fit[at] & 0xC0) == 0x80) DOCTEST_CHECK((at > 0 && (fit[at - 1] & 0xC0) == 0xC0));
+    }
+    DOCTEST_CHECK(ui::shortened("short", 400) == "short");
+    ImGui::EndFrame();
+}
+
+DOCTEST_TEST_CASE("every key of the table is told once") {
+    for (std::size_t a = 0; a < ui::KeyTable.size(); ++a) {
+        DOCTEST_CHECK(ui::KeyTable[a].keys != nullptr);
+        DOCTEST_CHECK(ui::KeyTable[a].what != nullptr);
+        for (std::size_t b = a + 1; b < ui::KeyTable.size(); ++b)
+            DOCTEST_CHECK(std::string(ui::KeyTable[a].keys) != ui::KeyTable[b].keys);
+    }
+}
+
+DOCTEST_TEST_CASE("the map of widgets is written as JSON") {
+    const ScratchFolder scratch;
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    harness.shell.write_widgets(scratch.path() / "map.json");
+    const auto json = nlohmann::json::parse(read_file(scratch.path() / "map.json"));
+    DOCTEST_CHECK(json.at("prompt.edit").at("width").get<float>() > 10);
+    DOCTEST_CHECK(json.at("viewport").at("visible").get<bool>());
+}
+
+}  // namespace gse::test
