@@ -88,7 +88,7 @@ PictureRequest Application::picture_request() {
     const int snapshot = model_.shown_snapshot;
     const bool live = (work_.running() || pending_) && !snapshots_.empty();
     const ShownKey key{document_.revision(), content_, model_.view.mode, snapshot, state.active_label,
-                       model_.view.tint_labels, pending_.has_value()};
+                       model_.view.tint_labels && model_.comparison == ui::Comparison::None, pending_.has_value()};
     if (!(key == shown_key_)) {
         shown_key_ = key;
         shown_set_ = state.current;
@@ -99,7 +99,7 @@ PictureRequest Application::picture_request() {
         else if (live)
             shown_set_ = *snapshots_.back().set;
         const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
-        const bool tints = mode == ui::DisplayMode::Beauty && model_.view.tint_labels && !live;
+        const bool tints = mode == ui::DisplayMode::Beauty && model_.view.tint_labels && !live && model_.comparison == ui::Comparison::None;
         const bool maps = mode >= ui::DisplayMode::Labels;
         shown_values_ = tints || maps ? shown_values(shown_set_, snapshot) : nullptr;
     }
@@ -114,7 +114,7 @@ PictureRequest Application::picture_request() {
     request.comparison = model_.comparison;
     request.moving = std::chrono::duration<double>(Clock::now() - last_move_).count() < MovingSeconds;
     request.content = content_ * 1000003 + static_cast<std::uint64_t>(model_.view.mode) * 31 +
-                      (model_.view.tint_labels ? 7 : 0) + document_.revision() * 131;
+                      (key.tint ? 7 : 0) + document_.revision() * 131;
     return request;
 }
 

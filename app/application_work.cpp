@@ -140,6 +140,7 @@ void Application::take_located(std::shared_ptr<EditJob> job, std::vector<float> 
     found->weight = std::make_shared<const std::vector<float>>(std::move(weight));
     *found = with_bits(*found);
     state.active_label = static_cast<int>(found - state.labels.begin());
+    model_.view.tint_labels = true;   // where it landed is to be seen
     document_.apply(fmt::format("Locate \"{}\"", name), std::move(state));
 }
 
@@ -369,6 +370,7 @@ void Application::apply_result() {
         label = combine(std::move(label), added, LabelOperation::Add);
     }
     document_.apply(fmt::format("Edit: {}", result.name), std::move(state));
+    model_.view.tint_labels = false;   // what was made is to be seen, not where
 }
 
 void Application::discard_result() {
