@@ -192,7 +192,7 @@ void save_as(Context& context) {
     auto& actions = context.actions;
     std::filesystem::path start = path_of(context.model.project_path);
     if (start.empty() && !context.model.scene_path.empty())
-        start = path_of(context.model.scene_path).replace_extension(".gsep");
+        start = path_of(context.model.suggested_project);
     if (start.empty()) start = home_folder() / "scene.gsep";
     context.state.files.ask(
         {.title = "Save the project",

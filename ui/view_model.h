@@ -198,6 +198,7 @@ struct ViewModel {
     const Document* document = nullptr;          // null or empty() = nothing open
     SceneStatistics statistics;
     std::string scene_path, project_path;
+    std::string suggested_project;               // where a first save goes unless the artist says otherwise
     bool unsaved = false;
     std::string saved_at;                        // "saved 14:02 (autosave on)"
     std::vector<std::string> recent;             // paths, newest first

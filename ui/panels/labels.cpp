@@ -47,7 +47,8 @@ void draw_label_row(Context& context, int index) {
     const bool active = index == context.document().active_label;
     const float icon = context.em * 1.5f, spacing = ImGui::GetStyle().ItemSpacing.x;
     const float width = ImGui::GetContentRegionAvail().x - 2 * (icon + spacing);
-    const std::string name = shortened(label.name.empty() ? "(no name)" : label.name, width - context.em);
+    const std::string name =
+        "  " + shortened(label.name.empty() ? "(no name)" : label.name, width - context.em);
     if (ImGui::Selectable(name.c_str(), active, ImGuiSelectableFlags_AllowDoubleClick, {width, icon})) {
         if (!active) context.actions.set_active_label(index);
         if (ImGui::IsMouseDoubleClicked(0)) {

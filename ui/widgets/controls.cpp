@@ -12,7 +12,8 @@
 namespace gse::ui {
 namespace {
 
-constexpr float LabelShare = 0.42f;  // of a row, for its label
+constexpr float TooltipDelay = 0.45f, TooltipForgets = 0.7f;  // seconds
+constexpr float LabelShare = 0.42f;                           // of a row, for its label
 
 void push_look(Look look) {
     const auto push = [](ImU32 normal, ImU32 hovered, ImU32 active) {
@@ -79,6 +80,18 @@ void flow(float width) {
 
 void tooltip(std::string_view text) {
     if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    const auto& io = ImGui::GetIO();
+    if (ImGui::IsAnyMouseDown() || (ImGui::IsItemActive() && io.WantTextInput)) return;
+    // Since when the mouse rests here is kept under the item's place; a pause in it starts anew.
+    const ImVec2 place = ImGui::GetItemRectMin();
+    ImGuiStorage* storage = ImGui::GetStateStorage();
+    const ImGuiID since_id = ImHashData(&place, sizeof place, 1),
+                  seen_id = ImHashData(&place, sizeof place, 2);
+    const auto now = static_cast<float>(ImGui::GetTime());
+    const bool rested = now - storage->GetFloat(seen_id, -10) < TooltipForgets;
+    if (!rested) storage->SetFloat(since_id, now);
+    storage->SetFloat(seen_id, now);
+    if (now - storage->GetFloat(since_id, now) < TooltipDelay) return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
     ImGui::TextUnformatted(text.data(), text.data() + text.size());
