@@ -154,6 +154,7 @@ void Application::refresh_document() {
     model_.document = document_.empty() ? nullptr : &document_;
     model_.scene_path = scene_path_;
     model_.project_path = project_path_;
+    model_.suggested_project = document_.empty() ? std::string() : default_project_path().string();
     model_.unsaved = !document_.empty() && document_.revision() != saved_revision_;
     model_.cannot_edit = document_.empty() ? "Open a scene first."
                          : work_.running() ? "A job is running."
@@ -168,7 +169,10 @@ void Application::refresh_document() {
                               ? count_labelled(state.labels[static_cast<std::size_t>(state.active_label)])
                               : 0;
     }
-    refresh_estimate();
+    if (seconds_since(last_estimate_) > 0.5) {
+        last_estimate_ = Clock::now();
+        refresh_estimate();
+    }
 }
 
 void Application::refresh_log() {

@@ -209,7 +209,7 @@ private:
     // View
     Camera camera_;
     int viewport_width_ = 1, viewport_height_ = 1;
-    Clock::time_point last_move_ = Clock::now() - std::chrono::seconds(10), last_frame_ = Clock::now();
+    Clock::time_point last_move_ = Clock::now() - std::chrono::seconds(10), last_frame_ = Clock::now(), last_estimate_{};
     std::uint64_t content_ = 1, stroke_ = 0, camera_version_ = 0, document_seen_ = 0;
     struct ShownKey {
         std::uint64_t revision = 0, live = 0;

@@ -98,7 +98,7 @@ public:
     VulkanBench(const Scene& scene, bool validation)
         : instance_(vulkan::InstanceOptions{.extensions = {}, .validation = validation}),
           device_(instance_),
-          renderer_(device_, {.time_passes = true}) {
+          renderer_(device_) {
         const double start = wall_ms();
         renderer_.upload(scene.gaussians);
         renderer_.finish_upload();

@@ -260,6 +260,8 @@ void Shell::draw_window(Context& context) {
 }
 
 void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
+    // Arrows, Alt, Tab and Space are keys of the editor; keyboard navigation between widgets would take them too.
+    ImGui::GetIO().ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
     const float em = ImGui::GetFontSize();
     if (em != styled_em_) apply_theme(ImGui::GetStyle(), em);
     styled_em_ = em;
