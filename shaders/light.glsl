@@ -45,7 +45,7 @@ void store_light(uvec2 corner) {
         const uint pixel = corner.y * frame.size.x + corner.x + k;
         const vec3 rgb = vec3(red[k], green[k], blue[k]);
         imageStore(picture, ivec2(corner.x + k, corner.y), resolve(rgb, covered[k], depth[k], value[k], Mode));
-        if (StoreDepth != 0) depths[pixel] = covered[k] > 0.0 ? depth[k] / covered[k] : 0.0;
+        if (StoreDepth != 0) depths[pixel] = covered[k] > LeastSolid ? depth[k] / covered[k] : 0.0;
         if (StoreLight != 0) {
             light[pixel * 6] = rgb.x;
             light[pixel * 6 + 1] = rgb.y;

@@ -63,6 +63,7 @@ GSE_CONSTANT(float, RingFill, 0.12f);        // of the splat's own alpha inside 
 GSE_CONSTANT(float, CentreAlpha, 0.9f);
 GSE_CONSTANT(float, EllipsoidShade, 0.55f);  // how much darker the rim is than the middle
 GSE_CONSTANT(float, DimmedBeauty, 0.35f);    // brightness of the picture under a colour map
+GSE_CONSTANT(float, LeastSolid, 0.3f);        // alpha of a pixel to have a depth that can be picked
 GSE_CONSTANT(float, MapCoverage, 0.85f);     // how much of the map shows where the value is 1
 
 struct FrameData {

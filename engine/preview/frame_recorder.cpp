@@ -21,8 +21,8 @@ std::vector<std::uint32_t> blend_constants(const FramePlan& plan) {
 
 }  // namespace
 
-PassClock::PassClock(vulkan::Device& device, bool enabled) : device_(device) {
-    if (enabled && device.info().timestamp_ns > 0)
+PassClock::PassClock(vulkan::Device& device) : device_(device) {
+    if (device.info().timestamp_ns > 0)
         pool_ = vk::raii::QueryPool(device.handle(), {{}, vk::QueryType::eTimestamp, Most});
 }
 
@@ -48,9 +48,8 @@ std::vector<std::pair<std::string, double>> PassClock::read() {
     std::vector<std::pair<std::string, double>> times;
     if (!*pool_ || names_.empty()) return times;
     const std::size_t count = names_.size() + 1;
-    const auto [result, stamps] =
-        pool_.getResults<std::uint64_t>(0, static_cast<std::uint32_t>(count), count * 8, 8,
-                                        vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    const auto [result, stamps] = pool_.getResults<std::uint64_t>(0, static_cast<std::uint32_t>(count),
+                                                                  count * 8, 8, vk::QueryResultFlagBits::e64);
     if (result != vk::Result::eSuccess) return times;
     for (std::size_t i = 0; i < names_.size(); ++i)
         times.emplace_back(

@@ -1,4 +1,4 @@
-// Records the passes of one picture, with optional timestamps between them.
+// Records the passes of one picture, with timestamps between them.
 #pragma once
 
 #include <string>
@@ -24,13 +24,13 @@ struct FramePlan {
 /// Device time of the passes.
 class PassClock {
 public:
-    PassClock(vulkan::Device& device, bool enabled);
+    explicit PassClock(vulkan::Device& device);
     ~PassClock();
     PassClock(const PassClock&) = delete;
     PassClock& operator=(const PassClock&) = delete;
     void start(vk::CommandBuffer commands);
     void mark(vk::CommandBuffer commands, const char* name);
-    /// Waits for the last picture.
+    /// Of the last picture recorded; call it when that has been executed, it does not wait.
     std::vector<std::pair<std::string, double>> read();
 
 private:

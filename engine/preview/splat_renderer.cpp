@@ -61,7 +61,7 @@ struct SplatRenderer::State {
           options(wanted),
           passes(on.shared<Passes>()),
           workspace(on, passes),
-          clock(on, wanted.time_passes),
+          clock(on),
           recorder(on, passes, workspace, clock),
           store(on, wanted.always_stage),
           portable(wanted.portable_blend || !on.info().is_cpu || on.info().subgroup_size != 8 ||
@@ -172,6 +172,9 @@ void SplatRenderer::State::receive() {
         statistics.visible = words[shaders::ControlVisible];
         statistics.pairs = words[shaders::ControlPairs];
         statistics.unfinished_rows = words[shaders::ControlUnfinished];
+        statistics.pass_ms = clock.read();
+        statistics.device_ms = 0;
+        for (const auto& [name, ms] : statistics.pass_ms) statistics.device_ms += ms;
         const std::uint64_t capacity = workspace.pair_capacity();
         statistics.dropped_pairs = statistics.pairs > capacity ? statistics.pairs - capacity : 0;
         overflowed = statistics.dropped_pairs > 0 && capacity < workspace.largest_pair_capacity();
@@ -291,7 +294,6 @@ std::uint64_t SplatRenderer::device_bytes() const {
 
 FrameStatistics SplatRenderer::statistics() {
     state_->receive();
-    state_->statistics.pass_ms = state_->clock.read();
     return state_->statistics;
 }
 

@@ -33,13 +33,14 @@ struct FrameRequest {
     bool want_depth = false;  // depth() is wanted for this picture
 };
 
-/// What the last picture cost and left out. Pairs are known one frame later.
+/// What the newest finished picture cost and left out; known some frames after it was recorded.
 struct FrameStatistics {
     std::uint32_t visible = 0;
     std::uint64_t pairs = 0;            // tile-splat pairs
     std::uint64_t dropped_pairs = 0;    // did not fit into a device's largest buffer
     std::uint32_t unfinished_rows = 0;  // left out because a software device gives up on long loops
-    std::vector<std::pair<std::string, double>> pass_ms;  // device time, when `time_passes` is set
+    std::vector<std::pair<std::string, double>> pass_ms;  // device time; empty where the device has no clock
+    double device_ms = 0;                                 // their sum
 };
 
 struct Pick {
@@ -48,10 +49,9 @@ struct Pick {
 };
 
 struct RendererOptions {
-    bool always_stage = false;    // upload as a discrete GPU needs it (tests)
-    bool portable_blend = false;  // the blend pass that makes no use of subgroups (tests)
-    bool many_parts = false;      // work divided as for a GPU (tests)
-    bool time_passes = false;
+    bool always_stage = false;        // upload as a discrete GPU needs it (tests)
+    bool portable_blend = false;      // the blend pass that makes no use of subgroups (tests)
+    bool many_parts = false;          // work divided as for a GPU (tests)
     std::uint64_t pair_capacity = 0;  // to begin with; 0 = from the scene's size
 };
 
@@ -89,8 +89,8 @@ public:
     std::uint64_t device_bytes() const;
     FrameStatistics statistics();
 
-    /// Newest depth that has arrived: [H,W,1] camera z of what is seen (alpha-weighted mean), 0 = nothing.
-    /// Null at first.
+    /// Newest depth that has arrived: [H,W,1] mean camera z of what is seen, weighted by alpha T; 0 where alpha is under
+    /// 0.3. Null at first.
     std::shared_ptr<const Image> depth();
 
     // The following submit their own commands and wait: for tests, export and clicks.
