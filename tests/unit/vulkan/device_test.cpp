@@ -81,7 +81,7 @@ DOCTEST_TEST_CASE("the validation layers are listened to") {
         if (!instance.validates()) return;
         vulkan::Device device(instance);
         log::set_level(log::Level::Off);
-        const vulkan::Buffer useless(device, {.size = 16});  // a buffer without any usage
+        const vulkan::Buffer useless(device, {.size = 16, .usage = {}});  // a buffer without any usage
         log::set_level(log::Level::Info);
         DOCTEST_CHECK(instance.message_count() > 0);
         DOCTEST_CHECK(!instance.first_message().empty());
