@@ -74,7 +74,7 @@ std::string why_not_write(const Context& context, const std::string& path,
 /// What will happen, or in amber why it cannot.
 void say(const std::string& why, const std::string& what) {
     if (why.empty()) return dim_text(what);
-    coloured_text(palette::Warning, why + ".");
+    coloured_text(palette::Warning, why.ends_with('.') ? why : fmt::format("{}.", why));
 }
 
 void draw_size(Context& context) {

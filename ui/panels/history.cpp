@@ -124,7 +124,6 @@ void draw_steps(Context& context) {
 
 void draw_history_panel(Context& context) {
     if (!context.scene_open()) return dim_text("Edits and steps of undo appear here.");
-    draw_result_notice(context, "history");
     heading(context, "Edits");
     const auto& stack = context.document().stack;
     for (std::size_t place = stack.size(); place-- > 0;) {

@@ -40,8 +40,8 @@ constexpr std::array<const char*, 3> ModeHelp{"Modify when the scene shows the t
 void draw_source(Context& context) {
     auto& prompt = context.state.prompt;
     dim_text("What in the scene is it about?");
-    context.request_changed |= text_input(context, "prompt.source", context.request.source, "bear");
     tooltip("One word. Empty: the target word itself is looked for.");
+    context.request_changed |= text_input(context, "prompt.source", context.request.source, "bear");
     if (prompt.source_known) return;
     coloured_text(palette::Warning, fmt::format("The model does not know \"{}\".", context.request.source));
     if (prompt.source_suggestion.empty()) return;
@@ -56,9 +56,9 @@ void draw_source(Context& context) {
 void draw_sentence(Context& context) {
     auto& prompt = context.state.prompt;
     dim_text("The scene after the edit");
+    tooltip("One sentence. Shift + Enter or Ctrl + Enter starts the edit.");
     context.request_changed |=
         text_input(context, "prompt.sentence", context.request.prompt, "a bear wearing a red hat");
-    tooltip("One sentence. Shift + Enter or Ctrl + Enter starts the edit.");
     if (prompt.chips.empty()) return;
     const ChipClick click = chips(context, "prompt.chip", prompt.chips);
     if (click.chosen >= 0) {
@@ -148,7 +148,7 @@ std::string memory_warning(const Estimate& estimate) {
 std::string obstacle_text(const Context& context) {
     if (!context.scene_open() || context.model.job.running) return {};
     const std::string why = why_not_edit(context);
-    return why.empty() ? why : fmt::format("{}.", why);
+    return why.empty() || why.ends_with('.') ? why : fmt::format("{}.", why);
 }
 
 void draw_estimate(Context& context) {
@@ -218,7 +218,6 @@ void draw_advanced(Context& context) {
 }
 
 void draw_words(Context& context) {
-    draw_result_notice(context, "prompt");
     draw_source(context);
     draw_sentence(context);
     ImGui::Spacing();

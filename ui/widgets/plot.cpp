@@ -13,7 +13,8 @@
 namespace gse::ui {
 namespace {
 
-constexpr double MostDecades = 4;  // shown of a logarithmic axis
+constexpr double SmoothShare = 0.04;  // of the run, over which the drawn mean runs
+constexpr double MostDecades = 4;     // shown of a logarithmic axis
 
 /// Data to pixels.
 struct Axes {
@@ -90,7 +91,7 @@ void draw_grid(Context& context, const Axes& axes) {
 }
 
 /// At most two points per pixel column: lowest and highest, so that spikes stay.
-void draw_curve(const Axes& axes, std::span<const LossPoint> points, const Curve& curve, float width) {
+void draw_raw(const Axes& axes, std::span<const LossPoint> points, const Curve& curve, float width) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const auto columns = static_cast<std::size_t>(std::max(1.0f, axes.high.x - axes.low.x));
     const std::size_t stride = std::max<std::size_t>(1, points.size() / columns);
@@ -107,7 +108,31 @@ void draw_curve(const Axes& axes, std::span<const LossPoint> points, const Curve
             if (lowest == highest) break;
         }
     }
+    list->PathStroke(with_alpha(curve.colour, 0.3f), ImDrawFlags_None, width * 0.7f);
+}
+
+/// Running mean in the heights of the axis: what the noise goes around.
+void draw_smooth(const Axes& axes, std::span<const LossPoint> points, const Curve& curve, float width) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const double keep = 1 - 1.0 / std::clamp(static_cast<double>(points.size()) * SmoothShare, 1.0, 100.0);
+    const auto columns = static_cast<std::size_t>(std::max(1.0f, axes.high.x - axes.low.x));
+    const std::size_t stride = std::max<std::size_t>(1, points.size() / columns);
+    double mean = 0, weight = 0;
+    for (std::size_t at = 0; at < points.size(); ++at) {
+        const float value = curve.value(at);
+        if (!drawable(value, axes.logarithmic)) continue;
+        mean = keep * mean + (1 - keep) * axes.height_of(value);
+        weight = keep * weight + (1 - keep);
+        if (weight <= 0 || at % stride != 0) continue;
+        const double height = mean / weight;
+        list->PathLineTo(axes.at(points[at].iteration, axes.logarithmic ? std::pow(10.0, height) : height));
+    }
     list->PathStroke(curve.colour, ImDrawFlags_None, width);
+}
+
+void draw_curve(const Axes& axes, std::span<const LossPoint> points, const Curve& curve, float width) {
+    draw_raw(axes, points, curve, width);
+    draw_smooth(axes, points, curve, width);
 }
 
 void readout(const Axes& axes, std::span<const LossPoint> points, std::span<const Curve> curves) {
