@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "app/cli.h"
+#include "app/film.h"
 #include "app/scene_tools.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
@@ -116,37 +117,62 @@ void add_render(CLI::App& app, CommandContext&) {
     auto* command = app.add_subcommand("render", "Take a picture of a scene");
     command->add_option("scene", options->input, "Scene file or folder")->required();
     command->add_option("output", options->output, "PNG to write")->required();
+    auto transparent = std::make_shared<bool>(false);
+    command->add_flag("--transparent", *transparent, "Transparent where the scene does not cover the picture");
     bind_fields(*command, options->render, "Picture");
-    command->callback([options] {
+    command->callback([options, transparent] {
         const Scene scene = load_scene(options->input);
         Painter painter;
         const Camera camera = choose_camera(scene, options->input, options->render);
-        const auto& output =
-            painter.paint(scene.gaussians.spans(), camera, raster_settings(options->render, scene.info));
-        write_png(options->output, output.colour,
+        auto settings = raster_settings(options->render, scene.info);
+        if (*transparent) settings.background = {0, 0, 0};
+        const auto& output = painter.paint(scene.gaussians.spans(), camera, settings);
+        write_png(options->output, *transparent ? transparent_picture(output) : output.colour,
                       {{"Software", "GSEditPro"}, {"Recipe", fields_to_json(options->render).dump()}});
         fmt::print("{}\n", options->output.string());
     });
 }
 
+/// What `turntable` films.
+struct FilmOptions {
+    SceneOptions scene;
+    std::filesystem::path before, path;
+    bool transparent = false;
+};
+
+FilmRequest film_request(const FilmOptions& options) {
+    const auto& render = options.scene.render;
+    const auto& turn = options.scene.turn;
+    const Scene scene = load_scene(options.scene.input);
+    FilmRequest film;
+    film.first = scene.gaussians;
+    if (!options.before.empty()) {
+        film.second = std::make_shared<const GaussianSet>(scene.gaussians);
+        film.first = load_scene(options.before).gaussians;
+    }
+    film.settings = raster_settings(render, scene.info);
+    film.transparent = options.transparent;
+    film.fps = turn.fps;
+    film.cameras = options.path.empty()
+                       ? turn_cameras(scene_orbit(scene, render), turn, render.azimuth, render.width, render.height)
+                       : path_cameras(load_camera_path(options.path, render.width, render.height), turn.fps, render.width,
+                                      render.height);
+    return film;
+}
+
 void add_turntable(CLI::App& app, CommandContext& context) {
-    auto options = std::make_shared<SceneOptions>();
-    auto before = std::make_shared<std::filesystem::path>();
-    auto* command = app.add_subcommand("turntable", "Film a turn around a scene");
-    command->add_option("scene", options->input, "Scene file or folder")->required();
-    command->add_option("output", options->output, "Film (.mp4), or a folder for PNG frames")->required();
-    command->add_option("--before", *before, "Another scene to show in the left half");
-    bind_fields(*command, options->render, "Picture");
-    bind_fields(*command, options->turn, "Turn");
-    command->callback([options, before, &context] {
-        const Scene scene = load_scene(options->input);
-        if (before->empty()) {
-            write_turntable(options->output, scene, nullptr, options->render, options->turn, context.job());
-        } else {
-            const Scene source = load_scene(*before);
-            write_turntable(options->output, source, &scene, options->render, options->turn, context.job());
-        }
-        fmt::print("{}\n", options->output.string());
+    auto options = std::make_shared<FilmOptions>();
+    auto* command = app.add_subcommand("turntable", "Film a turn around a scene, or a camera path");
+    command->add_option("scene", options->scene.input, "Scene file or folder")->required();
+    command->add_option("output", options->scene.output, "Film (.mp4 or .webm), or a folder for PNG frames")->required();
+    command->add_option("--before", options->before, "Another scene to show in the left half");
+    command->add_option("--path", options->path, "Camera path (JSON of the editor) to follow instead of a turn");
+    command->add_flag("--transparent", options->transparent, "Transparent background (PNG frames)");
+    bind_fields(*command, options->scene.render, "Picture");
+    bind_fields(*command, options->scene.turn, "Turn");
+    command->callback([options, &context] {
+        write_film(options->scene.output, film_request(*options), context.job());
+        fmt::print("{}\n", options->scene.output.string());
     });
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double MovingMs = 40;        // a picture while moving may take this long: above 20 a second with time to spare
+constexpr double MovingMs = 25;        // a picture while moving may take this long: the panels need the processor too
 constexpr double LeastScale = 0.2;
 constexpr float LeastSolid = 0.3f;     // of a pixel, to have a depth that can be picked
 

@@ -11,7 +11,6 @@
 #include "engine/base/error.h"
 #include "engine/io/cameras.h"
 #include "engine/io/image_file.h"
-#include "engine/io/video.h"
 
 namespace gse::app {
 namespace {
@@ -111,31 +110,6 @@ Image side_by_side(const Image& left, const Image& right) {
     copy(left, 0);
     copy(right, left.width + line);
     return result;
-}
-
-void write_turntable(const std::filesystem::path& output, const Scene& first, const Scene* second,
-                     const RenderParameters& render, const TurntableParameters& turn, const JobControl& job) {
-    Painter painter;
-    const OrbitParameters orbit = scene_orbit(first, render);
-    const auto azimuths = turntable_azimuths(turn, render.azimuth);
-    const bool film = output.has_extension();
-    std::unique_ptr<VideoWriter> writer;
-    for (std::size_t frame = 0; frame < azimuths.size(); ++frame) {
-        if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "the turntable was stopped", "", output);
-        const Camera camera = orbit_camera(orbit, azimuths[frame], render.width, render.height);
-        Image picture = painter.paint(first.gaussians.spans(), camera, raster_settings(render, first.info)).colour;
-        if (second != nullptr)
-            picture = side_by_side(
-                picture, painter.paint(second->gaussians.spans(), camera, raster_settings(render, second->info)).colour);
-        if (film) {
-            if (!writer) writer = std::make_unique<VideoWriter>(output, picture.width, picture.height, turn.fps);
-            writer->add(picture);
-        } else {
-            write_png(output / fmt::format("frame_{:04}.png", frame), picture);
-        }
-        job.report("turntable", static_cast<int>(frame) + 1, static_cast<int>(azimuths.size()));
-    }
-    if (writer) writer->finish();
 }
 
 }  // namespace gse::app

@@ -99,11 +99,6 @@ struct TurntableParameters {
 /// Azimuth in radians of every frame.
 std::vector<double> turntable_azimuths(const TurntableParameters& parameters, double start_degrees);
 
-/// Renders the turn to `output` (.mp4, or a folder of PNGs when the name has no extension). With `second` the left half
-/// of each frame shows `first` and the right half `second`.
-void write_turntable(const std::filesystem::path& output, const Scene& first, const Scene* second,
-                     const RenderParameters& render, const TurntableParameters& turn, const JobControl& job);
-
 /// Left and right picture beside each other with a thin line between.
 Image side_by_side(const Image& left, const Image& right);
 
