@@ -99,8 +99,8 @@ void set_control_colours(ImVec4* colours) {
     colours[ImGuiCol_FrameBgHovered] = vector_of(IM_COL32(41, 43, 47, 255));
     colours[ImGuiCol_FrameBgActive] = vector_of(IM_COL32(44, 46, 51, 255));
     colours[ImGuiCol_CheckMark] = accent;
-    colours[ImGuiCol_SliderGrab] = accent;
-    colours[ImGuiCol_SliderGrabActive] = vector_of(palette::AccentHover);
+    colours[ImGuiCol_SliderGrab] = vector_of(IM_COL32(62, 118, 176, 255));  // text over it stays readable
+    colours[ImGuiCol_SliderGrabActive] = accent;
     colours[ImGuiCol_Button] = vector_of(palette::Raised);
     colours[ImGuiCol_ButtonHovered] = vector_of(palette::RaisedHover);
     colours[ImGuiCol_ButtonActive] = vector_of(palette::AccentDeep);

@@ -151,6 +151,16 @@ void CameraControl::home() {
     go({home_.centre, std::max(home_.radius, 1e-9), camera.rotation});
 }
 
+void CameraControl::look_from(const Vec3& direction) {
+    CameraPose next = target_;
+    // Straight from above the picture keeps its heading, so that it does not spin.
+    const bool vertical = std::abs(dot(normalized(direction), normalized(home_.up))) > 0.999;
+    const Vec3 lean = vertical ? row(now_.rotation, 2) * -PoleMargin : Vec3{};
+    next.rotation =
+        Camera::look_at(normalized(direction) + lean, {}, home_.up, fov_x_, width_, height_).rotation;
+    go(next);
+}
+
 void CameraControl::set_pivot(const Vec3& point) {
     const double along = dot(point - now_.eye(), row(now_.rotation, 2));
     if (along <= 0) return;

@@ -40,6 +40,8 @@ public:
     /// Sees a ball whole, from the present direction.
     void frame(const Vec3& centre, double radius);
     void home();
+    /// Looks at the pivot from this direction of the world.
+    void look_from(const Vec3& direction);
     /// Turns around this point from now on: it glides to the middle of the picture.
     void set_pivot(const Vec3& point);
 

@@ -12,6 +12,7 @@ namespace gse::ui {
 namespace {
 
 constexpr float ClickTravelEm = 0.3f;  // a press that moves less is a click
+constexpr float AxisBallEm = 0.55f;
 constexpr double FlyFast = 4, FlySlow = 0.2;
 
 struct Pixels {
@@ -64,12 +65,28 @@ void fly(Context& context) {
     context.state.viewport.camera.fly(direction, io.DeltaTime, speed);
 }
 
+/// A click on a ball of the axes looks along it; once more, from the other side.
+bool look_along_axis(Context& context, ImVec2 mouse) {
+    if (!context.view.show_axes) return false;
+    for (int axis = 0; axis < 3; ++axis) {
+        const ImVec2 ball = axis_ball(context, axis);
+        if (std::hypot(ball.x - mouse.x, ball.y - mouse.y) > context.em * AxisBallEm) continue;
+        Vec3 from;
+        from[axis] = 1;
+        auto& camera = context.state.viewport.camera;
+        const bool there = dot(camera.camera().forward(), from) < -0.99;
+        camera.look_from(there ? -from : from);
+        return true;
+    }
+    return false;
+}
+
 void release(Context& context, ImVec2 mouse) {
     auto& state = context.state.viewport;
     const float travelled = std::hypot(mouse.x - state.stroke_start.x, mouse.y - state.stroke_start.y);
     const bool clicked = state.drag_button == ImGuiMouseButton_Left && travelled < context.em * ClickTravelEm;
     state.drag_button = -1;
-    if (!clicked || !context.view.show_views) return;
+    if (!clicked || look_along_axis(context, mouse) || !context.view.show_views) return;
     const int view = view_at(context, mouse);
     if (view >= 0) state.selected_view = view;
 }

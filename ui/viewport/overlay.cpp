@@ -16,7 +16,8 @@ namespace {
 constexpr std::array<ImU32, 3> AxisColours{IM_COL32(226, 104, 98, 255), IM_COL32(124, 196, 104, 255),
                                            IM_COL32(98, 150, 232, 255)};
 constexpr double FrustumShare = 0.07;  // length of a camera's drawn frustum, of the scene's radius
-constexpr double RateSeconds = 1;       // the frame rate is shown this long after the last move
+constexpr double RateSeconds = 1;      // the frame rate is shown this long after the last move
+constexpr float AxesEm = 1.9f;
 constexpr float PickRadiusEm = 0.8f;
 
 double near_of(const Context& context) { return std::max(1e-9, context.model.orbit.radius * 1e-3); }
@@ -43,22 +44,28 @@ std::optional<ImVec2> project(const Context& context, const Vec3& world) {
     return to_screen(context, camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy);
 }
 
+ImVec2 axes_centre(const Context& context) {
+    const auto& state = context.state.viewport;
+    const float away = context.em * AxesEm * 1.5f;
+    return {state.low.x + away, state.high.y - away};
+}
+
 /// The world's axes in the lower left corner, turned as the camera is.
 void draw_axes(Context& context, ImDrawList* list) {
-    const auto& state = context.state.viewport;
-    const float size = context.em * 1.9f;
-    const ImVec2 centre(state.low.x + size * 1.5f, state.high.y - size * 1.5f);
+    const ImVec2 centre = axes_centre(context);
     std::array<int, 3> order{0, 1, 2};
     const Mat3& rotation = context.model.camera.rotation;
     std::sort(order.begin(), order.end(),
               [&](int a, int b) { return rotation(2, a) > rotation(2, b); });  // far ones first
     for (const int axis : order) {
-        const ImVec2 end(centre.x + static_cast<float>(rotation(0, axis)) * size,
-                         centre.y + static_cast<float>(rotation(1, axis)) * size);
+        const ImVec2 end = axis_ball(context, axis);
         const ImU32 colour =
             with_alpha(AxisColours[static_cast<std::size_t>(axis)], rotation(2, axis) > 0.2 ? 0.55f : 1);
         list->AddLine(centre, end, colour, std::max(1.5f, context.em * 0.13f));
         list->AddCircleFilled(end, context.em * 0.46f, colour);
+        const float r = context.em * 0.46f;
+        note_rect(context, fmt::format("viewport.axis.{}", "xyz"[axis]), {end.x - r, end.y - r},
+                  {end.x + r, end.y + r});
         const char letter[2] = {"xyz"[axis], 0};
         const ImVec2 text = ImGui::CalcTextSize(letter);
         list->AddText({end.x - text.x * 0.5f, end.y - text.y * 0.54f}, IM_COL32(20, 20, 22, 255), letter);
@@ -125,7 +132,8 @@ void draw_hud(Context& context, ImDrawList* list) {
     // At rest nothing is drawn, and a rate would say how often nobody looked.
     const bool moving = ImGui::GetTime() - state.moved_at < RateSeconds;
     std::string text = moving ? fmt::format("{:.0f} fps   ", model.frames_per_second) : std::string();
-    text += fmt::format("{:.1f} ms   {} splats", model.render_ms, count_text(context.document().current.size()));
+    text +=
+        fmt::format("{:.1f} ms   {} splats", model.render_ms, count_text(context.document().current.size()));
     if (model.labelled > 0) text += fmt::format("   {} labelled", count_text(model.labelled));
     const float room = state.high.x - state.low.x - context.em * 2;
     if (!model.renderer.empty() && ImGui::CalcTextSize((text + "   " + model.renderer).c_str()).x < room)
@@ -179,6 +187,14 @@ ImVec2 to_screen(const Context& context, double x_px, double y_px) {
     return {
         state.low.x + static_cast<float>(x_px / std::max(1, camera.width)) * (state.high.x - state.low.x),
         state.low.y + static_cast<float>(y_px / std::max(1, camera.height)) * (state.high.y - state.low.y)};
+}
+
+ImVec2 axis_ball(const Context& context, int axis) {
+    const Mat3& rotation = context.model.camera.rotation;
+    const ImVec2 centre = axes_centre(context);
+    const float size = context.em * AxesEm;
+    return {centre.x + static_cast<float>(rotation(0, axis)) * size,
+            centre.y + static_cast<float>(rotation(1, axis)) * size};
 }
 
 int view_at(const Context& context, ImVec2 point) {

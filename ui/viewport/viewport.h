@@ -33,6 +33,8 @@ void draw_result_bar(Context& context);
 double depth_at(const Context& context, ImVec2 point);
 /// Pixel of the shown camera to the window.
 ImVec2 to_screen(const Context& context, double x_px, double y_px);
+/// Where the ball of a world axis (0, 1, 2) is drawn in the corner.
+ImVec2 axis_ball(const Context& context, int axis);
 /// The shown camera's view that lies under the point, -1 = none.
 int view_at(const Context& context, ImVec2 point);
 

@@ -82,6 +82,8 @@ std::string field_label(const char* name) {
         if (at != std::string::npos && at + std::string_view(from).size() == label.size())
             label.replace(at, std::string::npos, to);
     }
+    for (const auto& [from, to] : {std::pair{"dbscan", "DBSCAN"}, std::pair{"ssim", "SSIM"}})
+        if (label.starts_with(from)) label.replace(0, std::string_view(from).size(), to);
     if (!label.empty()) label[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(label[0])));
     return label;
 }

@@ -315,4 +315,21 @@ DOCTEST_TEST_CASE("cameras are chosen by a click and looked through by two") {
     DOCTEST_CHECK_MESSAGE(false, "no view was in the picture");
 }
 
+DOCTEST_TEST_CASE("a click on an axis looks along it, a second one from the other side") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    const auto& camera = harness.application.model().camera;
+    for (const auto& [name, axis] :
+         {std::pair{"viewport.axis.x", Vec3{1, 0, 0}}, std::pair{"viewport.axis.z", Vec3{0, 0, 1}},
+          std::pair{"viewport.axis.y", Vec3{0, 1, 0}}}) {
+        const double distance = harness.shell.state().viewport.camera.pose().distance;
+        harness.click(name);
+        harness.frame(90);
+        DOCTEST_CHECK(dot(camera.forward(), axis) < -0.99);
+        DOCTEST_CHECK(harness.shell.state().viewport.camera.pose().distance == doctest::Approx(distance));
+        harness.click(name);
+        harness.frame(90);
+        DOCTEST_CHECK(dot(camera.forward(), axis) > 0.99);
+    }
+}
+
 }  // namespace gse::test
