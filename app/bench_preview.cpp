@@ -2,6 +2,8 @@
 // truth.
 #include "app/bench_preview.h"
 
+#include "app/bench_moving.h"
+
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -204,7 +206,10 @@ Json bench_preview(const Scene& scene, const PreviewBenchOptions& options) {
     std::optional<Image> vulkan_light;
     if (options.backend != "native")
         json["vulkan"] = bench_vulkan(scene, options, views, painter, vulkan_light);
-    if (options.backend != "vulkan") json["native"] = bench_native(scene, views, painter);
+    if (options.backend != "vulkan") {
+        json["native"] = bench_native(scene, views, painter);
+        json["native"]["moving"] = bench_moving(scene, options.width, options.height);
+    }
     if (options.compare_plain) {
         raster::ForwardOutput truth;
         raster::make_plain_rasterizer()->forward(scene.gaussians.spans(), views[0].camera, {}, truth);

@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double MovingMs = 25;        // a picture while moving may take this long: the panels need the processor too
+constexpr double MovingMs = 30;        // a picture while moving may take this long: the panels need the processor too
 constexpr double LeastScale = 0.2;
 constexpr float LeastSolid = 0.3f;     // of a pixel, to have a depth that can be picked
 
@@ -154,9 +154,13 @@ bool NativePreview::busy() const {
     return painting_ || wanted_.valid || ready_.has_value() || !painted_full_;
 }
 
-double NativePreview::scale_for(const PictureRequest& request) const {
-    if (!request.moving || full_ms_ <= MovingMs) return 1;
-    return std::clamp(std::sqrt(MovingMs / full_ms_), LeastScale, 1.0);
+/// Follows the time pictures take: part of it does not depend on their size, so no formula knows the right one.
+void NativePreview::learn(const NativePicture& picture, bool moving) {
+    if (picture.full && picture.milliseconds <= MovingMs) moving_scale_ = 1;
+    else if (moving) {
+        const double step = std::clamp(std::sqrt(MovingMs / std::max(picture.milliseconds, 0.1)), 0.8, 1.12);
+        moving_scale_ = std::clamp(moving_scale_ * step, LeastScale, 1.0);
+    }
 }
 
 void NativePreview::loop(const std::stop_token& end) {
@@ -171,7 +175,7 @@ void NativePreview::loop(const std::stop_token& end) {
             request = wanted_.request;
             wanted_.valid = false;
             painting_ = true;
-            scale = scale_for(request);
+            scale = request.moving ? moving_scale_ : 1;
         }
         NativePicture picture;
         const int width = std::max(1, static_cast<int>(std::lround(request.camera.width * scale)));
@@ -179,8 +183,7 @@ void NativePreview::loop(const std::stop_token& end) {
         painter.paint(request, width, height, picture);
         {
             const std::lock_guard lock(mutex_);
-            const double full = picture.milliseconds / (scale * scale);
-            full_ms_ = full_ms_ <= 0 || picture.full ? full : 0.5 * (full_ms_ + full);
+            learn(picture, request.moving);
             painted_full_ = picture.full;
             painted_ = std::move(request);
             ready_ = std::move(picture);

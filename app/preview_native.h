@@ -65,7 +65,7 @@ private:
         bool valid = false;
     };
     void loop(const std::stop_token& end);
-    double scale_for(const PictureRequest& request) const;
+    void learn(const NativePicture& picture, bool moving);
 
     mutable std::mutex mutex_;
     std::condition_variable_any changed_;
@@ -73,7 +73,7 @@ private:
     std::optional<PictureRequest> painted_;   // what the newest picture shows
     bool painted_full_ = false, painting_ = false;
     std::optional<NativePicture> ready_;
-    double full_ms_ = 0;                      // estimate of a picture at full size
+    double moving_scale_ = 0.5;               // share of the full width while moving
     std::string name_;
     std::function<void()> wake_;
     std::jthread thread_;
