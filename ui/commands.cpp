@@ -32,11 +32,15 @@ void with_unsaved_work(Context& context, const std::string& what, std::function<
     question.title = "Unsaved changes";
     question.text = fmt::format("{} The changes since the last save would be lost.", what);
     question.answers.clear();
-    if (!context.model.project_path.empty())
+    if (context.model.project_path.empty()) {
+        question.answers.push_back(
+            {"Save as...", false, [state = &context.state] { state->save_as_asked = true; }});
+    } else {
         question.answers.push_back({"Save, then go on", false, [&actions, act] {
                                         actions.save_project({});
                                         act();
                                     }});
+    }
     question.answers.push_back({"Go on without saving", true, act});
     question.answers.push_back({"Stay", false, {}});
     question.pending = true;
@@ -191,8 +195,7 @@ void save_as(Context& context) {
     if (!context.scene_open()) return;
     auto& actions = context.actions;
     std::filesystem::path start = path_of(context.model.project_path);
-    if (start.empty() && !context.model.scene_path.empty())
-        start = path_of(context.model.suggested_project);
+    if (start.empty() && !context.model.scene_path.empty()) start = path_of(context.model.suggested_project);
     if (start.empty()) start = home_folder() / "scene.gsep";
     context.state.files.ask(
         {.title = "Save the project",

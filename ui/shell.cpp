@@ -168,6 +168,8 @@ void Shell::write_widgets(const std::filesystem::path& path) const {
 }
 
 void Shell::answer_requests(Context& context) {
+    if (state_->save_as_asked) save_as(context);
+    state_->save_as_asked = false;
     if (state_->quit_asked) quit(context);
     state_->quit_asked = false;
     if (state_->open_asked.empty()) return;
@@ -260,7 +262,8 @@ void Shell::draw_window(Context& context) {
 }
 
 void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
-    // Arrows, Alt, Tab and Space are keys of the editor; keyboard navigation between widgets would take them too.
+    // Arrows, Alt, Tab and Space are keys of the editor; keyboard navigation between widgets would take them
+    // too.
     ImGui::GetIO().ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
     const float em = ImGui::GetFontSize();
     if (em != styled_em_) apply_theme(ImGui::GetStyle(), em);

@@ -49,7 +49,7 @@ struct ViewportState {
     Comparison before_flip = Comparison::None;
     bool wipe_dragged = false;
     double moved_at = -10;  // ImGui time of the last move
-    int drag_button = -1;  // mouse button that navigates, -1 = none
+    int drag_button = -1;   // mouse button that navigates, -1 = none
 };
 
 /// What is known about the sentence, kept until it changes.
@@ -116,6 +116,7 @@ struct UiState {
     Question question;
     std::array<bool, AreaCount> front_changed{true, true, true};  // a tab has to be brought to the front
     bool help_open = false, about_open = false;
+    bool save_as_asked = false;
     bool quit_asked = false;
     std::string open_asked;  // path to open, from outside; empty = none
     std::string model_path;

@@ -131,15 +131,18 @@ void draw_hud(Context& context, ImDrawList* list) {
     const auto& state = context.state.viewport;
     // At rest nothing is drawn, and a rate would say how often nobody looked.
     const bool moving = ImGui::GetTime() - state.moved_at < RateSeconds;
-    std::string text = moving ? fmt::format("{:.0f} fps   ", model.frames_per_second) : std::string();
-    text +=
-        fmt::format("{:.1f} ms   {} splats", model.render_ms, count_text(context.document().current.size()));
-    if (model.labelled > 0) text += fmt::format("   {} labelled", count_text(model.labelled));
+    const std::array<std::string, 5> parts{
+        fmt::format("{} splats", count_text(context.document().current.size())),
+        model.labelled > 0 ? fmt::format("{} labelled", count_text(model.labelled)) : std::string(),
+        fmt::format("{:.1f} ms", model.render_ms),
+        moving ? fmt::format("{:.0f} fps", model.frames_per_second) : std::string(), model.renderer};
     const float room = state.high.x - state.low.x - context.em * 2;
-    if (!model.renderer.empty() && ImGui::CalcTextSize((text + "   " + model.renderer).c_str()).x < room)
-        text += "   " + model.renderer;
-    shaded_text(context, list, {state.low.x + context.em * 0.5f, state.low.y + context.em * 0.5f},
-                shortened(text, room));
+    std::string text;
+    for (const auto& part : parts) {
+        const std::string longer = text.empty() ? part : fmt::format("{}   {}", text, part);
+        if (!part.empty() && ImGui::CalcTextSize(longer.c_str()).x < room) text = longer;
+    }
+    shaded_text(context, list, {state.low.x + context.em * 0.5f, state.low.y + context.em * 0.5f}, text);
 }
 
 void draw_wipe(Context& context, ImDrawList* list) {

@@ -107,6 +107,7 @@ DOCTEST_TEST_CASE("the window in every state") {
         take(shot, 1920, 1080, 1);
         take(shot, 2560, 1440, 2);
         take(shot, 800, 600, 1);
+        take(shot, 1280, 720, 2);
     }
 }
 
