@@ -16,6 +16,7 @@
 #include "engine/base/file.h"
 #include "engine/base/log.h"
 #include "engine/io/image_file.h"
+#include "engine/vulkan/device.h"
 #include "engine/vulkan/error.h"
 #include "ui/shell.h"
 #include "ui/theme.h"
@@ -70,6 +71,7 @@ public:
             } catch (const vulkan::DeviceLost& lost) {
                 log::warning("the graphics device was lost and is set up again ({})", lost.what());
                 window_.rebuild_device();
+                ++devices_lost_;
             }
         }
         app_.set_layout(shell_.layout());
@@ -111,6 +113,7 @@ private:
     void frame() {
         if (app_.layout_changed()) shell_.set_layout(app_.layout());
         app_.update(viewport_);
+        lose_device_if_asked();
         if (!window_.begin_frame()) return;
         viewport_.record();
         shell_.draw(app_.model(), app_, textures_);
@@ -135,7 +138,14 @@ private:
         window_.set_title(title);
     }
 
-    /// For scripts that drive the window: places of the widgets as JSON, and a picture of the window on request.
+    /// For scripts that drive the window: places of the widgets as JSON, a picture of the window on request, and a device
+    /// that gets lost.
+    void lose_device_if_asked() {
+        const std::filesystem::path request = widget_map_.string() + ".lose_device";
+        if (widget_map_.empty() || !std::filesystem::exists(request)) return;
+        std::filesystem::remove(request);
+        window_.device().pretend_lost();
+    }
     void write_map() {
         if (widget_map_.empty() || seconds_since(map_written_) < 0.1) return;
         map_written_ = Clock::now();
@@ -165,6 +175,8 @@ private:
         state["mode"] = model.view.mode;
         state["frames"] = frames_;
         state["busy"] = viewport_.busy();
+        state["devices_lost"] = devices_lost_;
+        state["framebuffer"] = {window_.framebuffer_width(), window_.framebuffer_height()};
         state["recoverable"] = model.recoverable.size();
         state["validation_messages"] = window_.validation_messages();
         state["toasts"] = nlohmann::ordered_json::array();
@@ -192,7 +204,7 @@ private:
     std::filesystem::path widget_map_;
     std::string title_;
     Clock::time_point last_input_ = Clock::now(), map_written_{};
-    std::size_t frames_ = 0;
+    std::size_t frames_ = 0, devices_lost_ = 0;
 };
 
 void run_open(const OpenOptions& options) {
