@@ -38,6 +38,7 @@ struct PendingResult {
     bool adds = false;
     double seconds = 0, psnr_outside_db = 0;
     std::size_t changed_outside_label = 0;
+    std::shared_ptr<const Image> thumbnail;
 };
 
 /// What the edit thread hands over while it runs; newest wins.
@@ -152,7 +153,7 @@ private:
     std::uint64_t content_live() const;
     nlohmann::json ui_json() const;
     void ui_from_json(const nlohmann::json& json);
-    DocumentState state_with_live_edit() const;
+    std::function<DocumentState()> state_with_live_edit() const;
 
     // application_work.cpp
     bool job_fits() const;

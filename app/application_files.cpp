@@ -239,20 +239,24 @@ void Application::ui_from_json(const nlohmann::json& json) {
     }
 }
 
-DocumentState Application::state_with_live_edit() const {
-    const DocumentState& state = document_.state();
-    if (!pending_ && !(work_.running() && !snapshots_.empty())) return state;
-    const auto& after = pending_ ? pending_->set : *snapshots_.back().set;
-    const auto& rows = pending_ ? *pending_->base_to_new : *snapshots_.back().base_to_new;
-    if (rows.size() != state.current.size()) return state;
-    EditNode node;
-    node.id = next_edit_id_;
-    node.name = pending_ ? pending_->name
-                         : fmt::format("{} (interrupted at iteration {})", model_.request.prompt, snapshots_.back().iteration);
-    node.delta = std::make_shared<const SceneDelta>(make_delta(state.current, *state.row_ids, after, rows, node.id));
-    auto stack = state.stack;
-    stack.push_back(std::move(node));
-    return with_stack(state, std::move(stack));
+std::function<DocumentState()> Application::state_with_live_edit() const {
+    const DocumentState state = document_.state();
+    if (!pending_ && !(work_.running() && !snapshots_.empty())) return [state] { return state; };
+    const GaussianSet after = pending_ ? pending_->set : *snapshots_.back().set;
+    const auto rows = pending_ ? pending_->base_to_new : snapshots_.back().base_to_new;
+    const std::string name = pending_ ? pending_->name
+                                      : fmt::format("{} (interrupted at iteration {})", model_.request.prompt,
+                                                    snapshots_.back().iteration);
+    return [state, after, rows, name, id = next_edit_id_] {
+        if (rows->size() != state.current.size()) return state;
+        EditNode node;
+        node.id = id;
+        node.name = name;
+        node.delta = std::make_shared<const SceneDelta>(make_delta(state.current, *state.row_ids, after, *rows, id));
+        auto stack = state.stack;
+        stack.push_back(std::move(node));
+        return with_stack(state, std::move(stack));
+    };
 }
 
 void Application::autosave_if_due() {
@@ -265,12 +269,14 @@ void Application::autosave_if_due() {
     autosaved_revision_ = document_.revision();
     autosaved_live_ = content_live();
     auto data = std::make_shared<ProjectData>();
-    data->state = state_with_live_edit();
     data->source = source_;
     data->ui = ui_json();
     data->unknown = unknown_;
     saver_.start({"Autosave",
-                  [this, data, project = project_path_](const JobControl&) { autosave_->write(*data, project, *writer_); },
+                  [this, data, state = state_with_live_edit(), project = project_path_](const JobControl&) {
+                      data->state = state();   // here, not on the main thread: a large edit takes a while
+                      autosave_->write(*data, project, *writer_);
+                  },
                   [this](const Error* error) {
                       if (error != nullptr) return report_error(*error);
                       if (recovered_) gse::discard(*recovered_), recovered_.reset();

@@ -162,6 +162,7 @@ void Application::locate() {
     auto search = std::make_shared<Search>();
     search->model = text_model_path_ == model_path_ ? text_model_ : nullptr;
     EditRecipe recipe = current_recipe();
+    if (recipe.request.prompt.empty() && !recipe.request.source.empty()) recipe.request.prompt = "a " + recipe.request.source;
     try {
         recipe.request = edit::validated(recipe.request);
     } catch (const Error& error) {
@@ -323,6 +324,9 @@ void fill_pending(EditJob& job, PendingResult& pending) {
     pending.seconds = report["seconds"]["edit"].get<double>();
     pending.psnr_outside_db = report["psnr_outside_db"].get<double>();
     pending.changed_outside_label = result.changed_outside_label;
+    constexpr int thumbnail_px = 96;
+    const Camera camera = orbit_camera(job.film_orbit(), 0.35, thumbnail_px, thumbnail_px);
+    pending.thumbnail = std::make_shared<const Image>(job.painter().paint(result.set.spans(), camera, job.plan().settings).colour);
 }
 
 void Application::finish_edit(const Error* error) {
@@ -353,6 +357,7 @@ void Application::apply_result() {
     node.seconds = result.seconds;
     node.psnr_outside_db = result.psnr_outside_db;
     node.changed_outside_label = result.changed_outside_label;
+    node.thumbnail = result.thumbnail;
     node.delta = std::make_shared<const SceneDelta>(
         make_delta(result.before, *before.row_ids, result.set, *result.base_to_new, node.id));
     auto stack = before.stack;
