@@ -438,6 +438,7 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
         const double grow = input.request.dilate_px * (located.mode == EditMode::Add ? 2 : 1);
         plan.masks.push_back(localize::dilate(mask, grow * camera.width / ReferenceSide));
     }
+    if (!input.request.localize) std::fill(plan.label.begin(), plan.label.end(), std::uint8_t{1});
     return plan;
 }
 

@@ -36,6 +36,7 @@ struct EditRequest {
     double fallback_mass = 0.5;
     double tau = 0.5;
     double evidence_px = 0.5;
+    bool localize = true;
     // Loop
     int iterations = 400;
     double guidance_weight = 1;
@@ -120,6 +121,8 @@ private:
           "A segment that captures less of the attention than this gives way to the attention region.", Range{0, 1});
         f("tau", self.tau, "Splats seen inside the masks for more than this share are labelled.", Range{0, 1});
         f("evidence_px", self.evidence_px, "Splats seen over fewer pixels than this are not labelled.", Range{0, 1e6});
+        f("localize", self.localize,
+          "Let only the splats that were found change; off = every splat may (an ablation of the paper).");
     }
     template <class Self, class F>
     static void visit_loop(Self& self, F&& f) {

@@ -221,7 +221,10 @@ private:
             calibration_.push_back(guidance_norm);
             std::vector<double> sorted = calibration_;
             std::sort(sorted.begin(), sorted.end());
-            const double full = request_.preserve * request_.l1 / std::sqrt(static_cast<double>(gradient_.data.size()));
+            // Without preservation the default one is the measure, so that the anchors keep their relative strength.
+            const double weight = request_.preserve * request_.l1;
+            const double full = (weight > 0 ? weight : EditRequest{}.preserve * EditRequest{}.l1) /
+                                std::sqrt(static_cast<double>(gradient_.data.size()));
             guidance_scale_ = request_.guidance_weight * std::max(full, 1e-6) / sorted[sorted.size() / 2];
         }
         return guidance_scale_;
