@@ -30,15 +30,6 @@ std::array<float, 3> heat(float value) {
     return {std::clamp(v, 0.0f, 1.0f), std::clamp(v - 1, 0.0f, 1.0f), std::clamp(v - 2, 0.0f, 1.0f)};
 }
 
-Image heat_map(const Image& map) {
-    Image picture(map.width, map.height, 3);
-    for (std::size_t i = 0; i < map.pixel_count(); ++i) {
-        const auto colour = heat(map.data[i]);
-        std::copy(colour.begin(), colour.end(), &picture.data[i * 3]);
-    }
-    return picture;
-}
-
 /// The render with the clicks: green crosses inside, red outside.
 Image with_points(const Image& render, const std::vector<edit::PointPrompt>& points) {
     Image picture = render;
@@ -58,6 +49,15 @@ Image with_points(const Image& render, const std::vector<edit::PointPrompt>& poi
 void write_json(const fs::path& path, const nlohmann::ordered_json& json) { write_file(path, json.dump(2) + "\n"); }
 
 }  // namespace
+
+Image heat_map(const Image& map) {
+    Image picture(map.width, map.height, 3);
+    for (std::size_t i = 0; i < map.pixel_count(); ++i) {
+        const auto colour = heat(map.data[i]);
+        std::copy(colour.begin(), colour.end(), &picture.data[i * 3]);
+    }
+    return picture;
+}
 
 StagedFolder::StagedFolder(fs::path target) : target_(fs::absolute(target).lexically_normal()) {
     if (!target_.has_filename()) target_ = target_.parent_path();

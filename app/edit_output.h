@@ -26,6 +26,9 @@ private:
     bool committed_ = false;
 };
 
+/// A map in [0,1] in colours: black, red, yellow, white.
+Image heat_map(const Image& map);
+
 /// Per view: render, attention map, points and mask as PNG, and index.json.
 void write_evidence(const std::filesystem::path& folder, const edit::LocateResult& located,
                     const std::vector<View>& views);

@@ -133,8 +133,28 @@ std::vector<double> ssim_plane(const Image& a, const Image& b, int channel) {
     return map;
 }
 
-bool same_bits(std::span<const float> a, std::span<const float> b, std::size_t row, std::size_t stride) {
-    return std::memcmp(a.data() + row * stride, b.data() + row * stride, stride * sizeof(float)) == 0;
+/// A row of each of two sets.
+struct RowPair {
+    std::size_t a = 0, b = 0;
+    bool same_bits(std::span<const float> in_a, std::span<const float> in_b, std::size_t stride) const {
+        return std::memcmp(in_a.data() + a * stride, in_b.data() + b * stride, stride * sizeof(float)) == 0;
+    }
+    bool same(const GaussianSet& in_a, const GaussianSet& in_b) const {
+        const auto sh_stride = static_cast<std::size_t>(sh_coefficient_count(in_a.sh_degree())) * 3;
+        return same_bits(in_a.position(), in_b.position(), 3) && same_bits(in_a.log_scale(), in_b.log_scale(), 3) &&
+               same_bits(in_a.rotation(), in_b.rotation(), 4) &&
+               same_bits(in_a.opacity_logit(), in_b.opacity_logit(), 1) && same_bits(in_a.sh(), in_b.sh(), sh_stride);
+    }
+};
+
+/// Largest channel difference of a pixel.
+double pixel_difference(const Image& a, const Image& b, std::size_t pixel) {
+    double largest = 0;
+    for (int c = 0; c < a.channels; ++c) {
+        const auto i = pixel * static_cast<std::size_t>(a.channels) + static_cast<std::size_t>(c);
+        largest = std::max(largest, std::abs(static_cast<double>(a.data[i]) - b.data[i]));
+    }
+    return largest;
 }
 
 }  // namespace
@@ -162,6 +182,10 @@ double boundary_f(const Mask& predicted, const Mask& truth, double tolerance_px)
     const double precision = matched_share(found, outline_mask(wanted, truth.width, truth.height), tolerance_px);
     const double recall = matched_share(wanted, outline_mask(found, truth.width, truth.height), tolerance_px);
     return precision + recall > 0 ? 2 * precision * recall / (precision + recall) : 0;
+}
+
+double boundary_tolerance_px(int width, int height) {
+    return std::max(1.0, BoundaryToleranceShare * std::hypot(width, height));
 }
 
 double psnr_db(const Image& a, const Image& b, const Region& region) {
@@ -198,15 +222,18 @@ double leak_rate(const Image& a, const Image& b, const Region& region, double th
     std::size_t leaked = 0, count = 0;
     for (std::size_t pixel = 0; pixel < a.pixel_count(); ++pixel) {
         if (!region.contains(pixel)) continue;
-        double largest = 0;
-        for (int c = 0; c < a.channels; ++c) {
-            const auto i = pixel * static_cast<std::size_t>(a.channels) + static_cast<std::size_t>(c);
-            largest = std::max(largest, std::abs(static_cast<double>(a.data[i]) - b.data[i]));
-        }
-        leaked += largest > threshold ? 1 : 0;
+        leaked += pixel_difference(a, b, pixel) > threshold ? 1 : 0;
         ++count;
     }
     return count > 0 ? static_cast<double>(leaked) / static_cast<double>(count) : 0;
+}
+
+Mask changed_pixels(const Image& a, const Image& b, double threshold) {
+    check_same_size(a, b, {});
+    Mask mask(a.width, a.height);
+    for (std::size_t pixel = 0; pixel < a.pixel_count(); ++pixel)
+        mask.data[pixel] = pixel_difference(a, b, pixel) > threshold ? 1 : 0;
+    return mask;
 }
 
 double mean_colour_error(const Image& a, const Image& b, const Region& region) {
@@ -229,18 +256,27 @@ double mean_colour_error(const Image& a, const Image& b, const Region& region) {
 std::size_t changed_rows(const GaussianSet& before, const GaussianSet& after, std::span<const std::uint8_t> counted) {
     GSE_CHECK_EQ(before.sh_degree(), after.sh_degree());
     GSE_CHECK_EQ(counted.size(), before.size());
-    const auto sh_stride = static_cast<std::size_t>(sh_coefficient_count(before.sh_degree())) * 3;
     std::size_t changed = 0;
     for (std::size_t row = 0; row < before.size(); ++row) {
         if (counted[row] == 0) continue;
-        const bool same = row < after.size() && same_bits(before.position(), after.position(), row, 3) &&
-                          same_bits(before.log_scale(), after.log_scale(), row, 3) &&
-                          same_bits(before.rotation(), after.rotation(), row, 4) &&
-                          same_bits(before.opacity_logit(), after.opacity_logit(), row, 1) &&
-                          same_bits(before.sh(), after.sh(), row, sh_stride);
-        changed += same ? 0 : 1;
+        changed += row < after.size() && RowPair{row, row}.same(before, after) ? 0 : 1;
     }
     return changed;
+}
+
+std::size_t drifted_rows(const GaussianSet& before, const GaussianSet& after,
+                         std::span<const std::int64_t> before_to_after, std::span<const std::uint8_t> label) {
+    GSE_CHECK_EQ(before.sh_degree(), after.sh_degree());
+    GSE_CHECK_EQ(before_to_after.size(), before.size());
+    GSE_CHECK_EQ(label.size(), before.size());
+    std::size_t drifted = 0;
+    for (std::size_t row = 0; row < before.size(); ++row) {
+        if (label[row] != 0) continue;
+        const std::int64_t now = before_to_after[row];
+        const auto to = static_cast<std::size_t>(now);
+        drifted += now >= 0 && to < after.size() && RowPair{row, to}.same(before, after) ? 0 : 1;
+    }
+    return drifted;
 }
 
 }  // namespace gse::evaluate

@@ -28,6 +28,12 @@ Overlap mask_overlap(const Mask& predicted, const Mask& truth);
 /// F1 of the two outlines: an outline pixel counts as matched when the other outline is at most `tolerance_px` away.
 double boundary_f(const Mask& predicted, const Mask& truth, double tolerance_px = 2);
 
+/// Tolerance of an outline, as a share of the picture's diagonal: what is used for video segmentation (DAVIS 2016).
+inline constexpr double BoundaryToleranceShare = 0.008;
+
+/// That share in pixels, at least 1: small pictures have no finer outline.
+double boundary_tolerance_px(int width, int height);
+
 /// Which pixels a picture measure looks at: those where the mask equals `inside`; all of them without a mask.
 struct Region {
     const Mask* mask = nullptr;
@@ -47,8 +53,14 @@ double mean_absolute_error(const Image& a, const Image& b, const Region& region 
 /// Mean over the region of the SSIM map (11x11 Gaussian window, sigma 1.5, C1 = 1e-4, C2 = 9e-4, zero padding).
 double ssim(const Image& a, const Image& b, const Region& region = {});
 
-/// Share of the region's pixels whose largest channel difference exceeds `threshold` (2/255).
-double leak_rate(const Image& a, const Image& b, const Region& region, double threshold = 2.0 / 255);
+/// A colour difference that a display of 8 bits shows beyond rounding (method 6.3).
+inline constexpr double LeakTolerance = 2.0 / 255;
+
+/// Share of the region's pixels whose largest channel difference exceeds `threshold`; 0 for an empty region.
+double leak_rate(const Image& a, const Image& b, const Region& region, double threshold = LeakTolerance);
+
+/// 1 where the largest channel difference exceeds `threshold`.
+Mask changed_pixels(const Image& a, const Image& b, double threshold);
 
 /// |mean colour of a - mean colour of b| over the region (Euclidean), the colour error of a recolouring.
 double mean_colour_error(const Image& a, const Image& b, const Region& region = {});
@@ -56,5 +68,10 @@ double mean_colour_error(const Image& a, const Image& b, const Region& region = 
 /// Number of rows with equal index whose bits differ in any attribute, among rows with counted[row] != 0.
 /// Both sets must have the same SH degree; rows beyond the shorter set count as different.
 std::size_t changed_rows(const GaussianSet& before, const GaussianSet& after, std::span<const std::uint8_t> counted);
+
+/// Drift of an edit: rows of `before` with label[row] == 0 that are gone (before_to_after[row] < 0) or differ in any bit from
+/// the row of `after` they became.
+std::size_t drifted_rows(const GaussianSet& before, const GaussianSet& after,
+                         std::span<const std::int64_t> before_to_after, std::span<const std::uint8_t> label);
 
 }  // namespace gse::evaluate

@@ -10,6 +10,7 @@
 #include "engine/base/fields.h"
 #include "engine/base/progress.h"
 #include "engine/edit/interfaces.h"
+#include "engine/edit/text_image_score.h"
 #include "engine/neural/attention_parameters.h"
 #include "engine/neural/sds_parameters.h"
 #include "engine/neural/starter_trainer.h"
@@ -40,6 +41,8 @@ public:
     virtual std::string name() const = 0;
     virtual Image sample(const SampleRequest& request) = 0;
     virtual Image img2img(const Image& image, const SampleRequest& request) = 0;
+    /// The bundle's text-image encoder; null when it has none.
+    virtual std::unique_ptr<edit::TextImageScore> text_image_score() { return nullptr; }
 };
 
 /// Everything the program asks of engine/neural.

@@ -88,3 +88,44 @@ DOCTEST_TEST_CASE("a changed bit of a counted row is seen") {
     DOCTEST_CHECK(changed_rows(before, after, std::vector<std::uint8_t>{1, 1, 1, 1}) == 1);
     DOCTEST_CHECK(changed_rows(before, after, std::vector<std::uint8_t>{1, 1, 0, 1}) == 0);
 }
+
+DOCTEST_TEST_CASE("a leak is a difference above the tolerance, counted in pixels") {
+    const Image a(8, 4, 3, 0.5f);
+    Image b = a;
+    b.data[0] += static_cast<float>(0.9 * LeakTolerance);        // below
+    b.data[3 * 5 + 2] -= static_cast<float>(1.5 * LeakTolerance);   // one channel of one pixel
+    DOCTEST_CHECK(leak_rate(a, b, {}) == doctest::Approx(1.0 / 32));
+    DOCTEST_CHECK(changed_pixels(a, b, LeakTolerance).count() == 1);
+    DOCTEST_CHECK(changed_pixels(a, b, LeakTolerance).at(5, 0) == 1);
+    const Mask nothing(8, 4);
+    DOCTEST_CHECK(leak_rate(a, b, {&nothing, true}) == 0);
+}
+
+DOCTEST_TEST_CASE("the outline tolerance grows with the picture and never vanishes") {
+    DOCTEST_CHECK(boundary_tolerance_px(64, 64) == 1);
+    DOCTEST_CHECK(boundary_tolerance_px(512, 512) == doctest::Approx(BoundaryToleranceShare * 512 * std::sqrt(2.0)));
+    DOCTEST_CHECK(boundary_tolerance_px(300, 400) == doctest::Approx(BoundaryToleranceShare * 500));
+}
+
+DOCTEST_TEST_CASE("drift follows the rows through an edit that removes and adds some") {
+    GaussianData data;
+    data.resize(4);
+    for (std::size_t i = 0; i < data.position.size(); ++i) data.position[i] = static_cast<float>(i);
+    const GaussianSet before(data);
+    // Row 1 is removed, the others move up, one row is new.
+    GaussianData edited;
+    edited.resize(4);
+    const auto copy = [&](std::size_t from, std::size_t to) {
+        for (std::size_t c = 0; c < 3; ++c) edited.position[to * 3 + c] = data.position[from * 3 + c];
+        for (std::size_t c = 0; c < 4; ++c) edited.rotation[to * 4 + c] = data.rotation[from * 4 + c];
+    };
+    copy(0, 0);
+    copy(2, 1);
+    copy(3, 2);
+    const std::vector<std::int64_t> moved{0, -1, 1, 2};
+    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 1, 0, 0}) == 0);
+    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 0, 0, 0}) == 1);
+    edited.opacity_logit[2] = 1;   // row 3 of before
+    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 1, 0, 0}) == 1);
+    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 1, 0, 1}) == 0);
+}

@@ -1,0 +1,21 @@
+// How well a picture and a sentence agree, by a pair of encoders into one space (CLIP structure); absent without weights.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/base/image.h"
+
+namespace gse::edit {
+
+/// Two encoders whose vectors can be compared by their angle.
+class TextImageScore {
+public:
+    virtual ~TextImageScore() = default;
+    /// Vector of a picture [H,W,3] in [0,1] of any size; its length is the same for every picture and sentence.
+    virtual std::vector<float> image(const Image& image) = 0;
+    /// Vector of a sentence.
+    virtual std::vector<float> text(const std::string& sentence) = 0;
+};
+
+}  // namespace gse::edit
