@@ -386,12 +386,24 @@ OrbitParameters EditJob::film_orbit() const {
     return orbit;
 }
 
+/// What the dynamic mask looks for in the changing pictures: the new thing, or the thing that changes by its new name.
+std::string EditJob::dynamic_word() const {
+    const auto words = edit::words_of(recipe_.request.prompt);
+    const bool named = std::find(words.begin(), words.end(), located_.word) != words.end();
+    return located_.mode == edit::EditMode::Modify && named ? located_.word : recipe_.request.target;
+}
+
 void EditJob::run(const EditObserver& observer) {
     times_.begin("edit");
     const auto guidance = model_->guidance(join_prompt(edit::words_of(recipe_.request.prompt)), recipe_.guidance);
-    result_ = edit::run_edit(scene_.gaussians, plan_, recipe_.request, 
-                             {painter_.rasterizer(), *guidance, observer.snapshot, control_, observer.iteration,
-                              observer.snapshot_seconds});
+    edit::EditTools tools{painter_.rasterizer(), *guidance, observer.snapshot, control_, observer.iteration};
+    tools.snapshot_seconds = observer.snapshot_seconds;
+    const auto attention = model_->attention();   // not the one that remembers: every render is another question
+    const auto segmenter = edit::make_default_segmenter();
+    tools.attention = attention.get();
+    tools.segmenter = segmenter.get();
+    tools.word = dynamic_word();
+    result_ = edit::run_edit(scene_.gaussians, plan_, recipe_.request, tools);
     times_.end();
 }
 

@@ -133,6 +133,7 @@ private:
     void name_views();
     void choose_distance(const edit::LocateTools& tools);
     void finish_locate();
+    std::string dynamic_word() const;
     edit::LocateInput locate_input() const;
 
     EditRecipe recipe_;

@@ -208,6 +208,8 @@ nlohmann::ordered_json make_report(EditJob& job) {
     report["failed_views"] = job.located().failed_views;
     report["iterations"] = result.iterations;
     report["stopped"] = result.stopped;
+    report["came_to_rest"] = result.came_to_rest;
+    report["masks_refreshed"] = result.masks_refreshed;
     report["skipped_steps"] = result.skipped_steps;
     report["skipped_rows"] = result.skipped_rows;
     report["cloned"] = result.cloned;

@@ -45,6 +45,12 @@ struct EditRequest {
     double preserve = 10;
     double l1 = 0.8;
     double ssim = 0.2;
+    // Dynamic mask (method S7) and early stop (X8)
+    bool dynamic_mask = true;
+    double dynamic_from = 0.5;
+    double dynamic_every = 0.125;
+    bool early_stop = false;
+    double early_stop_change = 0.5 / 255;
     // Anchors with generations (method 2.3)
     double anchor_first = 0.05;
     double anchor_start = 0.1;
@@ -135,6 +141,12 @@ private:
           Range{0, 1e6});
         f("l1", self.l1, "Share of the absolute difference in it.", Range{0, 10});
         f("ssim", self.ssim, "Share of the structural difference in it.", Range{0, 10});
+        f("dynamic_mask", self.dynamic_mask, "From some iteration on, let the masks follow what the edit has become.");
+        f("dynamic_from", self.dynamic_from, "Share of the iterations after which masks are refreshed.", Range{0, 1});
+        f("dynamic_every", self.dynamic_every, "Share of the iterations between two refreshes of a view's mask.", Range{0, 1});
+        f("early_stop", self.early_stop, "Stop when no view changes any more.");
+        f("early_stop_change", self.early_stop_change, "Mean change of a view between two visits that counts as none.",
+          Range{0, 1});
         f("anchor_first", self.anchor_first, "Anchor weight of the original splats at the start.", Range{0, 100});
         f("anchor_start", self.anchor_start, "Anchor weight a generation gets when the next one is born.", Range{0, 100});
         f("anchor_growth", self.anchor_growth, "Factor of all anchor weights at each densification.", Range{1, 10});

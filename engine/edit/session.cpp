@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/random.h"
+#include "engine/edit/dynamic_mask.h"
 #include "engine/edit/preservation.h"
 #include "engine/edit/working_set.h"
 
@@ -64,7 +65,8 @@ private:
 
 /// Seconds per stage of the loop.
 struct StageSeconds {
-    double originals = 0, render = 0, preserve = 0, guidance = 0, backward = 0, optimise = 0, densify = 0, snapshot = 0;
+    double originals = 0, render = 0, preserve = 0, guidance = 0, backward = 0, optimise = 0, densify = 0, snapshot = 0,
+           dynamic_mask = 0;
 };
 
 /// Everything one run keeps between iterations.
@@ -76,6 +78,8 @@ public:
           tools_(tools),
           set_(base, plan.label, plan.seeds, request, camera_extent(plan.views)),
           preservation_({request.l1, request.ssim, request.preserve}),
+          masks_(plan, request, tools.word, tools.attention, tools.segmenter),
+          rest_(plan.views.size(), request.early_stop_change),
           random_(Random::stream(request.seed, 17)) {
         GSE_CHECK_EQ(plan.masks.size(), plan.views.size());
         render_originals(base);
@@ -91,10 +95,12 @@ public:
                 break;
             }
             result.iterations = iteration + 1;
+            result.came_to_rest = request_.early_stop && rest_.visit(result.history.back().view, shown_,
+                                                                     masks_.mask(result.history.back().view));
             if (tools_.iteration) tools_.iteration(result.history.back());
             if (tools_.snapshot && snapshot_due(iteration)) take_snapshot(iteration);
             tools_.job.report("editing", iteration + 1, request_.iterations);
-            if (set_.labelled() == 0) break;   // everything was removed: nothing is left to do
+            if (set_.labelled() == 0 || result.came_to_rest) break;   // nothing is left to do
         }
         finish(result);
         return result;
@@ -133,6 +139,7 @@ private:
         for (std::size_t v = 0; v < plan_.views.size(); ++v) {
             tools_.rasterizer.forward_values(spans(set_.rows()), plan_.views[v].camera, settings_, values, seen);
             if (std::any_of(seen.data.begin(), seen.data.end(), [](float value) { return value > 0; })) views.push_back(v);
+            else rest_.ignore(v);
         }
         if (views.empty())
             throw Error(ErrorCode::InvalidArgument, "no labelled splat is visible in any view",
@@ -152,6 +159,8 @@ private:
             const StageTimer timer(seconds_.render);
             tools_.rasterizer.forward(spans(set_.rows()), plan_.views[view].camera, settings_, output_);
         }
+        show();
+        if (masks_.due(view, iteration)) refresh_mask(view, iteration);
         IterationRecord record;
         record.iteration = iteration;
         record.view = view;
@@ -160,7 +169,7 @@ private:
             gradient_.resize(output_.colour.width, output_.colour.height, 3);
             std::fill(gradient_.data.begin(), gradient_.data.end(), 0.0f);
             record.preservation =
-                preservation_.add_gradient(output_.colour, originals_[view], plan_.masks[view], gradient_);
+                preservation_.add_gradient(output_.colour, originals_[view], masks_.mask(view), gradient_);
             record.preservation_norm = norm(gradient_);
         }
         try {
@@ -184,10 +193,20 @@ private:
         return true;
     }
 
-    /// Adds the gated and calibrated guidance gradient; false when it was not finite and left out.
-    bool add_guidance(int iteration, std::size_t view, IterationRecord& record) {
+    void show() {
         shown_.resize(output_.colour.width, output_.colour.height, 3);   // networks expect pictures in [0,1]
         for (std::size_t i = 0; i < shown_.data.size(); ++i) shown_.data[i] = std::clamp(output_.colour.data[i], 0.0f, 1.0f);
+    }
+
+    void refresh_mask(std::size_t view, int iteration) {
+        const StageTimer timer(seconds_.dynamic_mask);
+        tools_.rasterizer.forward_values(spans(set_.rows()), plan_.views[view].camera, settings_, label_values(), label_seen_);
+        masks_.refresh(view, iteration, shown_, label_seen_);
+        tools_.rasterizer.forward(spans(set_.rows()), plan_.views[view].camera, settings_, output_);   // for backward()
+    }
+
+    /// Adds the gated and calibrated guidance gradient; false when it was not finite and left out.
+    bool add_guidance(int iteration, std::size_t view, IterationRecord& record) {
         const GuidanceInput input{shown_, plan_.views[view], view,
                                   plan_.view_words.empty() ? std::string() : plan_.view_words[view], iteration,
                                   request_.iterations,
@@ -206,7 +225,7 @@ private:
     /// Takes away what would act outside the mask, and what would push a colour further beyond [0,1].
     void gate(std::size_t view, Image& gradient) const {
         for (std::size_t i = 0; i < gradient.data.size(); ++i) {
-            const bool outside = request_.gate_guidance && plan_.masks[view].data[i / 3] == 0;
+            const bool outside = request_.gate_guidance && masks_.mask(view).data[i / 3] == 0;
             const bool beyond = (output_.colour.data[i] > 1 && gradient.data[i] < 0) ||
                                 (output_.colour.data[i] < 0 && gradient.data[i] > 0);
             if (outside || beyond) gradient.data[i] = 0;
@@ -251,7 +270,8 @@ private:
         result.guidance_scale = guidance_scale_;
         result.seconds = {{"originals", seconds_.originals}, {"render", seconds_.render},     {"preserve", seconds_.preserve},
                           {"guidance", seconds_.guidance},   {"backward", seconds_.backward}, {"optimise", seconds_.optimise},
-                          {"densify", seconds_.densify},     {"snapshot", seconds_.snapshot}};
+                          {"densify", seconds_.densify},     {"snapshot", seconds_.snapshot}, {"dynamic_mask", seconds_.dynamic_mask}};
+        result.masks_refreshed = masks_.refreshed();
     }
 
     const EditPlan& plan_;
@@ -259,13 +279,15 @@ private:
     const EditTools& tools_;
     WorkingSet set_;
     Preservation preservation_;
+    DynamicMasks masks_;
+    RestDetector rest_;
     Random random_;
     raster::Settings settings_;
     raster::ForwardOutput output_;
     raster::Gradients gradients_;
     std::vector<Image> originals_;
     Image gradient_;
-    Image shown_;
+    Image shown_, label_seen_;
     std::vector<double> calibration_;   // norms of the first guidance gradients
     double guidance_scale_ = 0;
     StageSeconds seconds_;

@@ -42,6 +42,8 @@ struct EditResult {
     std::vector<IterationRecord> history;
     int iterations = 0;
     bool stopped = false;                    // by the stop token; the result is the last good state
+    bool came_to_rest = false;               // by the early stop
+    std::size_t masks_refreshed = 0;         // by the dynamic mask
     std::size_t skipped_steps = 0;           // guidance gradients that were not finite
     std::size_t skipped_rows = 0;            // rows whose gradient was not finite, summed over the steps
     std::size_t cloned = 0, split = 0, pruned = 0;
@@ -70,6 +72,9 @@ struct EditTools {
     SnapshotCallback snapshot;   // may be empty
     JobControl job;
     IterationCallback iteration = {};   // may be empty
+    AttentionSource* attention = nullptr;   // for the dynamic mask; null = the masks stay as they are
+    Segmenter* segmenter = nullptr;
+    std::string word;                   // what the dynamic mask looks for
     double snapshot_seconds = 0;        // above 0: a snapshot whenever this much time has passed, instead of by iterations
 };
 

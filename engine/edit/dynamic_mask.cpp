@@ -1,0 +1,129 @@
+// Refreshing, joining and smoothing of masks; the detector of rest.
+#include "engine/edit/dynamic_mask.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/check.h"
+#include "engine/base/error.h"
+#include "engine/base/random.h"
+#include "engine/localize/clusters.h"
+#include "engine/localize/points.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr int ClusterGrid = 64;            // method 2.7
+constexpr double ReferenceSide = 512;      // pictures for which request lengths in pixels are stated
+constexpr float LabelSeen = 0.05f;         // A13: where the label's render counts at all
+constexpr double LabelReachPx = 8;         // A13, of a 512-pixel picture
+constexpr float Memory = 0.5f;             // A13: weight of the mask before
+constexpr float TurnsOn = 0.6f, TurnsOff = 0.4f;   // F24: hysteresis
+constexpr double LargestGrowth = 3;        // A13: times the static area; beyond, the mask has run away
+constexpr double RestMemory = 0.98;        // X8
+
+std::size_t overlap(const Mask& a, const Mask& b) {
+    std::size_t both = 0;
+    for (std::size_t i = 0; i < a.data.size(); ++i) both += a.data[i] != 0 && b.data[i] != 0 ? 1 : 0;
+    return both;
+}
+
+}  // namespace
+
+Mask attention_region(const Image& map, double threshold, const EditRequest& request) {
+    const int height = std::max(1, ClusterGrid * map.height / map.width);
+    const Image small = localize::resize_image(map, ClusterGrid, height);
+    const Mask region = localize::clean_clusters(localize::threshold_map(small, threshold), small,
+                                                 {request.dbscan_eps, request.dbscan_min_samples}, request.keep_mass);
+    return localize::resize_mask(region, map.width, map.height);
+}
+
+DynamicMasks::DynamicMasks(const EditPlan& plan, const EditRequest& request, std::string word, AttentionSource* attention,
+                           Segmenter* segmenter)
+    : plan_(plan),
+      request_(request),
+      word_(std::move(word)),
+      attention_(attention),
+      segmenter_(segmenter),
+      masks_(plan.masks),
+      soft_(plan.masks.size()),
+      last_refresh_(plan.masks.size(), -1) {
+    for (std::size_t v = 0; v < masks_.size(); ++v) {
+        soft_[v] = Image(masks_[v].width, masks_[v].height, 1);
+        std::copy(masks_[v].data.begin(), masks_[v].data.end(), soft_[v].data.begin());
+    }
+}
+
+bool DynamicMasks::due(std::size_t view, int iteration) const {
+    if (attention_ == nullptr || !request_.dynamic_mask || word_.empty()) return false;
+    if (iteration < request_.dynamic_from * request_.iterations) return false;
+    const double every = std::max(1.0, request_.dynamic_every * request_.iterations);
+    return last_refresh_[view] < 0 || iteration - last_refresh_[view] >= every;
+}
+
+Mask DynamicMasks::found_in(const Image& shown, std::size_t view, int iteration) const {
+    const AttentionQuery query{shown,
+                               request_.prompt,
+                               {word_},
+                               plan_.view_words.empty() ? std::string() : plan_.view_words[view],
+                               false,
+                               1,   // A13: one repeat is enough for a mask that is averaged anyway
+                               Random::stream(request_.seed, 9000 + static_cast<std::uint64_t>(iteration)).next()};
+    auto maps = attention_->locate(query);
+    GSE_CHECK_EQ(maps.size(), std::size_t{1});
+    const double level = request_.attention_threshold > 0 ? request_.attention_threshold : attention_->threshold();
+    const Mask region = attention_region(maps.front(), level, request_);
+    if (segmenter_ == nullptr || region.count() == 0) return region;
+    std::vector<PointPrompt> points;
+    localize::PointParameters wanted;
+    wanted.positive = request_.positive_points;
+    wanted.negative = request_.negative_points;
+    for (const auto& point : localize::choose_points(maps.front(), region, wanted))
+        points.push_back({point.x, point.y, point.positive});
+    const Mask mask = segmenter_->segment(shown, points, std::nullopt, maps.front());
+    const bool sane = mask.count() > 0 && 2 * overlap(mask, region) >= region.count();
+    return sane ? mask : region;
+}
+
+void DynamicMasks::refresh(std::size_t view, int iteration, const Image& shown, const Image& label_seen) {
+    last_refresh_[view] = iteration;
+    const double px = shown.width / ReferenceSide;
+    Mask found = found_in(shown, view, iteration);
+    const Mask near_label = localize::dilate(localize::threshold_map(label_seen, LabelSeen), LabelReachPx * px);
+    for (std::size_t i = 0; i < found.data.size(); ++i) found.data[i] = found.data[i] != 0 && near_label.data[i] != 0 ? 1 : 0;
+    found = localize::dilate(found, request_.dilate_px * px);
+    const auto area = static_cast<double>(found.count());
+    if (area == 0 || area > LargestGrowth * static_cast<double>(plan_.masks[view].count())) {
+        ++kept_;
+        return;
+    }
+    ++refreshed_;
+    for (std::size_t i = 0; i < found.data.size(); ++i) {
+        float& soft = soft_[view].data[i];
+        soft = Memory * soft + (1 - Memory) * static_cast<float>(found.data[i]);
+        auto& bit = masks_[view].data[i];
+        bit = soft > TurnsOn ? 1 : soft < TurnsOff ? 0 : bit;
+    }
+}
+
+bool RestDetector::visit(std::size_t view, const Image& shown, const Mask& mask) {
+    Image& last = last_[view];
+    if (last.data.size() == shown.data.size()) {
+        double sum = 0;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < mask.data.size(); ++i) {
+            if (mask.data[i] == 0) continue;
+            ++count;
+            for (std::size_t c = 0; c < 3; ++c) sum += std::abs(shown.data[i * 3 + c] - last.data[i * 3 + c]);
+        }
+        change_[view] = count > 0 ? sum / (3.0 * static_cast<double>(count)) : 0;
+        mean_ = RestMemory * mean_ + (1 - RestMemory) * change_[view];
+        weight_ = RestMemory * weight_ + (1 - RestMemory);
+    }
+    last = shown;
+    const bool all_seen = std::all_of(change_.begin(), change_.end(),
+                                      [this](double change) { return change >= 0 && change < least_change_; });
+    return all_seen && mean_ / weight_ < least_change_;
+}
+
+}  // namespace gse::edit

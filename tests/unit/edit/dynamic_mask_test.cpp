@@ -1,0 +1,155 @@
+// Masks that follow the edit: refreshed when due, joined with the label, never running away; and the detector of rest.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "engine/edit/dynamic_mask.h"
+#include "tests/unit/edit/edit_scenes.h"
+
+namespace {
+
+using namespace gse;
+
+constexpr int Side = 64;
+
+Mask disc(double x, double y, double radius) {
+    Mask mask(Side, Side);
+    for (int row = 0; row < Side; ++row)
+        for (int column = 0; column < Side; ++column)
+            mask.at(column, row) = std::hypot(column + 0.5 - x, row + 0.5 - y) < radius ? 1 : 0;
+    return mask;
+}
+
+Image picture(const Mask& mask) {
+    Image image(mask.width, mask.height, 1);
+    std::copy(mask.data.begin(), mask.data.end(), image.data.begin());
+    return image;
+}
+
+/// Attends where it is told.
+class FixedAttention : public edit::AttentionSource {
+public:
+    Mask where{Side, Side};
+    int calls = 0;
+    std::vector<Image> locate(const edit::AttentionQuery&) override {
+        ++calls;
+        return {picture(where)};
+    }
+    int image_size() const override { return Side; }
+};
+
+struct Setup {
+    edit::EditPlan plan;
+    edit::EditRequest request;
+    FixedAttention attention;
+    Image shown{Side, Side, 3, 0.5f};
+    Setup() {
+        plan.views = test::ball_views(2, Side);
+        plan.masks = {disc(32, 32, 10), disc(32, 32, 10)};
+        request.prompt = "a ball";
+        request.iterations = 100;
+        request.dilate_px = 0;
+    }
+    edit::DynamicMasks masks() { return {plan, request, "ball", &attention, nullptr}; }
+};
+
+std::size_t different(const Mask& a, const Mask& b) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < a.data.size(); ++i) count += a.data[i] != b.data[i] ? 1 : 0;
+    return count;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("masks are static first, then refreshed now and then; without attention never") {
+    Setup setup;
+    const auto masks = setup.masks();
+    DOCTEST_CHECK_FALSE(masks.due(0, 0));
+    DOCTEST_CHECK_FALSE(masks.due(0, 49));
+    DOCTEST_CHECK(masks.due(0, 50));
+    auto used = setup.masks();
+    setup.attention.where = disc(32, 32, 10);
+    used.refresh(0, 50, setup.shown, picture(disc(32, 32, 12)));
+    DOCTEST_CHECK_FALSE(used.due(0, 55));
+    DOCTEST_CHECK(used.due(0, 63));
+    DOCTEST_CHECK(used.due(1, 55));   // every view has its own clock
+    setup.request.dynamic_mask = false;
+    DOCTEST_CHECK_FALSE(setup.masks().due(0, 99));
+    setup.request.dynamic_mask = true;
+    DOCTEST_CHECK_FALSE(edit::DynamicMasks(setup.plan, setup.request, "ball", nullptr, nullptr).due(0, 99));
+}
+
+DOCTEST_TEST_CASE("a mask follows what moved, in two steps, and only where the label is near") {
+    Setup setup;
+    auto masks = setup.masks();
+    setup.attention.where = disc(38, 32, 10);
+    const Image label = picture(disc(36, 32, 14));
+    masks.refresh(0, 50, setup.shown, label);
+    const std::size_t once = different(masks.mask(0), setup.attention.where);
+    DOCTEST_CHECK(different(masks.mask(0), setup.plan.masks[0]) == 0);   // one half is inside the hysteresis
+    masks.refresh(0, 70, setup.shown, label);
+    DOCTEST_CHECK(different(masks.mask(0), setup.attention.where) < once);
+    masks.refresh(0, 90, setup.shown, label);
+    const auto near = different(masks.mask(0), setup.attention.where);
+    DOCTEST_CHECK(near <= 8);   // the 64-cell grid and the reach of the label round a few pixels
+    DOCTEST_CHECK(different(masks.mask(1), setup.plan.masks[1]) == 0);
+    // Attention far from everything labelled counts for nothing.
+    setup.attention.where = disc(8, 8, 6);
+    const Mask before = masks.mask(0);
+    masks.refresh(0, 99, setup.shown, picture(disc(45, 45, 5)));
+    DOCTEST_CHECK(different(masks.mask(0), before) == 0);
+    DOCTEST_CHECK(masks.kept() == 1);
+}
+
+DOCTEST_TEST_CASE("a mask that would run away, or be empty, stays as it was") {
+    Setup setup;
+    auto masks = setup.masks();
+    setup.attention.where = disc(32, 32, 31);
+    masks.refresh(0, 50, setup.shown, picture(disc(32, 32, 31)));
+    DOCTEST_CHECK(different(masks.mask(0), setup.plan.masks[0]) == 0);
+    setup.attention.where = Mask(Side, Side);
+    masks.refresh(0, 60, setup.shown, picture(disc(32, 32, 31)));
+    DOCTEST_CHECK(different(masks.mask(0), setup.plan.masks[0]) == 0);
+    DOCTEST_CHECK(masks.kept() == 2);
+    DOCTEST_CHECK(masks.refreshed() == 0);
+}
+
+DOCTEST_TEST_CASE("rest is when no view changes, and not before all were seen twice") {
+    edit::RestDetector rest(3, 0.01);
+    rest.ignore(2);
+    const Mask mask = disc(32, 32, 10);
+    Image shown(Side, Side, 3, 0.5f);
+    DOCTEST_CHECK_FALSE(rest.visit(0, shown, mask));
+    DOCTEST_CHECK_FALSE(rest.visit(1, shown, mask));
+    DOCTEST_CHECK_FALSE(rest.visit(0, shown, mask));
+    DOCTEST_CHECK(rest.visit(1, shown, mask));
+    for (auto& value : shown.data) value = 0.6f;
+    DOCTEST_CHECK_FALSE(rest.visit(0, shown, mask));
+}
+
+DOCTEST_TEST_CASE("the loop refreshes masks and stops when it is at rest") {
+    const auto scene = test::ball_scene();
+    auto rasterizer = raster::make_plain_rasterizer();
+    const auto plan = test::ball_plan(scene, *rasterizer, 4, 24);
+    edit::EditRequest request;
+    request.prompt = "a ball";
+    request.iterations = 40;
+    request.densify_every = 0;
+    FixedAttention attention;
+    attention.where = Mask(24, 24, 1);
+    class Still : public edit::Guidance {
+        edit::GuidanceOutput evaluate(const edit::GuidanceInput& input) override {
+            return {Image(input.rendered.width, input.rendered.height, 3), {}};
+        }
+    } still;
+    edit::EditTools tools{*rasterizer, still, {}, {}};
+    tools.attention = &attention;
+    tools.word = "ball";
+    const auto all = edit::run_edit(scene.set, plan, request, tools);
+    DOCTEST_CHECK(all.iterations == 40);
+    DOCTEST_CHECK(attention.calls >= 4);
+    DOCTEST_CHECK_FALSE(all.came_to_rest);
+    request.early_stop = true;
+    const auto early = edit::run_edit(scene.set, plan, request, tools);
+    DOCTEST_CHECK(early.came_to_rest);
+    DOCTEST_CHECK(early.iterations < 40);
+}
