@@ -34,6 +34,7 @@ void WorkingSet::keep_rows(const std::vector<std::uint8_t>& keep) {
     compact(rows_.opacity_logit, keep, first_row_, 1);
     compact(rows_.sh, keep, first_row_, sh);
     compact(origin_, keep, 0, 1);
+    compact(ancestor_, keep, 0, 1);
     compact(generation_, keep, 0, 1);
     compact(birth_sh_, keep, 0, sh);
     compact(birth_scale_, keep, 0, 1);
@@ -92,7 +93,7 @@ void WorkingSet::split(std::size_t index, int generation, Random& random) {
         for (int axis = 0; axis < 3; ++axis)
             child.position[static_cast<std::size_t>(axis)] =
                 parent.position[static_cast<std::size_t>(axis)] + static_cast<float>(moved[axis]);
-        append(child, 0, generation, -1);
+        append(child, 0, generation, -1, ancestor_[index]);
         const std::size_t stride = rows_.sh_stride();
         std::copy_n(birth_sh_.begin() + static_cast<std::ptrdiff_t>(index * stride), stride,
                     birth_sh_.end() - static_cast<std::ptrdiff_t>(stride));
@@ -118,7 +119,7 @@ DensifyCount WorkingSet::densify(const EditRequest& request, Random& random, boo
         GaussianData copy;
         copy.sh_degree = rows_.sh_degree;
         copy.append_row(rows_, row);
-        append(copy, 0, generation, -1);
+        append(copy, 0, generation, -1, ancestor_[index]);
         const std::size_t stride = rows_.sh_stride();
         std::copy_n(birth_sh_.begin() + static_cast<std::ptrdiff_t>(index * stride), stride,
                     birth_sh_.end() - static_cast<std::ptrdiff_t>(stride));

@@ -45,13 +45,18 @@ DynamicMasks::DynamicMasks(const EditPlan& plan, const EditRequest& request, std
       word_(std::move(word)),
       attention_(attention),
       segmenter_(segmenter),
-      masks_(plan.masks),
+      masks_(plan.masks.size()),
+      static_area_(plan.masks.size()),
       soft_(plan.masks.size()),
       last_refresh_(plan.masks.size(), -1) {
-    for (std::size_t v = 0; v < masks_.size(); ++v) {
-        soft_[v] = Image(masks_[v].width, masks_[v].height, 1);
-        std::copy(masks_[v].data.begin(), masks_[v].data.end(), soft_[v].data.begin());
-    }
+    for (std::size_t v = 0; v < masks_.size(); ++v) set_static(v, plan.masks[v]);
+}
+
+void DynamicMasks::set_static(std::size_t view, Mask mask) {
+    soft_[view] = Image(mask.width, mask.height, 1);
+    std::copy(mask.data.begin(), mask.data.end(), soft_[view].data.begin());
+    static_area_[view] = mask.count();
+    masks_[view] = std::move(mask);
 }
 
 bool DynamicMasks::due(std::size_t view, int iteration) const {
@@ -93,7 +98,7 @@ void DynamicMasks::refresh(std::size_t view, int iteration, const Image& shown, 
     for (std::size_t i = 0; i < found.data.size(); ++i) found.data[i] = found.data[i] != 0 && near_label.data[i] != 0 ? 1 : 0;
     found = localize::dilate(found, request_.dilate_px * px);
     const auto area = static_cast<double>(found.count());
-    if (area == 0 || area > LargestGrowth * static_cast<double>(plan_.masks[view].count())) {
+    if (area == 0 || area > LargestGrowth * static_cast<double>(static_area_[view])) {
         ++kept_;
         return;
     }

@@ -24,6 +24,8 @@ public:
     bool due(std::size_t view, int iteration) const;
     /// `shown` [H,W,3] in [0,1] and `label_seen` [H,W,1] (sum alpha T over labelled rows) are of the view now.
     void refresh(std::size_t view, int iteration, const Image& shown, const Image& label_seen);
+    /// Replaces a view's static mask: the label was corrected.
+    void set_static(std::size_t view, Mask mask);
     const Mask& mask(std::size_t view) const { return masks_[view]; }
     std::size_t refreshed() const { return refreshed_; }
     std::size_t kept() const { return kept_; }   // refreshes that gave nothing sensible
@@ -37,6 +39,7 @@ private:
     AttentionSource* attention_;
     Segmenter* segmenter_;
     std::vector<Mask> masks_;
+    std::vector<std::size_t> static_area_;   // pixels
     std::vector<Image> soft_;        // [H,W,1] running mean of what was found
     std::vector<int> last_refresh_;  // iteration, -1 = never
     std::size_t refreshed_ = 0, kept_ = 0;

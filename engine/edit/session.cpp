@@ -15,10 +15,13 @@
 #include "engine/edit/dynamic_mask.h"
 #include "engine/edit/preservation.h"
 #include "engine/edit/working_set.h"
+#include "engine/localize/clusters.h"
 
 namespace gse::edit {
 namespace {
 
+constexpr float SeenLabel = 0.5f;              // share of a pixel that the label must cover to be in a mask
+constexpr double ReferenceSide = 512;          // pictures for which request lengths in pixels are stated
 constexpr std::size_t CalibrationSteps = 20;        // method 2.5
 constexpr float TrainingColourSlope = 0.01f;   // leaky clamp of negative colours while training (F18)
 
@@ -73,7 +76,9 @@ struct StageSeconds {
 class Loop {
 public:
     Loop(const GaussianSet& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools)
-        : plan_(plan),
+        : base_(base),
+          plan_(plan),
+          label_(plan.label),
           request_(request),
           tools_(tools),
           set_(base, plan.label, plan.seeds, request, camera_extent(plan.views)),
@@ -86,10 +91,13 @@ public:
         settings_.negative_colour_slope = TrainingColourSlope;
     }
 
+    const std::vector<std::uint8_t>& label() const { return label_; }
+
     EditResult run() {
         EditResult result;
         ViewCycle cycle(visible_views(), request_.seed);
         for (int iteration = 0; iteration < request_.iterations; ++iteration) {
+            if (tools_.new_label) take_label(result);
             if (tools_.job.stop_requested() || !iterate(iteration, cycle.next(), result)) {
                 result.stopped = true;
                 break;
@@ -193,6 +201,28 @@ private:
         return true;
     }
 
+    /// Takes over a corrected label: rows, and masks from where it is seen in the base.
+    void take_label(EditResult& result) {
+        auto label = tools_.new_label();
+        if (!label || label->size() != label_.size() || *label == label_) return;
+        const bool any = std::any_of(label->begin(), label->end(), [](std::uint8_t bit) { return bit != 0; });
+        if (!any && plan_.seeds.size() == 0) return;   // nothing would be left to edit
+        label_ = std::move(*label);
+        set_.relabel(base_, label_, request_);
+        const std::vector<float> values(label_.begin(), label_.end());
+        for (std::size_t v = 0; v < plan_.views.size(); ++v) {
+            const Camera& camera = plan_.views[v].camera;
+            tools_.rasterizer.forward_values(base_.spans(), camera, settings_, values, label_seen_);
+            Mask mask = localize::threshold_map(label_seen_, SeenLabel);
+            if (plan_.seeds.size() > 0)   // what is added needs its room as before
+                for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] |= plan_.masks[v].data[i];
+            else
+                mask = localize::dilate(mask, request_.dilate_px * camera.width / ReferenceSide);
+            masks_.set_static(v, std::move(mask));
+        }
+        ++result.label_changes;
+    }
+
     void show() {
         shown_.resize(output_.colour.width, output_.colour.height, 3);   // networks expect pictures in [0,1]
         for (std::size_t i = 0; i < shown_.data.size(); ++i) shown_.data[i] = std::clamp(output_.colour.data[i], 0.0f, 1.0f);
@@ -274,7 +304,9 @@ private:
         result.masks_refreshed = masks_.refreshed();
     }
 
+    const GaussianSet& base_;
     const EditPlan& plan_;
+    std::vector<std::uint8_t> label_;   // what may change now
     const EditRequest& request_;
     const EditTools& tools_;
     WorkingSet set_;
@@ -299,11 +331,11 @@ bool same_row(std::span<const float> a, std::size_t row_a, std::span<const float
 }
 
 /// Rows outside the label that are gone or differ in any bit.
-std::size_t count_changed_outside(const GaussianSet& base, const EditPlan& plan, const EditResult& result) {
+std::size_t count_changed_outside(const GaussianSet& base, const std::vector<std::uint8_t>& label, const EditResult& result) {
     const auto sh = static_cast<std::size_t>(sh_coefficient_count(base.sh_degree())) * 3;
     std::size_t changed = 0;
     for (std::size_t row = 0; row < base.size(); ++row) {
-        if (plan.label[row] != 0) continue;
+        if (label[row] != 0) continue;
         const std::int64_t now = result.base_to_new[row];
         const auto to = static_cast<std::size_t>(now);
         const bool same = now >= 0 && same_row(base.position(), row, result.set.position(), to, 3) &&
@@ -351,8 +383,9 @@ EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditReq
     if (nothing)
         throw Error(ErrorCode::InvalidArgument, "nothing is labelled, so there is nothing to edit",
                     "name something the scene shows, or lower --tau");
-    EditResult result = Loop(base, plan, request, tools).run();
-    result.changed_outside_label = count_changed_outside(base, plan, result);
+    Loop loop(base, plan, request, tools);
+    EditResult result = loop.run();
+    result.changed_outside_label = count_changed_outside(base, loop.label(), result);
     GSE_CHECK_EQ(result.changed_outside_label, std::size_t{0});
     result.nonfinite = count_nonfinite(result);
     if (result.skipped_steps > 0) log::warning("{} guidance steps were not finite and left out", result.skipped_steps);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,7 @@ struct EditResult {
     std::vector<IterationRecord> history;
     int iterations = 0;
     bool stopped = false;                    // by the stop token; the result is the last good state
+    std::size_t label_changes = 0;           // labels taken over from `new_label`
     bool came_to_rest = false;               // by the early stop
     std::size_t masks_refreshed = 0;         // by the dynamic mask
     std::size_t skipped_steps = 0;           // guidance gradients that were not finite
@@ -75,6 +77,8 @@ struct EditTools {
     AttentionSource* attention = nullptr;   // for the dynamic mask; null = the masks stay as they are
     Segmenter* segmenter = nullptr;
     std::string word;                   // what the dynamic mask looks for
+    /// Asked before every iteration: another label ([N] 0 or 1) that the artist has drawn meanwhile, or nothing.
+    std::function<std::optional<std::vector<std::uint8_t>>()> new_label = {};
     double snapshot_seconds = 0;        // above 0: a snapshot whenever this much time has passed, instead of by iterations
 };
 

@@ -79,19 +79,21 @@ WorkingSet::WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> la
     }
     first_row_ = rows_.size();
     for (std::size_t row = 0; row < base.size(); ++row)
-        if (label[row] != 0 && editable_row(data, row)) append(data, row, 0, static_cast<std::int64_t>(row));
+        if (label[row] != 0 && editable_row(data, row)) append(data, row, 0, static_cast<std::int64_t>(row), static_cast<std::int64_t>(row));
     adding_ = seeds.size() > 0;
     const int seed_generation = adding_ ? schedule_.advance() : 0;
-    for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, seed_generation, -1);
+    for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, seed_generation, -1, -1);
     start_count_ = labelled();
     common_.assign(3 * AffineTerms, 0.0f);
     measure_colour();
     remember_anchor();
 }
 
-void WorkingSet::append(const GaussianData& from, std::size_t row, int generation, std::int64_t origin) {
+void WorkingSet::append(const GaussianData& from, std::size_t row, int generation, std::int64_t origin,
+                        std::int64_t ancestor) {
     rows_.append_row(from, row);
     origin_.push_back(origin);
+    ancestor_.push_back(ancestor);
     generation_.push_back(generation);
     const std::size_t stride = rows_.sh_stride();
     birth_sh_.insert(birth_sh_.end(), from.sh.begin() + static_cast<std::ptrdiff_t>(row * stride),
@@ -281,6 +283,45 @@ void WorkingSet::collect(const raster::Gradients& gradients) {
         gradient_sum_[i] += gradients.mean2d_norm[i];
         ++gradient_count_[i];
     }
+}
+
+void WorkingSet::relabel(const GaussianSet& base, std::span<const std::uint8_t> label, const EditRequest& request) {
+    WorkingSet fresh(base, label, {}, request, extent_);
+    std::vector<std::int64_t> old_index(base_size_, -1);
+    std::vector<std::uint8_t> was_labelled(base_size_, 1);
+    for (const auto row : unlabelled_) was_labelled[row] = 0;
+    for (std::size_t i = 0; i < origin_.size(); ++i)
+        if (origin_[i] >= 0) old_index[static_cast<std::size_t>(origin_[i])] = static_cast<std::int64_t>(i);
+    // Rows that the run has removed stay removed while their label stays.
+    std::vector<std::uint8_t> keep(fresh.labelled(), 1);
+    for (std::size_t i = 0; i < keep.size(); ++i) {
+        const auto row = static_cast<std::size_t>(fresh.origin_[i]);
+        keep[i] = was_labelled[row] == 0 || old_index[row] >= 0 ? 1 : 0;
+    }
+    fresh.keep_rows(keep);
+    const std::size_t sh = rows_.sh_stride();
+    for (std::size_t i = 0; i < fresh.labelled(); ++i) {
+        const auto old = old_index[static_cast<std::size_t>(fresh.origin_[i])];
+        if (old < 0) continue;
+        const std::size_t from = first_row_ + static_cast<std::size_t>(old), to = fresh.first_row_ + i;
+        std::copy_n(&rows_.position[from * 3], 3, &fresh.rows_.position[to * 3]);
+        std::copy_n(&rows_.log_scale[from * 3], 3, &fresh.rows_.log_scale[to * 3]);
+        std::copy_n(&rows_.rotation[from * 4], 4, &fresh.rows_.rotation[to * 4]);
+        fresh.rows_.opacity_logit[to] = rows_.opacity_logit[from];
+        std::copy_n(&rows_.sh[from * sh], sh, &fresh.rows_.sh[to * sh]);
+        fresh.generation_[i] = generation_[static_cast<std::size_t>(old)];
+    }
+    for (std::size_t i = 0; i < origin_.size(); ++i) {
+        const bool stays = ancestor_[i] < 0 || label[static_cast<std::size_t>(ancestor_[i])] != 0;
+        if (origin_[i] < 0 && stays) fresh.append(rows_, first_row_ + i, generation_[i], -1, ancestor_[i]);
+    }
+    fresh.schedule_ = schedule_;
+    fresh.adding_ = adding_;
+    fresh.start_count_ = std::max(start_count_, fresh.labelled());
+    fresh.skipped_rows_ = skipped_rows_;
+    fresh.measure_colour();
+    fresh.remember_anchor();
+    *this = std::move(fresh);
 }
 
 WorkingSet::Assembled WorkingSet::assemble() const {

@@ -52,6 +52,11 @@ public:
     /// Clone, split and prune (method 2.2); resets statistics and anchors.
     DensifyCount densify(const EditRequest& request, Random& random, bool may_grow);
 
+    /// Another label for the same base, in the middle of a run: rows that leave it become the base's again, rows that join it
+    /// start as the base has them, rows that stay keep what they have become. Rows born in the run stay when the row they
+    /// descend from does. Momentum and anchors begin anew.
+    void relabel(const GaussianSet& base, std::span<const std::uint8_t> label, const EditRequest& request);
+
     std::size_t skipped_rows() const { return skipped_rows_; }
     const std::vector<std::int64_t>& origin() const { return origin_; }   // [labelled] base row or -1
     const std::vector<int>& generation() const { return generation_; }    // [labelled]
@@ -67,7 +72,8 @@ public:
     Assembled assemble() const;
 
 private:
-    void append(const GaussianData& from, std::size_t row, int generation, std::int64_t origin);
+    /// `origin`: the base row it is, -1 = born in the run; `ancestor`: the base row it descends from, -1 = a seed.
+    void append(const GaussianData& from, std::size_t row, int generation, std::int64_t origin, std::int64_t ancestor);
     /// Replaces the infinities that are legal in a file (opacity 0 or 1, flat axes) by the guards' limits.
     void make_finite(std::size_t index);
     void keep_rows(const std::vector<std::uint8_t>& keep);
@@ -95,7 +101,7 @@ private:
     std::size_t first_row_ = 0;
     GaussianData rows_;
     std::vector<std::uint32_t> unlabelled_;
-    std::vector<std::int64_t> origin_;
+    std::vector<std::int64_t> origin_, ancestor_;
     std::vector<int> generation_;
     std::vector<float> birth_sh_;          // [labelled,K,3] colour when the row (or its ancestor) came to be
     std::vector<float> birth_scale_;       // [labelled] largest log-scale then

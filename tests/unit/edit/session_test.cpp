@@ -263,3 +263,35 @@ DOCTEST_TEST_CASE("a full colour coupling shifts all rows alike, none lets each 
     DOCTEST_CHECK(std::abs(contrast(1)) < SameForAll);
     DOCTEST_CHECK(contrast(0) > 0.3);
 }
+
+DOCTEST_TEST_CASE("a label corrected in the middle of a run is taken over") {
+    const auto scene = test::ball_scene();
+    auto rasterizer = raster::make_plain_rasterizer();
+    const auto plan = test::ball_plan(scene, *rasterizer);
+    edit::EditRequest request = short_request();
+    auto guidance = test::towards({0.1, 0.1, 0.9});
+    // The upper half of the red ball leaves the label, ten rows of the green one join it.
+    std::vector<std::uint8_t> corrected = scene.first;
+    std::size_t joined = 0;
+    for (std::size_t row = 0; row < corrected.size(); ++row) {
+        if (corrected[row] != 0 && scene.set.position()[row * 3 + 1] < 0) corrected[row] = 0;
+        else if (corrected[row] == 0 && joined < 10) corrected[row] = 1, ++joined;
+    }
+    int asked = 0;
+    edit::EditTools tools{*rasterizer, guidance, {}, {}};
+    tools.new_label = [&]() -> std::optional<std::vector<std::uint8_t>> {
+        return ++asked == request.iterations / 2 ? std::optional(corrected) : std::nullopt;
+    };
+    const auto result = edit::run_edit(scene.set, plan, request, tools);
+    DOCTEST_CHECK(result.label_changes == 1);
+    DOCTEST_CHECK(result.changed_outside_label == 0);   // against the corrected label: what left it is as it was
+    std::size_t changed = 0;
+    for (std::size_t row = 0; row < corrected.size(); ++row) {
+        const auto now = result.base_to_new[row];
+        if (now < 0) continue;
+        const bool same = result.set.sh()[static_cast<std::size_t>(now) * 3 + 2] == scene.set.sh()[row * 3 + 2];
+        DOCTEST_CHECK((corrected[row] != 0 || same));
+        changed += same ? 0 : 1;
+    }
+    DOCTEST_CHECK(changed > 50);
+}
