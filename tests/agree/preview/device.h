@@ -16,7 +16,8 @@ struct TestDevice {
 
 /// Null (with a [skip] line) where there is no Vulkan device.
 inline TestDevice* test_device() {
-    static TestDevice shared;
+    // Never destroyed: the driver's and the layers' own globals are gone before ours at the end of a program.
+    static TestDevice& shared = *new TestDevice;
     static const bool ready = [] {
         try {
             vulkan::InstanceOptions options;
