@@ -47,6 +47,7 @@ int run_command_line(int argc, char** argv) {
     add_project_command(app, context);
     add_training_command(app, context);
     add_bench_command(app, context);
+    add_eval_command(app, context);
     for (auto* command : app.get_subcommands({})) command->fallthrough();
     app.parse_complete_callback([&] {
         if (context.quiet) log::set_level(log::Level::Warning);

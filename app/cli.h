@@ -50,5 +50,6 @@ void add_edit_commands(CLI::App& app, CommandContext& context);      // locate, 
 void add_project_command(CLI::App& app, CommandContext& context);    // project
 void add_training_command(CLI::App& app, CommandContext& context);   // train-starter
 void add_bench_command(CLI::App& app, CommandContext& context);      // bench
+void add_eval_command(CLI::App& app, CommandContext& context);       // eval
 
 }  // namespace gse::app

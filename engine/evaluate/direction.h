@@ -1,4 +1,5 @@
-// Does the picture change the way the words change? Cosines in the space of a text-image encoder (method 6.1).
+// Does the picture change the way the words change? Cosines in the space of a text-image encoder
+// (method 6.1).
 #pragma once
 
 #include <span>

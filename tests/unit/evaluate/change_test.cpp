@@ -14,7 +14,7 @@ namespace {
 using namespace gse;
 using namespace gse::evaluate;
 
-constexpr double Rounding = 1e-6;   // vectors and pictures are float
+constexpr double Rounding = 1e-6;  // vectors and pictures are float
 
 using Vector = std::vector<float>;
 
@@ -61,7 +61,8 @@ DOCTEST_TEST_CASE("a picture that changes as the words do scores 1, against them
     DOCTEST_CHECK(direction_score({from, to, from, to}) == doctest::Approx(1));
     DOCTEST_CHECK(direction_score({to, from, from, to}) == doctest::Approx(-1));
     // Lengths do not matter, only directions do.
-    DOCTEST_CHECK(direction_score({scaled(from, 3), scaled(to, 0.2f), from, scaled(to, 7)}) == doctest::Approx(1));
+    DOCTEST_CHECK(direction_score({scaled(from, 3), scaled(to, 0.2f), from, scaled(to, 7)}) ==
+                  doctest::Approx(1));
 }
 
 DOCTEST_TEST_CASE("no change has no direction") {
