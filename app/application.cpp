@@ -131,7 +131,21 @@ void Application::refresh_jobs() {
     if (!work_.running() && wanted_threshold_ >= 0 && job_ && !pending_) set_attention_threshold(wanted_threshold_);
 }
 
+void Application::take_found() {
+    std::unique_lock lock(live_->mutex);
+    const auto job = std::exchange(live_->found, nullptr);
+    if (job == nullptr) return;
+    auto attention = std::move(live_->attention);
+    const bool relabel = live_->relabel;
+    lock.unlock();
+    job_ = job;
+    job_key_ = live_key_;
+    job_set_ = job->scene().gaussians;
+    take_located(job, std::move(attention), relabel);
+}
+
 void Application::refresh_live() {
+    take_found();
     const std::lock_guard lock(live_->mutex);
     if (live_->version == live_seen_) return;
     live_seen_ = live_->version;

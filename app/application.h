@@ -47,6 +47,10 @@ struct LiveEdit {
     std::deque<edit::EditSnapshot> snapshots;
     std::vector<ui::LossPoint> losses;
     std::uint64_t version = 0;
+    std::optional<std::vector<std::uint8_t>> label;   // corrected by the artist, not taken over yet
+    std::shared_ptr<EditJob> found;   // a search made for this edit, not shown yet
+    std::vector<float> attention;     // of it, per splat
+    bool relabel = false;             // what it found is the label now
 };
 
 class Application : public ui::Actions {
@@ -159,8 +163,10 @@ private:
     bool job_fits() const;
     EditRecipe current_recipe() const;
     Scene working_scene() const;
-    void take_located(std::shared_ptr<EditJob> job, std::vector<float> attention);
+    void take_located(std::shared_ptr<EditJob> job, std::vector<float> attention, bool relabel);
+    void take_found();
     bool label_drives_edit() const;
+    bool edit_running() const;
     void finish_edit(const Error* error);
     void refresh_estimate();
 
@@ -195,7 +201,7 @@ private:
     std::shared_ptr<neural::TextToImage> text_model_;
     std::string text_model_path_, model_path_;
     std::shared_ptr<EditJob> job_;
-    std::string job_key_;
+    std::string job_key_, live_key_;
     GaussianSet job_set_;
     std::shared_ptr<const std::vector<float>> attention_values_;
     GaussianSet attention_set_;
@@ -228,7 +234,8 @@ private:
 };
 
 /// On the work thread: runs a located job with the artist's label (empty = as located), feeding `live`.
-void run_live(EditJob& job, const std::vector<std::uint8_t>& label, LiveEdit& live);
+void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_t>& label,
+              const std::vector<float>& attention, LiveEdit& live);
 /// Takes what a finished run leaves. Throws Error (Cancelled) when it was stopped before its first step.
 void fill_pending(EditJob& job, PendingResult& pending);
 

@@ -34,7 +34,7 @@ bool Application::require_scene() {
 void Application::change_label(const std::string& name, const std::function<NamedLabel(NamedLabel)>& change,
                                const std::string& merge_key) {
     if (!require_scene()) return;
-    if (work_.running()) {
+    if (work_.running() && !edit_running()) {
         toast("The label can be changed when the job is done.");
         return;
     }
@@ -45,6 +45,10 @@ void Application::change_label(const std::string& name, const std::function<Name
     }
     auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
     label = change(std::move(label));
+    if (edit_running()) {   // the loop takes it over before its next step
+        const std::lock_guard lock(live_->mutex);
+        live_->label = *label.bits;
+    }
     document_.apply(name, std::move(state), merge_key);
 }
 

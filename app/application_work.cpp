@@ -113,7 +113,7 @@ bool Application::job_fits() const {
     return job_ != nullptr && job_set_.shares_all_with(document_.state().current) && job_key_ == search_key(current_recipe());
 }
 
-void Application::take_located(std::shared_ptr<EditJob> job, std::vector<float> attention) {
+void Application::take_located(std::shared_ptr<EditJob> job, std::vector<float> attention, bool relabel) {
     const auto& located = job->located();
     model_.attention.clear();
     for (std::size_t v = 0; v < located.views.size(); ++v)
@@ -123,6 +123,7 @@ void Application::take_located(std::shared_ptr<EditJob> job, std::vector<float> 
     attention_values_ = std::make_shared<const std::vector<float>>(std::move(attention));
     attention_set_ = job->scene().gaussians;
     ++content_;
+    if (!relabel) return;
     if (!document_.state().current.shares_all_with(job->scene().gaussians)) return;   // the scene changed meanwhile
     const bool adds = located.mode == edit::EditMode::Add;
     const auto& bits = *(adds ? located.source_label : located.label).bits;
@@ -140,7 +141,7 @@ void Application::take_located(std::shared_ptr<EditJob> job, std::vector<float> 
     found->weight = std::make_shared<const std::vector<float>>(std::move(weight));
     *found = with_bits(*found);
     state.active_label = static_cast<int>(found - state.labels.begin());
-    model_.view.tint_labels = true;   // where it landed is to be seen
+    if (!edit_running()) model_.view.tint_labels = true;   // where it landed is to be seen
     document_.apply(fmt::format("Locate \"{}\"", name), std::move(state));
 }
 
@@ -186,7 +187,7 @@ void Application::locate() {
         job_key_ = key;
         job_set_ = search->job->scene().gaussians;
         seconds_per_view_ = search->seconds_per_view;
-        take_located(search->job, std::move(search->attention));
+        take_located(search->job, std::move(search->attention), true);
     };
     const auto word = recipe.request.source.empty() ? recipe.request.target : recipe.request.source;
     work_.start({fmt::format("Locate \"{}\"", word), work, done, true});
@@ -207,7 +208,7 @@ void Application::set_attention_threshold(double value) {
                  },
                  [this, job = job_, attention](const Error* error) {
                      if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
-                     take_located(job, std::move(*attention));
+                     take_located(job, std::move(*attention), true);
                  },
                  true});
 }
@@ -223,6 +224,8 @@ bool Application::label_drives_edit() const {
     return by_hand || label.name == request.source || label.name == request.target;
 }
 
+bool Application::edit_running() const { return work_.running() && model_.job.title.rfind("Edit", 0) == 0; }
+
 void Application::edit() {
     if (!require_scene() || work_.running()) return;
     if (pending_) return toast("Apply or discard the last edit first.");
@@ -233,8 +236,8 @@ void Application::edit() {
         return report_error(error);
     }
     auto search = std::make_shared<Search>();
-    const bool fits = job_fits();
-    if (fits) search->job = job_;
+    if (job_fits()) search->job = job_;
+    live_key_ = search_key(recipe);
     search->model = text_model_path_ == model_path_ ? text_model_ : nullptr;
     std::vector<std::uint8_t> label;
     if (label_drives_edit()) label = *document_.state().labels[static_cast<std::size_t>(document_.state().active_label)].bits;
@@ -255,35 +258,37 @@ void Application::edit() {
             search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model}, control);
             try {
                 search->job->locate();
+                search->attention = splat_attention(*search->job);
             } catch (const Error& error) {
                 if (error.code() == ErrorCode::Cancelled || label.empty()) throw;
                 log::info("the words were not found ({}); the label alone says what may change", error.message());
                 search->job->use_label_alone();
             }
-            search->attention = splat_attention(*search->job);
         }
         search->job->set_loop_settings(recipe.request);
-        run_live(*search->job, label, *live);
+        run_live(search->job, label, search->attention, *live);
         fill_pending(*search->job, *pending);
     };
-    auto done = [this, search, fits, pending, key = search_key(recipe), model = model_path_](const Error* error) {
+    auto done = [this, search, pending, model = model_path_](const Error* error) {
         if (search->model) text_model_ = search->model, text_model_path_ = model;
-        const bool found = search->job != nullptr && !search->attention.empty();
-        if (!fits && found) {
-            job_ = search->job;
-            job_key_ = key;
-            job_set_ = search->job->scene().gaussians;
-            take_located(search->job, std::move(search->attention));
-        }
+        refresh_live();   // what was found last, and the last steps
         if (error == nullptr && pending->set.size() > 0) pending_ = std::move(*pending);
         finish_edit(error);
     };
     work_.start({fmt::format("Edit: {}", recipe.request.prompt), work, done, true});
 }
 
-void run_live(EditJob& job, const std::vector<std::uint8_t>& label, LiveEdit& live) {
-    const bool adds = job.located().mode == edit::EditMode::Add;
-    if (!adds && !label.empty() && label != *job.located().label.bits) job.correct_label(label);
+void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_t>& label,
+              const std::vector<float>& attention, LiveEdit& live) {
+    const bool adds = job->located().mode == edit::EditMode::Add;
+    if (!adds && !label.empty() && label != *job->located().label.bits) job->correct_label(label);
+    if (!attention.empty()) {   // from here on the loop leaves alone what the search found: it can be read
+        const std::lock_guard lock(live.mutex);
+        live.found = job;
+        live.attention = attention;
+        live.relabel = label.empty();
+        ++live.version;
+    }
     EditObserver observer;
     observer.snapshot_seconds = SnapshotSeconds;
     observer.snapshot = [&live](edit::EditSnapshot snapshot) {
@@ -307,7 +312,12 @@ void run_live(EditJob& job, const std::vector<std::uint8_t>& label, LiveEdit& li
         live.losses.push_back(point);
         ++live.version;
     };
-    job.run(observer);
+    if (!adds)
+        observer.new_label = [&live] {
+            const std::lock_guard lock(live.mutex);
+            return std::exchange(live.label, std::nullopt);
+        };
+    job->run(observer);
 }
 
 void fill_pending(EditJob& job, PendingResult& pending) {

@@ -190,9 +190,28 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
     DOCTEST_CHECK(session.app.model().job.paused);
     session.app.pause(false);
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().losses.size() > standing + 3; }));
+    // A brush stroke corrects the label of the running edit: what it takes away is as it was in the next snapshot.
+    ui::ScreenRegion stroke;
+    stroke.circles = {{160, 120}};
+    stroke.radius_px = 25;
+    DOCTEST_REQUIRE(session.app.document().state().active_label >= 0);   // the edit's own search shows what it found
+    const auto active = static_cast<std::size_t>(session.app.document().state().active_label);
+    const auto before = *session.app.document().state().labels[active].bits;
+    session.app.select(stroke, ui::SetOperation::Remove, true);
+    const auto corrected = *session.app.document().state().labels[active].bits;
+    DOCTEST_REQUIRE(corrected != before);
+    const auto taken = session.app.model().losses.size() + 40;
+    DOCTEST_REQUIRE(session.until([&] { return session.app.model().losses.size() > taken; }));
     session.app.cancel();
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_REQUIRE(session.app.model().result_waiting);
+    session.app.update(session.preview);
+    const auto& shown = session.preview.last.set;
+    const auto& base = session.app.document().state().current;
+    std::size_t outside = 0;
+    for (std::size_t row = 0; row < std::min(base.size(), shown.size()); ++row)
+        outside += before[row] != 0 && corrected[row] == 0 && shown.sh()[row * 3] != base.sh()[row * 3] ? 1 : 0;
+    DOCTEST_CHECK(outside == 0);
     session.app.branch_from_snapshot(0);
     session.app.apply_result();
     DOCTEST_CHECK(session.app.document().state().stack.size() == 1);
