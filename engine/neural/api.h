@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "engine/edit/interfaces.h"
 #include "engine/edit/text_image_score.h"
 #include "engine/neural/attention_parameters.h"
+#include "engine/neural/dreambooth_parameters.h"
 #include "engine/neural/sds_parameters.h"
 #include "engine/neural/starter_trainer.h"
 
@@ -43,6 +45,22 @@ public:
     virtual Image img2img(const Image& image, const SampleRequest& request) = 0;
     /// The bundle's text-image encoder; null when it has none.
     virtual std::unique_ptr<edit::TextImageScore> text_image_score() { return nullptr; }
+
+    /// DreamBooth: learns what the pictures show under `instance_prompt`, while pictures of `class_prompt`, drawn from the
+    /// untouched model first, keep what it knows. Always begins at the loaded weights. What attention(), guidance(),
+    /// sample() and img2img() give from then on is of the tuned weights; objects they gave before keep theirs. Throws Error
+    /// (Cancelled) on a stop request; then, as after any Error, the model is as it was before the call.
+    virtual TuneReport tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
+                            const std::string& instance_prompt, const std::string& class_prompt,
+                            const JobControl& job) = 0;
+    /// Back to the loaded weights.
+    virtual void untune() = 0;
+    virtual bool tuned() const = 0;
+    /// The tuning as a file (kohya's names). Throws Error (InvalidArgument) unless the model is tuned with a rank.
+    virtual void save_lora(const std::filesystem::path& path) const = 0;
+    /// Tunes the loaded weights by a file. Throws Error (NotFound, Malformed, Model).
+    virtual void load_lora(const std::filesystem::path& path, double strength) = 0;
+    void load_lora(const std::filesystem::path& path) { load_lora(path, 1.0); }
 };
 
 /// Everything the program asks of engine/neural.

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <thread>
 
+#include "engine/base/error.h"
 #include "engine/neural/attention_source.h"
+#include "engine/neural/dreambooth.h"
 #include "engine/neural/images.h"
 #include "engine/neural/sds_guidance.h"
 #include "engine/neural/torch_errors.h"
@@ -14,7 +16,8 @@ namespace {
 
 class Model final : public TextToImage {
 public:
-    explicit Model(ModelBundle bundle) : bundle_(std::make_shared<const ModelBundle>(std::move(bundle))) {}
+    explicit Model(ModelBundle bundle)
+        : loaded_(std::make_shared<const ModelBundle>(std::move(bundle))), bundle_(loaded_) {}
 
     using TextToImage::attention;
     std::unique_ptr<edit::AttentionSource> attention(const AttentionParameters& parameters) override {
@@ -30,6 +33,35 @@ public:
 
     Image sample(const SampleRequest& request) override { return run(nullptr, request); }
     Image img2img(const Image& image, const SampleRequest& request) override { return run(&image, request); }
+
+    TuneReport tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
+                    const std::string& instance_prompt, const std::string& class_prompt,
+                    const JobControl& job) override {
+        auto result = guard_torch("tuning the model", [&] {
+            return run_dreambooth(*loaded_, parameters, {instance, instance_prompt, class_prompt}, job);
+        });
+        bundle_ = std::move(result.bundle);
+        lora_ = std::move(result.lora);
+        return std::move(result.report);
+    }
+    void untune() override {
+        bundle_ = loaded_;
+        lora_.reset();
+    }
+    bool tuned() const override { return bundle_ != loaded_; }
+    void save_lora(const std::filesystem::path& path) const override {
+        if (!lora_)
+            throw Error(ErrorCode::InvalidArgument, "the model was not tuned as a LoRA", "tune it with a rank above 0", path);
+        write_lora(path, *lora_);
+    }
+    using TextToImage::load_lora;
+    void load_lora(const std::filesystem::path& path, double strength) override {
+        auto weights = read_lora(path);
+        bundle_ = guard_torch("merging a LoRA", [&] {
+            return std::make_shared<const ModelBundle>(with_lora(*loaded_, weights, strength));
+        });
+        lora_ = std::move(weights);
+    }
 
 private:
     Image run(const Image* image, const SampleRequest& request) const {
@@ -54,7 +86,8 @@ private:
         });
     }
 
-    std::shared_ptr<const ModelBundle> bundle_;
+    std::shared_ptr<const ModelBundle> loaded_, bundle_;  // as read; in use (the same unless tuned)
+    std::optional<LoraWeights> lora_;                     // the change between them, when it is low-rank
 };
 
 }  // namespace
