@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "app/cli.h"
 #include "app/edit_job.h"
 #include "app/edit_output.h"
+#include "app/gate.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
@@ -21,6 +23,7 @@ struct EditOptions {
     bool demo = false;
     bool headless = false;
     bool json = false;
+    bool gate = false;
     CLI::App* command = nullptr;
 };
 
@@ -40,6 +43,49 @@ void add_options(CLI::App& command, const std::shared_ptr<EditOptions>& options)
     });
     bind_fields(command, options->recipe.request, "Edit");
     bind_fields(command, options->recipe.guidance, "Guidance (score distillation)");
+    const std::string group = "DreamBooth";
+    command.add_flag("--dreambooth,!--no-dreambooth", options->recipe.use_dreambooth,
+                     "Let the model learn the scene from renders of it first")
+        ->group(group);
+    neural::DreamBoothParameters::visit_fields(
+        options->recipe.dreambooth, [&](const char* name, auto& value, const char* help, auto... range) {
+            // Prefixed: steps, seed and others are names of other settings too.
+            const std::string option = "--dreambooth-" + option_name(name).substr(2);
+            if constexpr (std::is_same_v<std::remove_reference_t<decltype(value)>, bool>)
+                command.add_flag(option + ",!--no-" + option.substr(2), value, help)->group(group);
+            else {
+                auto* added = command.add_option(option, value, help)->capture_default_str()->group(group);
+                if constexpr (sizeof...(range) == 1)
+                    (added->check(CLI::Range(static_cast<double>(range.low), static_cast<double>(range.high))), ...);
+            }
+        });
+}
+
+nlohmann::ordered_json tuning_to_json(const neural::TuneReport& tuning) {
+    nlohmann::ordered_json json;
+    json["steps"] = tuning.steps;
+    json["skipped"] = tuning.skipped;
+    json["class_seconds"] = tuning.class_seconds;
+    json["seconds"] = tuning.seconds;
+    json["instance_before"] = tuning.instance_before;
+    json["instance_after"] = tuning.instance_after;
+    json["prior_before"] = tuning.prior_before;
+    json["prior_after"] = tuning.prior_after;
+    json["instance_losses"] = tuning.instance_losses;
+    json["prior_losses"] = tuning.prior_losses;
+    return json;
+}
+
+/// What is in the folder, and in the report, only when it was asked for.
+void add_optional_parts(nlohmann::ordered_json& report, const std::filesystem::path& folder, EditJob& job,
+                        const std::optional<Gate>& gate) {
+    if (gate) {
+        report["gate"] = gate_to_json(*gate);
+        write_gate(folder / "evidence", *gate);
+    }
+    if (!job.tuning()) return;
+    report["dreambooth"] = tuning_to_json(*job.tuning());
+    if (job.recipe().dreambooth.rank > 0) job.model().save_lora(folder / "lora.safetensors");
 }
 
 /// Reads the recipe of --recipe or --demo, or checks that a scene was named.
@@ -76,6 +122,8 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
     StagedFolder folder(options.output);
     EditJob job(options.recipe, context.job());
     job.locate();
+    std::optional<Gate> gate;
+    if (options.gate) gate = look_through_gate(job);
     job.run();
     job.times().begin("export");
     Scene edited = job.scene();
@@ -86,7 +134,8 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
     write_evidence(folder.path() / "evidence", job.located(), job.views());
     write_before_after(folder.path(), job);
     job.times().end();
-    const auto report = make_report(job);
+    auto report = make_report(job);
+    add_optional_parts(report, folder.path(), job, gate);
     write_file(folder.path() / "report.json", report.dump(1) + "\n");
     write_file(folder.path() / "recipe.json", recipe_to_json(job.recipe()).dump(2) + "\n");
     folder.commit();
@@ -113,6 +162,7 @@ void run_locate_command(EditOptions& options, const CommandContext& context) {
     report["views"] = job.views().size();
     report["failed_views"] = job.located().failed_views;
     report["seconds"] = job.times().to_json();
+    add_optional_parts(report, folder.path(), job, std::nullopt);
     write_file(folder.path() / "report.json", report.dump(2) + "\n");
     write_file(folder.path() / "recipe.json", recipe_to_json(job.recipe()).dump(2) + "\n");
     folder.commit();
@@ -134,6 +184,7 @@ void add_edit_commands(CLI::App& app, CommandContext& context) {
     auto edit = std::make_shared<EditOptions>();
     auto* edit_command = app.add_subcommand("edit", "Change a scene by one sentence");
     add_options(*edit_command, edit);
+    edit_command->add_flag("--gate", edit->gate, "First show what the model makes of four views, in evidence/gate_*.png");
     edit_command->callback([edit, &context] { run_edit_command(*edit, context); });
 }
 

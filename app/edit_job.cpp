@@ -25,6 +25,8 @@ namespace {
 
 constexpr double Degree = std::numbers::pi / 180;
 constexpr int RecipeVersion = 1;
+constexpr std::size_t InstanceViews = 12;   // renders a tuning learns from (method 2.6: 8 to 16)
+constexpr double NearInstance = 0.6;        // share of the fitted distance of every other one, where views are automatic
 
 double now_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -126,6 +128,7 @@ nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe) {
     json["job"] = fields_to_json(recipe.job);
     json["request"] = fields_to_json(recipe.request);
     json["guidance"] = fields_to_json(recipe.guidance);
+    if (recipe.use_dreambooth) json["dreambooth"] = fields_to_json(recipe.dreambooth);
     return json;
 }
 
@@ -137,6 +140,8 @@ EditRecipe read_recipe(const std::filesystem::path& path) {
     fields_from_json(recipe.job, json.value("job", nlohmann::ordered_json::object()));
     fields_from_json(recipe.request, json.value("request", nlohmann::ordered_json::object()));
     fields_from_json(recipe.guidance, json.value("guidance", nlohmann::ordered_json::object()));
+    recipe.use_dreambooth = json.contains("dreambooth");
+    fields_from_json(recipe.dreambooth, json.value("dreambooth", nlohmann::ordered_json::object()));
     for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model}) {
         if (name->empty() || *name == "none" || std::filesystem::path(*name).is_absolute()) continue;
         *name = std::filesystem::weakly_canonical(path.parent_path() / *name).string();
@@ -244,10 +249,44 @@ void EditJob::name_views() {
     for (const auto& view : views_) view_words_.push_back(words_for_azimuth(azimuth_of(view.camera, orbit_) - front));
 }
 
-edit::LocateInput EditJob::locate_input() const {
+raster::Settings EditJob::render_settings() const {
     raster::Settings settings;
     settings.background = parse_colour(recipe_.request.background);
     settings.antialiased = scene_.info.antialiased;
+    return settings;
+}
+
+std::string EditJob::model_prompt() const { return join_prompt(edit::words_of(recipe_.request.prompt)); }
+
+std::vector<Image> EditJob::instance_pictures() {
+    const raster::Settings settings = render_settings();
+    std::vector<View> views = spread_views(views_, InstanceViews);
+    if (automatic_views_) {
+        OrbitParameters near = orbit_;
+        near.radius *= NearInstance;
+        const int side = recipe_.request.image_size;
+        const auto closer = orbit_views(near, static_cast<int>(views.size()), side, side);
+        for (std::size_t i = 1; i < views.size(); i += 2) views[i] = closer[i];
+    }
+    std::vector<Image> pictures;
+    for (const auto& view : views)
+        pictures.push_back(painter_.paint(scene_.gaussians.spans(), view.camera, settings).colour);
+    return pictures;
+}
+
+void EditJob::tune() {
+    times_.begin("dreambooth");
+    tuning_ = model_->tune(recipe_.dreambooth, instance_pictures(), "a photo of a " + recipe_.request.source,
+                           model_prompt(), control_);
+    untune_ = std::shared_ptr<void>(nullptr, [model = model_](void*) { model->untune(); });
+    times_.end();
+    log::info("tuned in {:.0f} s: loss on the scene {:.3f} to {:.3f}, on what the model knew {:.3f} to {:.3f}",
+              tuning_->seconds, tuning_->instance_before, tuning_->instance_after, tuning_->prior_before,
+              tuning_->prior_after);
+}
+
+edit::LocateInput EditJob::locate_input() const {
+    const raster::Settings settings = render_settings();
     const double front = recipe_.job.front.empty() ? 0 : parse_front(recipe_.job.front);
     return {scene_.gaussians, views_, view_words_, recipe_.request, settings, scene_.info.up, direction_at(orbit_, front)};
 }
@@ -294,6 +333,7 @@ void EditJob::choose_distance(const edit::LocateTools& tools) {
 }
 
 void EditJob::locate() {
+    if (recipe_.use_dreambooth && !tuning_) tune();
     times_.begin("locate");
     attention_ = std::make_unique<edit::CachedAttention>(model_->attention());
     const auto segmenter = edit::make_default_segmenter();
@@ -395,9 +435,10 @@ std::string EditJob::dynamic_word() const {
 
 void EditJob::run(const EditObserver& observer) {
     times_.begin("edit");
-    const auto guidance = model_->guidance(join_prompt(edit::words_of(recipe_.request.prompt)), recipe_.guidance);
+    const auto guidance = model_->guidance(model_prompt(), recipe_.guidance);
     edit::EditTools tools{painter_.rasterizer(), *guidance, observer.snapshot, control_, observer.iteration};
     tools.snapshot_seconds = observer.snapshot_seconds;
+    tools.new_label = observer.new_label;
     const auto attention = model_->attention();   // not the one that remembers: every render is another question
     const auto segmenter = edit::make_default_segmenter();
     tools.attention = attention.get();

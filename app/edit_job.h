@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -51,10 +52,12 @@ struct EditRecipe {
     JobParameters job;
     edit::EditRequest request;
     neural::SdsParameters guidance;
+    bool use_dreambooth = false;   // the model learns the scene first (method S2)
+    neural::DreamBoothParameters dreambooth;
 };
 
-/// {"version", "job", "request", "guidance"}; reading throws Error for unknown or wrong entries. A relative scene path
-/// is taken relative to the recipe's folder.
+/// {"version", "job", "request", "guidance"} and, where it is used, "dreambooth"; reading throws Error for unknown or
+/// wrong entries. A relative scene path is taken relative to the recipe's folder.
 nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe);
 EditRecipe read_recipe(const std::filesystem::path& path);
 
@@ -83,6 +86,7 @@ struct EditObserver {
     edit::SnapshotCallback snapshot;
     double snapshot_seconds = 0;   // above 0: time between snapshots, instead of the request's iterations
     edit::IterationCallback iteration;
+    std::function<std::optional<std::vector<std::uint8_t>>()> new_label;   // see edit::EditTools
 };
 
 /// The model a recipe names (the starter when it names none). Throws Error (Model, NotFound).
@@ -96,6 +100,9 @@ public:
     /// The same for what is in memory; the recipe's files are not read.
     EditJob(EditRecipe recipe, EditJobInput input, JobControl control);
 
+    /// DreamBooth: the model learns the scene from renders of its views, for as long as this job lives. locate() begins
+    /// with it when the recipe asks for it.
+    void tune();
     /// Looks from all views, moves in on what was found, looks again.
     void locate();
     /// The same from the views chosen already, with another attention threshold; networks are asked only about pictures
@@ -118,6 +125,14 @@ public:
     const edit::LocateResult& located() const { return located_; }
     const edit::EditPlan& plan() const { return plan_; }
     const edit::EditResult& result() const { return result_; }
+    /// What tune() did, if it ran.
+    const std::optional<neural::TuneReport>& tuning() const { return tuning_; }
+    /// "front view" and so on per view, or empty.
+    const std::vector<std::string>& view_words() const { return view_words_; }
+    /// How views are rendered.
+    raster::Settings render_settings() const;
+    /// The recipe's prompt as the model is told it.
+    std::string model_prompt() const;
     /// Orbit around what was edited, for films.
     OrbitParameters film_orbit() const;
     neural::TextToImage& model() { return *model_; }
@@ -135,6 +150,7 @@ private:
     void finish_locate();
     std::string dynamic_word() const;
     edit::LocateInput locate_input() const;
+    std::vector<Image> instance_pictures();
 
     EditRecipe recipe_;
     JobControl control_;
@@ -150,6 +166,8 @@ private:
     edit::LocateResult located_;
     edit::EditPlan plan_;
     edit::EditResult result_;
+    std::optional<neural::TuneReport> tuning_;
+    std::shared_ptr<void> untune_;   // gives the model its own weights back when the job ends
 };
 
 /// Where the starter model is: beside the sources, or installed.
