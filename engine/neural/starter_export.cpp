@@ -30,6 +30,19 @@ Json tokenizer_config() {
             {"do_lower_case", true}};
 }
 
+/// What the model says about itself; what an initial model was measured to work best with stays.
+Json facts_of(const UNetTraining& training) {
+    Json facts{{"name", "GSEditPro starter"},
+               {"image_size", training.parameters.image_size},
+               {"attention_threshold", DefaultAttentionThreshold},
+               {"attention_layers", "up_blocks"}};
+    const auto before = std::filesystem::path(training.parameters.initial) / "gseditpro.json";
+    if (!training.parameters.initial.empty() && std::filesystem::exists(before)) facts.update(read_json_file(before));
+    facts["vocabulary"] = training.source.vocabulary();
+    facts["training"] = fields_to_json(training.parameters);
+    return facts;
+}
+
 }  // namespace
 
 void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNetworks& networks,
@@ -58,14 +71,7 @@ void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNet
                                              {"unet", {"diffusers", "UNet2DConditionModel"}},
                                              {"vae", {"diffusers", "AutoencoderKL"}},
                                              {"scheduler", {"diffusers", "DDIMScheduler"}}});
-    Json facts;
-    facts["name"] = "GSEditPro starter";
-    facts["image_size"] = training.parameters.image_size;
-    facts["attention_threshold"] = DefaultAttentionThreshold;
-    facts["attention_layers"] = "up_blocks";
-    facts["vocabulary"] = training.source.vocabulary();
-    facts["training"] = fields_to_json(training.parameters);
-    write_json(output / "gseditpro.json", facts);
+    write_json(output / "gseditpro.json", facts_of(training));
 }
 
 }  // namespace gse::neural

@@ -33,6 +33,18 @@ struct StarterNetworks {
     ClipTextEncoder text{nullptr};
     UNet unet{nullptr};
 };
+
+/// The networks a run begins with.
+struct StarterParts {
+    AutoencoderKl vae{nullptr};
+    StarterNetworks networks;
+    double scaling_factor = 0;   // of the VAE's latents; 0 = not known before they are seen
+};
+StarterParts fresh_parts(const StarterConfigs& configs, std::uint64_t seed);
+/// The weights of a starter folder. Throws Error when its structure or vocabulary is another.
+StarterParts initial_parts(const std::filesystem::path& folder, const StarterConfigs& configs,
+                           const StarterVocabulary& vocabulary);
+
 /// What the UNet stage works on. `preview`, if set, receives the averaged networks at every checkpoint.
 struct UNetTraining {
     const StarterConfigs& configs;

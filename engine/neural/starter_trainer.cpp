@@ -41,32 +41,50 @@ StarterConfigs starter_configs(const StarterTrainParameters& parameters, const S
     return configs;
 }
 
-void train_starter(const StarterTrainParameters& requested, const StarterSource& source,
-                   const std::filesystem::path& work, const std::filesystem::path& output, const JobControl& job) {
-    StarterTrainParameters parameters = requested;
+namespace {
+
+bool trains(int steps, double minutes) { return steps > 0 || minutes > 0; }
+
+StarterTrainParameters checked(StarterTrainParameters parameters) {
     if (parameters.threads == 0)
         parameters.threads =
             parameters.device == "cpu" ? static_cast<int>(std::max(1u, std::thread::hardware_concurrency())) : 1;
+    const bool all = trains(parameters.vae_steps, parameters.vae_minutes) &&
+                     trains(parameters.unet_steps, parameters.unet_minutes);
+    if (parameters.initial.empty() && !all)
+        throw Error(ErrorCode::InvalidArgument, "a part of the model would stay untrained",
+                    "give every stage minutes or steps, or name the model to keep it from with --initial");
+    return parameters;
+}
+
+}  // namespace
+
+void train_starter(const StarterTrainParameters& requested, const StarterSource& source,
+                   const std::filesystem::path& work, const std::filesystem::path& output, const JobControl& job) {
+    const StarterTrainParameters parameters = checked(requested);
+    const bool new_vae = trains(parameters.vae_steps, parameters.vae_minutes);
+    const bool new_unet = trains(parameters.unet_steps, parameters.unet_minutes);
+    const auto vocabulary = build_vocabulary(source.vocabulary());
+    auto configs = starter_configs(parameters, vocabulary);
+    auto parts = parameters.initial.empty() ? fresh_parts(configs, parameters.seed)
+                                            : initial_parts(parameters.initial, configs, vocabulary);
     std::filesystem::create_directories(work);
     const auto pictures = load_or_render_pictures(parameters, source, work, job);
-    const auto vocabulary = build_vocabulary(source.vocabulary());
-    const auto configs = starter_configs(parameters, vocabulary);
 
-    torch::manual_seed(parameters.seed);
-    AutoencoderKl vae(configs.vae);
-    train_vae(vae, parameters, pictures, work, job);
-    const auto latents = encode_pictures(vae, parameters, pictures);
+    if (new_vae) train_vae(parts.vae, parameters, pictures, work, job);
+    StarterLatents latents;
+    if (new_vae || new_unet) latents = encode_pictures(parts.vae, parameters, pictures);
+    if (!new_vae) latents.deviation = 1.0 / parts.scaling_factor;   // what the UNet was trained with
     log::info("latents have a standard deviation of {:.3f}", latents.deviation);
 
-    auto trained = configs;
-    trained.vae.scaling_factor = 1.0 / latents.deviation;
-    torch::manual_seed(parameters.seed + 1);
-    StarterNetworks networks{ClipTextEncoder(configs.text), UNet(configs.unet)};
-    UNetTraining training{trained, parameters, pictures, latents, source, vocabulary, {}};
+    configs.vae.scaling_factor = new_vae ? 1.0 / latents.deviation : parts.scaling_factor;
+    UNetTraining training{configs, parameters, pictures, latents, source, vocabulary, {}};
     // The unfinished model can be tried while the training goes on.
-    training.preview = [&](StarterNetworks& averaged) { export_starter(training, vae, averaged, work / "preview"); };
-    train_unet(networks, training, work, job);
-    export_starter(training, vae, networks, output);
+    training.preview = [&](StarterNetworks& averaged) {
+        export_starter(training, parts.vae, averaged, work / "preview");
+    };
+    if (new_unet) train_unet(parts.networks, training, work, job);
+    export_starter(training, parts.vae, parts.networks, output);
     log::info("the model is in {}", output.string());
 }
 

@@ -50,6 +50,7 @@ public:
 
 /// Everything that decides the result of a training run.
 struct StarterTrainParameters {
+    std::string initial;
     int image_size = 64;
     int pictures = 24000;
     double vae_minutes = 20;
@@ -74,6 +75,8 @@ struct StarterTrainParameters {
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
+        f("initial", self.initial,
+          "Starter folder to go on from; parts with neither minutes nor steps stay as they are there.");
         f("image_size", self.image_size, "Side of the training pictures in pixels.", Range{32, 256});
         f("pictures", self.pictures, "Number of training pictures rendered first.", Range{8, 1e6});
         f("vae_minutes", self.vae_minutes, "Time for the VAE; ignored when vae_steps is set.", Range{0, 1e5});

@@ -112,6 +112,52 @@ DOCTEST_TEST_CASE("an interrupted training run resumes to the same weights") {
         DOCTEST_CHECK_MESSAGE(gse::read_file(straight / file) == gse::read_file(scratch.path() / "resumed" / file), file);
 }
 
+DOCTEST_TEST_CASE("a run goes on from a finished model and keeps the parts it has no time for") {
+    const ToySource source;
+    const gse::test::ScratchFolder scratch;
+    const auto first = scratch.path() / "first";
+    train_starter(toy_parameters(), source, scratch.path() / "work1", first, {});
+    auto parameters = toy_parameters();
+    parameters.initial = first.string();
+    parameters.vae_minutes = parameters.unet_minutes = 0;
+    const auto unchanged = [&](const std::filesystem::path& folder, const char* file) {
+        return gse::read_file(first / file) == gse::read_file(folder / file);
+    };
+
+    parameters.vae_steps = parameters.unet_steps = 0;
+    train_starter(parameters, source, scratch.path() / "work2", scratch.path() / "kept", {});
+    for (const char* file : {"vae/diffusion_pytorch_model.safetensors", "vae/config.json", "unet/config.json",
+                             "unet/diffusion_pytorch_model.safetensors", "text_encoder/model.safetensors"})
+        DOCTEST_CHECK_MESSAGE(unchanged(scratch.path() / "kept", file), file);
+
+    parameters.unet_steps = 2;
+    train_starter(parameters, source, scratch.path() / "work3", scratch.path() / "tuned", {});
+    DOCTEST_CHECK(unchanged(scratch.path() / "tuned", "vae/diffusion_pytorch_model.safetensors"));
+    DOCTEST_CHECK(unchanged(scratch.path() / "tuned", "vae/config.json"));
+    DOCTEST_CHECK(!unchanged(scratch.path() / "tuned", "unet/diffusion_pytorch_model.safetensors"));
+    DOCTEST_CHECK(!unchanged(scratch.path() / "tuned", "text_encoder/model.safetensors"));
+}
+
+DOCTEST_TEST_CASE("an initial model of another structure is refused before any work") {
+    const ToySource source;
+    const gse::test::ScratchFolder scratch;
+    auto parameters = toy_parameters();
+    parameters.vae_steps = parameters.unet_steps = 1;
+    train_starter(parameters, source, scratch.path() / "work1", scratch.path() / "first", {});
+    parameters.initial = (scratch.path() / "first").string();
+    parameters.unet_channels = 160;
+    const auto train = [&] { train_starter(parameters, source, scratch.path() / "work2", scratch.path() / "second", {}); };
+    DOCTEST_CHECK_THROWS_WITH_AS(train(), doctest::Contains("attention_head_dim"), gse::Error);
+    parameters.unet_channels = toy_parameters().unet_channels;
+    parameters.initial = (scratch.path() / "nowhere").string();
+    DOCTEST_CHECK_THROWS_AS(train(), gse::Error);
+    parameters.initial.clear();
+    parameters.vae_steps = 0;
+    parameters.vae_minutes = 0;
+    DOCTEST_CHECK_THROWS_WITH_AS(train(), doctest::Contains("untrained"), gse::Error);
+    DOCTEST_CHECK(!std::filesystem::exists(scratch.path() / "work2"));
+}
+
 DOCTEST_TEST_CASE("training lowers every loss on the toy world") {
     const ToySource source;
     const gse::test::ScratchFolder scratch;
