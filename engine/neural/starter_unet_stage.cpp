@@ -2,7 +2,7 @@
 //
 // The attention losses use the generator's own part masks (TokenCompose, Wang et al. 2023, uses segmentations likewise):
 //   place:  per latent cell, the attention that all words of a part receive together against the part's coverage
-//           (binary cross-entropy, balanced between inside and outside);
+//           (binary cross-entropy, balanced between inside and outside as far as the outside is not much larger);
 //   spread: KL from the part's coverage to each word's own attention over the image, so a word covers its part evenly.
 // Pictures without an accessory are also shown with a caption that names one ("insertion"): there only the attention
 // losses count, with the mask of the twin scene, so the words learn where a thing belongs before it is there.
@@ -18,6 +18,7 @@ namespace gse::neural {
 namespace {
 
 constexpr int TrainTimesteps = 1000;
+constexpr double MostOutsideAreas = 3;   // areas of the part that count as its outside in the balance of the place loss
 
 /// Splits a caption as the tokenizer does: words and commas.
 std::vector<std::string> split_caption(const std::string& text) {
@@ -162,7 +163,9 @@ AttentionLosses layer_losses(const AttentionCapture::Map& map, const Batch& batc
     const auto together = torch::bmm(probabilities, batch.words).transpose(1, 2).clamp(1e-4, 1 - 1e-4);  // [B,3,hw]
     const auto outside = 1 - coverage;
     const auto inside_loss = -(coverage * together.log()).sum(2) / area.clamp_min(1e-3);
-    const auto outside_loss = -(outside * (1 - together).log()).sum(2) / outside.sum(2).clamp_min(1e-3);
+    // The balance is bounded: with full balance a small part would be allowed many times its area of false attention.
+    const auto outside_area = torch::minimum(outside.sum(2), area * MostOutsideAreas).clamp_min(1e-3);
+    const auto outside_loss = -(outside * (1 - together).log()).sum(2) / outside_area;
     const auto place = (0.5 * (inside_loss + outside_loss) * named).sum() / count;
 
     const auto share = probabilities / probabilities.sum(1, true).clamp_min(1e-6);             // [B,hw,T]
