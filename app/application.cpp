@@ -150,6 +150,10 @@ void Application::refresh_live() {
     if (live_->version == live_seen_) return;
     live_seen_ = live_->version;
     model_.losses = live_->losses;
+    if (live_->gate) {
+        model_.gate = *std::exchange(live_->gate, std::nullopt);
+        if (model_.gate.warns) toast(model_.gate.verdict);
+    }
     const bool more = live_->snapshots.size() != snapshots_.size() ||
                       (!snapshots_.empty() && live_->snapshots.back().iteration != snapshots_.back().iteration);
     if (!more) return;

@@ -51,6 +51,8 @@ struct LiveEdit {
     std::shared_ptr<EditJob> found;   // a search made for this edit, not shown yet
     std::vector<float> attention;     // of it, per splat
     bool relabel = false;             // what it found is the label now
+    bool wants_gate = false;
+    std::optional<ui::GateView> gate;
 };
 
 class Application : public ui::Actions {
@@ -109,6 +111,7 @@ public:
     void repeat_edit(std::uint64_t id) override;
     void set_camera(const Camera& camera) override;
     void set_view_settings(const ui::ViewSettings& settings) override;
+    void set_model_settings(const ui::ModelSettings& settings) override { model_.model_settings = settings; }
     void set_comparison(ui::Comparison comparison) override;
     void look_through(std::size_t view) override;
     void add_view() override;

@@ -199,6 +199,7 @@ nlohmann::json Application::ui_json() const {
     json["view"] = fields_to_json(model_.view);
     json["exports"] = fields_to_json(model_.exports);
     json["request"] = fields_to_json(model_.request);
+    json["model_settings"] = fields_to_json(model_.model_settings);
     json["model"] = model_path_;
     if (!layout_.empty()) json["layout"] = layout_;
     const auto rotation = camera_.rotation;
@@ -214,6 +215,7 @@ void Application::ui_from_json(const nlohmann::json& json) {
         if (json.contains("view")) fields_from_json(model_.view, json["view"]);
         if (json.contains("exports")) fields_from_json(model_.exports, json["exports"]);
         if (json.contains("request")) fields_from_json(model_.request, json["request"]);
+        if (json.contains("model_settings")) fields_from_json(model_.model_settings, json["model_settings"]);
         if (json.contains("model")) choose_model(json["model"].get<std::string>());
         if (json.contains("layout")) {
             layout_ = json["layout"].get<std::string>();

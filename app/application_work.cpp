@@ -7,6 +7,7 @@
 
 #include "app/application.h"
 #include "app/edit_output.h"
+#include "app/gate.h"
 #include "app/process.h"
 #include "app/scene_tools.h"
 #include "engine/base/error.h"
@@ -22,6 +23,7 @@ constexpr std::size_t MostSnapshots = 24;         // kept for the scrubber; thin
 constexpr double SnapshotSeconds = 0.7;           // a running edit is seen at least every second
 constexpr double FirstSecondsPerIteration = 0.04; // of the starter model on a common processor, until one run was measured
 constexpr double FirstSecondsPerView = 0.12;
+constexpr double SecondsPerTuningStep = 0.3;
 constexpr double NetworkMb = 320;                 // libtorch and the starter model
 
 /// Attention in false colour (dark blue to yellow) over a dimmed render.
@@ -89,6 +91,7 @@ double free_memory_mb() {
 std::string search_key(const EditRecipe& recipe) {
     nlohmann::ordered_json json = fields_to_json(recipe.request);
     for (const char* loop : {"seed", "iterations", "guidance_weight", "attention_threshold"}) json.erase(loop);
+    if (recipe.use_dreambooth) json["dreambooth"] = fields_to_json(recipe.dreambooth);
     return json.dump() + recipe.job.model + recipe.job.up;
 }
 
@@ -99,6 +102,9 @@ EditRecipe Application::current_recipe() const {
     recipe.job.scene = scene_path_;
     recipe.job.model = model_path_;
     recipe.request = model_.request;
+    recipe.use_dreambooth = model_.model_settings.learn_scene;
+    recipe.dreambooth.steps = model_.model_settings.learn_steps;
+    recipe.dreambooth.rank = model_.model_settings.learn_rank;
     return recipe;
 }
 
@@ -226,6 +232,21 @@ bool Application::label_drives_edit() const {
 
 bool Application::edit_running() const { return work_.running() && model_.job.title.rfind("Edit", 0) == 0; }
 
+namespace {
+
+void show_gate(EditJob& job, LiveEdit& live) {
+    const Gate gate = look_through_gate(job);
+    ui::GateView view;
+    for (const auto& picture : gate.pictures) view.pictures.push_back(std::make_shared<const Image>(picture.after));
+    view.verdict = gate.verdict;
+    view.warns = gate.warns;
+    const std::lock_guard lock(live.mutex);
+    live.gate = std::move(view);
+    ++live.version;
+}
+
+}  // namespace
+
 void Application::edit() {
     if (!require_scene() || work_.running()) return;
     if (pending_) return toast("Apply or discard the last edit first.");
@@ -242,9 +263,11 @@ void Application::edit() {
     std::vector<std::uint8_t> label;
     if (label_drives_edit()) label = *document_.state().labels[static_cast<std::size_t>(document_.state().active_label)].bits;
     live_ = std::make_shared<LiveEdit>();
+    live_->wants_gate = model_.model_settings.gate;
     live_seen_ = 0;
     snapshots_.clear();
     model_.losses.clear();
+    model_.gate = {};
     model_.snapshots.clear();
     model_.shown_snapshot = -1;
     auto pending = std::make_shared<PendingResult>();
@@ -289,6 +312,7 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
         live.relabel = label.empty();
         ++live.version;
     }
+    if (live.wants_gate) show_gate(*job, live);
     EditObserver observer;
     observer.snapshot_seconds = SnapshotSeconds;
     observer.snapshot = [&live](edit::EditSnapshot snapshot) {
@@ -423,7 +447,9 @@ void Application::refresh_estimate() {
     const double pixels = std::pow(request.image_size / 96.0, 2);
     const double per_iteration = seconds_per_iteration_ > 0 ? seconds_per_iteration_ : FirstSecondsPerIteration * pixels;
     const double per_view = seconds_per_view_ > 0 ? seconds_per_view_ : FirstSecondsPerView * pixels;
-    model_.estimate.seconds = (job_fits() ? 0 : per_view * request.views) + per_iteration * request.iterations;
+    const double learning = model_.model_settings.learn_scene ? SecondsPerTuningStep * model_.model_settings.learn_steps : 0;
+    model_.estimate.seconds =
+        (job_fits() ? 0 : per_view * request.views + learning) + per_iteration * request.iterations;
     const double scene_mb = static_cast<double>(document_.state().current.byte_size()) / 1e6;
     // Working set, gradients, two moments and anchors of the labelled rows, and the snapshots that are kept.
     model_.estimate.memory_mb = current_rss_mb() + (text_model_ ? 0 : NetworkMb) + 6 * scene_mb +

@@ -26,6 +26,8 @@ struct Gate {
     std::vector<GatePicture> pictures;
     /// How far the pictures show the edit; none while there is no judge of it.
     std::optional<double> score;
+    std::string verdict;   // the score in a sentence; empty without one
+    bool warns = false;    // the pictures do not show the edit
 };
 
 /// Views spread over the job's, each painted over by the model (tuned, if it is). Throws Error (Cancelled) on a stop request.

@@ -68,6 +68,7 @@ public:
     virtual void set_viewport_size(int width, int height) = 0;     // framebuffer pixels wanted
     // Prompt and models
     virtual void set_request(const edit::EditRequest& request) = 0;
+    virtual void set_model_settings(const ModelSettings& settings) = 0;
     virtual void choose_model(const std::string& path) = 0;        // a path typed or picked; added to the list
     // Export
     virtual void set_exports(const ExportSettings& settings) = 0;

@@ -38,7 +38,8 @@ struct Context {
     ViewSettings view;
     edit::EditRequest request;
     ExportSettings exports;
-    bool view_changed = false, request_changed = false, exports_changed = false;
+    ModelSettings model_settings;
+    bool view_changed = false, request_changed = false, exports_changed = false, model_settings_changed = false;
 
     bool scene_open() const { return model.document != nullptr && !model.document->empty(); }
     const DocumentState& document() const { return model.document->state(); }

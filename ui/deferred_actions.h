@@ -128,6 +128,9 @@ public:
     void set_view_settings(const ViewSettings& settings) override {
         later([this, settings] { target_->set_view_settings(settings); });
     }
+    void set_model_settings(const ModelSettings& settings) override {
+        later([this, settings] { target_->set_model_settings(settings); });
+    }
     void set_comparison(Comparison comparison) override {
         later([this, comparison] { target_->set_comparison(comparison); });
     }

@@ -270,7 +270,7 @@ void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
     styled_em_ = em;
     widgets_.clear();
     Context context{model,           *deferred_, textures,   *state_,       widgets_,
-                    current_fonts(), em,         model.view, model.request, model.exports};
+                    current_fonts(), em,         model.view, model.request, model.exports, model.model_settings};
     state_->animating = false;
     update_sentence(context);
     handle_keys(context);
@@ -279,6 +279,7 @@ void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
     if (context.request_changed) deferred_->set_request(context.request);
     if (context.view_changed) deferred_->set_view_settings(context.view);
     if (context.exports_changed) deferred_->set_exports(context.exports);
+    if (context.model_settings_changed) deferred_->set_model_settings(context.model_settings);
     state_->animating |= !deferred_->empty();
     deferred_->run(actions);
 }

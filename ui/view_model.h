@@ -186,6 +186,29 @@ struct ExportSettings {
     }
 };
 
+/// What the model does before an edit's loop. One list of fields.
+struct ModelSettings {
+    bool gate = true;
+    bool learn_scene = false;
+    int learn_steps = 200;
+    int learn_rank = 0;
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("gate", self.gate, "Before the loop, show what the model itself makes of four views, and warn when that is not the edit.");
+        f("learn_scene", self.learn_scene, "DreamBooth: the model learns this scene from renders of it first.");
+        f("learn_steps", self.learn_steps, "Steps of learning the scene.", Range{1, 10000});
+        f("learn_rank", self.learn_rank, "0 = all weights learn; above: a LoRA of this rank, lighter and weaker.", Range{0, 256});
+    }
+};
+
+/// What the model made of a few views before the loop.
+struct GateView {
+    std::vector<std::shared_ptr<const Image>> pictures;   // [S,S,3]
+    std::string verdict;                                  // empty = nobody can judge them
+    bool warns = false;                                   // they do not show the edit
+};
+
 /// One camera on the artist's path.
 struct CameraKey {
     double time = 0;             // seconds
@@ -217,6 +240,7 @@ struct ViewModel {
     edit::EditRequest request;                   // as edited by the panel, echoed by the application
     std::vector<std::string> known_words;        // of the chosen model; empty = open vocabulary
     bool words_known = false;                    // known_words has been read
+    ModelSettings model_settings;
     Estimate estimate;
     std::string cannot_edit;                     // why Locate and Edit are off; empty = they are on
     // Localization
@@ -226,6 +250,7 @@ struct ViewModel {
     // Work
     JobView job;                                 // locate, edit
     JobView file_job;                            // load, export, save
+    GateView gate;
     std::vector<LossPoint> losses;
     std::vector<SnapshotView> snapshots;
     int shown_snapshot = -1;                     // index into snapshots, -1 = newest

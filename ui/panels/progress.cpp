@@ -43,6 +43,26 @@ void draw_job(Context& context) {
         cancel_job(context);
 }
 
+/// The gate: what the model itself makes of a few views.
+void draw_gate(Context& context) {
+    const auto& gate = context.model.gate;
+    if (gate.pictures.empty()) return;
+    dim_text("What the model makes of it");
+    tooltip("Pictures painted by the model alone, before the edit: when they do not show it, the edit can hardly succeed.");
+    const float gap = ImGui::GetStyle().ItemSpacing.x, count = static_cast<float>(gate.pictures.size());
+    const float side = std::min(context.em * 5, (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count);
+    for (std::size_t i = 0; i < gate.pictures.size(); ++i) {
+        if (i > 0) ImGui::SameLine();
+        ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])), {side, side});
+        note(context, fmt::format("progress.gate.{}", i));
+        if (!ImGui::IsItemHovered()) continue;
+        ImGui::BeginTooltip();
+        ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])), {context.em * 14, context.em * 14});
+        ImGui::EndTooltip();
+    }
+    if (!gate.verdict.empty()) coloured_text(gate.warns ? palette::Warning : palette::TextDim, gate.verdict);
+}
+
 void draw_snapshots(Context& context) {
     const auto& snapshots = context.model.snapshots;
     if (snapshots.empty()) return;
@@ -66,7 +86,7 @@ void draw_snapshots(Context& context) {
     flow(button_width("Branch from here"));
     if (button(context, {.name = "progress.branch",
                          .text = "Branch from here",
-                         .tooltip = "Takes this state as the result; a running edit stops."}))
+                         .tooltip = "Takes this state as the result, once the edit has ended."}))
         context.actions.branch_from_snapshot(shown);
 }
 
@@ -132,6 +152,7 @@ void draw_progress_panel(Context& context) {
     draw_result_notice(context, "progress");
     draw_job(context);
     draw_snapshots(context);
+    draw_gate(context);
     if (beside) {
         ImGui::EndChild();
         ImGui::SameLine();

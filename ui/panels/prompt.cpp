@@ -126,6 +126,14 @@ void draw_seed(Context& context) {
         roll_seed(context);
 }
 
+/// What the model does before the loop; more of it is under "All settings".
+void draw_model_settings(Context& context) {
+    context.model_settings_changed |= checkbox(
+        context, "prompt.learn", "Learn the scene first", context.model_settings.learn_scene,
+        "DreamBooth: the model looks at renders of this scene before it edits. Takes about a minute; helps with scenes "
+        "that look like nothing it knows.");
+}
+
 std::string estimate_text(const Estimate& estimate) {
     if (estimate.seconds < 0 && estimate.memory_mb < 0) return {};
     std::string text = "Estimate: ";
@@ -200,6 +208,8 @@ void draw_advanced(Context& context) {
         fresh.mode = context.request.mode, fresh.seed = context.request.seed;
         context.request = fresh;
         context.request_changed = true;
+        context.model_settings = {};
+        context.model_settings_changed = true;
     }
     bool in_groups = false, tree_open = false;
     const auto before = [&](const char* name, bool& shown) {
@@ -215,6 +225,12 @@ void draw_advanced(Context& context) {
     context.request_changed |= field_rows(
         context, "request", context.request, [](const char*) { return true; }, before);
     if (tree_open) ImGui::TreePop();
+    tree_open = ImGui::TreeNodeEx("Before the loop", ImGuiTreeNodeFlags_SpanAvailWidth);
+    note(context, "prompt.group.Before the loop");
+    if (!tree_open) return;
+    context.model_settings_changed |= field_rows(
+        context, "model_settings", context.model_settings, [](const char*) { return true; }, [](const char*, bool&) {});
+    ImGui::TreePop();
 }
 
 void draw_words(Context& context) {
@@ -224,6 +240,7 @@ void draw_words(Context& context) {
     draw_mode(context);
     draw_strength(context);
     draw_seed(context);
+    draw_model_settings(context);
     draw_advanced(context);
 }
 

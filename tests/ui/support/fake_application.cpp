@@ -204,6 +204,13 @@ void FakeApplication::make_work(bool running) {
         if (iteration % 20 == 0)
             model_.snapshots.push_back({iteration, 6000u + static_cast<std::size_t>(iteration) * 3});
     }
+    for (int view = 0; view < 4; ++view) {
+        auto picture = std::make_shared<Image>(64, 64, 3);
+        for (std::size_t i = 0; i < picture->data.size(); ++i)
+            picture->data[i] = static_cast<float>(random.uniform(0.2, 0.3) + 0.15 * view * static_cast<double>(i % 3));
+        model_.gate.pictures.push_back(picture);
+    }
+    model_.gate.verdict = "The model shows the edit in 4 of 4 views.";
     model_.job = {};
     model_.job.title = "Edit: a bear wearing a red hat";
     if (running) {

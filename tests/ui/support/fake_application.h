@@ -84,6 +84,10 @@ public:
     void repeat_edit(std::uint64_t id) override { calls.push_back("repeat_edit " + std::to_string(id)); }
     void set_camera(const Camera& camera) override;
     void set_view_settings(const ui::ViewSettings& settings) override;
+    void set_model_settings(const ui::ModelSettings& settings) override {
+        model_.model_settings = settings;
+        calls.push_back("set_model_settings");
+    }
     void set_comparison(ui::Comparison comparison) override;
     void look_through(std::size_t view) override;
     void add_view() override { calls.push_back("add_view"); }
