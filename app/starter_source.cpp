@@ -6,14 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/starter_twins.h"
 #include "engine/base/thread_pool.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/synth/synth.h"
 
 namespace gse::app {
 namespace {
-
-constexpr int LatentCell = 4;   // pixels per latent cell
 
 /// What one picture shows; a function of seed and index alone.
 struct Shot {
@@ -23,15 +22,6 @@ struct Shot {
     double azimuth = 0, elevation = 0, zoom = 1;
     std::array<float, 3> background{};
 };
-
-std::array<float, 3> random_background(Random& random) {
-    const double kind = random.uniform();
-    if (kind < 0.35) return {0, 0, 0};
-    const float grey = static_cast<float>(random.uniform(0.02, 1.0));
-    if (kind < 0.7) return {grey, grey, grey};
-    const auto tint = [&] { return static_cast<float>(std::clamp(grey + random.uniform(-0.25, 0.25), 0.0, 1.0)); };
-    return {tint(), tint(), tint()};
-}
 
 Shot make_shot(std::uint64_t seed, std::uint64_t index) {
     Random random = Random::stream(seed, index / 2);
@@ -92,7 +82,7 @@ struct Painter {
 
 class SyntheticSource : public neural::StarterSource {
 public:
-    explicit SyntheticSource(std::uint64_t seed) : seed_(seed) {}
+    explicit SyntheticSource(std::uint64_t seed) : seed_(seed), twins_(make_starter_twins(seed)) {}
 
     neural::StarterPicture picture(std::uint64_t index, int size) const override {
         thread_local Painter painter;
@@ -103,11 +93,7 @@ public:
         raster::Settings settings;
         settings.background = shot.background;
         painter.rasterizer->forward(scene.scene.gaussians.spans(), camera, settings, painter.output);
-        picture.rgb.resize(painter.output.colour.data.size());
-        std::transform(painter.output.colour.data.begin(), painter.output.colour.data.end(), picture.rgb.begin(),
-                       [](float value) {
-                           return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
-                       });
+        picture.rgb = to_bytes(painter.output.colour);
         painter.paint_parts(scene, camera, picture);
         if (shot.bare_twin) add_twin_accessory(painter, shot, camera, picture);
         return picture;
@@ -128,6 +114,7 @@ public:
 
     std::vector<std::string> vocabulary() const override { return synth::vocabulary(); }
     std::string identity() const override { return "synthetic-2 " + std::to_string(seed_); }
+    const neural::StarterTwins* twins() const override { return twins_.get(); }
 
 private:
     /// Insertion captions must name the accessory.
@@ -152,9 +139,27 @@ private:
     }
 
     std::uint64_t seed_;
+    std::unique_ptr<neural::StarterTwins> twins_;
 };
 
 }  // namespace
+
+std::array<float, 3> random_background(Random& random) {
+    const double kind = random.uniform();
+    if (kind < 0.35) return {0, 0, 0};
+    const float grey = static_cast<float>(random.uniform(0.02, 1.0));
+    if (kind < 0.7) return {grey, grey, grey};
+    const auto tint = [&] { return static_cast<float>(std::clamp(grey + random.uniform(-0.25, 0.25), 0.0, 1.0)); };
+    return {tint(), tint(), tint()};
+}
+
+std::vector<std::uint8_t> to_bytes(const Image& image) {
+    std::vector<std::uint8_t> bytes(image.data.size());
+    std::transform(image.data.begin(), image.data.end(), bytes.begin(), [](float value) {
+        return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
+    });
+    return bytes;
+}
 
 std::unique_ptr<neural::StarterSource> make_starter_source(std::uint64_t seed) {
     return std::make_unique<SyntheticSource>(seed);

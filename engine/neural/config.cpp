@@ -110,6 +110,32 @@ void check_attention(const Reader& reader, const UNetConfig& config) {
     }
 }
 
+/// Keys a text encoder's configuration has; absent ones keep their value.
+void read_text_keys(const Reader& reader, TextEncoderConfig& config) {
+    reader.expect("model_type", {"clip_text_model"});
+    reader.expect("hidden_act", {"quick_gelu", "gelu"});
+    reader.get("vocab_size", config.vocab_size);
+    reader.get("hidden_size", config.hidden_size);
+    reader.get("intermediate_size", config.intermediate_size);
+    reader.get("projection_dim", config.projection_dim);
+    reader.get("num_hidden_layers", config.num_hidden_layers);
+    reader.get("num_attention_heads", config.num_attention_heads);
+    reader.get("max_position_embeddings", config.max_position_embeddings);
+    reader.get("hidden_act", config.hidden_act);
+    reader.get("layer_norm_eps", config.layer_norm_eps);
+    reader.get("bos_token_id", config.bos_token_id);
+    reader.get("eos_token_id", config.eos_token_id);
+    reader.get("pad_token_id", config.pad_token_id);
+    reader.positive("vocab_size", config.vocab_size, 1 << 24);
+    reader.positive("hidden_size", config.hidden_size, MaxWidth);
+    reader.positive("intermediate_size", config.intermediate_size, MaxWidth);
+    reader.positive("num_hidden_layers", config.num_hidden_layers, 256);
+    reader.positive("num_attention_heads", config.num_attention_heads, 1024);
+    reader.positive("max_position_embeddings", config.max_position_embeddings, MaxWidth);
+    if (config.hidden_size % config.num_attention_heads != 0)
+        reader.malformed("the text encoder's hidden_size is not a multiple of its number of heads");
+}
+
 }  // namespace
 
 Json read_json_file(const std::filesystem::path& path) {
@@ -231,32 +257,11 @@ Json VaeConfig::to_json() const {
 
 TextEncoderConfig TextEncoderConfig::from_json(const Json& json, const std::filesystem::path& path) {
     const Reader reader(json, path);
-    reader.expect("model_type", {"clip_text_model"});
-    reader.expect("hidden_act", {"quick_gelu", "gelu"});
     TextEncoderConfig config;
     if (reader.has("architectures") && json.at("architectures").is_array())
         for (const auto& name : json.at("architectures"))
             config.with_projection |= name == "CLIPTextModelWithProjection";
-    reader.get("vocab_size", config.vocab_size);
-    reader.get("hidden_size", config.hidden_size);
-    reader.get("intermediate_size", config.intermediate_size);
-    reader.get("projection_dim", config.projection_dim);
-    reader.get("num_hidden_layers", config.num_hidden_layers);
-    reader.get("num_attention_heads", config.num_attention_heads);
-    reader.get("max_position_embeddings", config.max_position_embeddings);
-    reader.get("hidden_act", config.hidden_act);
-    reader.get("layer_norm_eps", config.layer_norm_eps);
-    reader.get("bos_token_id", config.bos_token_id);
-    reader.get("eos_token_id", config.eos_token_id);
-    reader.get("pad_token_id", config.pad_token_id);
-    reader.positive("vocab_size", config.vocab_size, 1 << 24);
-    reader.positive("hidden_size", config.hidden_size, MaxWidth);
-    reader.positive("intermediate_size", config.intermediate_size, MaxWidth);
-    reader.positive("num_hidden_layers", config.num_hidden_layers, 256);
-    reader.positive("num_attention_heads", config.num_attention_heads, 1024);
-    reader.positive("max_position_embeddings", config.max_position_embeddings, MaxWidth);
-    if (config.hidden_size % config.num_attention_heads != 0)
-        reader.malformed("the text encoder's hidden_size is not a multiple of its number of heads");
+    read_text_keys(reader, config);
     return config;
 }
 
@@ -280,6 +285,75 @@ Json TextEncoderConfig::to_json() const {
     json["projection_dim"] = projection_dim;
     json["vocab_size"] = vocab_size;
     return json;
+}
+
+VisionEncoderConfig VisionEncoderConfig::from_json(const Json& json, const std::filesystem::path& path) {
+    const Reader reader(json, path);
+    reader.expect("model_type", {"clip_vision_model"});
+    reader.expect("hidden_act", {"quick_gelu", "gelu"});
+    VisionEncoderConfig config;
+    reader.get("hidden_size", config.hidden_size);
+    reader.get("intermediate_size", config.intermediate_size);
+    reader.get("num_hidden_layers", config.num_hidden_layers);
+    reader.get("num_attention_heads", config.num_attention_heads);
+    reader.get("num_channels", config.num_channels);
+    reader.get("image_size", config.image_size);
+    reader.get("patch_size", config.patch_size);
+    reader.get("hidden_act", config.hidden_act);
+    reader.get("layer_norm_eps", config.layer_norm_eps);
+    reader.positive("hidden_size", config.hidden_size, MaxWidth);
+    reader.positive("intermediate_size", config.intermediate_size, MaxWidth);
+    reader.positive("num_hidden_layers", config.num_hidden_layers, 256);
+    reader.positive("num_attention_heads", config.num_attention_heads, 1024);
+    reader.positive("image_size", config.image_size, 8192);
+    reader.positive("patch_size", config.patch_size, config.image_size);
+    if (config.num_channels != 3) reader.malformed("the image encoder does not take three channels");
+    if (config.image_size % config.patch_size != 0)
+        reader.malformed("the image encoder's image_size is not a multiple of its patch_size");
+    if (config.hidden_size % config.num_attention_heads != 0)
+        reader.malformed("the image encoder's hidden_size is not a multiple of its number of heads");
+    return config;
+}
+
+Json VisionEncoderConfig::to_json() const {
+    Json json;
+    json["hidden_act"] = hidden_act;
+    json["hidden_size"] = hidden_size;
+    json["image_size"] = image_size;
+    json["intermediate_size"] = intermediate_size;
+    json["layer_norm_eps"] = layer_norm_eps;
+    json["model_type"] = "clip_vision_model";
+    json["num_attention_heads"] = num_attention_heads;
+    json["num_channels"] = num_channels;
+    json["num_hidden_layers"] = num_hidden_layers;
+    json["patch_size"] = patch_size;
+    return json;
+}
+
+ClipConfig ClipConfig::from_json(const Json& json, const std::filesystem::path& path) {
+    const Reader reader(json, path);
+    reader.expect("model_type", {"clip"});
+    ClipConfig config;
+    reader.get("projection_dim", config.projection_dim);
+    reader.positive("projection_dim", config.projection_dim, MaxWidth);
+    // What transformers leaves out of the file is CLIP ViT-B/32's.
+    config.text.hidden_size = 512;
+    config.text.intermediate_size = 2048;
+    config.text.num_attention_heads = 8;
+    if (reader.has("text_config")) read_text_keys(Reader(json.at("text_config"), path), config.text);
+    if (reader.has("vision_config"))
+        config.vision = VisionEncoderConfig::from_json(json.at("vision_config"), path);
+    config.text.projection_dim = config.projection_dim;
+    config.text.with_projection = true;
+    return config;
+}
+
+Json ClipConfig::to_json() const {
+    return {{"architectures", {"CLIPModel"}},
+            {"model_type", "clip"},
+            {"projection_dim", projection_dim},
+            {"text_config", text.to_json()},
+            {"vision_config", vision.to_json()}};
 }
 
 SchedulerConfig SchedulerConfig::from_json(const Json& json, const std::filesystem::path& path) {

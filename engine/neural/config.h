@@ -74,6 +74,32 @@ struct TextEncoderConfig {
     Json to_json() const;
 };
 
+/// "vision_config" of a CLIP model's config.json (CLIPVisionModel).
+struct VisionEncoderConfig {
+    std::int64_t hidden_size = 768;
+    std::int64_t intermediate_size = 3072;
+    std::int64_t num_hidden_layers = 12;
+    std::int64_t num_attention_heads = 12;
+    std::int64_t num_channels = 3;
+    std::int64_t image_size = 224;
+    std::int64_t patch_size = 32;
+    std::string hidden_act = "quick_gelu";
+    double layer_norm_eps = 1e-5;
+
+    static VisionEncoderConfig from_json(const Json& json, const std::filesystem::path& path);
+    Json to_json() const;
+};
+
+/// config.json of a contrastive image-text model (CLIPModel).
+struct ClipConfig {
+    TextEncoderConfig text;  // with projection
+    VisionEncoderConfig vision;
+    std::int64_t projection_dim = 512;
+
+    static ClipConfig from_json(const Json& json, const std::filesystem::path& path);
+    Json to_json() const;
+};
+
 /// scheduler/scheduler_config.json.
 struct SchedulerConfig {
     std::string class_name = "DDIMScheduler";

@@ -13,11 +13,12 @@ namespace {
 constexpr double DefaultAttentionThreshold = 0.5;
 
 template <class Module>
-void write_weights(const std::filesystem::path& path, const Module& module) {
+void write_weights(const std::filesystem::path& path, const Module& module,
+                   const std::function<std::string(const std::string&)>& key = [](const auto& name) { return name; }) {
     torch::NoGradGuard no_grad;
     std::vector<std::pair<std::string, torch::Tensor>> tensors;
     for (const auto& item : module->named_parameters())
-        tensors.emplace_back(item.key(), item.value().detach().to(torch::kCPU).to(torch::kHalf).contiguous());
+        tensors.emplace_back(key(item.key()), item.value().detach().to(torch::kCPU).to(torch::kHalf).contiguous());
     write_safetensors(path, tensors);
 }
 
@@ -44,6 +45,11 @@ Json facts_of(const UNetTraining& training) {
 }
 
 }  // namespace
+
+void export_clip(const ClipModel& clip, const std::filesystem::path& folder) {
+    write_weights(folder / "model.safetensors", clip, clip_key);
+    write_json(folder / "config.json", clip->config().to_json());
+}
 
 void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNetworks& networks,
                     const std::filesystem::path& output) {

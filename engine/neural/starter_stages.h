@@ -1,6 +1,7 @@
-// The two stages of the starter model: the VAE, then text encoder and UNet on its latents.
+// The stages of the starter model: the VAE, text encoder and UNet on its latents, the image-text encoder.
 #pragma once
 
+#include "engine/neural/clip_model.h"
 #include "engine/neural/starter_training.h"
 #include "engine/neural/text_encoder.h"
 #include "engine/neural/unet.h"
@@ -13,6 +14,7 @@ struct StarterConfigs {
     VaeConfig vae;
     TextEncoderConfig text;
     UNetConfig unet;
+    ClipConfig clip;
 };
 inline constexpr int StarterTokenCount = 32;   // model_max_length of the tokenizer
 StarterConfigs starter_configs(const StarterTrainParameters& parameters, const StarterVocabulary& vocabulary);
@@ -59,6 +61,20 @@ struct UNetTraining {
 /// Trains text encoder and UNet (v-prediction) with the attention losses and leaves the averaged weights in them.
 void train_unet(StarterNetworks& networks, const UNetTraining& training, const std::filesystem::path& work,
                 const JobControl& job);
+
+/// What the contrastive stage works on; `pictures` are those of `twins`.
+struct ClipTraining {
+    const StarterTrainParameters& parameters;
+    const StarterPictures& pictures;
+    const StarterTwins& twins;
+    const StarterVocabulary& vocabulary;
+};
+
+/// Trains the image-text encoder and leaves the averaged weights in it.
+void train_clip(ClipModel& clip, const ClipTraining& training, const std::filesystem::path& work,
+                const JobControl& job);
+/// Writes config.json and model.safetensors (fp16) as transformers does; the tokenizer is the bundle's.
+void export_clip(const ClipModel& clip, const std::filesystem::path& folder);
 
 /// Writes the diffusers folder in fp16.
 void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNetworks& networks,

@@ -4,10 +4,18 @@
 #include <thread>
 
 #include "engine/base/error.h"
+#include "engine/base/file.h"
 #include "engine/base/log.h"
 #include "engine/neural/starter_stages.h"
 
 namespace gse::neural {
+
+namespace {
+
+constexpr int ClipProjection = 96;   // numbers per picture or sentence
+constexpr int ClipPatches = 8;       // patches along a side
+
+}  // namespace
 
 StarterConfigs starter_configs(const StarterTrainParameters& parameters, const StarterVocabulary& vocabulary) {
     StarterConfigs configs;
@@ -38,6 +46,18 @@ StarterConfigs starter_configs(const StarterTrainParameters& parameters, const S
     configs.unet.heads = {u / 40, u / 20, u / 16};
     configs.unet.cross_attention_dim = parameters.text_width;
     configs.unet.norm_num_groups = 16;
+
+    configs.clip.text = configs.text;
+    configs.clip.text.num_hidden_layers = 2;
+    configs.clip.text.with_projection = true;
+    configs.clip.projection_dim = configs.clip.text.projection_dim = ClipProjection;
+    auto& vision = configs.clip.vision;
+    vision.image_size = parameters.image_size;
+    vision.patch_size = parameters.image_size / ClipPatches;
+    vision.hidden_size = parameters.clip_width;
+    vision.intermediate_size = 4 * parameters.clip_width;
+    vision.num_hidden_layers = 4;
+    vision.num_attention_heads = 4;
     return configs;
 }
 
@@ -45,23 +65,45 @@ namespace {
 
 bool trains(int steps, double minutes) { return steps > 0 || minutes > 0; }
 
-StarterTrainParameters checked(StarterTrainParameters parameters) {
+StarterTrainParameters checked(StarterTrainParameters parameters, const StarterSource& source) {
     if (parameters.threads == 0)
         parameters.threads =
             parameters.device == "cpu" ? static_cast<int>(std::max(1u, std::thread::hardware_concurrency())) : 1;
     const bool all = trains(parameters.vae_steps, parameters.vae_minutes) &&
                      trains(parameters.unet_steps, parameters.unet_minutes);
+    if (trains(parameters.clip_steps, parameters.clip_minutes) && source.twins() == nullptr)
+        throw Error(ErrorCode::InvalidArgument, "the picture source has no twins to train the image-text encoder on",
+                    "give it neither minutes nor steps");
     if (parameters.initial.empty() && !all)
         throw Error(ErrorCode::InvalidArgument, "a part of the model would stay untrained",
                     "give every stage minutes or steps, or name the model to keep it from with --initial");
     return parameters;
 }
 
+/// Trains the image-text encoder into `folder`, or takes over what the initial model has.
+void add_clip(const StarterTrainParameters& parameters, const StarterSource& source,
+              const std::filesystem::path& work, const std::filesystem::path& folder, const JobControl& job) {
+    const auto kept = std::filesystem::path(parameters.initial) / "clip";
+    if (!trains(parameters.clip_steps, parameters.clip_minutes)) {
+        if (parameters.initial.empty() || !std::filesystem::exists(kept)) return;
+        for (const char* name : {"config.json", "model.safetensors"}) write_file(folder / name, read_file(kept / name));
+        return;
+    }
+    auto twin_parameters = parameters;
+    twin_parameters.pictures = parameters.clip_pictures;
+    const auto pictures = load_or_render_pictures(twin_parameters, *source.twins(), work, job);
+    const auto vocabulary = build_vocabulary(source.vocabulary());
+    torch::manual_seed(parameters.seed + 2);
+    ClipModel clip(starter_configs(parameters, vocabulary).clip);
+    train_clip(clip, {parameters, pictures, *source.twins(), vocabulary}, work, job);
+    export_clip(clip, folder);
+}
+
 }  // namespace
 
 void train_starter(const StarterTrainParameters& requested, const StarterSource& source,
                    const std::filesystem::path& work, const std::filesystem::path& output, const JobControl& job) {
-    const StarterTrainParameters parameters = checked(requested);
+    const StarterTrainParameters parameters = checked(requested, source);
     const bool new_vae = trains(parameters.vae_steps, parameters.vae_minutes);
     const bool new_unet = trains(parameters.unet_steps, parameters.unet_minutes);
     const auto vocabulary = build_vocabulary(source.vocabulary());
@@ -69,7 +111,8 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
     auto parts = parameters.initial.empty() ? fresh_parts(configs, parameters.seed)
                                             : initial_parts(parameters.initial, configs, vocabulary);
     std::filesystem::create_directories(work);
-    const auto pictures = load_or_render_pictures(parameters, source, work, job);
+    StarterPictures pictures;
+    if (new_vae || new_unet) pictures = load_or_render_pictures(parameters, source, work, job);
 
     if (new_vae) train_vae(parts.vae, parameters, pictures, work, job);
     StarterLatents latents;
@@ -85,6 +128,8 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
     };
     if (new_unet) train_unet(parts.networks, training, work, job);
     export_starter(training, parts.vae, parts.networks, output);
+    pictures = {};
+    add_clip(parameters, source, work, output / "clip", job);
     log::info("the model is in {}", output.string());
 }
 

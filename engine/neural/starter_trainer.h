@@ -36,6 +36,8 @@ struct StarterCaption {
     std::vector<Grounding> groundings;
 };
 
+class StarterTwins;
+
 /// Where the pictures come from; every method is const, deterministic and callable from several threads.
 class StarterSource {
 public:
@@ -46,6 +48,25 @@ public:
     virtual std::vector<std::string> vocabulary() const = 0;
     /// Changes when the same index would give another picture (names the picture cache).
     virtual std::string identity() const = 0;
+    /// Pictures for the image-text encoder; null = there are none.
+    virtual const StarterTwins* twins() const { return nullptr; }
+};
+
+/// A sentence and what it states: bit k is fact k ("the object is a bear", "there is no accessory").
+struct StarterClaim {
+    std::string text;
+    std::uint64_t facts = 0;
+};
+
+/// Groups of pictures of one scene from one place that differ in a word or two: picture g * group_size() + m is member
+/// m of group g. Coverage is not needed and may be zero.
+class StarterTwins : public StarterSource {
+public:
+    virtual int group_size() const = 0;
+    /// Everything that is true of a picture.
+    virtual std::uint64_t facts(std::uint64_t index) const = 0;
+    /// A true sentence. `full`: it states every fact but the view, in one form for all pictures.
+    virtual StarterClaim claim(std::uint64_t index, std::uint64_t seed, bool full) const = 0;
 };
 
 /// Everything that decides the result of a training run.
@@ -55,16 +76,23 @@ struct StarterTrainParameters {
     int pictures = 24000;
     double vae_minutes = 20;
     double unet_minutes = 90;
+    double clip_minutes = 12;
     int vae_steps = 0;
     int unet_steps = 0;
+    int clip_steps = 0;
     int threads = 0;
     int vae_batch = 8;
     int unet_batch = 16;
+    int clip_batch = 32;
+    int clip_pictures = 24000;
     double vae_lr = 1.5e-3;
     double unet_lr = 8e-4;
+    double clip_lr = 1e-3;
     int vae_channels = 16;
     int unet_channels = 80;
     int text_width = 128;
+    int clip_width = 128;
+    double direction_weight = 0.5;
     double grounding_weight = 0.1;
     double spread_weight = 0.03;
     double insertion_share = 0.3;
@@ -82,17 +110,28 @@ struct StarterTrainParameters {
         f("vae_minutes", self.vae_minutes, "Time for the VAE; ignored when vae_steps is set.", Range{0, 1e5});
         f("unet_minutes", self.unet_minutes, "Time for text encoder and UNet; ignored when unet_steps is set.",
           Range{0, 1e5});
+        f("clip_minutes", self.clip_minutes, "Time for the image-text encoder; ignored when clip_steps is set.",
+          Range{0, 1e5});
         f("vae_steps", self.vae_steps, "Steps of the VAE; 0 = go by time.", Range{0, 1e8});
         f("unet_steps", self.unet_steps, "Steps of the UNet; 0 = go by time.", Range{0, 1e8});
+        f("clip_steps", self.clip_steps, "Steps of the image-text encoder; 0 = go by time.", Range{0, 1e8});
         f("threads", self.threads, "Single-threaded replicas whose gradients are averaged; 0 = one per core.",
           Range{0, 64});
         f("vae_batch", self.vae_batch, "Pictures per replica and VAE step.", Range{1, 4096});
         f("unet_batch", self.unet_batch, "Pictures per replica and UNet step.", Range{1, 4096});
+        f("clip_batch", self.clip_batch, "Groups of twin pictures per replica and step of the image-text encoder.",
+          Range{2, 4096});
+        f("clip_pictures", self.clip_pictures, "Number of twin pictures rendered for the image-text encoder.",
+          Range{8, 1e6});
         f("vae_lr", self.vae_lr, "Peak learning rate of the VAE (cosine to zero).", Range{0, 1});
         f("unet_lr", self.unet_lr, "Peak learning rate of text encoder and UNet (cosine to zero).", Range{0, 1});
+        f("clip_lr", self.clip_lr, "Peak learning rate of the image-text encoder (cosine to zero).", Range{0, 1});
         f("vae_channels", self.vae_channels, "Channels of the VAE at full resolution (x3, x6 below).", Range{8, 512});
         f("unet_channels", self.unet_channels, "Channels of the UNet at latent resolution.", Range{16, 1024});
         f("text_width", self.text_width, "Width of the text encoder.", Range{32, 1024});
+        f("clip_width", self.clip_width, "Width of the image encoder of the image-text encoder.", Range{32, 1024});
+        f("direction_weight", self.direction_weight,
+          "Weight of the loss that makes picture changes point where sentence changes point.", Range{0, 10});
         f("grounding_weight", self.grounding_weight,
           "Weight of the loss that makes the words of a part attend to that part.", Range{0, 10});
         f("spread_weight", self.spread_weight, "Weight of the loss that spreads each word evenly over its part.",

@@ -13,53 +13,13 @@
 #include "engine/base/random.h"
 #include "engine/neural/schedulers.h"
 #include "engine/neural/starter_stages.h"
+#include "engine/neural/starter_words.h"
 
 namespace gse::neural {
 namespace {
 
 constexpr int TrainTimesteps = 1000;
 constexpr double MostOutsideAreas = 3;   // areas of the part that count as its outside in the balance of the place loss
-
-/// Splits a caption as the tokenizer does: words and commas.
-std::vector<std::string> split_caption(const std::string& text) {
-    std::vector<std::string> words;
-    std::string word;
-    for (const char letter : text + " ") {
-        if (letter != ' ' && letter != ',') {
-            word += letter;
-            continue;
-        }
-        if (!word.empty()) words.push_back(std::move(word));
-        word.clear();
-        if (letter == ',') words.emplace_back(",");
-    }
-    return words;
-}
-
-/// Token ids of one-token words.
-class WordTable {
-public:
-    explicit WordTable(const StarterVocabulary& vocabulary) : bos_(vocabulary.bos), eos_(vocabulary.eos) {
-        const auto json = nlohmann::json::parse(vocabulary.vocab_json);
-        for (const auto& [token, id] : json.items()) {
-            constexpr std::string_view end = "</w>";
-            if (token.size() > end.size() && token.ends_with(end))
-                ids_[token.substr(0, token.size() - end.size())] = id.get<int>();
-        }
-    }
-    int id(const std::string& word) const {
-        const auto found = ids_.find(word);
-        if (found == ids_.end())
-            throw Error(ErrorCode::InvalidArgument, "the caption word \"" + word + "\" is not in the vocabulary");
-        return found->second;
-    }
-    int bos() const { return bos_; }
-    int eos() const { return eos_; }
-
-private:
-    int bos_, eos_;
-    std::unordered_map<std::string, int> ids_;
-};
 
 /// One replica's batch.
 struct Batch {

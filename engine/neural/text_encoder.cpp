@@ -25,21 +25,21 @@ torch::Tensor causal_mask(std::int64_t tokens, const torch::Tensor& attention_ma
 
 }  // namespace
 
-ClipLayerImpl::ClipLayerImpl(const TextEncoderConfig& config, const WeightOptions& options)
-    : heads_(config.num_attention_heads), quick_gelu_(config.hidden_act == "quick_gelu") {
-    const auto width = config.hidden_size, inner = config.intermediate_size;
+ClipLayerImpl::ClipLayerImpl(const Shape& shape, const WeightOptions& options)
+    : heads_(shape.heads), quick_gelu_(shape.activation == "quick_gelu") {
+    const auto width = shape.width, inner = shape.inner;
     auto self_attn = std::make_shared<torch::nn::Module>();
     k_proj = self_attn->register_module("k_proj", Linear(LinearImpl::Shape{width, width}, options));
     v_proj = self_attn->register_module("v_proj", Linear(LinearImpl::Shape{width, width}, options));
     q_proj = self_attn->register_module("q_proj", Linear(LinearImpl::Shape{width, width}, options));
     out_proj = self_attn->register_module("out_proj", Linear(LinearImpl::Shape{width, width}, options));
     register_module("self_attn", self_attn);
-    layer_norm1 = register_module("layer_norm1", LayerNorm(width, config.layer_norm_eps, options));
+    layer_norm1 = register_module("layer_norm1", LayerNorm(width, shape.norm_eps, options));
     auto mlp = std::make_shared<torch::nn::Module>();
     fc1 = mlp->register_module("fc1", Linear(LinearImpl::Shape{width, inner}, options));
     fc2 = mlp->register_module("fc2", Linear(LinearImpl::Shape{inner, width}, options));
     register_module("mlp", mlp);
-    layer_norm2 = register_module("layer_norm2", LayerNorm(width, config.layer_norm_eps, options));
+    layer_norm2 = register_module("layer_norm2", LayerNorm(width, shape.norm_eps, options));
 }
 
 torch::Tensor ClipLayerImpl::forward(torch::Tensor x, const torch::Tensor& mask) const {
@@ -67,7 +67,10 @@ ClipTextEncoderImpl::ClipTextEncoderImpl(const TextEncoderConfig& config, const 
     model->register_module("embeddings", embeddings);
     auto encoder = std::make_shared<torch::nn::Module>();
     for (std::int64_t i = 0; i < config_.num_hidden_layers; ++i)
-        layers_.push_back(ClipLayer(config_, options));
+        layers_.push_back(ClipLayer(
+            ClipLayerImpl::Shape{config_.hidden_size, config_.intermediate_size, config_.num_attention_heads,
+                                 config_.hidden_act, config_.layer_norm_eps},
+            options));
     register_list(*encoder, "layers", layers_);
     model->register_module("encoder", encoder);
     final_layer_norm = model->register_module(

@@ -14,9 +14,15 @@ struct TextEncoding {
     torch::Tensor text_embeds;  // [B,P] projection of pooled; undefined without projection layer
 };
 
+/// One layer of CLIP's towers; an undefined mask lets every token see every other.
 class ClipLayerImpl : public torch::nn::Module {
 public:
-    ClipLayerImpl(const TextEncoderConfig& config, const WeightOptions& options);
+    struct Shape {
+        std::int64_t width = 0, inner = 0, heads = 1;
+        std::string activation;
+        double norm_eps = 1e-5;
+    };
+    ClipLayerImpl(const Shape& shape, const WeightOptions& options);
     torch::Tensor forward(torch::Tensor x, const torch::Tensor& mask) const;
 
 private:

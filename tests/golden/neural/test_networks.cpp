@@ -1,4 +1,5 @@
-// UNet, VAE and text encoder against the reference implementations: outputs, attention maps and gradients.
+// UNet, VAE, text encoder and CLIP against the reference implementations: outputs, attention maps and gradients.
+#include "engine/neural/clip_model.h"
 #include "engine/neural/key_map.h"
 #include "engine/neural/schedulers.h"
 #include "engine/neural/text_encoder.h"
@@ -14,6 +15,7 @@ using namespace gse::test;
 
 // The tolerances of the cases' README files.
 constexpr double OutputTolerance = 2e-5;
+constexpr double ClipSegTolerance = 2e-5;  // of the largest value, at least of 1
 constexpr double MapTolerance = 5e-6;
 constexpr double GradientTolerance = 2e-4;     // of the tensor's largest value
 constexpr double ClipGradientRelative = 1e-4;  // of each value ...
@@ -192,6 +194,32 @@ void check_clip(const std::string& name) {
     check_clip_gradients(margins, encoder, io);
 }
 
+/// CLIPSeg holds a whole CLIP: both towers, here seen through its outputs.
+void check_clip_towers(const std::string& name) {
+    const GoldenCase golden(name);
+    if (!golden.present) return;
+    Margins margins(name);
+    auto json = golden.json("config.json");
+    json["model_type"] = "clip";
+    ClipModel clip(ClipConfig::from_json(json, golden.folder / "config.json"));
+    auto plan = clip_plan();
+    plan.map = [](const std::string& parameter) { return WeightSource{"clip." + clip_key(parameter)}; };
+    plan.ignore = [](const std::string& key) { return key.starts_with("decoder."); };
+    load_weights(*clip, golden.tensors("model.safetensors"), plan);
+    const auto io = golden.tensors();
+    const auto near = [&](const std::string& key, const torch::Tensor& actual) {
+        const auto expected = io.tensor(key);
+        margins.near(key, actual, expected, ClipSegTolerance * std::max(1.0, largest(expected)));
+    };
+    const auto seen = clip->vision->forward(io.tensor("pixel_values"));
+    for (std::size_t i = 0; i < seen.hidden_states.size(); ++i) {
+        const auto key = "vision.hidden_states." + std::to_string(i);
+        if (io.contains(key)) near(key, seen.hidden_states[i]);
+    }
+    near("pooled_output", seen.image_embeds.expand({io.tensor("pooled_output").size(0), -1}));
+    near("conditional_embeddings", clip->text->forward(io.tensor("input_ids")).text_embeds);
+}
+
 }  // namespace
 
 DOCTEST_TEST_CASE("unet_sd1: outputs, maps and gradients") { check_unet("unet_sd1"); }
@@ -203,4 +231,8 @@ DOCTEST_TEST_CASE("clip_text_sd1: hidden states, pooled, masked and gradients") 
 }
 DOCTEST_TEST_CASE("clip_text_sd2: hidden states, projection, masked and gradients") {
     check_clip("clip_text_sd2");
+}
+DOCTEST_TEST_CASE("clipseg: both towers of the CLIP inside, with resized positions") {
+    check_clip_towers("clipseg");
+    check_clip_towers("clipseg_simple");
 }

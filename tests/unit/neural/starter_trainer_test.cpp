@@ -65,6 +65,7 @@ StarterTrainParameters toy_parameters() {
     parameters.unet_steps = 6;
     parameters.vae_batch = 2;
     parameters.unet_batch = 2;
+    parameters.clip_minutes = 0;
     parameters.vae_channels = 8;
     parameters.unet_channels = 80;
     parameters.text_width = 32;

@@ -1,0 +1,108 @@
+// Loading of a CLIP folder, and its vectors of pictures and sentences.
+#include "engine/neural/clip_score.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "engine/base/error.h"
+#include "engine/neural/images.h"
+#include "engine/neural/tokenizer.h"
+#include "engine/neural/torch_errors.h"
+
+namespace gse::neural {
+namespace {
+
+std::filesystem::path existing(const std::filesystem::path& path) {
+    if (!std::filesystem::exists(path))
+        throw Error(ErrorCode::NotFound, "the image-text encoder is incomplete",
+                    "it has config.json and model.safetensors, as transformers writes a CLIPModel", path);
+    return path;
+}
+
+std::vector<float> to_vector(const torch::Tensor& row) {
+    const auto values = row.detach().to(torch::kCPU, torch::kFloat32).contiguous();
+    return {values.data_ptr<float>(), values.data_ptr<float>() + values.numel()};
+}
+
+class ClipScore final : public edit::TextImageScore {
+public:
+    explicit ClipScore(const ClipFolder& folder)
+        : folder_(folder),
+          config_(ClipConfig::from_json(read_json_file(existing(folder.path / "config.json")),
+                                        folder.path / "config.json")),
+          preprocessing_(ClipPreprocessing::read(config_, folder.path)),
+          tokenizer_(std::filesystem::exists(folder.path / "merges.txt") ? folder.path : folder.tokenizer),
+          model_(config_, WeightOptions{torch::kCPU, torch::kFloat32, false}) {
+        if (tokenizer_.vocabulary_size() > config_.text.vocab_size)
+            throw Error(ErrorCode::Model,
+                        fmt::format("the tokenizer has {} tokens but the image-text encoder only {}",
+                                    tokenizer_.vocabulary_size(), config_.text.vocab_size),
+                        {}, folder.path);
+        load_weights(*model_, SafetensorsFile(existing(folder.path / "model.safetensors")), clip_plan());
+        for (auto& parameter : model_->parameters()) parameter.set_requires_grad(false);
+        model_->to(folder.device);
+        model_->eval();
+    }
+
+    std::vector<float> image(const Image& image) override {
+        return guard_torch("looking at a picture", [&] {
+            const torch::NoGradGuard no_grad;
+            const auto picture = to_tensor(image, folder_.device).slice(1, 0, 3).clamp(0.0, 1.0);
+            return to_vector(model_->image_vectors(preprocessing_.pixels(picture)));
+        });
+    }
+
+    std::vector<float> text(const std::string& sentence) override {
+        return guard_torch("reading a sentence", [&] {
+            const torch::NoGradGuard no_grad;
+            const auto known =
+                folder_.known_words.empty() ? sentence : known_part(sentence, folder_.known_words);
+            const auto length = std::min(tokenizer_.max_length(), config_.text.max_position_embeddings);
+            const auto ids = torch::tensor(tokenizer_.encode(known, length).ids, torch::kInt64);
+            return to_vector(model_->text_vectors(ids.unsqueeze(0).to(folder_.device)));
+        });
+    }
+
+private:
+    ClipFolder folder_;
+    ClipConfig config_;
+    ClipPreprocessing preprocessing_;
+    Tokenizer tokenizer_;
+    ClipModel model_;
+};
+
+}  // namespace
+
+bool has_clip(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    return std::filesystem::exists(folder / "config.json", ignored);
+}
+
+std::unique_ptr<edit::TextImageScore> load_clip_score(const ClipFolder& folder) {
+    return guard_torch("loading the image-text encoder", [&] { return std::make_unique<ClipScore>(folder); });
+}
+
+std::string known_part(const std::string& sentence, const std::vector<std::string>& known) {
+    std::string result, word;
+    const auto end_word = [&] {
+        if (std::find(known.begin(), known.end(), word) != known.end()) {
+            if (!result.empty()) result += ' ';
+            result += word;
+        }
+        word.clear();
+    };
+    for (const char letter : sentence + ' ') {
+        if (std::isalnum(static_cast<unsigned char>(letter)) != 0) {
+            word += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+            continue;
+        }
+        end_word();
+        if (letter == ',' && !result.empty() && result.back() != ',') result += ',';
+    }
+    if (!result.empty() && result.back() == ',') result.pop_back();
+    return result;
+}
+
+}  // namespace gse::neural

@@ -1,0 +1,47 @@
+// Batches of twin pictures and sentences for the image-text encoder.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/base/random.h"
+#include "engine/neural/starter_stages.h"
+#include "engine/neural/starter_words.h"
+
+namespace gse::neural {
+
+/// N = groups * members pictures, each with one sentence; all members of a group stand together, the first
+/// first.
+struct TwinBatch {
+    torch::Tensor pictures;  // [N,3,S,S] in [0,1], augmented; a group is augmented as one
+    torch::Tensor ids;       // [N,T] long
+    torch::Tensor
+        blocked;  // [N,N] bool: sentence [column] also holds for picture [row], so is no counter-example
+    /// Changes of one picture and sentence to another of the group that can be seen.
+    torch::Tensor from, to;     // [K] long
+    torch::Tensor same_change;  // [K,K] bool, false on the diagonal: the two change the same words
+};
+
+class TwinBatchMaker {
+public:
+    explicit TwinBatchMaker(const ClipTraining& training);
+    TwinBatch make(Random& random) const;
+
+private:
+    struct Row {
+        std::uint64_t picture = 0;
+        StarterClaim claim;
+        bool full = false;
+    };
+    std::vector<Row> draw_rows(Random& random) const;
+    torch::Tensor pictures_of(const std::vector<Row>& rows, Random& random) const;
+    torch::Tensor ids_of(const std::vector<Row>& rows) const;
+    void add_relations(const std::vector<Row>& rows, TwinBatch& batch) const;
+    bool look_alike(std::uint64_t a, std::uint64_t b) const;
+
+    const ClipTraining& training_;
+    WordTable table_;
+    std::uint64_t members_;
+};
+
+}  // namespace gse::neural
