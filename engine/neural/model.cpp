@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/neural/attention_source.h"
+#include "engine/neural/clip_score.h"
 #include "engine/neural/dreambooth.h"
 #include "engine/neural/images.h"
 #include "engine/neural/sds_guidance.h"
@@ -30,6 +31,13 @@ public:
     std::vector<std::string> known_words() const override { return bundle_->facts.vocabulary; }
     int image_size() const override { return static_cast<int>(bundle_->image_size()); }
     std::string name() const override { return bundle_->facts.name; }
+
+    std::unique_ptr<edit::TextImageScore> text_image_score() override {
+        const auto folder = loaded_->path / "clip";
+        if (!has_clip(folder)) return nullptr;
+        return load_clip_score(
+            {folder, loaded_->path / "tokenizer", loaded_->facts.vocabulary, loaded_->device});
+    }
 
     Image sample(const SampleRequest& request) override { return run(nullptr, request); }
     Image img2img(const Image& image, const SampleRequest& request) override { return run(&image, request); }
