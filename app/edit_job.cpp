@@ -278,7 +278,9 @@ void EditJob::tune() {
     times_.begin("dreambooth");
     tuning_ = model_->tune(recipe_.dreambooth, instance_pictures(), "a photo of a " + recipe_.request.source,
                            model_prompt(), control_);
-    untune_ = std::shared_ptr<void>(nullptr, [model = model_](void*) { model->untune(); });
+    untune_ = std::shared_ptr<void>(nullptr, [model = model_, tuning = model_->tuning()](void*) {
+        if (model->tuning() == tuning) model->untune();   // another job may have tuned it since
+    });
     times_.end();
     log::info("tuned in {:.0f} s: loss on the scene {:.3f} to {:.3f}, on what the model knew {:.3f} to {:.3f}",
               tuning_->seconds, tuning_->instance_before, tuning_->instance_after, tuning_->prior_before,

@@ -56,6 +56,8 @@ public:
     /// Back to the loaded weights.
     virtual void untune() = 0;
     virtual bool tuned() const = 0;
+    /// Number of the tuning in use, another one for each; 0 = the loaded weights.
+    virtual std::uint64_t tuning() const = 0;
     /// The tuning as a file (kohya's names). Throws Error (InvalidArgument) unless the model is tuned with a rank.
     virtual void save_lora(const std::filesystem::path& path) const = 0;
     /// Tunes the loaded weights by a file. Throws Error (NotFound, Malformed, Model).

@@ -50,12 +50,14 @@ public:
         });
         bundle_ = std::move(result.bundle);
         lora_ = std::move(result.lora);
+        ++tunings_;
         return std::move(result.report);
     }
     void untune() override {
         bundle_ = loaded_;
         lora_.reset();
     }
+    std::uint64_t tuning() const override { return tuned() ? tunings_ : 0; }
     bool tuned() const override { return bundle_ != loaded_; }
     void save_lora(const std::filesystem::path& path) const override {
         if (!lora_)
@@ -69,6 +71,7 @@ public:
             return std::make_shared<const ModelBundle>(with_lora(*loaded_, weights, strength));
         });
         lora_ = std::move(weights);
+        ++tunings_;
     }
 
 private:
@@ -96,6 +99,7 @@ private:
 
     std::shared_ptr<const ModelBundle> loaded_, bundle_;  // as read; in use (the same unless tuned)
     std::optional<LoraWeights> lora_;                     // the change between them, when it is low-rank
+    std::uint64_t tunings_ = 0;
 };
 
 }  // namespace
