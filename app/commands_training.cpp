@@ -5,6 +5,7 @@
 #include "app/cli.h"
 #include "app/neural_loader.h"
 #include "app/starter_source.h"
+#include "app/training_record.h"
 
 namespace gse::app {
 namespace {
@@ -13,6 +14,7 @@ struct TrainingOptions {
     neural::StarterTrainParameters parameters;
     std::filesystem::path work = ".training/starter";
     std::filesystem::path output = "assets/models/starter";
+    bool record = false;
 };
 
 }  // namespace
@@ -23,10 +25,13 @@ void add_training_command(CLI::App& app, CommandContext& context) {
     command->add_option("--work", options->work, "Folder of pictures, checkpoints and logs; a run resumes there")
         ->capture_default_str();
     command->add_option("--out", options->output, "Diffusers folder to write")->capture_default_str();
+    command->add_flag("--record", options->record, "Train nothing: draw curves and samples of the model in --out anew");
     bind_fields(*command, options->parameters, "Training");
     command->callback([options, &context] {
+        if (options->record) return write_training_record(options->work, options->output, context.job());
         const auto source = make_starter_source(options->parameters.seed);
         neural_api().train_starter(options->parameters, *source, options->work, options->output, context.job());
+        write_training_record(options->work, options->output, context.job());
     });
 }
 
