@@ -10,6 +10,8 @@
 #include "app/bench_preview.h"
 #endif
 #include "app/cli.h"
+#include "app/clip_bench.h"
+#include "app/neural_loader.h"
 #include "app/scene_tools.h"
 #include "app/starter_bench.h"
 #include "engine/base/error.h"
@@ -125,6 +127,30 @@ void add_starter_bench(CLI::App& bench, CommandContext& context) {
     });
 }
 
+void add_clip_bench(CLI::App& bench, CommandContext& context) {
+    struct Options {
+        ClipBenchParameters parameters;
+        JobParameters job;
+        std::filesystem::path output;
+    };
+    auto options = std::make_shared<Options>();
+    auto* command = bench.add_subcommand("clip", "A model's image-text encoder on held-out synthetic scenes");
+    command->add_option("--model", options->job.model, "Model to measure; the starter when left out");
+    command->add_option("--out", options->output, "Also write the JSON to this file");
+    bind_fields(*command, options->parameters, "Cases");
+    command->callback([options, &context] {
+        neural_api().set_threads(options->job.threads);
+        const auto model = load_recipe_model(options->job);
+        const auto score = model->text_image_score();
+        if (!score)
+            throw Error(ErrorCode::NotFound, "the model has no image-text encoder",
+                        "its folder needs a folder clip with config.json and model.safetensors");
+        const auto json = bench_clip(*score, options->parameters, context.job());
+        if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
+        fmt::print("{}\n", json.dump(2));
+    });
+}
+
 #ifdef GSE_WINDOW
 void add_preview_bench(CLI::App& bench) {
     struct Options {
@@ -165,6 +191,7 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
     add_preview_bench(*bench);
 #endif
     add_starter_bench(*bench, context);
+    add_clip_bench(*bench, context);
 }
 
 }  // namespace gse::app

@@ -24,7 +24,7 @@ struct GatePicture {
 
 struct Gate {
     std::vector<GatePicture> pictures;
-    /// How far the pictures show the edit; none while there is no judge of it.
+    /// Mean cosine of the pictures' and the sentences' change; none when the model has no encoder to tell.
     std::optional<double> score;
     std::string verdict;   // the score in a sentence; empty without one
     bool warns = false;    // the pictures do not show the edit
@@ -35,7 +35,7 @@ Gate look_through_gate(EditJob& job, const GateParameters& parameters = {});
 
 /// gate_0.png, ...: before and after beside each other.
 void write_gate(const std::filesystem::path& folder, const Gate& gate);
-/// {"score", "views"}.
+/// {"score", "verdict", "warns", "views"}.
 nlohmann::ordered_json gate_to_json(const Gate& gate);
 
 }  // namespace gse::app

@@ -75,6 +75,31 @@ std::string guessed_target(const std::string& prompt, const std::string& source)
     return described ? words[at - 1] : source;
 }
 
+std::string sentence_before(const EditRequest& request) {
+    auto words = words_of(request.prompt);
+    const auto target = std::find(words.begin(), words.end(), request.target) - words.begin();
+    const auto source = std::find(words.begin(), words.end(), request.source) - words.begin();
+    const auto count = static_cast<std::ptrdiff_t>(words.size());
+    const auto joins = [&](std::ptrdiff_t i) {
+        const auto& word = words[static_cast<std::size_t>(i)];
+        return contains(Joiners, word) || contains(Stops, word);
+    };
+    if (target < count && (source == count || source == target)) {
+        words[static_cast<std::size_t>(target)] = request.source;
+    } else if (target < count) {
+        std::ptrdiff_t first = target, last = target + 1;
+        if (source < target) {
+            while (first > source + 1 && !joins(first)) --first;
+            while (first > source + 1 && joins(first - 1)) --first;
+            while (last < count && !joins(last)) ++last;
+        }
+        words.erase(words.begin() + first, words.begin() + last);
+    }
+    std::string sentence;
+    for (const auto& word : words) sentence += (sentence.empty() ? "" : " ") + word;
+    return sentence;
+}
+
 EditRequest validated(EditRequest request) {
     const auto words = words_of(request.prompt);
     if (words.empty())

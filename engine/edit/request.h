@@ -204,6 +204,10 @@ std::vector<std::string> words_of(const std::string& sentence);
 /// word before it ("golden" statue), else, where the prompt does not name the source, the first thing it names.
 std::string guessed_target(const std::string& prompt, const std::string& source);
 
+/// The prompt as it was before the edit: without the new word, or without the phrase that brings it ("wearing a red hat");
+/// where it stands in the source's place ("into a panda"), with the source instead. The words of a validated request.
+std::string sentence_before(const EditRequest& request);
+
 /// Fills what the request leaves open (target and source word) and checks it. Throws Error with one sentence:
 /// an empty prompt, a target that is not in the prompt, an unknown mode.
 EditRequest validated(EditRequest request);

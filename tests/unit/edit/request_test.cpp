@@ -110,6 +110,24 @@ DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") 
     DOCTEST_CHECK(edit::decide_mode(request, 1.0).first == EditMode::Add);
 }
 
+DOCTEST_TEST_CASE("the sentence before an edit lacks what the edit brings") {
+    const auto before = [](const char* prompt, const char* source, const char* target) {
+        edit::EditRequest request;
+        request.prompt = prompt;
+        request.source = source;
+        request.target = target;
+        return edit::sentence_before(edit::validated(request));
+    };
+    DOCTEST_CHECK(before("a blue bear on the grass", "bear", "blue") == "a bear on the grass");
+    DOCTEST_CHECK(before("a bear wearing a red hat on the grass", "bear", "hat") == "a bear on the grass");
+    DOCTEST_CHECK(before("a bear wearing a red hat on the grass", "hat", "red") == "a bear wearing a hat on the grass");
+    DOCTEST_CHECK(before("a chair made of stone", "chair", "stone") == "a chair");
+    DOCTEST_CHECK(before("a red bear standing on the sand", "bear", "sand") == "a red bear");
+    DOCTEST_CHECK(before("turn the bear into a panda", "bear", "panda") == "turn the bear");
+    DOCTEST_CHECK(before("a panda on the grass", "bear", "panda") == "a bear on the grass");
+    DOCTEST_CHECK(before("a bear", "bear", "bear") == "a bear");
+}
+
 DOCTEST_TEST_CASE("the target is guessed from the sentence") {
     using edit::guessed_target;
     DOCTEST_CHECK(guessed_target("a bear wearing a red hat", "bear") == "hat");
