@@ -12,6 +12,7 @@ import unittest
 PROGRAM = os.environ["GSE_PROGRAM"]
 PICTURES = pathlib.Path(os.environ.get("GSE_PICTURES", "window_pictures"))
 WIDTH, HEIGHT = 1280, 720
+PATIENCE = float(os.environ.get("GSE_PATIENCE", "1"))   # instrumented builds are that much slower
 
 
 def free_display():
@@ -58,7 +59,7 @@ class Window:
         return self._read(str(self.map) + ".state")
 
     def _until(self, condition, seconds, message):
-        end = time.monotonic() + seconds
+        end = time.monotonic() + seconds * PATIENCE
         while time.monotonic() < end:
             if condition():
                 return
