@@ -75,7 +75,7 @@ class Session(WindowTest):
         self.assertEqual(window.state()["losses"], standing)
         window.click("job.pause")
         window.wait(lambda s: s["losses"] > standing + 5, "it did not go on")
-        window.click("job.cancel")
+        window.cancel_job()
         window.idle(60)
         self.assertTrue(window.state()["result_waiting"])
         window.click("result.discard")

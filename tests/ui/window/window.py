@@ -101,6 +101,13 @@ class Window:
             time.sleep(0.1)
         time.sleep(0.25)
 
+    def cancel_job(self):
+        """Stops the job; one that has worked for long asks first."""
+        self.click("job.cancel")
+        time.sleep(0.5)
+        if self.widgets().get("question.0", {}).get("visible"):
+            self.click("question.0")
+
     def drag(self, name, path, button=1, keys=()):
         """Presses at the first place (shares of the widget), moves along the others, releases."""
         points = [self.place(name, *share) for share in path]
