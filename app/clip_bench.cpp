@@ -119,9 +119,19 @@ private:
         SceneSpec bare = spec;
         bare.accessory = bare.accessory_colour = "";
         ask("accessory present", seen, spec, {bare});
+        std::vector<SceneSpec> others, plain_others;
         SceneSpec plain = spec;
         plain.accessory_colour.clear();
-        ask_member("accessory word", seen, plain, &SceneSpec::accessory, synth::accessory_words());
+        for (const auto& word : synth::accessory_words()) {
+            if (word == spec.accessory) continue;
+            plain_others.push_back(plain);
+            plain_others.back().accessory = word;
+            others.push_back(plain_others.back());
+            if (!synth::accessory_colour_words(word).empty())
+                others.back().accessory_colour = spec.accessory_colour;
+        }
+        ask("accessory word", seen, spec, others);
+        ask("accessory word without a colour", seen, plain, plain_others);
         if (!spec.accessory_colour.empty())
             ask_member("accessory colour", seen, spec, &SceneSpec::accessory_colour,
                        synth::accessory_colour_words(spec.accessory));

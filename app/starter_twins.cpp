@@ -24,6 +24,7 @@ constexpr int GroupSize = 4;
 constexpr double AccessoryShare = 0.65;  // groups whose first picture has an accessory
 constexpr double HeadShare = 0.15;       // groups seen from near the head
 constexpr double ViewShare = 0.3;        // full sentences that end with view words
+constexpr double PlainShare = 0.35;      // full sentences that do not tell the accessory's colour
 
 /// What a sentence may state, numbered.
 class FactTable {
@@ -200,7 +201,9 @@ public:
             const auto caption = synth::random_caption(shot.spec, shot.azimuth, random);
             return {caption.text, claimed_by(caption)};
         }
-        auto caption = synth::full_caption(shot.spec);
+        SceneSpec told = shot.spec;
+        if (random.uniform() < PlainShare) told.accessory_colour.clear();
+        auto caption = synth::full_caption(told);
         if (random.uniform() < ViewShare) caption.text += ", " + synth::view_words(shot.azimuth);
         // A full sentence that names no accessory says that there is none.
         const std::uint64_t none = shot.spec.accessory.empty() ? fact_table().bit("accessory", "") : 0;

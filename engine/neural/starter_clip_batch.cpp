@@ -37,6 +37,31 @@ torch::Tensor augment(torch::Tensor group, Random& random) {
     return (group + noise * torch::randn(group.sizes(), generator)).clamp(0.0, 1.0);
 }
 
+/// Which changes are the same, and which have nothing to do with each other; `facts` of all rows.
+void compare_changes(const std::vector<std::int64_t>& from, const std::vector<std::int64_t>& to,
+                     const std::vector<std::uint64_t>& facts, TwinBatch& batch) {
+    struct Change {
+        std::uint64_t gained, lost;
+    };
+    std::vector<Change> changes;
+    for (std::size_t k = 0; k < from.size(); ++k) {
+        const auto before = facts[static_cast<std::size_t>(from[k])],
+                   after = facts[static_cast<std::size_t>(to[k])];
+        changes.push_back({after & ~before, before & ~after});
+    }
+    const auto count = static_cast<std::int64_t>(changes.size());
+    batch.same_change = torch::zeros({count, count}, torch::kBool);
+    batch.unrelated = torch::zeros({count, count}, torch::kBool);
+    auto same = batch.same_change.accessor<bool, 2>();
+    auto unrelated = batch.unrelated.accessor<bool, 2>();
+    for (std::int64_t k = 0; k < count; ++k)
+        for (std::int64_t l = 0; l < count; ++l) {
+            const auto &a = changes[static_cast<std::size_t>(k)], &b = changes[static_cast<std::size_t>(l)];
+            same[k][l] = k != l && a.gained == b.gained && a.lost == b.lost;
+            unrelated[k][l] = ((a.gained | a.lost) & (b.gained | b.lost)) == 0;
+        }
+}
+
 }  // namespace
 
 TwinBatchMaker::TwinBatchMaker(const ClipTraining& training)
@@ -132,27 +157,14 @@ void TwinBatchMaker::add_relations(const std::vector<Row>& rows, TwinBatch& batc
                 const auto a = static_cast<std::int64_t>(i), b = static_cast<std::int64_t>(j);
                 if (look_alike(rows[i].picture, rows[j].picture)) {
                     blocked[a][b] = blocked[b][a] = true;
-                } else if (rows[first].full && i == first) {
+                } else if (rows[first].full && i == first && rows[i].claim.facts != rows[j].claim.facts) {
                     from.push_back(a);
                     to.push_back(b);
                 }
             }
     batch.from = torch::tensor(from, torch::kLong);
     batch.to = torch::tensor(to, torch::kLong);
-    const auto changes = static_cast<std::int64_t>(from.size());
-    batch.same_change = torch::zeros({changes, changes}, torch::kBool);
-    auto same = batch.same_change.accessor<bool, 2>();
-    const auto gained = [&](std::int64_t k) {
-        return facts[static_cast<std::size_t>(to[static_cast<std::size_t>(k)])] &
-               ~facts[static_cast<std::size_t>(from[static_cast<std::size_t>(k)])];
-    };
-    const auto lost = [&](std::int64_t k) {
-        return facts[static_cast<std::size_t>(from[static_cast<std::size_t>(k)])] &
-               ~facts[static_cast<std::size_t>(to[static_cast<std::size_t>(k)])];
-    };
-    for (std::int64_t k = 0; k < changes; ++k)
-        for (std::int64_t l = 0; l < changes; ++l)
-            same[k][l] = k != l && gained(k) == gained(l) && lost(k) == lost(l);
+    compare_changes(from, to, facts, batch);
 }
 
 }  // namespace gse::neural

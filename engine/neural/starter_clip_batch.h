@@ -20,6 +20,7 @@ struct TwinBatch {
     /// Changes of one picture and sentence to another of the group that can be seen.
     torch::Tensor from, to;     // [K] long
     torch::Tensor same_change;  // [K,K] bool, false on the diagonal: the two change the same words
+    torch::Tensor unrelated;    // [K,K] bool: no word that one of them brings or takes is among the other's
 };
 
 class TwinBatchMaker {

@@ -1,7 +1,7 @@
 // Trains the image-text encoder: symmetric InfoNCE over pictures and sentences (Radford et al. 2021) in which
 // sentences that are true of another picture do not count against it, and the same over changes: the
 // difference of two twins' pictures must point where the difference of their sentences points (directional
-// CLIP loss, Gal et al. 2022).
+// CLIP loss, Gal et al. 2022), at right angles to changes of other things.
 #include <cmath>
 #include <limits>
 
@@ -10,8 +10,9 @@
 namespace gse::neural {
 namespace {
 
-constexpr double LargestScale = 100;  // of cosines, as in CLIP
-constexpr double ChangeScale = 10;    // changes are few and alike: a sharper comparison does not settle
+constexpr double LargestScale = 100;   // of cosines, as in CLIP
+constexpr double UnrelatedWeight = 5;  // changes of other things are to be at right angles
+constexpr double ChangeScale = 10;     // changes are few and alike: a sharper comparison does not settle
 
 /// Cross-entropy of the diagonal over rows and over columns; blocked cells do not count.
 torch::Tensor contrast(const torch::Tensor& scores, const torch::Tensor& blocked) {
@@ -45,8 +46,10 @@ std::pair<torch::Tensor, std::vector<double>> batch_loss(const ClipModel& clip,
                                                     vectors.index_select(0, from));
         };
         const auto changes = torch::mm(change(pictures), change(sentences).t());
+        const auto unrelated = batch.unrelated.to(device).to(torch::kFloat);
+        const auto mixed = (changes.square() * unrelated).sum() / unrelated.sum().clamp_min(1.0);
         loss = loss + direction_weight * (contrast(ChangeScale * changes, batch.same_change.to(device)) +
-                                          (1 - changes.diagonal()).mean());
+                                          (1 - changes.diagonal()).mean() + UnrelatedWeight * mixed);
         direction = changes.diagonal().mean().item<double>();
     }
     return {
@@ -77,6 +80,13 @@ void train_clip(ClipModel& clip, const ClipTraining& training, const std::filesy
         Random random =
             Random::stream(parameters.seed * 3 + 4, static_cast<std::uint64_t>(step) * replicas.size() + r);
         return batch_loss(replicas[r], preprocessing, batches.make(random), parameters.direction_weight);
+    };
+    ClipModel averaged(clip->config());
+    auto averaged_parameters = averaged->parameters();
+    // The unfinished encoder can be tried while the training goes on.
+    stage.checkpoint = [&](const Parameters& values) {
+        copy_parameters(values, averaged_parameters);
+        export_clip(averaged, work / "preview/clip");
     };
     run_stage(stage, StageClock(parameters.clip_steps, parameters.clip_minutes), work, job);
 }

@@ -65,7 +65,8 @@ public:
     virtual int group_size() const = 0;
     /// Everything that is true of a picture.
     virtual std::uint64_t facts(std::uint64_t index) const = 0;
-    /// A true sentence. `full`: it states every fact but the view, in one form for all pictures.
+    /// A true sentence. `full`: it states nearly every fact, in one form for equal seeds, so that the sentences of a
+    /// group differ in nothing but what they state.
     virtual StarterClaim claim(std::uint64_t index, std::uint64_t seed, bool full) const = 0;
 };
 
