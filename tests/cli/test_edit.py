@@ -62,6 +62,17 @@ class Edits(ProgramTest):
         self.assertGreater(len(kept), 0)
         self.assertTrue(all(any(row == other for other in remaining) for row in kept))
 
+    @unittest.skipUnless((MODEL / "clip/config.json").exists(), "[skip] the starter model has no image-text encoder")
+    def test_the_gate_scores_its_pictures(self):
+        out = self.folder / "gated"
+        self.edit(out, "--gate")
+        gate = json.loads((out / "report.json").read_text())["gate"]
+        self.assertEqual(len(gate["views"]), 4)
+        self.assertTrue(-1 <= gate["score"] <= 1)
+        self.assertIn("blue bear" if gate["warns"] else "show the edit", gate["verdict"])
+        for i in range(4):
+            self.assertTrue((out / f"evidence/gate_{i}.png").is_file())
+
     def test_the_recipe_gives_the_same_bytes(self):
         first, second = self.folder / "first", self.folder / "second"
         self.edit(first)

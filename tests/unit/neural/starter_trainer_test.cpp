@@ -17,9 +17,46 @@ namespace {
 
 using namespace gse::neural;
 
+const char* const ToyColours[] = {"red", "green", "blue"};
+
+/// Pairs of squares at one place in two colours.
+class ToyTwins : public StarterTwins {
+public:
+    StarterPicture picture(std::uint64_t index, int size) const override {
+        const int cells = size / 4, colour = colour_of(index);
+        gse::Random random = gse::Random::stream(6, index / 2);
+        const int x0 = static_cast<int>(random.below(static_cast<std::uint64_t>(size / 2)));
+        const int y0 = static_cast<int>(random.below(static_cast<std::uint64_t>(size / 2)));
+        StarterPicture picture;
+        picture.rgb.assign(static_cast<std::size_t>(size * size * 3), 40);
+        picture.coverage.assign(static_cast<std::size_t>(3 * cells * cells), 0);
+        for (int y = y0; y < y0 + size / 2; ++y)
+            for (int x = x0; x < x0 + size / 2; ++x)
+                picture.rgb[static_cast<std::size_t>((y * size + x) * 3 + colour)] = 230;
+        return picture;
+    }
+    StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool) const override {
+        return {claim(index, seed, true).text, {}};
+    }
+    std::vector<std::string> vocabulary() const override { return {"a", "red", "green", "blue", "square"}; }
+    std::string identity() const override { return "toy twins"; }
+    int group_size() const override { return 2; }
+    std::uint64_t facts(std::uint64_t index) const override { return std::uint64_t{1} << colour_of(index); }
+    StarterClaim claim(std::uint64_t index, std::uint64_t, bool) const override {
+        return {std::string("a ") + ToyColours[colour_of(index)] + " square", facts(index)};
+    }
+
+private:
+    static int colour_of(std::uint64_t index) {
+        const auto first = gse::Random::stream(7, index / 2).below(3);
+        return static_cast<int>((first + index % 2) % 3);
+    }
+};
+
 /// Coloured squares on grey.
 class ToySource : public StarterSource {
 public:
+    const StarterTwins* twins() const override { return &twins_; }
     StarterPicture picture(std::uint64_t index, int size) const override {
         const Layout layout(index, size);
         StarterPicture picture;
@@ -34,8 +71,7 @@ public:
         return picture;
     }
     StarterCaption caption(std::uint64_t index, std::uint64_t, bool) const override {
-        static const char* const names[] = {"red", "green", "blue"};
-        const std::string colour = names[Layout(index, 32).colour];
+        const std::string colour = ToyColours[Layout(index, 32).colour];
         return {"a " + colour + " square, front view",
                 {{colour, 0, StarterPart::Object}, {"square", 0, StarterPart::Object}}};
     }
@@ -54,6 +90,7 @@ private:
             y = static_cast<int>(random.below(static_cast<std::uint64_t>(size / 8))) * 4;
         }
     };
+    ToyTwins twins_;
 };
 
 StarterTrainParameters toy_parameters() {
@@ -65,7 +102,10 @@ StarterTrainParameters toy_parameters() {
     parameters.unet_steps = 6;
     parameters.vae_batch = 2;
     parameters.unet_batch = 2;
-    parameters.clip_minutes = 0;
+    parameters.clip_steps = 6;
+    parameters.clip_pictures = 16;
+    parameters.clip_batch = 2;
+    parameters.clip_width = 32;
     parameters.vae_channels = 8;
     parameters.unet_channels = 80;
     parameters.text_width = 32;
@@ -94,14 +134,13 @@ DOCTEST_TEST_CASE("an interrupted training run resumes to the same weights") {
     const auto straight = scratch.path() / "straight";
     train_starter(toy_parameters(), source, scratch.path() / "work1", straight, {});
 
-    // Stopped twice, in either stage, and started again with the same command.
-    for (const int stop_at : {500, 500}) {
+    // Stopped in every stage, and started again with the same command.
+    for (const std::string stage : {"vae", "unet", "clip"}) {
         std::stop_source stop;
         gse::JobControl job;
         job.stop = stop.get_token();
-        const bool in_unet = std::filesystem::exists(scratch.path() / "work2/vae.ckpt");
-        job.progress = [&](std::string_view stage, int step, int) {
-            if (stage == (in_unet ? "training unet" : "training vae") && step >= stop_at) stop.request_stop();
+        job.progress = [&](std::string_view name, int step, int) {
+            if (name == "training " + stage && step >= 500) stop.request_stop();
         };
         DOCTEST_CHECK_THROWS_AS(
             train_starter(toy_parameters(), source, scratch.path() / "work2", scratch.path() / "resumed", job),
@@ -109,7 +148,8 @@ DOCTEST_TEST_CASE("an interrupted training run resumes to the same weights") {
     }
     train_starter(toy_parameters(), source, scratch.path() / "work2", scratch.path() / "resumed", {});
     for (const char* file : {"vae/diffusion_pytorch_model.safetensors", "unet/diffusion_pytorch_model.safetensors",
-                             "text_encoder/model.safetensors", "gseditpro.json", "tokenizer/vocab.json"})
+                             "text_encoder/model.safetensors", "clip/model.safetensors", "clip/config.json", "gseditpro.json",
+                             "tokenizer/vocab.json"})
         DOCTEST_CHECK_MESSAGE(gse::read_file(straight / file) == gse::read_file(scratch.path() / "resumed" / file), file);
 }
 
@@ -120,15 +160,16 @@ DOCTEST_TEST_CASE("a run goes on from a finished model and keeps the parts it ha
     train_starter(toy_parameters(), source, scratch.path() / "work1", first, {});
     auto parameters = toy_parameters();
     parameters.initial = first.string();
-    parameters.vae_minutes = parameters.unet_minutes = 0;
+    parameters.vae_minutes = parameters.unet_minutes = parameters.clip_minutes = 0;
     const auto unchanged = [&](const std::filesystem::path& folder, const char* file) {
         return gse::read_file(first / file) == gse::read_file(folder / file);
     };
 
-    parameters.vae_steps = parameters.unet_steps = 0;
+    parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 0;
     train_starter(parameters, source, scratch.path() / "work2", scratch.path() / "kept", {});
     for (const char* file : {"vae/diffusion_pytorch_model.safetensors", "vae/config.json", "unet/config.json",
-                             "unet/diffusion_pytorch_model.safetensors", "text_encoder/model.safetensors"})
+                             "unet/diffusion_pytorch_model.safetensors", "text_encoder/model.safetensors",
+                             "clip/model.safetensors", "clip/config.json"})
         DOCTEST_CHECK_MESSAGE(unchanged(scratch.path() / "kept", file), file);
 
     parameters.unet_steps = 2;
@@ -143,7 +184,7 @@ DOCTEST_TEST_CASE("an initial model of another structure is refused before any w
     const ToySource source;
     const gse::test::ScratchFolder scratch;
     auto parameters = toy_parameters();
-    parameters.vae_steps = parameters.unet_steps = 1;
+    parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 1;
     train_starter(parameters, source, scratch.path() / "work1", scratch.path() / "first", {});
     parameters.initial = (scratch.path() / "first").string();
     parameters.unet_channels = 160;
@@ -166,6 +207,8 @@ DOCTEST_TEST_CASE("training lowers every loss on the toy world") {
     parameters.vae_steps = 150;
     parameters.unet_steps = 200;
     parameters.vae_batch = parameters.unet_batch = 8;
+    parameters.clip_steps = 100;
+    parameters.clip_batch = 8;
     train_starter(parameters, source, scratch.path() / "work", scratch.path() / "model", {});
     const auto vae = column(scratch.path() / "work/vae.tsv", 4);
     DOCTEST_CHECK(vae.back() < vae.front());
@@ -173,6 +216,9 @@ DOCTEST_TEST_CASE("training lowers every loss on the toy world") {
         const auto values = column(scratch.path() / "work/unet.tsv", loss);
         DOCTEST_CHECK(values.back() < 0.8 * values.front());
     }
+    const auto clip = scratch.path() / "work/clip.tsv";
+    DOCTEST_CHECK(column(clip, 5).back() < column(clip, 5).front());   // contrast
+    DOCTEST_CHECK(column(clip, 7).back() > 0.5);                       // direction
 }
 
 DOCTEST_TEST_CASE("every word of a vocabulary becomes one token") {
