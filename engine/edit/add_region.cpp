@@ -137,33 +137,45 @@ Vote vote_at(const RegionSearch& search, const Vec3& world, double side) {
     return vote;
 }
 
-/// Largest set of chosen cells that touch by faces.
-std::vector<std::size_t> largest_component(const Grid& grid, const std::vector<std::uint8_t>& chosen) {
-    std::vector<std::uint8_t> done(chosen.size(), 0);
-    std::vector<std::size_t> best;
+/// The chosen cells that touch `seed` by faces, over any number of steps; marks them in `done`.
+std::vector<std::size_t> component(const Grid& grid, const std::vector<std::uint8_t>& chosen, std::size_t seed,
+                                   std::vector<std::uint8_t>& done) {
     const auto nx = static_cast<std::size_t>(grid.count[0]), ny = static_cast<std::size_t>(grid.count[1]);
+    std::vector<std::size_t> part{seed};
+    const auto visit = [&](std::size_t cell) {
+        if (chosen[cell] == 0 || done[cell] != 0) return;
+        done[cell] = 1;
+        part.push_back(cell);
+    };
+    done[seed] = 1;
+    for (std::size_t next = 0; next < part.size(); ++next) {
+        const std::size_t cell = part[next];
+        const std::array<std::size_t, 3> at{cell % nx, cell / nx % ny, cell / (nx * ny)};
+        const std::array<std::size_t, 3> step{1, nx, nx * ny};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (at[axis] > 0) visit(cell - step[axis]);
+            if (at[axis] + 1 < static_cast<std::size_t>(grid.count[axis])) visit(cell + step[axis]);
+        }
+    }
+    return part;
+}
+
+/// The largest connected set of chosen cells, and every other of at least `share` of its size: wings are two.
+std::vector<std::size_t> large_components(const Grid& grid, const std::vector<std::uint8_t>& chosen, double share) {
+    std::vector<std::uint8_t> done(chosen.size(), 0);
+    std::vector<std::vector<std::size_t>> parts;
+    std::size_t largest = 0;
     for (std::size_t seed = 0; seed < chosen.size(); ++seed) {
         if (chosen[seed] == 0 || done[seed] != 0) continue;
-        std::vector<std::size_t> part{seed};
-        done[seed] = 1;
-        for (std::size_t next = 0; next < part.size(); ++next) {
-            const std::size_t cell = part[next];
-            const std::array<std::size_t, 3> at{cell % nx, cell / nx % ny, cell / (nx * ny)};
-            const std::array<std::size_t, 3> step{1, nx, nx * ny};
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                const auto visit = [&](std::size_t other) {
-                    if (chosen[other] == 0 || done[other] != 0) return;
-                    done[other] = 1;
-                    part.push_back(other);
-                };
-                if (at[axis] > 0) visit(cell - step[axis]);
-                if (at[axis] + 1 < static_cast<std::size_t>(grid.count[axis])) visit(cell + step[axis]);
-            }
-        }
-        if (part.size() > best.size()) best = std::move(part);
+        parts.push_back(component(grid, chosen, seed, done));
+        largest = std::max(largest, parts.back().size());
     }
-    std::sort(best.begin(), best.end());
-    return best;
+    std::vector<std::size_t> cells;
+    for (const auto& part : parts)
+        if (static_cast<double>(part.size()) >= share * static_cast<double>(largest))
+            cells.insert(cells.end(), part.begin(), part.end());
+    std::sort(cells.begin(), cells.end());
+    return cells;
 }
 
 AddRegion fill(const Frame& frame, const Grid& grid, const std::function<bool(const Vec3&)>& inside) {
@@ -238,6 +250,16 @@ AddRegion around_region(const Frame& frame, const std::vector<Vec3>& points, int
     });
 }
 
+const std::map<std::string, std::string>& usual_places() {
+    static const std::map<std::string, std::string> places{
+        {"hat", "top"},          {"crown", "top"},     {"cap", "top"},         {"helmet", "top"},
+        {"sunglasses", "front"}, {"glasses", "front"}, {"moustache", "front"}, {"mask", "front"},
+        {"scarf", "neck"},       {"necklace", "neck"}, {"collar", "neck"},     {"tie", "neck"},
+        {"bow", "neck"},         {"flames", "around"}, {"fire", "around"},     {"smoke", "around"},
+        {"wings", "around"},     {"snow", "around"}};
+    return places;
+}
+
 }  // namespace
 
 AddRegion vote_region(const RegionSearch& search, const RegionParameters& parameters) {
@@ -266,7 +288,7 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
     const double level = std::max(parameters.least_agreement, parameters.near_best * best);
     std::vector<std::uint8_t> chosen(grid.size());
     for (std::size_t cell = 0; cell < grid.size(); ++cell) chosen[cell] = agreement[cell] >= level ? 1 : 0;
-    const auto cells = largest_component(grid, chosen);
+    const auto cells = large_components(grid, chosen, parameters.least_part);
     const double share = static_cast<double>(cells.size()) / static_cast<double>(grid.size());
     if (static_cast<int>(cells.size()) < parameters.least_cells || share > parameters.most_volume) return {};
     AddRegion region;
@@ -292,14 +314,11 @@ AddRegion anchor_region(const RegionSearch& search, const std::string& place, in
 }
 
 std::string usual_place(const std::string& word) {
-    static const std::map<std::string, std::string> places{
-        {"sunglasses", "front"}, {"glasses", "front"}, {"moustache", "front"}, {"mask", "front"},
-        {"scarf", "neck"},       {"necklace", "neck"}, {"collar", "neck"},     {"tie", "neck"},
-        {"bow", "neck"},         {"flames", "around"}, {"fire", "around"},     {"smoke", "around"},
-        {"wings", "around"},     {"snow", "around"}};
-    const auto found = places.find(word);
-    return found == places.end() ? "top" : found->second;
+    const auto found = usual_places().find(word);
+    return found == usual_places().end() ? "top" : found->second;
 }
+
+bool has_usual_place(const std::string& word) { return usual_places().contains(word); }
 
 GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std::uint64_t seed,
                          double opacity) {

@@ -38,6 +38,7 @@ struct RegionParameters {
     double least_seen = 0.2;       // share of the views in which the cube is not hidden behind the surface
     double most_volume = 0.35;     // of the searched box: a larger region means the maps agree on nothing
     int least_cells = 6;
+    double least_part = 0.3;       // of the largest connected part: smaller ones are dropped
 };
 
 /// Votes a grid of cubes around the source with the masks; empty when the masks do not agree on a place.
@@ -49,6 +50,8 @@ AddRegion anchor_region(const RegionSearch& search, const std::string& place, in
 
 /// The place a word usually takes: "top" for what is not known.
 std::string usual_place(const std::string& word);
+/// Whether the place is known, not only supposed.
+bool has_usual_place(const std::string& word);
 
 /// `count` round splats of neutral colour, spread over the region; sized by the room each has. `opacity` in
 /// (0,1).

@@ -33,18 +33,18 @@ bool has_word(const std::string& sentence, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// Position of the word in the sentence, -1 = absent.
-int word_position(const std::vector<std::string>& words, const std::string& word) {
-    const auto found = std::find(words.begin(), words.end(), word);
-    return found == words.end() ? -1 : static_cast<int>(found - words.begin());
-}
-
 bool any_of_between(const std::vector<std::string>& words, int begin, int end,
                     const std::vector<std::string>& wanted) {
     for (int i = begin + 1; i < end; ++i)
         if (std::find(wanted.begin(), wanted.end(), words[static_cast<std::size_t>(i)]) != wanted.end())
             return true;
     return false;
+}
+
+/// Position of the word in the sentence, -1 = absent.
+int word_position(const std::vector<std::string>& words, const std::string& word) {
+    const auto found = std::find(words.begin(), words.end(), word);
+    return found == words.end() ? -1 : static_cast<int>(found - words.begin());
 }
 
 int grid_height(const Image& map) { return std::max(1, ClusterGrid * map.height / map.width); }
@@ -401,8 +401,10 @@ std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
                                                   "carrying", "plus", "to",    "behind"};
     static const std::vector<std::string> turning{"made", "of", "into", "as"};
     const int first = std::min(source, target), last = std::max(source, target);
+    bool worn = false;
+    for (int i = first + 1; i < last; ++i) worn = worn || says_worn(words, static_cast<std::size_t>(i));
     const bool joined =
-        any_of_between(words, first, last, joining) && !any_of_between(words, first, last, turning);
+        (worn || any_of_between(words, first, last, joining)) && !any_of_between(words, first, last, turning);
     if (joined)
         return {EditMode::Add,
                 "the sentence puts \"" + request.target + "\" beside \"" + request.source + "\""};

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cctype>
 
+#include "engine/base/error.h"
+#include "engine/edit/add_region.h"
+
 namespace gse::edit {
 namespace {
 
@@ -57,6 +60,12 @@ std::string head_of_phrase(const Words& words, std::size_t first) {
 
 }  // namespace
 
+bool says_worn(const std::vector<std::string>& words, std::size_t i) {
+    static const Words one{"a", "an", "its", "his", "her", "their"};
+    if (words[i] != "in" || i + 1 >= words.size()) return false;
+    return contains(one, words[i + 1]) || has_usual_place(words[i + 1]);
+}
+
 std::string guessed_target(const std::string& prompt, const std::string& source) {
     const auto words = words_of(prompt);
     const auto found = std::find(words.begin(), words.end(), source);
@@ -66,7 +75,7 @@ std::string guessed_target(const std::string& prompt, const std::string& source)
     }
     const auto at = static_cast<std::size_t>(found - words.begin());
     for (std::size_t i = at + 1; i < words.size(); ++i) {
-        if (!contains(Joiners, words[i])) continue;
+        if (!contains(Joiners, words[i]) && !says_worn(words, i)) continue;
         const auto head = head_of_phrase(words, i + 1);
         if (!head.empty()) return head;
     }

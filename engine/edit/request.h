@@ -200,8 +200,11 @@ enum class EditMode { Modify, Add };
 /// Lower-case words of a sentence, without punctuation.
 std::vector<std::string> words_of(const std::string& sentence);
 
-/// The word of the prompt that is new, guessed from the sentence: what the source is "wearing", "with" or "made of", else the
-/// word before it ("golden" statue), else, where the prompt does not name the source, the first thing it names.
+/// Whether the word at `i` is an "in" that puts something on: "in flames", "in a hat", but not "in gold", "in the snow".
+bool says_worn(const std::vector<std::string>& words, std::size_t i);
+
+/// The word of the prompt that is new, guessed from the sentence: what the source is "wearing", "with", "in" or "made of",
+/// else the word before it ("golden" statue), else, where the prompt does not name the source, the first thing it names.
 std::string guessed_target(const std::string& prompt, const std::string& source);
 
 /// The prompt as it was before the edit: without the new word, or without the phrase that brings it ("wearing a red hat");

@@ -67,6 +67,24 @@ DOCTEST_TEST_CASE("masks of one place vote for that place") {
     }
 }
 
+DOCTEST_TEST_CASE("a place of two parts keeps both, specks do not count") {
+    const Vec3 left{-0.55, -0.55, 0.05}, right{0.1, -0.55, 0.05}, speck{-0.2, -0.75, 0.05};
+    Search setup(left, 0.2);
+    for (const auto& [centre, radius] : {std::pair{right, 0.17}, std::pair{speck, 0.06}}) {
+        const Search other(centre, radius);
+        for (std::size_t v = 0; v < setup.masks.size(); ++v)
+            for (std::size_t i = 0; i < setup.masks[v].data.size(); ++i) setup.masks[v].data[i] |= other.masks[v].data[i];
+    }
+    const auto region = edit::vote_region(setup.search());
+    const auto near = [&region](const Vec3& centre, double radius) {
+        return std::count_if(region.centres.begin(), region.centres.end(),
+                             [&](const Vec3& cell) { return length(cell - centre) < radius; });
+    };
+    DOCTEST_CHECK(near(left, 0.2) > 20);
+    DOCTEST_CHECK(near(right, 0.17) > 20);
+    DOCTEST_CHECK(near(speck, 0.06) == 0);
+}
+
 DOCTEST_TEST_CASE("masks that disagree, cover everything or are hidden inside give no region") {
     Search apart({-0.55, -0.55, 0}, 0.2);
     for (std::size_t v = 0; v < apart.masks.size(); ++v) {  // one quarter of the picture each, going round

@@ -97,6 +97,9 @@ DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") 
     DOCTEST_CHECK(mode_of("bear", "a blue dog on the grass", "dog") == EditMode::Modify);
     DOCTEST_CHECK(mode_of("bear", "a red bear wearing a blue hat", "hat") == EditMode::Add);
     DOCTEST_CHECK(mode_of("bear", "a bear with flames", "flames") == EditMode::Add);
+    DOCTEST_CHECK(mode_of("statue", "a green statue in flames on the grass", "flames") == EditMode::Add);
+    DOCTEST_CHECK(mode_of("cat", "a cat in a red hat", "hat") == EditMode::Add);
+    DOCTEST_CHECK(mode_of("statue", "a statue in gold", "gold") == EditMode::Modify);
     DOCTEST_CHECK(mode_of("bear", "add a hat to the bear", "hat") == EditMode::Add);
     DOCTEST_CHECK(mode_of("bear", "a hat on the bear", "hat") == EditMode::Add);
     auto request = bear("bear", "a red bear wearing a blue hat", "hat");
@@ -133,6 +136,9 @@ DOCTEST_TEST_CASE("the target is guessed from the sentence") {
     DOCTEST_CHECK(guessed_target("a bear wearing a red hat", "bear") == "hat");
     DOCTEST_CHECK(guessed_target("a red bear wearing a blue hat on the grass", "bear") == "hat");
     DOCTEST_CHECK(guessed_target("a bear with white wings", "bear") == "wings");
+    DOCTEST_CHECK(guessed_target("a green statue in flames on the grass", "statue") == "flames");
+    DOCTEST_CHECK(guessed_target("a red cat in a hat", "cat") == "hat");
+    DOCTEST_CHECK(guessed_target("a red cat in the snow", "cat") == "red");
     DOCTEST_CHECK(guessed_target("a blue bear on the grass", "bear") == "blue");
     DOCTEST_CHECK(guessed_target("a golden statue", "statue") == "golden");
     DOCTEST_CHECK(guessed_target("a chair made of stone", "chair") == "stone");
