@@ -156,7 +156,10 @@ private:
 
     /// The word with a prompt that surely contains it and its rivals.
     Search search_for(const std::string& word, bool absent) const {
-        Search search{word, has_word(request().prompt, word) ? request().prompt : "a " + word, {}, absent};
+        std::string sentence = request().prompt;
+        if (!has_word(sentence, word)) sentence = sentence_before(request());   // "on the snow" was "on the grass"
+        if (!has_word(sentence, word)) sentence = "a " + word;
+        Search search{word, std::move(sentence), {}, absent};
         if (absent) return search;
         for (const auto& rival : words_of(request().rivals)) {
             if (rival == word) continue;
