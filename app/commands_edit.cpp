@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "app/cli.h"
+#include "app/dreambooth_options.h"
 #include "app/edit_job.h"
 #include "app/edit_output.h"
 #include "app/gate.h"
@@ -43,22 +44,7 @@ void add_options(CLI::App& command, const std::shared_ptr<EditOptions>& options)
     });
     bind_fields(command, options->recipe.request, "Edit");
     bind_fields(command, options->recipe.guidance, "Guidance (score distillation)");
-    const std::string group = "DreamBooth";
-    command.add_flag("--dreambooth,!--no-dreambooth", options->recipe.use_dreambooth,
-                     "Let the model learn the scene from renders of it first")
-        ->group(group);
-    neural::DreamBoothParameters::visit_fields(
-        options->recipe.dreambooth, [&](const char* name, auto& value, const char* help, auto... range) {
-            // Prefixed: steps, seed and others are names of other settings too.
-            const std::string option = "--dreambooth-" + option_name(name).substr(2);
-            if constexpr (std::is_same_v<std::remove_reference_t<decltype(value)>, bool>)
-                command.add_flag(option + ",!--no-" + option.substr(2), value, help)->group(group);
-            else {
-                auto* added = command.add_option(option, value, help)->capture_default_str()->group(group);
-                if constexpr (sizeof...(range) == 1)
-                    (added->check(CLI::Range(static_cast<double>(range.low), static_cast<double>(range.high))), ...);
-            }
-        });
+    add_dreambooth_options(command, options->recipe);
 }
 
 nlohmann::ordered_json tuning_to_json(const neural::TuneReport& tuning) {

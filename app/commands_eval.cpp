@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "app/cli.h"
+#include "app/dreambooth_options.h"
 #include "app/edit_output.h"
 #include "app/eval_run.h"
 #include "app/eval_summary.h"
@@ -88,6 +89,7 @@ void add_eval_command(CLI::App& app, CommandContext& context) {
     request.image_size = 64;
     request.iterations = 150;
     add_settings(*command, options->run.settings);
+    add_dreambooth_options(*command, options->run.settings);   // of real scenes: the suite's are of the model's own world
     command->callback([options, &context] { run_eval_command(*options, context); });
 }
 

@@ -16,7 +16,7 @@ namespace gse::app {
 struct EvalParameters {
     std::uint64_t seed = 1;
     int edits = 24;
-    std::string kinds = "recolour material add";
+    std::string kinds = "recolour material add ground";
     std::string mode = "auto";
     int held_out_views = 12;
     bool ablations = false;

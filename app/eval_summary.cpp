@@ -108,7 +108,7 @@ Json success_share(const Edits& edits, const Json& report) {
 }
 
 void add_localization(const Json& edits, Json& summary) {
-    const Edits existing = of_kinds(edits, {"recolour", "material"}), added = of_kinds(edits, {"add"});
+    const Edits existing = of_kinds(edits, {"recolour", "material", "ground"}), added = of_kinds(edits, {"add"});
     summary["existing_weighted_iou"] = figure(mean(existing, "weighted_iou"), {">=", 0.85});
     for (const char* key : {"iou", "mask_iou", "mask_boundary_f", "label_iou", "label_boundary_f"})
         summary[std::string("existing_") + key] = figure(mean(existing, key), {});
