@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/check.h"
 #include "engine/base/random.h"
 #include "engine/edit/working_set.h"
 
@@ -98,6 +99,24 @@ void WorkingSet::split(std::size_t index, int generation, Random& random) {
         std::copy_n(birth_sh_.begin() + static_cast<std::ptrdiff_t>(index * stride), stride,
                     birth_sh_.end() - static_cast<std::ptrdiff_t>(stride));
     }
+}
+
+std::size_t WorkingSet::keep_added(std::span<const float> weight, std::span<const double> evidence, double tau,
+                                   double least_left) {
+    GSE_CHECK_EQ(weight.size(), rows_.size());
+    std::vector<std::uint8_t> keep(labelled(), 1);
+    std::size_t added = 0, dropped = 0;
+    for (std::size_t i = 0; i < labelled(); ++i) {
+        if (ancestor_[i] >= 0) continue;
+        ++added;
+        if (evidence[first_row_ + i] <= 0 || weight[first_row_ + i] >= tau) continue;
+        keep[i] = 0;
+        ++dropped;
+    }
+    if (dropped == 0 || static_cast<double>(added - dropped) < least_left * static_cast<double>(added)) return 0;
+    keep_rows(keep);
+    remember_anchor();
+    return dropped;
 }
 
 DensifyCount WorkingSet::densify(const EditRequest& request, Random& random, bool may_grow) {

@@ -26,13 +26,14 @@ public:
     void refresh(std::size_t view, int iteration, const Image& shown, const Image& label_seen);
     /// Replaces a view's static mask: the label was corrected.
     void set_static(std::size_t view, Mask mask);
+    /// Where the word is in a current render: attention, cleaned and refined by the segmenter; may be empty.
+    Mask found_in(const Image& shown, std::size_t view, int iteration) const;
+    bool can_look() const { return attention_ != nullptr && !word_.empty(); }
     const Mask& mask(std::size_t view) const { return masks_[view]; }
     std::size_t refreshed() const { return refreshed_; }
     std::size_t kept() const { return kept_; }   // refreshes that gave nothing sensible
 
 private:
-    Mask found_in(const Image& shown, std::size_t view, int iteration) const;
-
     const EditPlan& plan_;
     const EditRequest& request_;
     std::string word_;

@@ -49,6 +49,8 @@ struct EditRequest {
     bool dynamic_mask = true;
     double dynamic_from = 0.5;
     double dynamic_every = 0.125;
+    bool look_again = true;
+    double look_again_tau = 0.5;
     bool early_stop = false;
     double early_stop_change = 0.5 / 255;
     // Anchors with generations (method 2.3)
@@ -144,6 +146,9 @@ private:
         f("dynamic_mask", self.dynamic_mask, "From some iteration on, let the masks follow what the edit has become.");
         f("dynamic_from", self.dynamic_from, "Share of the iterations after which masks are refreshed.", Range{0, 1});
         f("dynamic_every", self.dynamic_every, "Share of the iterations between two refreshes of a view's mask.", Range{0, 1});
+        f("look_again", self.look_again,
+          "When adding: from time to time look where the new thing is seen, and drop new splats outside it.");
+        f("look_again_tau", self.look_again_tau, "New splats seen inside it for less than this share are dropped.", Range{0, 1});
         f("early_stop", self.early_stop, "Stop when no view changes any more.");
         f("early_stop_change", self.early_stop_change, "Mean change of a view between two visits that counts as none.",
           Range{0, 1});

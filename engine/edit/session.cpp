@@ -2,6 +2,7 @@
 #include "engine/edit/session.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -15,6 +16,7 @@
 #include "engine/edit/dynamic_mask.h"
 #include "engine/edit/preservation.h"
 #include "engine/edit/working_set.h"
+#include "engine/localize/back_projection.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -23,7 +25,11 @@ namespace {
 constexpr float SeenLabel = 0.5f;              // share of a pixel that the label must cover to be in a mask
 constexpr double ReferenceSide = 512;          // pictures for which request lengths in pixels are stated
 constexpr std::size_t CalibrationSteps = 20;        // method 2.5
-constexpr float TrainingColourSlope = 0.01f;   // leaky clamp of negative colours while training (F18)
+constexpr std::array LooksAgain{0.5, 0.75};    // shares of the iterations after which new splats are looked for
+constexpr double LeastLeft = 0.15;             // of the new splats; fewer: the model does not see the new thing yet
+/// While training, colours below black get the full gradient of black (F18 names 0.01): what a large step has driven to black
+/// must be able to come back. WorkingSet keeps them from going further.
+constexpr float TrainingColourSlope = 1.0f;
 
 double norm(const Image& image) {
     double sum = 0;
@@ -103,6 +109,7 @@ public:
                 break;
             }
             result.iterations = iteration + 1;
+            if (looks_again(iteration)) look_again(iteration, result);
             result.came_to_rest = request_.early_stop && rest_.visit(result.history.back().view, shown_,
                                                                      masks_.mask(result.history.back().view));
             if (tools_.iteration) tools_.iteration(result.history.back());
@@ -221,6 +228,32 @@ private:
             masks_.set_static(v, std::move(mask));
         }
         ++result.label_changes;
+    }
+
+    bool looks_again(int iteration) const {
+        if (!request_.look_again || plan_.seeds.size() == 0 || !masks_.can_look()) return false;
+        return std::any_of(LooksAgain.begin(), LooksAgain.end(), [&](double share) {
+            return iteration + 1 == static_cast<int>(share * request_.iterations);
+        });
+    }
+
+    /// Drops new splats outside of where the new thing is seen by now: the place was found before there was anything to see.
+    void look_again(int iteration, EditResult& result) {
+        const StageTimer timer(seconds_.dynamic_mask);
+        std::vector<localize::MaskedView> votes;
+        for (std::size_t v = 0; v < plan_.views.size(); ++v) {
+            const Camera& camera = plan_.views[v].camera;
+            tools_.rasterizer.forward(spans(set_.rows()), camera, settings_, output_);
+            show();
+            const Mask found = masks_.found_in(shown_, v, iteration);
+            Image share(camera.width, camera.height, 1);
+            std::copy(found.data.begin(), found.data.end(), share.data.begin());
+            votes.push_back({camera, std::move(share), found.count() == 0});
+        }
+        const auto failed = std::count_if(votes.begin(), votes.end(), [](const auto& vote) { return vote.failed; });
+        if (2 * static_cast<std::size_t>(failed) > votes.size()) return;   // the model does not see it yet
+        const auto seen = localize::back_project(spans(set_.rows()), votes, settings_, tools_.rasterizer);
+        result.pruned += set_.keep_added(seen.weight, seen.evidence, request_.look_again_tau, LeastLeft);
     }
 
     void show() {

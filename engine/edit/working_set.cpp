@@ -264,7 +264,12 @@ void WorkingSet::guard(const EditRequest& request) {
     const auto aspect = static_cast<float>(std::log(request.max_aspect));
     const auto scales = tail(rows_.log_scale, 3);
     const auto logits = tail(rows_.opacity_logit, 1);
+    const std::size_t stride = rows_.sh_stride();
+    const auto colours = tail(rows_.sh, stride);
+    const auto black = static_cast<float>(sh_from_colour(0.0));
     for (std::size_t i = 0; i < labelled(); ++i) {
+        for (std::size_t c = 0; c < 3; ++c)   // darker than black does not show, and would have to come all the way back
+            colours[i * stride + c] = std::max(colours[i * stride + c], std::min(black, birth_sh_[i * stride + c]));
         logits[i] = std::clamp(logits[i], -LargestLogit, LargestLogit);
         float top = low;
         for (std::size_t axis = 0; axis < 3; ++axis) {

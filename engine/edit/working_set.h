@@ -52,6 +52,10 @@ public:
     /// Clone, split and prune (method 2.2); resets statistics and anchors.
     DensifyCount densify(const EditRequest& request, Random& random, bool may_grow);
 
+    /// Drops rows that grew from seeds and whose `weight` [rows] is below `tau`, where `evidence` [rows] says that they were
+    /// seen at all. Drops nothing when less than `least_left` of them would be left. Returns how many were dropped.
+    std::size_t keep_added(std::span<const float> weight, std::span<const double> evidence, double tau, double least_left);
+
     /// Another label for the same base, in the middle of a run: rows that leave it become the base's again, rows that join it
     /// start as the base has them, rows that stay keep what they have become. Rows born in the run stay when the row they
     /// descend from does. Momentum and anchors begin anew.

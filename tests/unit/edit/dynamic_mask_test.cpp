@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include "engine/edit/add_region.h"
 #include "engine/edit/dynamic_mask.h"
 #include "tests/unit/edit/edit_scenes.h"
 
@@ -152,4 +153,49 @@ DOCTEST_TEST_CASE("the loop refreshes masks and stops when it is at rest") {
     const auto early = edit::run_edit(scene.set, plan, request, tools);
     DOCTEST_CHECK(early.came_to_rest);
     DOCTEST_CHECK(early.iterations < 40);
+}
+
+DOCTEST_TEST_CASE("new splats outside of where the new thing is seen go, unless nearly all would") {
+    const auto scene = test::ball_scene();
+    auto rasterizer = raster::make_plain_rasterizer();
+    auto plan = test::ball_plan(scene, *rasterizer, 6, 24);
+    plan.label.assign(plan.label.size(), 0);
+    edit::AddRegion high, low;   // the scene's up is -y
+    high.side = low.side = 0.2;
+    high.centres = {{0, -0.75, 0}};
+    low.centres = {{0, 0.75, 0}};
+    plan.seeds = edit::seed_splats(high, 30, 0, 1, 0.5);
+    const auto below = edit::seed_splats(low, 20, 0, 2, 0.5);
+    for (std::size_t row = 0; row < below.size(); ++row) plan.seeds.append_row(below, row);
+    edit::EditRequest request;
+    request.prompt = "a ball wearing a hat";
+    request.iterations = 8;
+    request.densify_every = 0;
+    request.dynamic_mask = false;
+    FixedAttention attention;
+    attention.where = Mask(24, 24);
+    const auto still = test::FunctionGuidance([](const edit::GuidanceInput& input) {
+        return edit::GuidanceOutput{Image(input.rendered.width, input.rendered.height, 3), {}};
+    });
+    auto guidance = still;
+    edit::EditTools tools{*rasterizer, guidance, {}, {}};
+    tools.attention = &attention;
+    tools.word = "hat";
+    const auto added = [&] {
+        const auto result = edit::run_edit(scene.set, plan, request, tools);
+        std::size_t above = 0, all = result.set.size() - scene.set.size();
+        for (std::size_t row = scene.set.size(); row < result.set.size(); ++row)
+            above += result.set.position()[row * 3 + 1] < 0 ? 1 : 0;
+        return std::pair{above, all - above};
+    };
+    DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 20});   // nothing seen: nothing dropped
+    for (int y = 0; y < 12; ++y)
+        for (int x = 0; x < 24; ++x) attention.where.at(x, y) = 1;
+    DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 0});
+    request.look_again = false;
+    DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 20});
+    request.look_again = true;
+    attention.where = Mask(24, 24);
+    for (int x = 0; x < 24; ++x) attention.where.at(x, 0) = 1;   // far from all of them
+    DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 20});
 }

@@ -295,3 +295,36 @@ DOCTEST_TEST_CASE("a label corrected in the middle of a run is taken over") {
     }
     DOCTEST_CHECK(changed > 50);
 }
+
+DOCTEST_TEST_CASE("what was driven to black comes back") {
+    const auto scene = test::ball_scene();
+    auto rasterizer = raster::make_plain_rasterizer();
+    const auto plan = test::ball_plan(scene, *rasterizer, 6, 24);
+    edit::EditRequest request;
+    request.prompt = "a grey ball";
+    request.iterations = 160;
+    request.densify_every = 0;
+    test::FunctionGuidance guidance([&](const edit::GuidanceInput& input) {
+        edit::GuidanceOutput output;
+        output.gradient = Image(input.rendered.width, input.rendered.height, 3);
+        const float goal = input.iteration < 60 ? -1.0f : 0.4f;   // black and darker, then grey
+        for (std::size_t i = 0; i < output.gradient.data.size(); ++i)
+            output.gradient.data[i] = input.rendered.data[i] - goal;
+        return output;
+    });
+    const auto result = edit::run_edit(scene.set, plan, request, {*rasterizer, guidance, {}, {}});
+    double sum = 0, count = 0;
+    for (const auto& view : plan.views) {
+        raster::ForwardOutput output;
+        rasterizer->forward(result.set.spans(), view.camera, {}, output);
+        const Mask mask = test::true_mask(scene.set, scene.first, view.camera, *rasterizer);
+        for (std::size_t i = 0; i < mask.data.size(); ++i)
+            for (std::size_t c = 0; c < 3; ++c)
+                if (mask.data[i] != 0) {
+                    sum += std::abs(output.colour.data[i * 3 + c] - 0.4);
+                    ++count;
+                }
+    }
+    DOCTEST_CHECK(count > 0);
+    DOCTEST_CHECK(sum / count < 0.12);   // left behind in the dark it would be 0.4
+}
