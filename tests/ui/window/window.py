@@ -73,6 +73,16 @@ class Window:
         """Until condition(state) holds."""
         self._until(lambda: condition(self.state()), seconds, message)
 
+    def steady(self, name, seconds=1):
+        """The value once it has not changed for a while: what was typed or drawn has arrived."""
+        value, since = self.state()[name], time.monotonic()
+        while time.monotonic() - since < seconds * PATIENCE:
+            time.sleep(0.1)
+            now = self.state()[name]
+            if now != value:
+                value, since = now, time.monotonic()
+        return value
+
     def wait_widget(self, name, seconds=20, enabled=True):
         self._until(lambda: self.widgets().get(name, {}).get("visible") and
                     (not enabled or self.widgets()[name]["enabled"]), seconds, f"{name} is not there")
