@@ -24,7 +24,7 @@ struct EditOptions {
     bool demo = false;
     bool headless = false;
     bool json = false;
-    bool gate = false;
+    bool gate = true;
     CLI::App* command = nullptr;
 };
 
@@ -170,7 +170,9 @@ void add_edit_commands(CLI::App& app, CommandContext& context) {
     auto edit = std::make_shared<EditOptions>();
     auto* edit_command = app.add_subcommand("edit", "Change a scene by one sentence");
     add_options(*edit_command, edit);
-    edit_command->add_flag("--gate", edit->gate, "First show what the model makes of four views, in evidence/gate_*.png");
+    edit_command->add_flag("--gate,!--no-gate", edit->gate,
+                           "First show what the model makes of four views, in evidence/gate_*.png, and warn when they do not "
+                           "show the edit");
     edit_command->callback([edit, &context] { run_edit_command(*edit, context); });
 }
 

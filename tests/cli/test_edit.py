@@ -29,7 +29,8 @@ def splat_rows(path):
 class Edits(ProgramTest):
     def edit(self, out, *arguments):
         process = run("-q", "edit", ASSETS / "scenes/bear/scene.ply", "--source", "bear", "--prompt",
-                      "a blue bear on the grass", "--target", "blue", "--front", 0, "--out", out, *QUICK, *arguments)
+                      "a blue bear on the grass", "--target", "blue", "--front", 0, "--out", out, *QUICK,
+                      *([] if "--gate" in arguments else ["--no-gate"]), *arguments)
         self.assertEqual(process.returncode, 0, process.stderr)
         return process
 
