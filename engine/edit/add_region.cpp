@@ -250,6 +250,43 @@ AddRegion around_region(const Frame& frame, const std::vector<Vec3>& points, int
     });
 }
 
+/// The connected cells on which at least `level` of the views agree; empty when they are too few, or too many to be a place.
+AddRegion region_at(const Grid& grid, const Frame& frame, const std::vector<double>& agreement, double level,
+                    const RegionParameters& parameters) {
+    std::vector<std::uint8_t> chosen(grid.size());
+    for (std::size_t cell = 0; cell < grid.size(); ++cell) chosen[cell] = agreement[cell] >= level ? 1 : 0;
+    const auto cells = large_components(grid, chosen, parameters.least_part);
+    const double share = static_cast<double>(cells.size()) / static_cast<double>(grid.size());
+    if (static_cast<int>(cells.size()) < parameters.least_cells || share > parameters.most_volume) return {};
+    AddRegion region;
+    region.side = grid.side;
+    region.origin = "attention";
+    for (const std::size_t cell : cells) {
+        region.centres.push_back(frame.to_world(grid.centre(cell)));
+        region.agreement += agreement[cell] / static_cast<double>(cells.size());
+    }
+    return region;
+}
+
+/// Mean intersection over union of what the region covers with what the masks say, over the views that vote.
+double silhouette_match(const RegionSearch& search, const AddRegion& region) {
+    double sum = 0;
+    std::size_t views = 0;
+    for (std::size_t v = 0; v < search.views.size(); ++v) {
+        const Mask& mask = search.masks[v];
+        if (mask.data.empty()) continue;
+        const Mask seen = region_mask(region, search.views[v].camera);
+        std::size_t both = 0, either = 0;
+        for (std::size_t i = 0; i < mask.data.size(); ++i) {
+            both += mask.data[i] != 0 && seen.data[i] != 0 ? 1 : 0;
+            either += mask.data[i] != 0 || seen.data[i] != 0 ? 1 : 0;
+        }
+        sum += either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 0;
+        ++views;
+    }
+    return views > 0 ? sum / static_cast<double>(views) : 0;
+}
+
 const std::map<std::string, std::string>& usual_places() {
     static const std::map<std::string, std::string> places{
         {"hat", "top"},          {"crown", "top"},     {"cap", "top"},         {"helmet", "top"},
@@ -285,18 +322,14 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
         best = std::max(best, agreement[cell]);
     }
     if (best < parameters.least_agreement) return {};
-    const double level = std::max(parameters.least_agreement, parameters.near_best * best);
-    std::vector<std::uint8_t> chosen(grid.size());
-    for (std::size_t cell = 0; cell < grid.size(); ++cell) chosen[cell] = agreement[cell] >= level ? 1 : 0;
-    const auto cells = large_components(grid, chosen, parameters.least_part);
-    const double share = static_cast<double>(cells.size()) / static_cast<double>(grid.size());
-    if (static_cast<int>(cells.size()) < parameters.least_cells || share > parameters.most_volume) return {};
     AddRegion region;
-    region.side = grid.side;
-    region.origin = "attention";
-    for (const std::size_t cell : cells) {
-        region.centres.push_back(frame.to_world(grid.centre(cell)));
-        region.agreement += agreement[cell] / static_cast<double>(cells.size());
+    double best_match = 0;
+    for (double level = best; level >= parameters.lowest_agreement; level -= parameters.level_step) {
+        AddRegion candidate = region_at(grid, frame, agreement, level, parameters);
+        const double match = candidate.empty() ? 0 : silhouette_match(search, candidate);
+        if (match <= best_match) continue;
+        best_match = match;
+        region = std::move(candidate);
     }
     return region;
 }

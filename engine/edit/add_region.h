@@ -33,8 +33,9 @@ struct RegionSearch {
 
 struct RegionParameters {
     int cells = 28;                // along the longest side of the searched box
-    double least_agreement = 0.5;  // share of the views that must cover a cube
-    double near_best = 0.8;        // and of the best cube's share
+    double least_agreement = 0.5;  // share of the views that must cover the best cube
+    double lowest_agreement = 0.4;  // of all regions above which the one is taken that matches the masks best
+    double level_step = 0.05;
     double least_seen = 0.2;       // share of the views in which the cube is not hidden behind the surface
     double most_volume = 0.35;     // of the searched box: a larger region means the maps agree on nothing
     int least_cells = 6;

@@ -85,6 +85,20 @@ DOCTEST_TEST_CASE("a place of two parts keeps both, specks do not count") {
     DOCTEST_CHECK(near(speck, 0.06) == 0);
 }
 
+DOCTEST_TEST_CASE("of all levels of agreement the one is taken whose silhouettes match the masks best") {
+    // A third of the views sees only the middle of the thing: what nearly all views agree on would be that middle.
+    const Vec3 centre{-0.55, -0.55, 0.05};
+    Search setup(centre, 0.2);
+    const Search middle(centre, 0.08);
+    for (std::size_t v = 0; v < setup.masks.size(); v += 3) setup.masks[v] = middle.masks[v];
+    const auto region = edit::vote_region(setup.search());
+    const auto whole = edit::vote_region(Search(centre, 0.2).search());   // the grid is that of the source, the same in both
+    DOCTEST_REQUIRE_FALSE(whole.empty());
+    const double share = static_cast<double>(region.centres.size()) / static_cast<double>(whole.centres.size());
+    DOCTEST_CHECK(share > 0.6);
+    DOCTEST_CHECK(share < 1.4);
+}
+
 DOCTEST_TEST_CASE("masks that disagree, cover everything or are hidden inside give no region") {
     Search apart({-0.55, -0.55, 0}, 0.2);
     for (std::size_t v = 0; v < apart.masks.size(); ++v) {  // one quarter of the picture each, going round
