@@ -147,15 +147,21 @@ Image training_curves(const std::filesystem::path& path) {
 }
 
 void write_training_record(const std::filesystem::path& work, const std::filesystem::path& model, const JobControl& job) {
-    std::vector<Image> curves;
     for (const char* stage : {"vae", "unet", "clip"}) {
-        const auto from = work / fmt::format("{}.tsv", stage), to = model / "log" / fmt::format("{}.tsv", stage);
-        if (std::filesystem::exists(from)) write_file(to, read_file(from));
-        if (!std::filesystem::exists(to)) continue;
+        const auto from = work / fmt::format("{}.tsv", stage);
+        if (std::filesystem::exists(from)) write_file(model / "log" / fmt::format("{}.tsv", stage), read_file(from));
+    }
+    std::vector<std::filesystem::path> logs;   // of earlier runs, too
+    if (std::filesystem::is_directory(model / "log"))
+        for (const auto& entry : std::filesystem::directory_iterator(model / "log"))
+            if (entry.path().extension() == ".tsv") logs.push_back(entry.path());
+    std::sort(logs.begin(), logs.end());
+    std::vector<Image> curves;
+    for (const auto& path : logs) {
         try {
-            curves.push_back(training_curves(to));
+            curves.push_back(training_curves(path));
         } catch (const Error& error) {
-            log::warning("no curves of {}: {}", to.string(), error.message());
+            log::warning("no curves of {}: {}", path.string(), error.message());
         }
     }
     if (!curves.empty()) write_png(model / "log/curves.png", stacked(curves));

@@ -38,7 +38,7 @@ struct EditRequest {
     double evidence_px = 0.5;
     bool localize = true;
     // Loop
-    int iterations = 400;
+    int iterations = 200;
     double guidance_weight = 1;
     bool gate_guidance = true;
     double dilate_px = 8;

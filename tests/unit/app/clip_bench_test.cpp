@@ -51,10 +51,10 @@ DOCTEST_TEST_CASE("an encoder that sees nothing gets no word right and no direct
     parameters.views = 1;
     parameters.image_size = 32;
     const auto report = bench_clip(blind, parameters, {});
-    for (const auto& [kind, tally] : report["retrieval"].items())
-        DOCTEST_CHECK_MESSAGE(tally["right"] == 0.0, kind);
-    for (const auto& [kind, directions] : report["direction"].items())
-        DOCTEST_CHECK_MESSAGE(directions["mean"] == 0.0, kind);
+    for (const auto& entry : report["retrieval"].items())
+        DOCTEST_CHECK_MESSAGE(entry.value()["right"] == 0.0, entry.key());
+    for (const auto& entry : report["direction"].items())
+        DOCTEST_CHECK_MESSAGE(entry.value()["mean"] == 0.0, entry.key());
 }
 
 DOCTEST_TEST_CASE("the shipped encoder tells held-out scenes and changes apart") {
