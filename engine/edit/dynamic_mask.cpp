@@ -28,6 +28,13 @@ std::size_t overlap(const Mask& a, const Mask& b) {
     return both;
 }
 
+/// What replaces the word ("on the snow" that was "on the grass") is looked for once the edit shows it.
+std::string word_after(const EditRequest& request, std::string word) {
+    const auto words = words_of(request.prompt);
+    const auto has = [&words](const std::string& wanted) { return std::find(words.begin(), words.end(), wanted) != words.end(); };
+    return has(word) ? word : has(request.target) ? request.target : std::string();
+}
+
 }  // namespace
 
 Mask attention_region(const Image& map, double threshold, const EditRequest& request) {
@@ -42,7 +49,7 @@ DynamicMasks::DynamicMasks(const EditPlan& plan, const EditRequest& request, std
                            Segmenter* segmenter)
     : plan_(plan),
       request_(request),
-      word_(std::move(word)),
+      word_(word_after(request, std::move(word))),
       attention_(attention),
       segmenter_(segmenter),
       masks_(plan.masks.size()),

@@ -16,7 +16,8 @@ namespace gse::edit {
 /// hysteresis, so that it neither flickers nor runs away.
 class DynamicMasks {
 public:
-    /// `word` is looked for in the current renders; `attention` null = the masks stay as they are.
+    /// `word`, or the target where the prompt replaces it, is looked for in the current renders; `attention` null = the masks
+    /// stay as they are.
     DynamicMasks(const EditPlan& plan, const EditRequest& request, std::string word, AttentionSource* attention,
                  Segmenter* segmenter);
 

@@ -31,8 +31,10 @@ class FixedAttention : public edit::AttentionSource {
 public:
     Mask where{Side, Side};
     int calls = 0;
-    std::vector<Image> locate(const edit::AttentionQuery&) override {
+    std::string word;   // asked for last
+    std::vector<Image> locate(const edit::AttentionQuery& query) override {
         ++calls;
+        word = query.words.front();
         return {picture(where)};
     }
     int image_size() const override { return Side; }
@@ -99,6 +101,20 @@ DOCTEST_TEST_CASE("a mask follows what moved, in two steps, and only where the l
     masks.refresh(0, 99, setup.shown, picture(disc(45, 45, 5)));
     DOCTEST_CHECK(different(masks.mask(0), before) == 0);
     DOCTEST_CHECK(masks.kept() == 1);
+}
+
+DOCTEST_TEST_CASE("what replaces the word is looked for, as the sentence does not hold the word any more") {
+    Setup setup;
+    setup.attention.where = disc(32, 32, 10);
+    setup.masks().refresh(0, 50, setup.shown, picture(disc(32, 32, 12)));
+    DOCTEST_CHECK(setup.attention.word == "ball");
+    setup.request.prompt = "a bear on the snow";
+    setup.request.target = "snow";
+    edit::DynamicMasks(setup.plan, setup.request, "grass", &setup.attention, nullptr)
+        .refresh(0, 50, setup.shown, picture(disc(32, 32, 12)));
+    DOCTEST_CHECK(setup.attention.word == "snow");
+    setup.request.target = "";
+    DOCTEST_CHECK_FALSE(edit::DynamicMasks(setup.plan, setup.request, "grass", &setup.attention, nullptr).due(0, 99));
 }
 
 DOCTEST_TEST_CASE("a mask that would run away, or be empty, stays as it was") {
