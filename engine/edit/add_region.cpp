@@ -10,6 +10,7 @@
 
 #include "engine/base/check.h"
 #include "engine/base/random.h"
+#include "engine/localize/clusters.h"
 
 namespace gse::edit {
 namespace {
@@ -275,13 +276,7 @@ double silhouette_match(const RegionSearch& search, const AddRegion& region) {
     for (std::size_t v = 0; v < search.views.size(); ++v) {
         const Mask& mask = search.masks[v];
         if (mask.data.empty()) continue;
-        const Mask seen = region_mask(region, search.views[v].camera);
-        std::size_t both = 0, either = 0;
-        for (std::size_t i = 0; i < mask.data.size(); ++i) {
-            both += mask.data[i] != 0 && seen.data[i] != 0 ? 1 : 0;
-            either += mask.data[i] != 0 || seen.data[i] != 0 ? 1 : 0;
-        }
-        sum += either > 0 ? static_cast<double>(both) / static_cast<double>(either) : 0;
+        sum += localize::mask_iou(mask, region_mask(region, search.views[v].camera));
         ++views;
     }
     return views > 0 ? sum / static_cast<double>(views) : 0;

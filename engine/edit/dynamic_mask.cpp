@@ -30,9 +30,8 @@ std::size_t overlap(const Mask& a, const Mask& b) {
 
 /// What replaces the word ("on the snow" that was "on the grass") is looked for once the edit shows it.
 std::string word_after(const EditRequest& request, std::string word) {
-    const auto words = words_of(request.prompt);
-    const auto has = [&words](const std::string& wanted) { return std::find(words.begin(), words.end(), wanted) != words.end(); };
-    return has(word) ? word : has(request.target) ? request.target : std::string();
+    if (has_word(request.prompt, word)) return word;
+    return has_word(request.prompt, request.target) ? request.target : std::string();
 }
 
 }  // namespace

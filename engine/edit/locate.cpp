@@ -28,9 +28,10 @@ constexpr double LeastTextScore = 0.3;
 constexpr double LeastEvidenceShare = 0.2;  // of the mean evidence of the rows that are seen at all
 constexpr double ReferenceSide = 512;       // pictures for which request lengths in pixels are stated
 
-bool has_word(const std::string& sentence, const std::string& word) {
-    const auto words = words_of(sentence);
-    return std::find(words.begin(), words.end(), word) != words.end();
+/// Position of the word in the sentence, -1 = absent.
+int word_position(const std::vector<std::string>& words, const std::string& word) {
+    const auto found = std::find(words.begin(), words.end(), word);
+    return found == words.end() ? -1 : static_cast<int>(found - words.begin());
 }
 
 bool any_of_between(const std::vector<std::string>& words, int begin, int end,
@@ -39,12 +40,6 @@ bool any_of_between(const std::vector<std::string>& words, int begin, int end,
         if (std::find(wanted.begin(), wanted.end(), words[static_cast<std::size_t>(i)]) != wanted.end())
             return true;
     return false;
-}
-
-/// Position of the word in the sentence, -1 = absent.
-int word_position(const std::vector<std::string>& words, const std::string& word) {
-    const auto found = std::find(words.begin(), words.end(), word);
-    return found == words.end() ? -1 : static_cast<int>(found - words.begin());
 }
 
 int grid_height(const Image& map) { return std::max(1, ClusterGrid * map.height / map.width); }
@@ -69,15 +64,6 @@ BoxPrompt bounds(const Mask& mask) {
             box.y1 = std::max(box.y1, y + 1.0);
         }
     return box;
-}
-
-double mask_iou(const Mask& a, const Mask& b) {
-    std::size_t both = 0, either = 0;
-    for (std::size_t i = 0; i < a.data.size(); ++i) {
-        both += a.data[i] != 0 && b.data[i] != 0 ? 1 : 0;
-        either += a.data[i] != 0 || b.data[i] != 0 ? 1 : 0;
-    }
-    return either == 0 ? 0 : static_cast<double>(both) / static_cast<double>(either);
 }
 
 Image mask_image(const Mask& mask) {
@@ -241,7 +227,7 @@ private:
             }
         }
         if (from_text && text_mass >= request().fallback_mass &&
-            mask_iou(*from_text, view.region) >= LeastOverlapIou) {
+            localize::mask_iou(*from_text, view.region) >= LeastOverlapIou) {
             accept(view, std::move(*from_text), text_mass, "text");
             return;
         }

@@ -60,6 +60,8 @@ std::string head_of_phrase(const Words& words, std::size_t first) {
 
 }  // namespace
 
+bool has_word(const std::string& sentence, const std::string& word) { return contains(words_of(sentence), word); }
+
 bool says_worn(const std::vector<std::string>& words, std::size_t i) {
     static const Words one{"a", "an", "its", "his", "her", "their"};
     if (words[i] != "in" || i + 1 >= words.size()) return false;

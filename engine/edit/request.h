@@ -205,6 +205,9 @@ enum class EditMode { Modify, Add };
 /// Lower-case words of a sentence, without punctuation.
 std::vector<std::string> words_of(const std::string& sentence);
 
+/// Whether the sentence has the (lower-case) word.
+bool has_word(const std::string& sentence, const std::string& word);
+
 /// Whether the word at `i` is an "in" that puts something on: "in flames", "in a hat", but not "in gold", "in the snow".
 bool says_worn(const std::vector<std::string>& words, std::size_t i);
 

@@ -118,6 +118,15 @@ Mask dilate(const Mask& mask, double radius_px) {
     return result;
 }
 
+double mask_iou(const Mask& a, const Mask& b) {
+    std::size_t both = 0, either = 0;
+    for (std::size_t i = 0; i < a.data.size(); ++i) {
+        both += a.data[i] != 0 && b.data[i] != 0 ? 1 : 0;
+        either += a.data[i] != 0 || b.data[i] != 0 ? 1 : 0;
+    }
+    return either == 0 ? 0 : static_cast<double>(both) / static_cast<double>(either);
+}
+
 Mask resize_mask(const Mask& mask, int width, int height) {
     Mask result(width, height);
     for (int y = 0; y < height; ++y)

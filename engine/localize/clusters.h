@@ -28,6 +28,9 @@ Mask clean_clusters(const Mask& mask, const Image& map, const DbscanParameters& 
 /// Set pixels grown by a disc of `radius_px` (negative: shrunk).
 Mask dilate(const Mask& mask, double radius_px);
 
+/// Intersection over union of the set pixels of two masks of one size; 0 when neither has any.
+double mask_iou(const Mask& a, const Mask& b);
+
 /// Nearest-neighbour copy at another size.
 Mask resize_mask(const Mask& mask, int width, int height);
 

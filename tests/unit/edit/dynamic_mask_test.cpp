@@ -153,11 +153,7 @@ DOCTEST_TEST_CASE("the loop refreshes masks and stops when it is at rest") {
     request.densify_every = 0;
     FixedAttention attention;
     attention.where = Mask(24, 24, 1);
-    class Still : public edit::Guidance {
-        edit::GuidanceOutput evaluate(const edit::GuidanceInput& input) override {
-            return {Image(input.rendered.width, input.rendered.height, 3), {}};
-        }
-    } still;
+    auto still = test::still();
     edit::EditTools tools{*rasterizer, still, {}, {}};
     tools.attention = &attention;
     tools.word = "ball";
@@ -190,11 +186,8 @@ DOCTEST_TEST_CASE("new splats outside of where the new thing is seen go, unless 
     request.dynamic_mask = false;
     FixedAttention attention;
     attention.where = Mask(24, 24);
-    const auto still = test::FunctionGuidance([](const edit::GuidanceInput& input) {
-        return edit::GuidanceOutput{Image(input.rendered.width, input.rendered.height, 3), {}};
-    });
-    auto guidance = still;
-    edit::EditTools tools{*rasterizer, guidance, {}, {}};
+    auto still = test::still();
+    edit::EditTools tools{*rasterizer, still, {}, {}};
     tools.attention = &attention;
     tools.word = "hat";
     const auto added = [&] {

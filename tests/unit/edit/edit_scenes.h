@@ -87,6 +87,13 @@ private:
     Function function_;
 };
 
+/// Leaves every pixel as it is.
+inline FunctionGuidance still() {
+    return FunctionGuidance([](const edit::GuidanceInput& input) {
+        return edit::GuidanceOutput{Image(input.rendered.width, input.rendered.height, 3), {}};
+    });
+}
+
 /// Pulls every pixel towards one colour.
 inline FunctionGuidance towards(const Vec3& colour) {
     return FunctionGuidance([colour](const edit::GuidanceInput& input) {

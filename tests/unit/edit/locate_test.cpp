@@ -256,9 +256,11 @@ DOCTEST_TEST_CASE("an empty scene, no views and a stop are errors of their own")
 }
 
 DOCTEST_TEST_CASE("what the sentence replaces is looked for in the sentence as it was before") {
+    const Quiet quiet;
     Fixture fixture;
-    edit::EditRequest request = request_for("a red cube on the snow", "cube");
-    edit::locate(fixture.input(request), fixture.tools());
+    const auto request = request_for("a red cube on the snow", "cube");
+    const auto found = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(found.mode == edit::EditMode::Modify);
     DOCTEST_REQUIRE_FALSE(fixture.attention.queries.empty());
     for (const auto& query : fixture.attention.queries) {
         DOCTEST_CHECK(query.word == "ball");
