@@ -256,6 +256,11 @@ raster::Settings EditJob::render_settings() const {
     return settings;
 }
 
+neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request) {
+    if (guidance.before_prompt.empty()) guidance.before_prompt = edit::sentence_before(request);
+    return guidance;
+}
+
 std::string EditJob::model_prompt() const { return join_prompt(edit::words_of(recipe_.request.prompt)); }
 
 std::vector<Image> EditJob::instance_pictures() {
@@ -437,7 +442,8 @@ std::string EditJob::dynamic_word() const {
 
 void EditJob::run(const EditObserver& observer) {
     times_.begin("edit");
-    const auto guidance = model_->guidance(model_prompt(), recipe_.guidance);
+    const auto guidance =
+        model_->guidance(model_prompt(), with_sentence_before(recipe_.guidance, recipe_.request));
     edit::EditTools tools{painter_.rasterizer(), *guidance, observer.snapshot, control_, observer.iteration};
     tools.snapshot_seconds = observer.snapshot_seconds;
     tools.new_label = observer.new_label;

@@ -81,6 +81,9 @@ struct EditJobInput {
     std::shared_ptr<neural::TextToImage> model;
 };
 
+/// The guidance's settings with the sentence before the edit, worked out from the request where none is given.
+neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request);
+
 /// Callbacks of a running edit; all may be empty.
 struct EditObserver {
     edit::SnapshotCallback snapshot;

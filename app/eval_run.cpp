@@ -199,7 +199,8 @@ private:
                           bool shown) {
         begin(times, "edit");
         const auto plan = edit::make_plan(input(setting), located, painter_.rasterizer());
-        const auto guidance = model_->guidance(setting.request.prompt, run_.settings.guidance);
+        const auto guidance = model_->guidance(setting.request.prompt,
+                                               with_sentence_before(run_.settings.guidance, setting.request));
         const edit::EditTools parts{painter_.rasterizer(), *guidance,        {},          quiet(), {},
                                     attention_.get(),      segmenter_.get(), located.word};
         const auto result = edit::run_edit(setting.source.scene.gaussians, plan, setting.request, parts);

@@ -89,7 +89,8 @@ private:
 
     edit::EditResult edit_scene(const Setting& setting, const edit::LocateResult& located, edit::EditPlan& plan) {
         plan = edit::make_plan(input(setting), located, painter_.rasterizer());
-        const auto guidance = model_->guidance(setting.request.prompt, settings_.guidance);
+        const auto guidance = model_->guidance(setting.request.prompt,
+                                               with_sentence_before(settings_.guidance, setting.request));
         return edit::run_edit(setting.scene.scene.gaussians, plan, setting.request,
                               {painter_.rasterizer(), *guidance, {}, {{}, job_.stop}});
     }

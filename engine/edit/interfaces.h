@@ -24,6 +24,8 @@ struct GuidanceInput {
     int iteration = 0;
     int iteration_count = 1;
     std::uint64_t seed = 0;      // already mixed with the iteration: the only source of randomness
+    /// [H,W,3] the unedited scene from there, not clamped; the same picture for the same view_index. Null = not known.
+    const Image* original = nullptr;
 };
 
 /// Gradient of the guidance loss with respect to the image, and numbers for the log.

@@ -273,7 +273,8 @@ private:
         const GuidanceInput input{shown_, plan_.views[view], view,
                                   plan_.view_words.empty() ? std::string() : plan_.view_words[view], iteration,
                                   request_.iterations,
-                                  Random::stream(request_.seed, 1000 + static_cast<std::uint64_t>(iteration)).next()};
+                                  Random::stream(request_.seed, 1000 + static_cast<std::uint64_t>(iteration)).next(),
+                                  &originals_[view]};
         GuidanceOutput guidance = tools_.guidance.evaluate(input);
         record.guidance = std::move(guidance.scalars);
         GSE_CHECK_EQ(guidance.gradient.data.size(), gradient_.data.size());

@@ -34,17 +34,28 @@ SdsGuidance::SdsGuidance(std::shared_ptr<const ModelBundle> bundle, std::string 
                          SdsParameters parameters)
     : bundle_(std::move(bundle)), prompt_(std::move(prompt)), parameters_(std::move(parameters)) {}
 
-const torch::Tensor& SdsGuidance::context_for(const std::string& prompt) {
-    const auto found = contexts_.find(prompt);
+const torch::Tensor& SdsGuidance::context_for(const std::string& prompt, const std::string& view_words) {
+    const auto sentence = parameters_.view_words ? with_view_words(prompt, view_words) : prompt;
+    const auto found = contexts_.find(sentence);
     if (found != contexts_.end()) return found->second;
-    return contexts_.emplace(prompt, bundle_->encode_prompts({parameters_.negative_prompt, prompt}))
+    return contexts_.emplace(sentence, bundle_->encode_prompts({parameters_.negative_prompt, sentence}))
         .first->second;
+}
+
+torch::Tensor SdsGuidance::pull_on_original(const edit::GuidanceInput& input, const torch::Tensor& deviation,
+                                            SdsStep step) {
+    const torch::NoGradGuard no_grad;
+    auto& mean = originals_[input.view_index];
+    if (!mean.defined()) {
+        const auto image = to_tensor(*input.original, bundle_->device).clamp(0, 1);
+        mean = image_to_latents(*bundle_, resize_square(image, bundle_->image_size()));
+    }
+    step.context = context_for(parameters_.before_prompt, input.view_words);
+    return sds_gradient(*bundle_, mean + deviation, step).gradient;
 }
 
 edit::GuidanceOutput SdsGuidance::evaluate(const edit::GuidanceInput& input) {
     return guard_torch("the guidance", [&] {
-        const auto& context =
-            context_for(parameters_.view_words ? with_view_words(prompt_, input.view_words) : prompt_);
         Random random(input.seed);
         const double progress = static_cast<double>(input.iteration) / std::max(1, input.iteration_count - 1);
         const auto t = draw_timestep(parameters_, progress, bundle_->schedule.steps(), random);
@@ -58,7 +69,12 @@ edit::GuidanceOutput SdsGuidance::evaluate(const edit::GuidanceInput& input) {
             z = moments.sample(seeded_noise(z.sizes(), random.next()).to(z.device()));
         const auto latents = z * bundle_->scaling_factor();
         const auto noise = seeded_noise(latents.sizes(), random.next()).to(latents.device());
-        const auto result = sds_gradient(*bundle_, latents, {noise, t, parameters_.guidance_scale, context});
+        const SdsStep step{noise, t, parameters_.guidance_scale, context_for(prompt_, input.view_words)};
+        auto result = sds_gradient(*bundle_, latents, step);
+        if (input.original != nullptr && takes_difference()) {
+            const auto deviation = latents.detach() - moments.mean.detach() * bundle_->scaling_factor();
+            result.gradient = result.gradient - parameters_.delta * pull_on_original(input, deviation, step);
+        }
         if (!torch::isfinite(result.gradient).all().item<bool>())
             throw Error(ErrorCode::Model, "the model returned a value that is not a finite number",
                         "its weights are damaged or the image holds non-finite pixels", bundle_->path);

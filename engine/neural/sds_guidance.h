@@ -1,4 +1,5 @@
-// Score distillation as the edit's guidance (GSEditPro eq. 3; DreamFusion, Poole et al. 2022).
+// Score distillation as the edit's guidance (GSEditPro eq. 3; DreamFusion, Poole et al. 2022), from which a share of what
+// the model would do to the unedited picture is taken (Delta Denoising Score, Hertz et al. 2023, eq. 3).
 #pragma once
 
 #include <map>
@@ -20,12 +21,19 @@ public:
     edit::GuidanceOutput evaluate(const edit::GuidanceInput& input) override;
 
 private:
-    const torch::Tensor& context_for(const std::string& prompt);
+    /// False without a sentence before the edit, or with the same one: the difference would be the pull itself.
+    bool takes_difference() const {
+        return parameters_.delta > 0 && !parameters_.before_prompt.empty() && parameters_.before_prompt != prompt_;
+    }
+    const torch::Tensor& context_for(const std::string& prompt, const std::string& view_words);
+    /// Latent gradient of the unedited view with the same noise, under the sentence before the edit.
+    torch::Tensor pull_on_original(const edit::GuidanceInput& input, const torch::Tensor& deviation, SdsStep step);
 
     std::shared_ptr<const ModelBundle> bundle_;
     std::string prompt_;
     SdsParameters parameters_;
-    std::map<std::string, torch::Tensor> contexts_;  // [2,T,D] negative, positive; one per view word
+    std::map<std::string, torch::Tensor> contexts_;  // [2,T,D] negative, positive; one per sentence
+    std::map<std::size_t, torch::Tensor> originals_;  // latent means of the unedited views
 };
 
 }  // namespace gse::neural

@@ -18,6 +18,8 @@ struct SdsParameters {
     bool sample_posterior = true;
     bool view_words = true;
     std::string negative_prompt;
+    std::string before_prompt;
+    double delta = 0.5;
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
@@ -33,6 +35,12 @@ struct SdsParameters {
         f("view_words", self.view_words,
           "Append \"front view\", \"side view\" or \"back view\" to the prompt.");
         f("negative_prompt", self.negative_prompt, "What the picture should not show.");
+        f("before_prompt", self.before_prompt,
+          "What the scene shows before the edit; worked out from the prompt when empty.");
+        f("delta", self.delta,
+          "Share of the pull on the unedited scene under its own sentence that is taken off: what the model would "
+          "change anyway, and its noise; 0 = plain score distillation, at half the cost.",
+          Range{0, 1});
     }
 };
 

@@ -3,7 +3,9 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <limits>
+#include <map>
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
@@ -143,6 +145,24 @@ DOCTEST_TEST_CASE("snapshots are the states of the run and stay as they were") {
     DOCTEST_REQUIRE(snapshots.size() == 4);
     DOCTEST_CHECK(test::same_bytes(*snapshots.back(), result.set));
     DOCTEST_CHECK_FALSE(test::same_bytes(*snapshots[0], *snapshots[1]));
+}
+
+DOCTEST_TEST_CASE("guidance is shown the unedited view beside the changing one") {
+    const auto scene = test::ball_scene();
+    std::map<std::size_t, Image> first;
+    bool changed = false;
+    test::FunctionGuidance guidance([&](const edit::GuidanceInput& input) {
+        DOCTEST_REQUIRE(input.original != nullptr);
+        const auto known = first.emplace(input.view_index, *input.original).first;
+        DOCTEST_CHECK(known->second.data == input.original->data);
+        Image shown = *input.original;
+        for (auto& value : shown.data) value = std::clamp(value, 0.0f, 1.0f);
+        if (input.iteration == 0) DOCTEST_CHECK(shown.data == input.rendered.data);
+        changed = changed || shown.data != input.rendered.data;
+        return test::towards({0.1, 0.1, 0.9}).evaluate(input);
+    });
+    run(scene, short_request(), guidance);
+    DOCTEST_CHECK(changed);
 }
 
 DOCTEST_TEST_CASE("guidance that is not finite is left out and counted") {

@@ -105,6 +105,41 @@ DOCTEST_TEST_CASE("sds guidance: repeatable gradient at the render's size, silen
     }
 }
 
+DOCTEST_TEST_CASE("sds guidance: the pull on the unedited picture is taken off") {
+    const TinyModel model;
+    const auto bundle = load_shared(model);
+    const Image original = gradient_image(32, 32);
+    Image changed = original;
+    for (auto& value : changed.data) value = 1 - value;
+    const View view;
+    const auto gradient = [&](const Image& shown, const Image* before, const std::string& sentence, double delta) {
+        SdsParameters parameters;
+        parameters.clamp = 0;  // what is clamped does not add up
+        parameters.before_prompt = sentence;
+        parameters.delta = delta;
+        auto input = input_at(shown, view, 3);
+        input.original = before;
+        return SdsGuidance(bundle, "a red bear", parameters).evaluate(input);
+    };
+    const auto plain = gradient(changed, nullptr, "a bear", 1).gradient.data;
+    DOCTEST_CHECK(gradient(changed, &original, "", 1).gradient.data == plain);
+    DOCTEST_CHECK(gradient(changed, &original, "a bear", 0).gradient.data == plain);
+    DOCTEST_CHECK(gradient(changed, &original, "a red bear", 1).gradient.data == plain);  // the sentence says nothing
+    // An unedited picture under a sentence of the same words has nothing left to change.
+    constexpr double Rounding = 1e-5;  // of the plain gradient: one forward pass more in fp32
+    DOCTEST_CHECK(gradient(original, &original, "A red bear", 1).scalars.at("gradient_norm") <=
+                  Rounding * gradient(original, nullptr, "", 1).scalars.at("gradient_norm"));
+    const auto whole = gradient(changed, &original, "a bear", 1).gradient.data;
+    const auto half = gradient(changed, &original, "a bear", 0.5).gradient.data;
+    DOCTEST_CHECK(whole != plain);
+    double largest = 0, off = 0;
+    for (std::size_t i = 0; i < half.size(); ++i) {
+        largest = std::max(largest, std::abs(static_cast<double>(plain[i])));
+        off = std::max(off, std::abs(half[i] - 0.5 * (static_cast<double>(plain[i]) + whole[i])));
+    }
+    DOCTEST_CHECK(off <= Rounding * largest);
+}
+
 DOCTEST_TEST_CASE("sds guidance: the gradient is that of the latents, back through resize and encoder") {
     const TinyModel model;
     const auto bundle = load_shared(model);
