@@ -11,8 +11,8 @@ namespace gse::neural {
 struct SdsParameters {
     double t_min = 0.02;
     double t_max_start = 0.98;
-    double t_max_end = 0.5;
-    double guidance_scale = 7.5;
+    double t_max_end = 0.8;
+    double guidance_scale = 4;
     double clamp = 1.0;
     double weight = 1.0;
     bool sample_posterior = true;
@@ -27,7 +27,9 @@ struct SdsParameters {
         f("t_max_start", self.t_max_start, "Highest noise level at the first iteration.", Range{0, 1});
         f("t_max_end", self.t_max_end, "Highest noise level at the last iteration.", Range{0, 1});
         f("guidance_scale", self.guidance_scale,
-          "Classifier-free guidance: 1 = none, higher follows the prompt harder.", Range{0, 200});
+          "Classifier-free guidance: 1 = none, higher follows the prompt harder. Stable Diffusion works best from "
+          "7.5 on.",
+          Range{0, 200});
         f("clamp", self.clamp, "Largest absolute gradient per latent value; 0 = no limit.", Range{0, 1e6});
         f("weight", self.weight, "Factor of the whole guidance gradient.", Range{0, 1e6});
         f("sample_posterior", self.sample_posterior,
