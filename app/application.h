@@ -25,9 +25,9 @@ namespace gse::app {
 struct ApplicationOptions {
     bool autosave = true;
     double autosave_seconds = 3;              // at most this much work is lost to a crash
-    std::function<void()> wake;               // makes the window draw a frame
-    std::function<void(float)> on_scale;
-    std::function<void()> on_fullscreen;
+    std::function<void()> wake = {};             // makes the window draw a frame
+    std::function<void(float)> on_scale = {};
+    std::function<void()> on_fullscreen = {};
 };
 
 /// What came of an edit that has not been applied yet.

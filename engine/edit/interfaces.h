@@ -20,7 +20,7 @@ struct GuidanceInput {
     const Image& rendered;       // [H,W,3] in [0,1], the current render
     const View& view;            // where it was rendered from
     std::size_t view_index = 0;  // index into the edit's views
-    std::string view_words;      // "front view", "side view", "back view" or empty: appended to the prompt
+    std::string view_words = {}; // "front view", "side view", "back view" or empty: appended to the prompt
     int iteration = 0;
     int iteration_count = 1;
     std::uint64_t seed = 0;      // already mixed with the iteration: the only source of randomness
@@ -46,7 +46,7 @@ struct AttentionQuery {
     const Image& image;               // [H,W,3] in [0,1]
     std::string prompt;               // must contain every word
     std::vector<std::string> words;   // one map each
-    std::string view_words;           // as in GuidanceInput
+    std::string view_words = {};      // as in GuidanceInput
     bool absent = false;              // the thing is not in the image yet: look at high timesteps
     int repeats = 3;
     std::uint64_t seed = 0;

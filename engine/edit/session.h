@@ -76,7 +76,7 @@ struct EditTools {
     IterationCallback iteration = {};   // may be empty
     AttentionSource* attention = nullptr;   // for the dynamic mask; null = the masks stay as they are
     Segmenter* segmenter = nullptr;
-    std::string word;                   // what the dynamic mask looks for
+    std::string word = {};                // what the dynamic mask looks for
     /// Asked before every iteration: another label ([N] 0 or 1) that the artist has drawn meanwhile, or nothing.
     std::function<std::optional<std::vector<std::uint8_t>>()> new_label = {};
     double snapshot_seconds = 0;        // above 0: a snapshot whenever this much time has passed, instead of by iterations

@@ -28,8 +28,8 @@ struct SaveOptions {
     /// "ply", "compressed.ply", "splat" or "spz"; empty = from the file's name.
     std::string format;
     /// Optional columns of a 3DGS PLY, each empty or one value per row; written as floats after rot_3.
-    std::span<const float> label;
-    std::span<const float> label_weight;
+    std::span<const float> label = {};
+    std::span<const float> label_weight = {};
     /// Takes `label` and `label_weight` from this label instead (must have one value per row).
     const Label* from_label = nullptr;
 };

@@ -33,7 +33,7 @@ std::string field_label(const char* name);
 /// whether the rows that follow are shown (a folded group).
 template <class P, class Wanted, class Before>
 bool field_rows(Context& context, const char* prefix, P& parameters, Wanted&& wanted, Before&& before) {
-    static const P standard{};
+    [[maybe_unused]] static const P standard{};
     bool changed = false, shown = true;
     P::visit_fields(parameters, [&](const char* name, auto& value, const char* help, auto... range) {
         using Value = std::remove_reference_t<decltype(value)>;

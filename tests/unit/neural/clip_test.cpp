@@ -84,7 +84,7 @@ DOCTEST_TEST_CASE("pictures of any size and sentences become unit vectors of one
     const auto sentence = score->text("a red bear");
     DOCTEST_CHECK(sentence.size() == 12);
     DOCTEST_CHECK(std::abs(dot(sentence, sentence) - 1) < UnitTolerance);
-    for (const auto [width, height] : {std::pair{16, 16}, {64, 64}, {7, 7}, {90, 50}, {1, 1}}) {
+    for (const auto& [width, height] : {std::pair{16, 16}, {64, 64}, {7, 7}, {90, 50}, {1, 1}}) {
         const auto vector = score->image(gradient(width, height));
         DOCTEST_CHECK(vector.size() == 12);
         DOCTEST_CHECK(std::abs(dot(vector, vector) - 1) < UnitTolerance);
