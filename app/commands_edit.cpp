@@ -74,11 +74,19 @@ void add_optional_parts(nlohmann::ordered_json& report, const std::filesystem::p
     if (job.recipe().dreambooth.rank > 0) job.model().save_lora(folder / "lora.safetensors");
 }
 
+/// Before another sentence comes in: what follows from the recipe's own one does not hold for it.
+void forget_sentence(EditRecipe& recipe) {
+    recipe.request.target.clear();
+    recipe.request.mode = "auto";
+    recipe.guidance.before_prompt.clear();
+}
+
 /// Reads the recipe of --recipe or --demo, or checks that a scene was named.
 void complete(EditOptions& options) {
     if (options.demo) options.recipe_file = assets_path() / "scenes/demo.recipe.json";
     if (!options.recipe_file.empty()) {
         options.recipe = read_recipe(options.recipe_file);
+        if (options.command->get_option("--prompt")->count() > 0) forget_sentence(options.recipe);
         // What stands on the command line wins over the recipe.
         for (auto* option : options.command->get_options())
             if (option->count() > 0) option->run_callback();

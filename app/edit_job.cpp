@@ -435,8 +435,7 @@ OrbitParameters EditJob::film_orbit() const {
 
 /// What the dynamic mask looks for in the changing pictures: the new thing, or the thing that changes by its new name.
 std::string EditJob::dynamic_word() const {
-    const auto words = edit::words_of(recipe_.request.prompt);
-    const bool named = std::find(words.begin(), words.end(), located_.word) != words.end();
+    const bool named = edit::has_word(recipe_.request.prompt, located_.word);
     return located_.mode == edit::EditMode::Modify && named ? located_.word : recipe_.request.target;
 }
 

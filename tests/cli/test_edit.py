@@ -82,6 +82,15 @@ class Edits(ProgramTest):
         for name in ["scene.ply", "source.ply", "recipe.json", "before_after.png", "evidence/view_000_attention.png"]:
             self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), name)
 
+    def test_another_sentence_is_not_bound_to_the_target_and_mode_of_the_recipe(self):
+        out = self.folder / "golden"
+        process = run("-q", "edit", "--demo", "--headless", "--prompt", "a golden bear on the grass", "--out", out,
+                      *QUICK)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        request = json.loads((out / "recipe.json").read_text())["request"]
+        self.assertEqual((request["source"], request["target"], request["mode"]), ("bear", "golden", "auto"))
+        self.assertEqual(json.loads((out / "report.json").read_text())["mode"], "modify")
+
     def test_locate_changes_nothing(self):
         out = self.folder / "found"
         process = run("-q", "locate", ASSETS / "scenes/bear/scene.ply", "--source", "bear", "--prompt",
