@@ -12,6 +12,7 @@
 #include "engine/base/log.h"
 #include "engine/base/random.h"
 #include "engine/localize/clusters.h"
+#include "engine/localize/graph_cut.h"
 #include "engine/localize/points.h"
 #include "engine/localize/spread.h"
 
@@ -284,6 +285,12 @@ private:
         spread.least_evidence_px = least;
         spread.tau = request().tau;
         localize::spread_to_unseen(input_.gaussians.spans(), spread, weights);
+        localize::CutParameters cut;
+        cut.tau = request().tau;
+        cut.least_evidence_px = least;
+        cut.smoothness = request().label_smoothness;
+        const auto changed = localize::cut_label(input_.gaussians.spans(), cut, weights);
+        if (changed > 0) log::debug("{} splats took the label of those they belong to", changed);
         Label label = localize::label_from_weights(search.word, weights, request().tau, least);
         return {std::move(weights), std::move(label)};
     }

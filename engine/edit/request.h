@@ -35,6 +35,7 @@ struct EditRequest {
     int negative_points = 3;
     double fallback_mass = 0.5;
     double tau = 0.5;
+    double label_smoothness = 1.5;
     double evidence_px = 0.5;
     bool localize = true;
     // Loop
@@ -128,6 +129,8 @@ private:
         f("fallback_mass", self.fallback_mass,
           "A segment that captures less of the attention than this gives way to the attention region.", Range{0, 1});
         f("tau", self.tau, "Splats seen inside the masks for more than this share are labelled.", Range{0, 1});
+        f("label_smoothness", self.label_smoothness,
+          "How much neighbouring splats of one colour share their label; 0 = every splat for itself.", Range{0, 100});
         f("evidence_px", self.evidence_px, "Splats seen over fewer pixels than this are not labelled.", Range{0, 1e6});
         f("localize", self.localize,
           "Let only the splats that were found change; off = every splat may (an ablation of the paper).");

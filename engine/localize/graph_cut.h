@@ -1,0 +1,29 @@
+// One label for splats that belong together: a minimum cut over neighbouring splats, where a cut costs less between
+// unlike colours. It closes the holes and takes off the crumbs that coarse maps leave.
+#pragma once
+
+#include <span>
+
+#include "engine/localize/back_projection.h"
+
+namespace gse::localize {
+
+struct CutParameters {
+    int neighbours = 8;        // nearest rows an edge goes to
+    double smoothness = 1.5;     // cost of a cut between two rows of one colour, in nats; 0 = nothing is done
+    double tau = 0.5;          // weight at which a row is undecided
+    double least_evidence_px = 0.5;
+    double margin_share = 0.1; // of the diagonal: rows farther than this outside the box of the labelled ones stay out
+};
+
+/// Moves the weight of rows to the other side of `tau` so that label_energy() becomes least, exactly (Boykov and Jolly
+/// 2001, with the contrast term of GrabCut, on a graph of splats in place of pixels). Rows that neither a view saw nor a
+/// neighbour spoke for keep what they have. Returns how many rows changed sides. Deterministic; without OpenCV nothing is done.
+std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& parameters, LabelWeights& weights);
+
+/// E(label) = sum over rows of -log p(label | weight) * trust in the row + smoothness * sum over pairs of neighbours with
+/// different labels of exp(-|colour difference|^2 / mean of it), in nats; label [N], the rows that take part count.
+double label_energy(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelWeights& weights,
+                    std::span<const std::uint8_t> label);
+
+}  // namespace gse::localize

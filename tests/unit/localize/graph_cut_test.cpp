@@ -1,0 +1,118 @@
+// The cut finds the least energy, closes holes of one colour and stops at colour edges.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "engine/base/random.h"
+#include "engine/localize/graph_cut.h"
+
+#ifdef GSE_HAVE_OPENCV
+
+namespace {
+
+using namespace gse;
+
+constexpr double EnergyTolerance = 1e-9;   // sums of a few dozen doubles
+
+struct Rows {
+    GaussianData data;
+    localize::LabelWeights weights;
+    explicit Rows(std::size_t count) {
+        data.resize(count);
+        weights.weight.assign(count, 0);
+        weights.evidence.assign(count, 5);
+    }
+    void colour(std::size_t row, float red, float green, float blue) {
+        data.sh[row * 3] = red;
+        data.sh[row * 3 + 1] = green;
+        data.sh[row * 3 + 2] = blue;
+    }
+    std::vector<std::uint8_t> label(double tau = 0.5) const {
+        return *localize::label_from_weights("thing", weights, tau, 0.5).bits;
+    }
+};
+
+/// Two crossed bits of the same thing: a red sheet on the left, a blue one on the right, both of 20 x 20 rows.
+struct Sheets : Rows {
+    static constexpr std::size_t Side = 20;
+    Sheets() : Rows(2 * Side * Side) {
+        Random random(5);
+        for (std::size_t row = 0; row < 2 * Side * Side; ++row) {
+            const std::size_t x = row / Side, y = row % Side;
+            data.position[row * 3] = static_cast<float>(x);
+            data.position[row * 3 + 1] = static_cast<float>(y);
+            const auto tint = static_cast<float>(random.uniform(-0.1, 0.1));
+            if (red(row)) colour(row, 1 + tint, 0, 0);
+            else colour(row, 0, 0, 1 + tint);
+            weights.weight[row] = red(row) ? 0.8f : 0.2f;
+        }
+    }
+    static bool red(std::size_t row) { return row / Side < Side; }
+};
+
+}  // namespace
+
+DOCTEST_TEST_CASE("the cut has the least energy of all labels") {
+    constexpr std::size_t count = 11;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        Random random(seed);
+        Rows rows(count);
+        for (auto& value : rows.data.position) value = static_cast<float>(random.uniform(0, 1));
+        for (auto& value : rows.data.sh) value = static_cast<float>(random.uniform(0, 1));
+        for (auto& value : rows.weights.weight) value = static_cast<float>(random.uniform(0, 1));
+        for (auto& value : rows.weights.evidence) value = random.uniform(0.6, 5);
+        rows.weights.weight[0] = 0.9f;
+        localize::CutParameters parameters;
+        parameters.neighbours = 3;
+        const auto before = rows.weights;
+        localize::cut_label(spans(rows.data), parameters, rows.weights);
+        const double found = localize::label_energy(spans(rows.data), parameters, before, rows.label());
+        std::vector<std::uint8_t> label(count);
+        double least = std::numeric_limits<double>::max();
+        for (unsigned bits = 0; bits < 1u << count; ++bits) {
+            for (std::size_t row = 0; row < count; ++row) label[row] = bits >> row & 1u;
+            least = std::min(least, localize::label_energy(spans(rows.data), parameters, before, label));
+        }
+        DOCTEST_CHECK(found == doctest::Approx(least).epsilon(EnergyTolerance));
+    }
+}
+
+DOCTEST_TEST_CASE("a hole is closed and a crumb goes, but the other colour stays what it is") {
+    Sheets sheets;
+    for (std::size_t x = 0; x < 6; ++x)
+        for (std::size_t y = 0; y < 6; ++y) sheets.weights.weight[x * Sheets::Side + y] = 0.35f;     // a corner is missed
+    sheets.weights.weight[(Sheets::Side + 9) * Sheets::Side + 9] = 0.7f;
+    const auto changed = localize::cut_label(spans(sheets.data), {}, sheets.weights);
+    DOCTEST_CHECK(changed == 37);
+    const auto label = sheets.label();
+    for (std::size_t row = 0; row < label.size(); ++row) DOCTEST_CHECK(label[row] == (Sheets::red(row) ? 1 : 0));
+}
+
+DOCTEST_TEST_CASE("a part of another colour that the views are sure of is kept") {
+    Sheets sheets;
+    for (std::size_t x = 8; x < 11; ++x)
+        for (std::size_t y = 8; y < 11; ++y) sheets.colour(x * Sheets::Side + y, 0, 1, 0);
+    localize::cut_label(spans(sheets.data), {}, sheets.weights);
+    const auto label = sheets.label();
+    for (std::size_t row = 0; row < label.size(); ++row) DOCTEST_CHECK(label[row] == (Sheets::red(row) ? 1 : 0));
+}
+
+DOCTEST_TEST_CASE("rows without a place, a colour or a view keep their weight; no smoothness does nothing") {
+    Sheets sheets;
+    constexpr std::size_t lost = 5 * Sheets::Side + 5, colourless = lost + 1, unseen = lost + 2;
+    sheets.data.position[lost * 3] = std::numeric_limits<float>::quiet_NaN();
+    sheets.data.sh[colourless * 3] = std::numeric_limits<float>::infinity();
+    sheets.weights.evidence[unseen] = 0;
+    for (const auto row : {lost, colourless, unseen}) sheets.weights.weight[row] = 0.4f;
+    auto alone = sheets;
+    DOCTEST_CHECK(localize::cut_label(spans(sheets.data), {}, sheets.weights) == 0);
+    for (const auto row : {lost, colourless, unseen}) DOCTEST_CHECK(sheets.weights.weight[row] == 0.4f);
+    alone.weights.weight[0] = 0.3f;
+    localize::CutParameters off;
+    off.smoothness = 0;
+    DOCTEST_CHECK(localize::cut_label(spans(alone.data), off, alone.weights) == 0);
+    DOCTEST_CHECK(alone.weights.weight[0] == 0.3f);
+}
+
+#endif
