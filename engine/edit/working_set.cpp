@@ -13,10 +13,7 @@ namespace {
 constexpr float LargestLogit = 12.0f;            // method F17
 constexpr double SmallestScale = 1e-6;           // of the extent
 constexpr double LargestScale = 0.5;             // of the extent
-constexpr std::size_t AffineTerms = 4;           // constant, red, green, blue
-constexpr double ConstantShare = 0.5;            // of the common colour change: low, so that black stays black
-constexpr double CommonRate = 2;                  // times the colour's rate: makes both kinds of change equally fast
-constexpr double DarkestLabel = 0.1;             // darker labels count as this bright in the common change
+constexpr double CommonRate = 2;                 // times the colour's rate: makes both kinds of change equally fast
 constexpr float LargestGradient = 1e15f;         // larger ones overflow Adam's second moment
 
 /// True when all values of the row are finite and of a size that can be worked with.
@@ -84,8 +81,7 @@ WorkingSet::WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> la
     const int seed_generation = adding_ ? schedule_.advance() : 0;
     for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, seed_generation, -1, -1);
     start_count_ = labelled();
-    common_.assign(3 * AffineTerms, 0.0f);
-    measure_colour();
+    common_ = CommonColour(birth_sh_, rows_.sh_stride());
     remember_anchor();
 }
 
@@ -200,62 +196,12 @@ void WorkingSet::step_colour(const raster::Gradients& gradients, const EditReque
     load_gradient(gradients.sh, stride);
     const auto now = tail(rows_.sh, stride);
     anchor_loss_ += add_anchor(now, anchor_.sh, request.anchor_colour);
-    if (request.colour_coupling > 0) step_common_colour(request);
+    if (request.colour_coupling > 0)
+        common_.step(gradient_, birth_sh_, now, CommonRate * request.rate_colour * request.colour_coupling);
     const double own = 1 - request.colour_coupling;
     std::array<double, 48> rates{};
     for (std::size_t i = 0; i < stride; ++i) rates[i] = own * (i < 3 ? request.rate_colour : request.rate_sh);
     adam_step(now, gradient_, sh_, {std::span(rates).first(stride), {}, steps_});
-}
-
-void WorkingSet::measure_colour() {
-    const std::size_t stride = rows_.sh_stride();
-    double sum = 0;
-    for (std::size_t i = 0; i < labelled(); ++i)
-        for (std::size_t c = 0; c < 3; ++c) sum += std::pow(colour_from_sh(birth_sh_[i * stride + c]), 2);
-    const double mean = labelled() > 0 ? sum / static_cast<double>(labelled()) : 1;
-    colour_size_ = std::isfinite(mean) ? std::max(std::sqrt(mean), DarkestLabel) : 1;
-}
-
-void WorkingSet::step_common_colour(const EditRequest& request) {
-    // The change common to the label is an affine map of each row's own colour, colour' = A colour + b: a low-rank
-    // change that keeps texture, shading and black. Its gradient is the mean over the rows.
-    const std::size_t stride = rows_.sh_stride(), count = labelled();
-    common_gradient_.assign(3 * AffineTerms, 0.0f);
-    std::array<double, 3 * AffineTerms> sum{};
-    const auto terms = [&](std::size_t i) {
-        const float* birth = &birth_sh_[i * stride];
-        std::array<double, AffineTerms> result{ConstantShare, 0, 0, 0};
-        for (std::size_t k = 0; k < 3; ++k) result[k + 1] = colour_from_sh(birth[k]) / colour_size_;
-        return result;
-    };
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto own = terms(i);
-        for (std::size_t c = 0; c < 3; ++c)
-            for (std::size_t k = 0; k < AffineTerms; ++k) sum[c * AffineTerms + k] += gradient_[i * stride + c] * own[k];
-    }
-    for (std::size_t j = 0; j < sum.size(); ++j) common_gradient_[j] = static_cast<float>(sum[j] / static_cast<double>(count));
-    common_before_ = common_;
-    const std::array<double, 1> rate{CommonRate * request.rate_colour * request.colour_coupling};
-    adam_step(common_, common_gradient_, common_moments_, {rate, {}, steps_});
-    std::array<double, 3 * AffineTerms> change{};
-    for (std::size_t j = 0; j < change.size(); ++j) change[j] = static_cast<double>(common_[j]) - common_before_[j];
-    // View-dependent coefficients are colours without the constant: the same A applies to them.
-    std::array<float, 9> rest{};
-    for (std::size_t c = 0; c < 3; ++c)
-        for (std::size_t k = 0; k < 3; ++k)
-            rest[c * 3 + k] = static_cast<float>(change[c * AffineTerms + 1 + k] * ShC0 / colour_size_);
-    for (std::size_t i = 0; i < count; ++i) {
-        float* row = rows_.sh.data() + (first_row_ + i) * stride;
-        const float* birth = &birth_sh_[i * stride];
-        const auto own = terms(i);
-        for (std::size_t c = 0; c < 3; ++c)
-            for (std::size_t k = 0; k < AffineTerms; ++k) row[c] += static_cast<float>(change[c * AffineTerms + k] * own[k]);
-        for (std::size_t coefficient = 3; coefficient < stride; coefficient += 3) {
-            const float* b = birth + coefficient;
-            for (std::size_t c = 0; c < 3; ++c)
-                row[coefficient + c] += rest[c * 3] * b[0] + rest[c * 3 + 1] * b[1] + rest[c * 3 + 2] * b[2];
-        }
-    }
 }
 
 void WorkingSet::guard(const EditRequest& request) {
@@ -307,7 +253,10 @@ void WorkingSet::relabel(const GaussianSet& base, std::span<const std::uint8_t> 
     const std::size_t sh = rows_.sh_stride();
     for (std::size_t i = 0; i < fresh.labelled(); ++i) {
         const auto old = old_index[static_cast<std::size_t>(fresh.origin_[i])];
-        if (old < 0) continue;
+        if (old < 0) {   // what joins takes on what the others have learned
+            if (!adding_) common_.apply(fresh.birth_sh_row(i), fresh.tail(fresh.rows_.sh, sh).subspan(i * sh, sh));
+            continue;
+        }
         const std::size_t from = first_row_ + static_cast<std::size_t>(old), to = fresh.first_row_ + i;
         std::copy_n(&rows_.position[from * 3], 3, &fresh.rows_.position[to * 3]);
         std::copy_n(&rows_.log_scale[from * 3], 3, &fresh.rows_.log_scale[to * 3]);
@@ -321,10 +270,10 @@ void WorkingSet::relabel(const GaussianSet& base, std::span<const std::uint8_t> 
         if (origin_[i] < 0 && stays) fresh.append(rows_, first_row_ + i, generation_[i], -1, ancestor_[i]);
     }
     fresh.schedule_ = schedule_;
+    fresh.common_ = std::move(common_);
     fresh.adding_ = adding_;
     fresh.start_count_ = std::max(start_count_, fresh.labelled());
     fresh.skipped_rows_ = skipped_rows_;
-    fresh.measure_colour();
     fresh.remember_anchor();
     *this = std::move(fresh);
 }

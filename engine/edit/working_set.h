@@ -8,6 +8,7 @@
 
 #include "engine/base/random.h"
 #include "engine/edit/adam.h"
+#include "engine/edit/common_colour.h"
 #include "engine/edit/request.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/scene/gaussian_set.h"
@@ -57,8 +58,8 @@ public:
     std::size_t keep_added(std::span<const float> weight, std::span<const double> evidence, double tau, double least_left);
 
     /// Another label for the same base, in the middle of a run: rows that leave it become the base's again, rows that join it
-    /// start as the base has them, rows that stay keep what they have become. Rows born in the run stay when the row they
-    /// descend from does. Momentum and anchors begin anew.
+    /// start as the base has them, with the change of colour that the label shares; rows that stay keep what they have
+    /// become. Rows born in the run stay when the row they descend from does. Momentum and anchors begin anew.
     void relabel(const GaussianSet& base, std::span<const std::uint8_t> label, const EditRequest& request);
 
     std::size_t skipped_rows() const { return skipped_rows_; }
@@ -84,13 +85,14 @@ private:
     void remember_anchor();
     /// Adds the anchor's gradient to gradient_; returns its loss.
     double add_anchor(std::span<const float> now, std::span<const float> anchor, double weight);
+    std::span<const float> birth_sh_row(std::size_t index) const {
+        return std::span<const float>(birth_sh_).subspan(index * rows_.sh_stride(), rows_.sh_stride());
+    }
     std::span<float> tail(std::vector<float>& all, std::size_t stride) {
         return std::span<float>(all).subspan(first_row_ * stride);
     }
     void step_geometry(const raster::Gradients& gradients, int iteration, const EditRequest& request);
     void step_colour(const raster::Gradients& gradients, const EditRequest& request);
-    void step_common_colour(const EditRequest& request);
-    void measure_colour();
     void load_gradient(const std::vector<float>& gradient, std::size_t stride);
     void guard(const EditRequest& request);
     bool prunable(std::size_t index, const EditRequest& request) const;
@@ -112,9 +114,7 @@ private:
     GaussianData anchor_;                  // labelled rows at the last densification
     GenerationSchedule schedule_;
     AdamMoments position_, log_scale_, rotation_, opacity_, sh_;
-    std::vector<float> common_, common_gradient_, common_before_;   // 3 channels x 4 affine coefficients
-    AdamMoments common_moments_;
-    double colour_size_ = 1;               // root mean square of the birth colours: common changes are relative to it
+    CommonColour common_;
     std::vector<double> gradient_sum_;
     std::vector<std::uint32_t> gradient_count_;
     std::size_t skipped_rows_ = 0;

@@ -1,0 +1,115 @@
+// The shared change of colour reaches what an affine map can reach, and rows that join late catch up.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "engine/base/random.h"
+#include "engine/edit/common_colour.h"
+#include "engine/math/sh.h"
+
+namespace {
+
+using namespace gse;
+
+constexpr double Rate = 0.0675;        // that of an edit
+constexpr double SameRow = 1e-5;       // float rounding of a hundred steps
+
+std::vector<float> rows_of(const std::vector<Vec3>& colours) {
+    std::vector<float> sh;
+    for (const auto& colour : colours)
+        for (int c = 0; c < 3; ++c) sh.push_back(static_cast<float>(sh_from_colour(colour[c])));
+    return sh;
+}
+
+double mean_difference(std::span<const float> a, std::span<const float> b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += std::abs(static_cast<double>(a[i]) - b[i]) * ShC0;
+    return sum / static_cast<double>(a.size());
+}
+
+/// Colours after `steps` steps towards `goal` under a quadratic loss.
+std::vector<float> led(edit::CommonColour& common, std::span<const float> birth, std::span<const float> goal, int steps) {
+    std::vector<float> sh(birth.begin(), birth.end()), gradient(birth.size());
+    for (int step = 0; step < steps; ++step) {
+        for (std::size_t i = 0; i < sh.size(); ++i) gradient[i] = sh[i] - goal[i];
+        common.step(gradient, birth, sh, Rate);
+    }
+    return sh;
+}
+
+/// Grain: light and dark of slightly different hue, in light and in shade.
+std::vector<Vec3> grain() {
+    std::vector<Vec3> colours;
+    Random random(2);
+    for (int i = 0; i < 300; ++i) {
+        const Vec3 paint = i % 3 == 0 ? Vec3{0.33, 0.17, 0.06} : Vec3{0.72, 0.46, 0.22};
+        colours.push_back(paint * random.uniform(0.5, 1.1));
+    }
+    return colours;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("grain is painted over and the shading stays") {
+    const auto colours = grain();
+    std::vector<Vec3> painted;
+    for (std::size_t i = 0; i < colours.size(); ++i)
+        painted.push_back(Vec3{0.1, 0.2, 0.9} * (colours[i].x / (i % 3 == 0 ? 0.33 : 0.72)));
+    const auto birth = rows_of(colours), goal = rows_of(painted);
+    edit::CommonColour common(birth, 3);
+    const auto reached = led(common, birth, goal, 150);
+    DOCTEST_CHECK(mean_difference(reached, goal) < 0.1 * mean_difference(birth, goal));
+}
+
+DOCTEST_TEST_CASE("a row that joins late is where it would be had it taken every step") {
+    const auto colours = grain();
+    std::vector<Vec3> turned;
+    for (const auto& colour : colours) turned.push_back({colour.z, colour.x, 0.5 * colour.y + 0.2});
+    const auto birth = rows_of(colours), goal = rows_of(turned);
+    edit::CommonColour common(birth, 3);
+    const auto reached = led(common, birth, goal, 100);
+    for (const std::size_t row : {0u, 7u, 299u}) {
+        std::vector<float> late(birth.begin() + static_cast<std::ptrdiff_t>(row * 3),
+                                birth.begin() + static_cast<std::ptrdiff_t>(row * 3 + 3));
+        const auto own = late;
+        common.apply(own, late);
+        for (std::size_t c = 0; c < 3; ++c) DOCTEST_CHECK(late[c] == doctest::Approx(reached[row * 3 + c]).epsilon(SameRow));
+    }
+}
+
+DOCTEST_TEST_CASE("colours seen from anywhere follow the map of the base colours") {
+    // Degree 1: a view adds a colour to the base colour; mapped colours differ by A times that colour.
+    Random random(4);
+    constexpr std::size_t stride = 12, rows = 40;
+    std::vector<float> birth(rows * stride), gradient(rows * stride);
+    for (auto& value : birth) value = static_cast<float>(random.uniform(-0.5, 0.5));
+    for (auto& value : gradient) value = static_cast<float>(random.normal());
+    auto sh = birth;
+    edit::CommonColour common(birth, stride);
+    for (int step = 0; step < 10; ++step) common.step(gradient, birth, sh, Rate);
+    // The map taken from pairs of rows: differences of base colours go through A alone.
+    const auto mapped = [&](const Vec3& base, const std::vector<float>& like) {
+        std::vector<float> own = like;
+        for (int c = 0; c < 3; ++c) own[static_cast<std::size_t>(c)] = static_cast<float>(sh_from_colour(base[c]));
+        auto after = own;
+        common.apply(own, after);
+        return Vec3{colour_from_sh(after[0]), colour_from_sh(after[1]), colour_from_sh(after[2])};
+    };
+    for (std::size_t j = 3; j < stride; j += 3) {
+        const std::vector<float> row(birth.begin(), birth.begin() + static_cast<std::ptrdiff_t>(stride));
+        const Vec3 seen{ShC0 * row[j], ShC0 * row[j + 1], ShC0 * row[j + 2]};
+        const Vec3 moved = mapped(seen + Vec3{0.3, 0.3, 0.3}, row) - mapped({0.3, 0.3, 0.3}, row);
+        for (int c = 0; c < 3; ++c)
+            DOCTEST_CHECK(ShC0 * sh[j + static_cast<std::size_t>(c)] == doctest::Approx(moved[c]).epsilon(1e-4));
+    }
+}
+
+DOCTEST_TEST_CASE("black, one colour and one row stay finite") {
+    for (const auto& colours : {std::vector<Vec3>(5, Vec3{}), std::vector<Vec3>(5, Vec3{0.2, 0.4, 0.6}), std::vector<Vec3>{{1, 0, 0}}}) {
+        const auto birth = rows_of(colours);
+        const auto goal = rows_of(std::vector<Vec3>(colours.size(), Vec3{0.7, 0.6, 0.1}));
+        edit::CommonColour common(birth, 3);
+        const auto reached = led(common, birth, goal, 150);
+        for (const float value : reached) DOCTEST_CHECK(std::isfinite(value));
+        DOCTEST_CHECK(mean_difference(reached, goal) < 0.5 * mean_difference(birth, goal));
+    }
+}
