@@ -56,8 +56,9 @@ DOCTEST_TEST_CASE("grain is painted over and the shading stays") {
         painted.push_back(Vec3{0.1, 0.2, 0.9} * (colours[i].x / (i % 3 == 0 ? 0.33 : 0.72)));
     const auto birth = rows_of(colours), goal = rows_of(painted);
     edit::CommonColour common(birth, 3);
-    const auto reached = led(common, birth, goal, 150);
-    DOCTEST_CHECK(mean_difference(reached, goal) < 0.1 * mean_difference(birth, goal));
+    const auto reached = led(common, birth, goal, 75);
+    constexpr double left = 0.08;   // measured: 0.04 along the colours' own axes as wide as they spread, 0.12 all alike
+    DOCTEST_CHECK(mean_difference(reached, goal) < left * mean_difference(birth, goal));
 }
 
 DOCTEST_TEST_CASE("a row that joins late is where it would be had it taken every step") {
