@@ -20,9 +20,10 @@ public:
     CommonColour(std::span<const float> birth, std::size_t stride);
 
     /// One Adam step along the mean over the rows; adds the step to `sh`. All [rows,stride]; rows may come and go
-    /// between steps.
+    /// between steps. Colours beyond those of the constructor's rows count as the nearest of them along each axis: what was
+    /// learned where colours hardly spread says nothing about others.
     void step(std::span<const float> gradient, std::span<const float> birth, std::span<float> sh, double rate);
-    /// Adds all that was learned so far to one row [stride] that starts as `birth`.
+    /// Adds all that was learned so far to rows that start as `birth`.
     void apply(std::span<const float> birth, std::span<float> sh) const { add(learned_, birth, sh); }
 
 private:
@@ -34,6 +35,7 @@ private:
 
     std::size_t stride_ = 3;
     std::array<Vec3, 3> axis_{};   // colour along axis k = dot(axis_[k], colour)
+    std::array<double, 3> low_{}, high_{};   // of the first rows' colours along each axis
     Coefficients learned_{};
     AdamMoments moments_;
     int steps_ = 0;
