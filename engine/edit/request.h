@@ -34,7 +34,7 @@ struct EditRequest {
     int positive_points = 5;
     int negative_points = 3;
     double fallback_mass = 0.5;
-    double tau = 0.5;
+    double tau = 0.4;
     double label_smoothness = 1.5;
     double evidence_px = 0.5;
     bool localize = true;
@@ -72,7 +72,7 @@ struct EditRequest {
     double rate_opacity = 0.1;
     double rate_scale = 0.01;
     double rate_rotation = 0.002;
-    double geometry_share = 0.1;
+    double geometry_share = 0.03;
     double colour_coupling = 0.9;
     // Densification
     int densify_from = 100;
@@ -128,7 +128,7 @@ private:
         f("negative_points", self.negative_points, "Clicks outside for the segmenter.", Range{0, 50});
         f("fallback_mass", self.fallback_mass,
           "A segment that captures less of the attention than this gives way to the attention region.", Range{0, 1});
-        f("tau", self.tau, "Splats seen inside the masks for more than this share are labelled.", Range{0, 1});
+        f("tau", self.tau, "Splats of which the views say more than this are labelled: half a mask, half the attention, 0 to 1.", Range{0, 1});
         f("label_smoothness", self.label_smoothness,
           "How much neighbouring splats of one colour share their label; 0 = every splat for itself.", Range{0, 100});
         f("evidence_px", self.evidence_px, "Splats seen over fewer pixels than this are not labelled.", Range{0, 1e6});
