@@ -31,6 +31,7 @@ constexpr double ReferenceSide = 512;       // pictures for which request length
 constexpr double AttentionShare = 0.5;      // of a vote: the attention itself, beside the mask cut out of it
 constexpr double AttentionLevel = 0.85;     // of the threshold: attention that counts half
 constexpr double AttentionSoftness = 0.05;  // how far from there it counts a quarter more or less
+constexpr double RivalLead = 0.5;           // another thing that has so much more takes the pixel from the mask
 
 /// Position of the word in the sentence, -1 = absent.
 int word_position(const std::vector<std::string>& words, const std::string& word) {
@@ -76,16 +77,23 @@ Image mask_image(const Mask& mask) {
     return image;
 }
 
+/// Whether the attention is above a level, in [0,1].
+double above(double attention, double level) {
+    return 1 / (1 + std::exp((level - attention) / AttentionSoftness));
+}
+
 /// What a view says about its pixels, [H,W,1] in [0,1]. A mask cut out by colours has sharp edges but leaves out what has
 /// another colour (a mushroom's stem, a car's windows); the attention is blurred but knows that they belong. Where the
-/// two disagree, the other views and the cut between neighbours decide. A text segmenter is believed as it is.
+/// two disagree, the other views and the cut between neighbours decide; what another named thing has for sure (the white
+/// legs of a dog on snow) the mask does not take from it. A text segmenter is believed as it is.
 Image vote_of(const ViewEvidence& view, double threshold) {
     Image vote = mask_image(view.mask);
     if (view.failed || view.branch == "text") return vote;
     for (std::size_t i = 0; i < vote.data.size(); ++i) {
-        const double above = view.map.data[i] - AttentionLevel * threshold;
-        const double attention = 1 / (1 + std::exp(-above / AttentionSoftness));
-        vote.data[i] = static_cast<float>((1 - AttentionShare) * vote.data[i] + AttentionShare * attention);
+        const double attention = above(view.map.data[i], AttentionLevel * threshold);
+        const double lost = view.lead.data.empty() ? 0 : above(view.lead.data[i], RivalLead);
+        vote.data[i] =
+            static_cast<float>((1 - AttentionShare) * (1 - lost) * vote.data[i] + AttentionShare * attention);
     }
     return vote;
 }
@@ -95,6 +103,7 @@ struct Search {
     std::string word;
     std::string prompt;
     std::vector<std::string> rivals;
+    bool rivals_given = false;   // by the user, not read off the sentence
     bool absent = false;
 };
 
@@ -167,9 +176,10 @@ private:
         std::string sentence = request().prompt;
         if (!has_word(sentence, word)) sentence = sentence_before(request());   // "on the snow" was "on the grass"
         if (!has_word(sentence, word)) sentence = "a " + word;
-        Search search{word, std::move(sentence), {}, absent};
-        if (absent) return search;
-        for (const auto& rival : words_of(request().rivals)) {
+        Search search{word, std::move(sentence), {}, request().rivals != "auto", absent};
+        if (absent || request().rivals == "none") return search;
+        for (const auto& rival :
+             search.rivals_given ? words_of(request().rivals) : things_named(sentence_before(request()))) {
             if (rival == word) continue;
             if (!has_word(search.prompt, rival)) search.prompt += ", " + rival;
             search.rivals.push_back(rival);
@@ -195,23 +205,21 @@ private:
         view.render = renders_[v];
         std::vector<std::string> words{search.word};
         words.insert(words.end(), search.rivals.begin(), search.rivals.end());
-        const AttentionQuery query{view.render,
-                                   search.prompt,
-                                   words,
-                                   input_.view_words.empty() ? std::string() : input_.view_words[v],
-                                   search.absent,
-                                   request().attention_repeats,
-                                   Random::stream(request().seed, 5000 + v).next()};
-        auto maps = tools_.attention.locate(query);
-        GSE_CHECK_EQ(maps.size(), words.size());
+        AttentionQuery query{view.render,
+                             search.prompt,
+                             std::move(words),
+                             input_.view_words.empty() ? std::string() : input_.view_words[v],
+                             search.absent,
+                             request().attention_repeats,
+                             Random::stream(request().seed, 5000 + v).next()};
+        auto maps = ask(query, search.rivals_given);
+        GSE_CHECK_EQ(maps.size(), query.words.size());
         for (auto& map : maps) {
             GSE_CHECK(map.width == view.render.width && map.height == view.render.height);
             normalise_maximum(map);
         }
         view.map = std::move(maps.front());
-        for (std::size_t rival = 1; rival < maps.size(); ++rival)  // the stronger word takes the pixel
-            for (std::size_t i = 0; i < view.map.data.size(); ++i)
-                if (maps[rival].data[i] > view.map.data[i]) view.map.data[i] = 0;
+        compete(view, maps, search.rivals_given);
         const double level = threshold();
         const Image small = localize::resize_image(view.map, ClusterGrid, grid_height(view.map));
         small_region_ = localize::clean_clusters(localize::threshold_map(small, level), small,
@@ -226,6 +234,30 @@ private:
                                 LargestMaskShare * static_cast<double>(view.region.data.size());
         if (small_region_.count() < LeastRegionCells || everything) fail(view);
         return view;
+    }
+
+    /// A rival nobody asked for must not end the search: what the model cannot read of a long sentence is left out.
+    std::vector<Image> ask(AttentionQuery& query, bool strict) const {
+        try {
+            return tools_.attention.locate(query);
+        } catch (const Error& failure) {
+            if (strict || query.words.size() < 2 || failure.code() != ErrorCode::NotFound) throw;
+            log::debug("without the other things of the sentence: {}", failure.what());
+        }
+        query.words.resize(1);
+        return tools_.attention.locate(query);
+    }
+
+    /// How far ahead the others are; those that the user gave take every pixel they have more of, those of the sentence only
+    /// count in vote_of(): the attention of a wide ground is strong under the feet of what stands on it.
+    static void compete(ViewEvidence& view, const std::vector<Image>& maps, bool strict) {
+        if (maps.size() < 2) return;
+        view.lead = Image(view.map.width, view.map.height, 1);
+        for (std::size_t i = 0; i < view.map.data.size(); ++i) {
+            for (std::size_t rival = 1; rival < maps.size(); ++rival)
+                view.lead.data[i] = std::max(view.lead.data[i], maps[rival].data[i] - view.map.data[i]);
+            if (strict && view.lead.data[i] > 0) view.map.data[i] = 0;
+        }
     }
 
     static void fail(ViewEvidence& view) {

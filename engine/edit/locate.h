@@ -40,7 +40,8 @@ struct LocateTools {
 /// Everything one view contributed, for the window and the evidence pictures.
 struct ViewEvidence {
     Image render;                     // [H,W,3]
-    Image map;                        // [H,W,1] attention of the word, maximum 1; 0 where a rival has more
+    Image map;                        // [H,W,1] attention of the word, maximum 1; 0 where a rival the user gave has more
+    Image lead;                       // [H,W,1] how much more another named thing has, 0 = none; empty without rivals
     Mask region;                      // thresholded and cleaned attention
     std::vector<PointPrompt> points;  // clicks handed to the segmenter
     Mask mask;                        // the view's vote, not dilated

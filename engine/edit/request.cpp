@@ -47,7 +47,9 @@ using Words = std::vector<std::string>;
 
 const Words Articles{"a", "an", "the", "its", "his", "her", "their", "some", "this", "that", "photo", "picture", "of"};
 const Words Joiners{"wearing", "with", "holding", "has", "having", "carrying", "plus", "and", "made", "into", "as"};
-const Words Stops{"on", "in", "at", "under", "beside", "near", "behind", "over", "by", "from", "to", "is", "of", "standing"};
+const Words Stops{"on",   "in", "at", "under", "beside",   "near",    "behind", "over",   "by",
+                  "from", "to", "is", "of",    "standing", "sitting", "lying",  "turned", "changed"};
+const Words Turning{"made", "of", "into", "as"};   // what follows is not a thing beside the others
 
 /// Last word of the noun phrase that begins at `first`: articles and the "of" of "made of" are passed over.
 std::string head_of_phrase(const Words& words, std::size_t first) {
@@ -109,6 +111,18 @@ std::string sentence_before(const EditRequest& request) {
     std::string sentence;
     for (const auto& word : words) sentence += (sentence.empty() ? "" : " ") + word;
     return sentence;
+}
+
+std::vector<std::string> things_named(const std::string& sentence) {
+    const auto words = words_of(sentence);
+    std::vector<std::string> things;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const bool begins = i == 0 || contains(Joiners, words[i - 1]) || contains(Stops, words[i - 1]);
+        if (!begins || (i > 0 && contains(Turning, words[i - 1])) || contains(Turning, words[i])) continue;
+        auto head = head_of_phrase(words, i);
+        if (!head.empty() && !contains(things, head)) things.push_back(std::move(head));
+    }
+    return things;
 }
 
 EditRequest validated(EditRequest request) {

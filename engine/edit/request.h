@@ -25,7 +25,7 @@ struct EditRequest {
     std::string background = "black";
     bool focus = true;
     // Localization
-    std::string rivals;
+    std::string rivals = "auto";
     double attention_threshold = 0;
     int attention_repeats = 3;
     double dbscan_eps = 2;
@@ -117,7 +117,8 @@ private:
     template <class Self, class F>
     static void visit_localization(Self& self, F&& f) {
         f("rivals", self.rivals,
-          "Other things the scene shows (\"hat grass\"): pixels that attend more to them are not taken for the source.");
+          "Other things the scene shows (\"hat grass\"; auto: those the sentence names; none): pixels that attend more to "
+          "them are not taken for the source.");
         f("attention_threshold", self.attention_threshold,
           "Attention above this share of the maximum counts; 0 = what the model states (0.5 in the paper).", Range{0, 1});
         f("attention_repeats", self.attention_repeats, "Attention passes per view, each with fresh noise.", Range{1, 100});
@@ -221,6 +222,10 @@ std::string guessed_target(const std::string& prompt, const std::string& source)
 /// The prompt as it was before the edit: without the new word, or without the phrase that brings it ("wearing a red hat");
 /// where it stands in the source's place ("into a panda"), with the source instead. The words of a validated request.
 std::string sentence_before(const EditRequest& request);
+
+/// The things a sentence names, in its order, each once: the last words of its noun phrases ("a white dog wearing a hat on
+/// the snow": dog, hat, snow).
+std::vector<std::string> things_named(const std::string& sentence);
 
 /// Fills what the request leaves open (target and source word) and checks it. Throws Error with one sentence:
 /// an empty prompt, a target that is not in the prompt, an unknown mode.

@@ -28,6 +28,7 @@ double iou(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& 
 class ColourAttention : public edit::AttentionSource {
 public:
     std::vector<Image> locate(const edit::AttentionQuery& query) override {
+        if (query.words.size() > most_words) throw Error(ErrorCode::NotFound, "a word stands beyond what the model reads");
         queries.push_back({query.prompt, query.words.front(), query.absent, query.seed});
         Image map(query.image.width, query.image.height, 1);
         const bool blind = calls++ % 12 < blind_views;
@@ -53,6 +54,7 @@ public:
         std::uint64_t seed;
     };
     std::vector<Query> queries;
+    std::size_t most_words = 9;
     int blind_views = 0;
     int hat_shift = 10;
 
@@ -88,6 +90,20 @@ public:
         return mask;
     }
     std::string name() const override { return "top"; }
+};
+
+/// Takes whatever is not black.
+class GreedySegmenter : public edit::Segmenter {
+public:
+    Mask segment(const Image& image, const std::vector<edit::PointPrompt>&, const std::optional<edit::BoxPrompt>&,
+                 const Image&) override {
+        Mask mask(image.width, image.height);
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                mask.at(x, y) = image.at(x, y, 0) + image.at(x, y, 1) + image.at(x, y, 2) > 0.2f ? 1 : 0;
+        return mask;
+    }
+    std::string name() const override { return "greedy"; }
 };
 
 edit::EditRequest request_for(const std::string& prompt, const std::string& target) {
@@ -198,6 +214,35 @@ DOCTEST_TEST_CASE("a rival word takes the pixels that attend more to it") {
             for (int x = 0; x < Side; ++x)
                 if (view.mask.at(x, y) != 0) DOCTEST_CHECK(view.map.at(x, y, 0) == 1);
     DOCTEST_CHECK(iou(*found.label.bits, fixture.scene.first) < 0.7);  // the lower half was given away
+}
+
+DOCTEST_TEST_CASE("what another thing of the sentence attends to for sure is not taken by the mask") {
+    const Quiet quiet;
+    Fixture fixture;
+    GreedySegmenter segmenter;
+    auto request = request_for("a blue ball on the grass", "blue");   // "grass" attends to the lower half, the ball's too
+    request.label_smoothness = 0;   // every splat for itself: the votes alone
+    const auto found = edit::locate(fixture.input(request), fixture.tools(&segmenter));
+    DOCTEST_CHECK(std::count_if(found.views.begin(), found.views.end(),
+                                [](const auto& view) { return view.branch == "points"; }) > 6);
+    DOCTEST_CHECK(fixture.attention.queries.front().prompt == "a blue ball on the grass");
+    const double competing = iou(*found.label.bits, fixture.scene.first);
+    DOCTEST_CHECK(competing > LeastIouUnrefined);   // the ball is kept, its lower half too
+    request.rivals = "none";
+    const auto alone = edit::locate(fixture.input(request), fixture.tools(&segmenter));
+    constexpr double least_gain = 0.05;  // the other ball's lower half, in the views whose mask takes it
+    DOCTEST_CHECK(competing > iou(*alone.label.bits, fixture.scene.first) + least_gain);
+}
+
+DOCTEST_TEST_CASE("a thing of the sentence that the model cannot read does not end the search; one that was asked for does") {
+    const Quiet quiet;
+    Fixture fixture;
+    fixture.attention.most_words = 1;
+    auto request = request_for("a blue ball on the grass", "blue");
+    const auto found = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(iou(*found.label.bits, fixture.scene.first) > LeastIouUnrefined);
+    request.rivals = "grass";
+    DOCTEST_CHECK_THROWS_AS(edit::locate(fixture.input(request), fixture.tools()), Error);
 }
 
 DOCTEST_TEST_CASE("what the attention covers belongs to the thing, even where the segmenter leaves it out") {

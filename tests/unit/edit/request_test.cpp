@@ -131,6 +131,16 @@ DOCTEST_TEST_CASE("the sentence before an edit lacks what the edit brings") {
     DOCTEST_CHECK(before("a bear", "bear", "bear") == "a bear");
 }
 
+DOCTEST_TEST_CASE("the things a sentence names are the heads of its noun phrases, each once") {
+    using Things = std::vector<std::string>;
+    DOCTEST_CHECK(edit::things_named("a white dog wearing a golden crown on the snow") == Things{"dog", "crown", "snow"});
+    DOCTEST_CHECK(edit::things_named("A wooden chair in flames, on tiles.") == Things{"chair", "flames", "tiles"});
+    DOCTEST_CHECK(edit::things_named("a chair made of stone beside a chair") == Things{"chair"});
+    DOCTEST_CHECK(edit::things_named("a bear turned into a panda on the grass") == Things{"bear", "grass"});
+    DOCTEST_CHECK(edit::things_named("on the") == Things{});
+    DOCTEST_CHECK(edit::things_named("") == Things{});
+}
+
 DOCTEST_TEST_CASE("the target is guessed from the sentence") {
     using edit::guessed_target;
     DOCTEST_CHECK(guessed_target("a bear wearing a red hat", "bear") == "hat");
