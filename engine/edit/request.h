@@ -51,7 +51,7 @@ struct EditRequest {
     double dynamic_from = 0.5;
     double dynamic_every = 0.125;
     bool look_again = true;
-    double look_again_tau = 0.5;
+    double look_again_tau = 0.75;
     bool early_stop = false;
     double early_stop_change = 0.5 / 255;
     // Anchors with generations (method 2.3)
