@@ -26,6 +26,17 @@ Config read_config(const std::filesystem::path& path) {
     return Config::from_json(read_json_file(path), path);
 }
 
+bool same_weights(torch::nn::Module& one, torch::nn::Module& other) {
+    const auto a = one.parameters(), b = other.parameters();
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const torch::Tensor& x, const torch::Tensor& y) { return torch::equal(x, y); });
+}
+
+void add_half(torch::nn::Module& to, torch::nn::Module& from) {
+    const auto a = to.parameters(), b = from.parameters();
+    for (std::size_t i = 0; i < a.size(); ++i) a[i].lerp_(b[i], 0.5);
+}
+
 template <class Module>
 void fill(Module& module, const std::filesystem::path& path, const LoadPlan& plan) {
     load_weights(*module, SafetensorsFile(path), plan);
@@ -60,6 +71,15 @@ StarterParts initial_parts(const std::filesystem::path& folder, const StarterCon
     fill(parts.networks.unet, folder / "unet/diffusion_pytorch_model.safetensors", unet_plan());
     parts.scaling_factor = scaling_factor;
     return parts;
+}
+
+void average_networks(StarterParts& parts, StarterParts& other, const std::filesystem::path& folder) {
+    const torch::NoGradGuard no_grad;
+    if (!same_weights(*parts.vae, *other.vae) || parts.scaling_factor != other.scaling_factor)
+        throw Error(ErrorCode::InvalidArgument, "the model to average with has another VAE",
+                    "average models that were trained from one another", folder);
+    add_half(*parts.networks.text, *other.networks.text);
+    add_half(*parts.networks.unet, *other.networks.unet);
 }
 
 }  // namespace gse::neural

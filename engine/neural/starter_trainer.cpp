@@ -77,6 +77,8 @@ StarterTrainParameters checked(StarterTrainParameters parameters, const StarterS
     if (parameters.initial.empty() && !all)
         throw Error(ErrorCode::InvalidArgument, "a part of the model would stay untrained",
                     "give every stage minutes or steps, or name the model to keep it from with --initial");
+    if (parameters.initial.empty() && !parameters.average.empty())
+        throw Error(ErrorCode::InvalidArgument, "there is nothing to average with", "name the other model with --initial");
     return parameters;
 }
 
@@ -110,6 +112,10 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
     auto configs = starter_configs(parameters, vocabulary);
     auto parts = parameters.initial.empty() ? fresh_parts(configs, parameters.seed)
                                             : initial_parts(parameters.initial, configs, vocabulary);
+    if (!parameters.average.empty()) {
+        auto other = initial_parts(parameters.average, configs, vocabulary);
+        average_networks(parts, other, parameters.average);
+    }
     std::filesystem::create_directories(work);
     StarterPictures pictures;
     if (new_vae || new_unet) pictures = load_or_render_pictures(parameters, source, work, job);

@@ -73,6 +73,7 @@ public:
 /// Everything that decides the result of a training run.
 struct StarterTrainParameters {
     std::string initial;
+    std::string average;
     int image_size = 64;
     int pictures = 24000;
     double vae_minutes = 20;
@@ -106,6 +107,8 @@ struct StarterTrainParameters {
     static void visit_fields(Self& self, F&& f) {
         f("initial", self.initial,
           "Starter folder to go on from; parts with neither minutes nor steps stay as they are there.");
+        f("average", self.average,
+          "Second starter folder: the run begins from the mean of its text encoder and UNet and those of the initial one.");
         f("image_size", self.image_size, "Side of the training pictures in pixels.", Range{32, 256});
         f("pictures", self.pictures, "Number of training pictures rendered first.", Range{8, 1e6});
         f("vae_minutes", self.vae_minutes, "Time for the VAE; ignored when vae_steps is set.", Range{0, 1e5});

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/random.h"
+#include "engine/neural/safetensors.h"
 #include "engine/neural/starter_data.h"
 #include "engine/neural/starter_trainer.h"
 #include "tests/test_paths.h"
@@ -178,6 +179,47 @@ DOCTEST_TEST_CASE("a run goes on from a finished model and keeps the parts it ha
     DOCTEST_CHECK(unchanged(scratch.path() / "tuned", "vae/config.json"));
     DOCTEST_CHECK(!unchanged(scratch.path() / "tuned", "unet/diffusion_pytorch_model.safetensors"));
     DOCTEST_CHECK(!unchanged(scratch.path() / "tuned", "text_encoder/model.safetensors"));
+}
+
+DOCTEST_TEST_CASE("two models trained from one another are averaged, weight by weight") {
+    const ToySource source;
+    const gse::test::ScratchFolder scratch;
+    const auto first = scratch.path() / "first", second = scratch.path() / "second", mean = scratch.path() / "mean";
+    auto parameters = toy_parameters();
+    parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 2;
+    train_starter(parameters, source, scratch.path() / "work1", first, {});
+    parameters.initial = first.string();
+    parameters.vae_minutes = parameters.unet_minutes = parameters.clip_minutes = 0;
+    parameters.vae_steps = parameters.clip_steps = 0;
+    train_starter(parameters, source, scratch.path() / "work2", second, {});
+
+    parameters.unet_steps = 0;
+    parameters.average = second.string();
+    train_starter(parameters, source, scratch.path() / "work3", mean, {});
+    constexpr double half_precision = 1e-3;   // weights are stored as 16-bit floats
+    for (const char* file : {"unet/diffusion_pytorch_model.safetensors", "text_encoder/model.safetensors"}) {
+        const SafetensorsFile a(first / file), b(second / file), c(mean / file);
+        for (const auto& [name, entry] : c.entries()) {
+            if (!at::isFloatingType(entry.dtype)) continue;
+            const auto expected = (a.tensor(name).to(torch::kFloat64) + b.tensor(name).to(torch::kFloat64)) / 2;
+            DOCTEST_CHECK_MESSAGE(torch::allclose(c.tensor(name).to(torch::kFloat64), expected, half_precision, 1e-6), name);
+        }
+        DOCTEST_CHECK(gse::read_file(first / file) != gse::read_file(second / file));
+    }
+
+    parameters.initial.clear();
+    const auto train = [&] { train_starter(parameters, source, scratch.path() / "work4", scratch.path() / "none", {}); };
+    parameters.vae_steps = parameters.unet_steps = 1;
+    DOCTEST_CHECK_THROWS_WITH_AS(train(), doctest::Contains("average"), gse::Error);
+    const auto other = scratch.path() / "other";
+    auto stranger = toy_parameters();
+    stranger.seed = 9;
+    stranger.vae_steps = stranger.unet_steps = stranger.clip_steps = 1;
+    train_starter(stranger, source, scratch.path() / "work5", other, {});
+    parameters.initial = first.string();
+    parameters.average = other.string();
+    parameters.vae_steps = parameters.unet_steps = 0;
+    DOCTEST_CHECK_THROWS_WITH_AS(train(), doctest::Contains("another VAE"), gse::Error);
 }
 
 DOCTEST_TEST_CASE("an initial model of another structure is refused before any work") {
