@@ -38,4 +38,15 @@ private:
     std::filesystem::path path_;
 };
 
+/// Adds the path to errors of `body` that name none: readers know only bytes.
+template <class F>
+auto with_path(const std::filesystem::path& path, F&& body) {
+    try {
+        return body();
+    } catch (const Error& error) {
+        if (!error.path().empty()) throw;
+        throw Error(error.code(), error.message(), error.hint(), path);
+    }
+}
+
 }  // namespace gse

@@ -5,8 +5,11 @@
 // the range is left out where there is none. Members are bool, int, std::uint64_t, float, double or std::string.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include "engine/base/error.h"
 
@@ -26,35 +29,60 @@ nlohmann::ordered_json fields_to_json(const P& parameters) {
     return json;
 }
 
-/// Sets the fields named in `json`; absent ones keep their value. Throws Error for an unknown name, a wrong type or a
-/// number out of its range.
+/// Sets `value` from JSON. Throws Error that names the setting: wrong type, not a whole number, not finite, out of its range.
+void read_field(const char* name, bool& value, const nlohmann::ordered_json& json);
+void read_field(const char* name, int& value, const nlohmann::ordered_json& json, const Range* range = nullptr);
+void read_field(const char* name, std::uint64_t& value, const nlohmann::ordered_json& json, const Range* range = nullptr);
+void read_field(const char* name, float& value, const nlohmann::ordered_json& json, const Range* range = nullptr);
+void read_field(const char* name, double& value, const nlohmann::ordered_json& json, const Range* range = nullptr);
+void read_field(const char* name, std::string& value, const nlohmann::ordered_json& json);
+
+/// Throws Error that names the setting when the number is not finite or not in its range (may be null).
+void check_field(const char* name, double value, const Range* range);
+void check_field(const char* name, float value, const Range* range);
+
+/// Checks every number of the struct, wherever it came from.
 template <class P>
-void fields_from_json(P& parameters, const nlohmann::ordered_json& json) {
-    std::size_t known = 0;
-    P::visit_fields(parameters, [&](const char* name, auto& value, const char*, auto... range) {
-        if (!json.contains(name)) return;
-        ++known;
-        try {
-            json.at(name).get_to(value);
-        } catch (const nlohmann::json::exception&) {
-            throw Error(ErrorCode::InvalidArgument, std::string("the setting \"") + name + "\" has the wrong type");
-        }
-        if constexpr (sizeof...(range) == 1 && std::is_arithmetic_v<std::remove_reference_t<decltype(value)>>) {
-            const auto inside = [&](const Range& limits) {
-                return static_cast<double>(value) >= limits.low && static_cast<double>(value) <= limits.high;
-            };
-            if (!(inside(range) && ...))
-                throw Error(ErrorCode::InvalidArgument, std::string("the setting \"") + name + "\" is out of its range");
+void check_fields(const P& parameters) {
+    P::visit_fields(parameters, [&](const char* name, const auto& value, const char*, const auto&... range) {
+        if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) {
+            const Range* limits = nullptr;
+            ((limits = &range), ...);
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, float>) check_field(name, value, limits);
+            else check_field(name, static_cast<double>(value), limits);
         }
     });
-    if (known == json.size()) return;
+}
+
+/// Sets the fields named in `json`; absent ones keep their value. Throws Error for an unknown name, a wrong type or a
+/// number that is not finite or out of its range; then nothing is set.
+template <class P>
+void fields_from_json(P& parameters, const nlohmann::ordered_json& json) {
+    if (!json.is_object()) throw Error(ErrorCode::InvalidArgument, "the settings are not an object of names and values");
+    P read = parameters;
+    std::size_t known = 0;
+    P::visit_fields(read, [&](const char* name, auto& value, const char*, const auto&... range) {
+        const auto found = json.find(name);
+        if (found == json.end()) return;
+        ++known;
+        using Value = std::remove_cvref_t<decltype(value)>;
+        if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>) {
+            const Range* limits = nullptr;
+            ((limits = &range), ...);
+            read_field(name, value, *found, limits);
+        } else {
+            read_field(name, value, *found);
+        }
+    });
     for (const auto& [key, ignored] : json.items()) {
+        if (known == json.size()) break;
         bool found = false;
         P::visit_fields(parameters, [&found, &wanted = key](const char* name, const auto&, const char*, auto...) {
             found |= wanted == name;  // renamed: clang 14 cannot capture a structured binding
         });
         if (!found) throw Error(ErrorCode::InvalidArgument, "there is no setting \"" + key + "\"");
     }
+    parameters = std::move(read);
 }
 
 }  // namespace gse

@@ -1,47 +1,71 @@
-// Files: read-only memory maps, and writes that appear whole or not at all.
+// Files: reads that a file cut off meanwhile cannot harm, and writes that appear whole or not at all.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace gse {
 
-/// A whole file mapped read-only. Throws Error (NotFound, Unreadable). An empty file gives an empty span.
-class MappedFile {
+/// A file opened for reading at any place; what has no bytes of its own (folders, pipes, devices) is refused.
+class InputFile {
 public:
-    explicit MappedFile(const std::filesystem::path& path);
-    ~MappedFile();
-    MappedFile(const MappedFile&) = delete;
-    MappedFile& operator=(const MappedFile&) = delete;
-    MappedFile(MappedFile&& other) noexcept;
-    MappedFile& operator=(MappedFile&&) = delete;
+    /// Throws Error (NotFound, Unreadable).
+    explicit InputFile(const std::filesystem::path& path);
+    ~InputFile();
+    InputFile(const InputFile&) = delete;
+    InputFile& operator=(const InputFile&) = delete;
+    InputFile(InputFile&& other) noexcept;
+    InputFile& operator=(InputFile&&) = delete;
 
-    std::span<const std::byte> bytes() const { return {data_, size_}; }
-    std::string_view text() const { return {reinterpret_cast<const char*>(data_), size_}; }
+    /// Bytes it had when it was opened.
+    std::uint64_t size() const { return size_; }
+    /// Fills `target` with the bytes from `offset` on. Throws Error (Unreadable) when the disk fails or the file has been cut
+    /// off since it was opened.
+    void read(std::uint64_t offset, std::span<std::byte> target) const;
 
 private:
-    const std::byte* data_ = nullptr;
+    std::filesystem::path path_;
+    int descriptor_ = -1;
+    std::uint64_t size_ = 0;
+};
+
+/// A whole file, read into memory: what happens to it on the disk meanwhile does not matter. (A memory map would end the
+/// program when somebody cuts the file off.) Throws Error (NotFound, Unreadable) or OutOfMemory.
+class FileBytes {
+public:
+    explicit FileBytes(const std::filesystem::path& path);
+
+    std::span<const std::byte> bytes() const { return {data_.get(), size_}; }
+    std::string_view text() const { return {reinterpret_cast<const char*>(data_.get()), size_}; }
+
+private:
+    std::unique_ptr<std::byte[]> data_;
     std::size_t size_ = 0;
 };
 
-/// Calls `write` with a temporary name beside `path` (same extension), then renames it over `path`.
-/// If `write` throws, the temporary file is removed and `path` is as it was. Missing parent folders are made.
+/// Calls `write` with a temporary name beside `path` (same extension), then renames it over `path` (PendingFile has the
+/// rules). If `write` throws, the temporary file is removed and `path` is as it was.
 /// Throws Error (Unwritable).
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);
 
-/// Removes temporary files that writers which died left in the folder (those whose process is gone,
-/// a minute old at least). Never throws.
+/// Removes temporary files that killed writers left in the folder; those of living ones stay.
+/// Never throws.
 void remove_stale_temporaries(const std::filesystem::path& folder);
 
-/// Writes these bytes to `path`, atomically.
+/// Writes these bytes to `path`, atomically. Throws Error (Unwritable).
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// The whole file as a string. Throws Error (NotFound, Unreadable).
+/// The first `most` bytes of a file, or all where it has fewer. Throws Error (NotFound, Unreadable).
+std::string read_start(const std::filesystem::path& path, std::size_t most);
+
+/// The whole file as a string. Throws Error (NotFound, Unreadable) or OutOfMemory.
 std::string read_file(const std::filesystem::path& path);
 
 }  // namespace gse

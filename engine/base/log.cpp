@@ -7,6 +7,9 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <string>
+
+#include "engine/base/printable.h"
 
 namespace gse::log {
 namespace {
@@ -50,8 +53,9 @@ void set_sink(Sink sink) {
     state().sink = std::move(sink);
 }
 
-void write(Level level, std::string_view text) {
+void write(Level level, std::string_view raw) {
     if (level < state().level.load()) return;
+    const std::string text = printable(raw, true);   // names and comments of files stand in it
     const std::lock_guard lock(state().mutex);
     if (state().sink)
         state().sink(level, text);

@@ -1,0 +1,92 @@
+// One background job at a time: progress to look at, pause, cancel; what it leaves is handed to the main thread.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "engine/base/error.h"
+#include "engine/base/progress.h"
+
+namespace gse {
+
+/// Closures from other threads for the main thread, which runs them between frames. `wake` is called after each post.
+class MainQueue {
+public:
+    void set_wake(std::function<void()> wake);
+    void post(std::function<void()> closure);
+    /// Runs everything posted so far; main thread only. Returns how many.
+    std::size_t run();
+
+private:
+    std::mutex mutex_;
+    std::deque<std::function<void()>> closures_;
+    std::function<void()> wake_;
+};
+
+/// What a frame shows of a job.
+struct JobStatus {
+    bool running = false, paused = false, can_pause = false;
+    std::string title, stage, outcome, error;
+    int step = 0, total = 0;
+    double seconds = 0;        // without pauses
+    double eta_seconds = -1;   // of the stage; negative = unknown
+};
+
+/// A thread of its own for jobs of one kind.
+class JobThread {
+public:
+    using Work = std::function<void(const JobControl&)>;
+    /// Called on the main thread when the work is over; `error` is null when it went well.
+    using Done = std::function<void(const Error* error)>;
+
+    struct Job {
+        std::string title;
+        Work work;
+        Done done;              // may be empty
+        bool can_pause = false;
+    };
+
+    /// Patient jobs, and the threads they start, leave the processor to the window and to what the user waits for.
+    enum class Priority { Normal, Patient };
+    explicit JobThread(MainQueue& queue, Priority priority = Priority::Normal);
+    ~JobThread();
+    JobThread(const JobThread&) = delete;
+    JobThread& operator=(const JobThread&) = delete;
+
+    /// Starts a job; false when one is running, or what the last one leaves has not been handed over yet.
+    bool start(Job job);
+    void pause(bool paused);
+    void cancel();
+    /// Until what the job leaves has been handed to the main thread: it ends in MainQueue::run().
+    bool running() const;
+    JobStatus status() const;
+
+private:
+    using Clock = std::chrono::steady_clock;
+    void loop(const std::stop_token& end);
+    void run(Job job, const std::stop_token& stop);
+    void report(std::string_view stage, int step, int total);
+
+    MainQueue& queue_;
+    Priority priority_;
+    mutable std::mutex mutex_;
+    std::condition_variable_any changed_;
+    JobStatus status_;
+    Job next_;
+    bool has_next_ = false;
+    std::shared_ptr<std::atomic<bool>> handing_over_ = std::make_shared<std::atomic<bool>>(false);
+    std::stop_source stop_;
+    Clock::time_point start_{}, stage_start_{}, pause_start_{};
+    Clock::duration paused_time_{}, stage_paused_{};
+    int stage_first_step_ = 0;
+    std::jthread thread_;
+};
+
+}  // namespace gse

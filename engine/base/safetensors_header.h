@@ -1,0 +1,12 @@
+// The header of a .safetensors file: names, types and shapes of its tensors, without reading any of them.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+namespace gse {
+
+/// A discarded value when the file is none, cannot be read or is damaged.
+nlohmann::json safetensors_header(const std::filesystem::path& path);
+
+}  // namespace gse
