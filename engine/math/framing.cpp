@@ -1,0 +1,45 @@
+// How far away a camera has to be.
+#include "engine/math/framing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gse {
+namespace {
+
+constexpr double FilledShare = 0.9;     // of the picture's width and height, by a box that is to be seen whole
+constexpr double HomeAzimuth = 0.5;     // radians
+constexpr double SmallestBox = 1e-9;    // of the box's distance from the origin, so that a point has a camera beside it
+
+}  // namespace
+
+double fitting_distance(const Bounds& bounds, const Mat3& rotation, double fov_x, int width, int height) {
+    const double across = FilledShare * std::tan(0.5 * fov_x), down = across * height / width;
+    const Vec3 centre = bounds.centre();
+    double distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 at{corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
+                      corner & 4 ? bounds.high.z : bounds.low.z};
+        const Vec3 p = rotation * (at - centre);
+        distance = std::max({distance, std::abs(p.x) / across - p.z, std::abs(p.y) / down - p.z});
+    }
+    const double least = SmallestBox * length(centre);
+    return std::max(distance, least > 0 ? least : SmallestBox);
+}
+
+Camera home_camera(const OrbitParameters& orbit, const Bounds& bounds, double fov_x, int width, int height) {
+    const Mat3 rotation = orbit_camera(orbit, HomeAzimuth, width, height).rotation;
+    const Vec3 forward{rotation(2, 0), rotation(2, 1), rotation(2, 2)};
+    const double distance = fitting_distance(bounds, rotation, fov_x, width, height);
+    Camera camera;
+    camera.width = width;
+    camera.height = height;
+    camera.fx = camera.fy = 0.5 * width / std::tan(0.5 * fov_x);
+    camera.cx = 0.5 * width;
+    camera.cy = 0.5 * height;
+    camera.rotation = rotation;
+    camera.translation = -(rotation * (bounds.centre() - forward * distance));
+    return camera;
+}
+
+}  // namespace gse

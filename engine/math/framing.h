@@ -1,0 +1,25 @@
+// Boxes that are to be seen whole, and the cameras that see them.
+#pragma once
+
+#include "engine/math/camera.h"
+
+namespace gse {
+
+/// A box along the world's axes.
+struct Bounds {
+    Vec3 low{}, high{};
+
+    Vec3 centre() const { return (low + high) * 0.5; }
+    /// Radius of the ball around the box.
+    double radius() const { return 0.5 * length(high - low); }
+};
+
+/// How far from the middle of the box a camera of this rotation (world -> camera) sees all of it, with a margin, in a picture
+/// of any shape that is fov_x (radians) wide.
+double fitting_distance(const Bounds& bounds, const Mat3& rotation, double fov_x, int width, int height);
+
+/// Where a scene is first seen from: the direction of the orbit a little to the side of its front, all of the box in the
+/// picture.
+Camera home_camera(const OrbitParameters& orbit, const Bounds& bounds, double fov_x, int width, int height);
+
+}  // namespace gse
