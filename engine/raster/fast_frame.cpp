@@ -49,7 +49,7 @@ void Frame::set_view(const Camera& camera, const Settings& settings, int scene_d
     view_.ratio_low[1] = -(camera.cy / camera.fy + margin_y);
     view_.ratio_high[0] = (camera.width - camera.cx) / camera.fx + margin_x;
     view_.ratio_high[1] = (camera.height - camera.cy) / camera.fy + margin_y;
-    view_.near_plane = std::max<double>(settings.near_plane, SmallestNear);
+    view_.near_plane = settings.near_plane;
     view_.far_plane = settings.far_plane;
     view_.blur = settings.blur_px2;
     view_.width = camera.width;
@@ -65,7 +65,7 @@ void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const 
                     std::span<const float> values) {
     check_lengths(gaussians);
     GSE_CHECK(camera.width > 0 && camera.height > 0 && camera.fx > 0 && camera.fy > 0);
-    set_view(camera, settings, gaussians.sh_degree);
+    set_view(camera, with_depth_range(settings, gaussians, camera), gaussians.sh_degree);
     source_ = {
         gaussians.position.data(), gaussians.log_scale.data(),
         gaussians.rotation.data(), gaussians.opacity_logit.data(),

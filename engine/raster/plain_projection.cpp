@@ -209,7 +209,8 @@ Fate project(const Inputs& in, std::size_t row, const View& view, Splat& splat) 
     Geometry g;
     g.camera_point = camera.to_camera(position_of(in, row));
     const double z = g.camera_point.z;
-    if (!(z > std::max<double>(settings.near_plane, SmallestNear)) || !(z < settings.far_plane))
+    if (!(z > (settings.near_plane > 0 ? static_cast<double>(settings.near_plane) : SmallestNear)) ||
+        (settings.far_plane > 0 && !(z < settings.far_plane)))
         return Fate::Culled;
     shape(in, row, g);
     footprint(view, g);

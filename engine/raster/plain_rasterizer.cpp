@@ -91,7 +91,7 @@ public:
         WideArrays arrays;
         plain::SplatList list;
         arrays.assign(gaussians);
-        plain::project_all(arrays.inputs, {camera, settings}, list);
+        plain::project_all(arrays.inputs, {camera, with_depth_range(settings, gaussians, camera)}, list);
         std::vector<double> transmittance;
         plain::for_each_blended(list, camera, transmittance, [&](const plain::Pair& pair) {
             const double weight = pair.alpha * pair.before;
@@ -107,7 +107,7 @@ public:
         WideArrays arrays;
         plain::SplatList list;
         arrays.assign(gaussians);
-        plain::project_all(arrays.inputs, {camera, settings}, list);
+        plain::project_all(arrays.inputs, {camera, with_depth_range(settings, gaussians, camera)}, list);
         std::vector<double> transmittance;
         std::vector<double> sums(static_cast<std::size_t>(camera.width) *
                                  static_cast<std::size_t>(camera.height));
@@ -125,7 +125,7 @@ private:
     void prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings) {
         arrays_.assign(gaussians);
         camera_ = camera;
-        settings_ = settings;
+        settings_ = with_depth_range(settings, gaussians, camera);
         plain::project_all(arrays_.inputs, {camera_, settings_}, list_);
     }
 

@@ -20,14 +20,17 @@ namespace gse::raster {
 
 /// Image formation settings; the defaults are the program's.
 struct Settings {
-    float near_plane = 0.2f;
-    float far_plane = 1e10f;
+    float near_plane = 0;                // along the view; 0 = follows scene and camera (scene/depth_range.h)
+    float far_plane = 0;                 // 0 = nothing is too far
     float blur_px2 = 0.3f;               // added to the diagonal of the projected covariance
     bool antialiased = false;            // opacity compensation sqrt(det / det_blurred)
     int sh_degree = 3;                   // highest degree used; the scene's own if lower
     float negative_colour_slope = 0.0f;  // gradient of the clamp at 0 below 0 (0 = exact; 0.01 in training)
     std::array<float, 3> background{0, 0, 0};
 };
+
+/// The settings with both planes given: those that follow scene and camera as they are for these.
+Settings with_depth_range(const Settings& settings, const GaussianSpans& gaussians, const Camera& camera);
 
 struct ForwardOutput {
     Image colour;                       // [H,W,3]
