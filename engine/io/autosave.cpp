@@ -13,7 +13,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/base/log.h"
+#include "engine/base/path_text.h"
 #include "engine/io/fingerprint.h"
 #include "engine/io/user_files.h"
 
@@ -74,11 +76,11 @@ std::string absolute_name(const std::filesystem::path& path) {
 
 /// What one sidecar leads to; removes what is of no use any more.
 bool recover(const std::filesystem::path& sidecar, Recoverable& found) {
-    const Json json = Json::parse(read_file(sidecar), nullptr, false);
+    const Json json = try_parse_json(read_file(sidecar));
     if (!json.is_object() || owner_lives(json)) return false;
     found.file = std::filesystem::path(sidecar).replace_extension(".gsep");
-    found.project = json.value("project", "");
-    found.scene = json.value("scene", "");
+    found.project = path_of_text(json.value("project", ""));
+    found.scene = path_of_text(json.value("scene", ""));
     std::error_code failure, project_failure;
     const auto saved = std::filesystem::last_write_time(found.file, failure);
     if (failure) {
@@ -116,10 +118,10 @@ void Autosave::write(const ProjectData& project, const std::filesystem::path& pr
         const Json json = {{"process", static_cast<long>(getpid())},
                            {"boot", boot_id()},
                            {"start", process_start(getpid())},
-                           {"project", saved_as},
-                           {"scene", project.source.path.string()},
+                           {"project", text_of_path(saved_as)},
+                           {"scene", text_of_path(project.source.path.string())},
                            {"time", std::chrono::duration_cast<std::chrono::seconds>(now).count()}};
-        write_file(sidecar_of(path), json.dump(1, ' ', false, Json::error_handler_t::replace));
+        write_file(sidecar_of(path), json_text(json, 1));
     }
     writer.save(path, project);
     path_ = path;
@@ -130,6 +132,17 @@ void Autosave::discard() {
     const std::lock_guard lock(mutex_);
     if (!path_.empty()) remove_pair(path_);
     path_.clear();
+}
+
+void Autosave::leave() {
+    const std::lock_guard lock(mutex_);
+    if (path_.empty()) return;
+    Json json = try_parse_json<Json>(read_file(sidecar_of(path_)));
+    if (!json.is_object()) json = Json::object();
+    json["process"] = 0;
+    write_file(sidecar_of(path_), json.dump(1, ' ', false, Json::error_handler_t::replace));
+    path_.clear();
+    session_ = random_id();
 }
 
 std::vector<Recoverable> find_recoverable(const std::filesystem::path& folder) {

@@ -30,6 +30,9 @@ public:
     void write(const ProjectData& project, const std::filesystem::path& project_path, ProjectWriter& writer);
     /// The work is saved elsewhere, or the artist wants none of it.
     void discard();
+    /// The last one stays and is offered again, though this process lives on; the next write begins another.
+    /// Throws Error.
+    void leave();
     /// Where the last one was written; empty = none.
     std::filesystem::path path() const {
         const std::lock_guard lock(mutex_);
@@ -43,7 +46,7 @@ private:
     std::filesystem::path path_;
 };
 
-/// An autosave whose process is gone; load_project(file) opens it.
+/// An autosave whose process is gone, or that was left; load_project(file) opens it.
 struct Recoverable {
     std::filesystem::path file;
     std::filesystem::path project;  // where it was saved by the artist; empty = nowhere
@@ -51,7 +54,7 @@ struct Recoverable {
     std::int64_t saved_at = 0;  // seconds since 1970
 };
 
-/// Autosaves whose process is gone and that are newer than their project, newest first. Those older than
+/// Autosaves that nobody writes any more and that are newer than their project, newest first. Those older than
 /// their project are removed. Never throws.
 std::vector<Recoverable> find_recoverable(const std::filesystem::path& folder = autosave_folder());
 

@@ -21,6 +21,12 @@ inline std::uint64_t saturating_product(std::uint64_t a, std::uint64_t b) {
     return __builtin_mul_overflow(a, b, &result) ? ~std::uint64_t{0} : result;
 }
 
+/// a + b, or the largest value when that does not fit.
+inline std::uint64_t saturating_sum(std::uint64_t a, std::uint64_t b) {
+    std::uint64_t result = 0;
+    return __builtin_add_overflow(a, b, &result) ? ~std::uint64_t{0} : result;
+}
+
 /// Little-endian scalar at `source` (the machine is little-endian, as everywhere Debian's amd64 and arm64
 /// run).
 template <class T>

@@ -41,15 +41,15 @@ std::optional<fs::path> find_in_folder(const fs::path& folder) {
 
 std::vector<View> load_colmap(const fs::path& folder) {
     if (is_colmap_folder(folder, ".bin")) {
-        const MappedFile cameras(folder / "cameras.bin"), images(folder / "images.bin");
+        const FileBytes cameras(folder / "cameras.bin"), images(folder / "images.bin");
         return parse_colmap_binary(cameras.bytes(), images.bytes());
     }
-    const MappedFile cameras(folder / "cameras.txt"), images(folder / "images.txt");
+    const FileBytes cameras(folder / "cameras.txt"), images(folder / "images.txt");
     return parse_colmap_text(cameras.text(), images.text());
 }
 
 std::vector<View> load_json(const fs::path& path) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     const std::size_t first = file.text().find_first_not_of(" \t\r\n\xef\xbb\xbf");
     if (first != std::string_view::npos && file.text()[first] == '[') return parse_cameras_json(file.text());
     return parse_transforms_json(file.text(), path.parent_path());

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/base/log.h"
 #include "engine/io/camera_checks.h"
 #include "engine/io/cameras.h"
@@ -51,7 +52,7 @@ View parse_view(const Json& json, std::size_t index) {
 
 std::vector<View> parse_cameras_json(std::string_view text) {
     try {
-        const Json json = Json::parse(text.begin(), text.end());
+        const Json json = parse_json(text, "cameras.json");
         if (!json.is_array()) throw Error(ErrorCode::Malformed, "cameras.json is not a list of cameras");
         std::vector<View> views;
         for (const Json& entry : json) views.push_back(parse_view(entry, views.size()));

@@ -3,9 +3,13 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "engine/base/error.h"
+#include "engine/base/memory.h"
+#include "engine/io/compressed_ply.h"
 #include "engine/io/byte_reader.h"
+#include "engine/io/claims.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 #include "engine/io/ply_body.h"
@@ -13,8 +17,6 @@
 namespace gse::io {
 namespace {
 
-constexpr std::size_t ChunkRows = 256;
-constexpr double SqrtTwo = 1.4142135623730951;
 constexpr double ShRange = 8;  // coefficients lie in [-4, 4)
 
 struct Chunk {
@@ -87,7 +89,7 @@ std::array<float, 4> unpack_rotation(std::uint32_t word) {
     int shift = 20;
     for (std::size_t i = 0; i < 4; ++i) {
         if (i == largest) continue;
-        const double value = (((word >> shift) & 1023) / 1023.0 - 0.5) * SqrtTwo;
+        const double value = (((word >> shift) & 1023) / 1023.0 - 0.5) * std::numbers::sqrt2;
         q[i] = static_cast<float>(value);
         rest -= value * value;
         shift -= 10;
@@ -154,7 +156,7 @@ Elements find_elements(const PlyHeader& header) {
         if (element != nullptr && element->has_list()) throw_malformed("has a list property");
     const std::uint64_t count = elements.vertex->count;
     if (count == 0) throw_malformed("holds no splats");
-    if (elements.chunk->count < count / ChunkRows + (count % ChunkRows != 0 ? 1 : 0))
+    if (elements.chunk->count < count / CompressedChunkRows + (count % CompressedChunkRows != 0 ? 1 : 0))
         throw_malformed(fmt::format("has {} chunks, too few for {} splats", elements.chunk->count, count));
     if (elements.sh != nullptr && elements.sh->count < count)
         throw_malformed("has fewer SH rows than splats");
@@ -209,9 +211,10 @@ Scene parse_compressed_ply(Bytes bytes) {
                 fmt::format("has {} SH properties; 9, 24 or 45 are known", elements.sh->properties.size()));
     }
     const auto count = static_cast<std::size_t>(elements.vertex->count);
+    require_memory(splat_bytes(count, data.sh_degree), fmt::format("the scene of {} splats", count));
     data.resize(count);
     for (std::size_t row = 0; row < count; ++row)
-        unpack_row(rows.vertex.data() + row * elements.vertex->row_bytes(), columns, chunks[row / ChunkRows],
+        unpack_row(rows.vertex.data() + row * elements.vertex->row_bytes(), columns, chunks[row / CompressedChunkRows],
                    data, row);
     if (data.sh_degree > 0) unpack_sh(*elements.sh, rows.sh, data);
     Scene scene;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string_view>
@@ -50,7 +51,8 @@ Scene parse_ksplat(Bytes bytes);
 /// Writers to memory; the caller writes the bytes atomically. Quantised formats drop unusable rows with a
 /// warning.
 std::string write_gaussian_ply(const Scene& scene, const SaveOptions& options);
-std::string write_compressed_ply(const Scene& scene);
+/// `order`, when wanted: row order[i] of the usable rows became row i.
+std::string write_compressed_ply(const Scene& scene, std::vector<std::uint32_t>* order = nullptr);
 std::string write_splat(const Scene& scene);
 std::string write_spz(const Scene& scene);
 

@@ -4,11 +4,15 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/memory.h"
+#include "engine/io/byte_reader.h"
+#include "engine/io/claims.h"
 #include "engine/io/encoding.h"
 #include "engine/io/png.h"
 
@@ -17,6 +21,12 @@
 #endif
 
 namespace gse {
+namespace {
+
+constexpr std::uint64_t BytesPerPixel = 4 + 4 * sizeof(float);   // as decoded and as an Image
+constexpr std::size_t HeaderBytes = std::size_t{1} << 20;  // a JPEG's size may come after its preview picture
+
+}  // namespace
 
 #ifdef GSE_HAVE_OPENCV
 namespace {
@@ -38,10 +48,16 @@ void copy_pixels(const cv::Mat& from, double scale, Image& to) {
 
 cv::Mat decode(std::span<const std::byte> bytes) {
     if (bytes.empty()) throw Error(ErrorCode::Malformed, "the image file is empty");
+    if (const auto size = io::parse_image_size(bytes)) {
+        const std::uint64_t pixels = static_cast<std::uint64_t>(size->width) * static_cast<std::uint64_t>(size->height);
+        io::check_claim({io::saturating_product(pixels, BytesPerPixel), io::saturating_product(bytes.size(), 4)},
+                        fmt::format("the image of {} x {} pixels", size->width, size->height));
+    }
     try {
         const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<std::byte*>(bytes.data()));
         return cv::imdecode(raw, cv::IMREAD_UNCHANGED);
     } catch (const cv::Exception& failure) {
+        if (failure.code == cv::Error::StsNoMem) throw out_of_memory();
         throw Error(ErrorCode::Malformed, "the image cannot be decoded (" + failure.err + ")");
     }
 }
@@ -77,7 +93,7 @@ Image decode_image(std::span<const std::byte>) {
 #endif
 
 Image read_image(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     try {
         return decode_image(file.bytes());
     } catch (const Error& error) {
@@ -113,11 +129,12 @@ Mask read_mask(const std::filesystem::path& path) {
 }
 
 PngText read_png_text(const std::filesystem::path& path) {
-    return io::parse_png_text(MappedFile(path).bytes());
+    return io::parse_png_text(FileBytes(path).bytes());
 }
 
 std::optional<ImageSize> read_image_size(const std::filesystem::path& path) {
-    return io::parse_image_size(MappedFile(path).bytes());
+    const std::string start = read_start(path, HeaderBytes);
+    return io::parse_image_size(std::as_bytes(std::span(start)));
 }
 
 std::optional<ImageSize> image_size(std::span<const std::byte> bytes) { return io::parse_image_size(bytes); }

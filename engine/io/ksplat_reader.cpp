@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/io/byte_reader.h"
+#include "engine/io/claims.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 #include "engine/io/half.h"
@@ -185,6 +186,9 @@ Scene parse_ksplat(Bytes bytes) {
         sections.push_back(parse_section(headers.subspan(i * SectionHeaderBytes, SectionHeaderBytes)));
         data.sh_degree = std::max(data.sh_degree, sections.back().degree);
     }
+    std::uint64_t count = 0;
+    for (const Section& section : sections) count += section.count;
+    check_claim({splat_bytes(count, data.sh_degree), bytes.size()}, fmt::format("the .ksplat file's {} splats", count));
     for (const Section& section : sections) read_section(header, section, reader, data);
     if (data.size() == 0) throw_malformed("holds no splats");
     Scene scene;

@@ -9,7 +9,9 @@
 #include <optional>
 
 #include "engine/base/error.h"
+#include "engine/base/memory.h"
 #include "engine/io/byte_reader.h"
+#include "engine/io/claims.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 #include "engine/io/ply_body.h"
@@ -277,6 +279,7 @@ Scene parse_gaussian_ply(Bytes bytes) {
     PlyBody body(bytes, header);
     body.seek(*vertex);
 
+    require_memory(splat_bytes(vertex->count, layout.sh_degree), fmt::format("the scene of {} splats", vertex->count));
     GaussianData data;
     data.sh_degree = layout.sh_degree;
     std::vector<float> label, label_weight;

@@ -10,13 +10,15 @@
 #include <set>
 
 #include "engine/base/error.h"
+#include "engine/base/path_text.h"
+#include "engine/base/json.h"
+#include "engine/scene/strength.h"
 
 namespace gse::io {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr int DeepestNesting = 64;           // of arrays and objects, so that nothing recurses too deep
 constexpr std::size_t MostEntries = 100000;  // edits, labels, views
 constexpr int LargestSide = 1 << 16;         // pixels of a view
 constexpr std::uint64_t MostEdits = std::uint64_t{1} << 32;
@@ -179,6 +181,7 @@ Json to_json(const ProjectDescription::Edit& edit) {
             {"name", node.name},
             {"recipe", node.recipe},
             {"enabled", node.enabled},
+            {"strength", node.strength},
             {"seconds", any_number(node.seconds)},
             {"psnr_outside_db", any_number(node.psnr_outside_db)},
             {"changed_outside_label", node.changed_outside_label},
@@ -195,6 +198,8 @@ ProjectDescription::Edit read_edit(const Json& json, const std::string& name) {
     fields.text("name", node.name);
     fields.text("recipe", node.recipe);
     fields.flag("enabled", node.enabled);
+    fields.number("strength", node.strength);
+    if (node.strength < 0 || node.strength > MostStrength) throw_field(fields.full("strength"), "is out of range");
     fields.number("seconds", node.seconds, true);
     fields.number("psnr_outside_db", node.psnr_outside_db, true);
     fields.whole("changed_outside_label", node.changed_outside_label, 0, ~std::uint64_t{0});
@@ -227,8 +232,8 @@ ProjectDescription::LabelEntry read_label(const Json& json, const std::string& n
 }
 
 Json scene_json(const ProjectDescription& description) {
-    return {{"path", description.scene_path},
-            {"relative", description.scene_relative},
+    return {{"path", text_of_path(description.scene_path)},
+            {"relative", text_of_path(description.scene_relative)},
             {"bytes", description.scene_bytes},
             {"fingerprint", fmt::format("{:016x}", description.scene_fingerprint)},
             {"splats", description.file_rows},
@@ -241,6 +246,8 @@ void read_scene(const Json& json, ProjectDescription& description) {
     const Fields fields(json, "scene");
     fields.text("path", description.scene_path);
     fields.text("relative", description.scene_relative);
+    description.scene_path = path_of_text(description.scene_path);
+    description.scene_relative = path_of_text(description.scene_relative);
     fields.whole("bytes", description.scene_bytes, 0, ~std::uint64_t{0});
     std::string fingerprint = "0", base = BaseNames[0];
     fields.text("fingerprint", fingerprint);
@@ -255,22 +262,6 @@ void read_scene(const Json& json, ProjectDescription& description) {
     description.base = static_cast<BaseKind>(found - BaseNames.begin());
     fields.text("base_member", description.base_member);
     fields.whole("base_splats", description.base_rows, 0, ~std::uint32_t{0});
-}
-
-/// Parses with a limit on the depth, so that neither this nor a later writer recurses without bound.
-Json parse_bounded(std::string_view text) {
-    const auto guard = [](int depth, Json::parse_event_t, Json&) {
-        if (depth > DeepestNesting)
-            throw Error(ErrorCode::Malformed, "the project's description is nested too deep",
-                        "the file is damaged");
-        return true;
-    };
-    try {
-        return Json::parse(text, guard);
-    } catch (const Json::exception&) {
-        throw Error(ErrorCode::Malformed, "the project's description is not valid JSON",
-                    "the file is damaged; open an older copy or an autosave");
-    }
 }
 
 void check_header(const Fields& fields, ProjectDescription& description) {
@@ -331,11 +322,12 @@ std::string write_description(const ProjectDescription& description) {
     json["thumbnail"] = description.thumbnail;
     json["ui"] = description.ui;
     json["jobs"] = description.jobs;
-    return json.dump(1, ' ', false, Json::error_handler_t::replace);
+    return json_text(json, 1);
 }
 
 ProjectDescription parse_description(std::string_view text) {
-    const Json json = parse_bounded(text);
+    const Json json =
+        parse_json(text, "the project's description", "the file is damaged; open an older copy or an autosave");
     if (!json.is_object())
         throw Error(ErrorCode::Malformed, "this is not a project of GSEditPro",
                     "open a .gsep file or a scene");

@@ -10,7 +10,9 @@
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/base/memory.h"
 #include "engine/io/byte_reader.h"
+#include "engine/io/claims.h"
 #include "engine/io/encoding.h"
 #include "engine/io/inflate.h"
 
@@ -20,9 +22,8 @@ namespace {
 constexpr char Magic[] = {'G', 'S', 'M', '1'};
 constexpr std::uint32_t WordBytes = 4;
 constexpr int Level = 1;  // an autosave must be quick; floats hardly gain from more
-constexpr std::uint64_t FreeBytes = std::uint64_t{2}
-                                    << 30;  // labels of zeros unpack to thousands of times their size
-constexpr std::uint64_t BytesPerByte = 200;
+constexpr std::uint64_t FreeKnown = std::uint64_t{512} << 20;  // bytes of labels; zeros pack to a ten-thousandth
+constexpr std::uint64_t KnownPerFileByte = 20000;
 constexpr int EditShift = 32;
 
 [[noreturn]] void throw_damaged(const std::string& what, const char* how) {
@@ -103,14 +104,19 @@ std::string pack_member(std::string_view bytes, std::uint32_t element) {
     return out;
 }
 
-UnpackBudget::UnpackBudget(std::uint64_t file_bytes)
-    : left_(FreeBytes + std::min(saturating_product(file_bytes, BytesPerByte), std::uint64_t{1} << 62)) {}
+UnpackBudget::UnpackBudget(std::uint64_t file_bytes) : file_bytes_(file_bytes) {}
 
-void UnpackBudget::spend(std::uint64_t bytes) {
-    if (bytes > left_)
-        throw Error(ErrorCode::Malformed, "the project promises more data than a file of its size can hold",
+void UnpackBudget::spend(std::uint64_t bytes, const std::string& what) {
+    check_claim({saturating_sum(claimed_, bytes), file_bytes_}, what + " of the project, with what comes before it,");
+    claimed_ += bytes;
+}
+
+void UnpackBudget::spend_known(std::uint64_t bytes, const std::string& what) {
+    if (saturating_sum(known_, bytes) > saturating_sum(FreeKnown, saturating_product(file_bytes_, KnownPerFileByte)))
+        throw Error(ErrorCode::Malformed, "the project has more labels than a scene of its size can use",
                     "the file is damaged or was not made by this program");
-    left_ -= bytes;
+    require_memory(bytes, what + " of the project");
+    known_ += bytes;
 }
 
 std::vector<std::byte> unpack_member(std::span<const std::byte> member, std::uint64_t expected,
@@ -124,7 +130,8 @@ std::vector<std::byte> unpack_member(std::span<const std::byte> member, std::uin
         throw_damaged(what, "does not begin as it should");
     if (expected != AnySize && size != expected)
         throw_damaged(what, fmt::format("has {} bytes where {} are due", size, expected).c_str());
-    budget.spend(size);
+    if (expected == AnySize) budget.spend(size, what);
+    else budget.spend_known(size, what);
     std::vector<std::byte> bytes = decompress_zstd(reader.take(reader.remaining()), size);
     if (element == 1) return bytes;
     std::vector<std::byte> turned(bytes.size());

@@ -27,11 +27,14 @@ std::string pack_member(std::string_view bytes, std::uint32_t element);
 class UnpackBudget {
 public:
     explicit UnpackBudget(std::uint64_t file_bytes);
-    /// Throws Error (Malformed) when less than `bytes` is left.
-    void spend(std::uint64_t bytes);
+    /// For what only the file says the size of. Throws Error (Malformed) or OutOfMemory when that is too much.
+    void spend(std::uint64_t bytes, const std::string& what);
+    /// For what has one value per splat of the scene: labels may be all zeros and pack very small.
+    void spend_known(std::uint64_t bytes, const std::string& what);
 
 private:
-    std::uint64_t left_;
+    std::uint64_t file_bytes_;
+    std::uint64_t claimed_ = 0, known_ = 0;
 };
 
 /// Undoes pack_member; `what` names the part in messages. `expected` = bytes it must give, or AnySize.

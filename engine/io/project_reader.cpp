@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "engine/base/error.h"
@@ -19,21 +20,31 @@ namespace gse {
 namespace {
 
 constexpr std::uint64_t LargestDescription = std::uint64_t{64} << 20;  // bytes of project.json
-constexpr std::uint64_t LargestMember = std::uint64_t{64} << 30;
+constexpr std::uint64_t FreeDescription = std::uint64_t{1} << 20;
+constexpr std::uint64_t DescriptionPerFileByte = 100;   // deflated text
 constexpr std::uint64_t LargestPicture = std::uint64_t{64} << 20;
-constexpr std::size_t LargestPictureSide = 4096;
+constexpr std::size_t LargestPictureSide = 1024;   // thumbnails have about a hundred pixels
 constexpr const char* Damaged = "the file is damaged; open an older copy or an autosave";
 
 /// An opened project whose arrays are still packed.
 class OpenProject {
 public:
     explicit OpenProject(std::span<const std::byte> bytes)
-        : zip_(bytes, "the project"), budget_(bytes.size()), description_(read_description()) {}
+        : zip_(bytes, "the project"),
+          file_bytes_(bytes.size()),
+          budget_(bytes.size()),
+          description_(read_description()) {}
 
     const io::ProjectDescription& description() const { return description_; }
 
-    std::shared_ptr<const Image> picture(const std::string& name) const {
+    std::shared_ptr<const Image> picture(const std::string& name) {
         if (name.empty() || !zip_.has(name)) return nullptr;
+        const auto known = pictures_.find(name);
+        if (known != pictures_.end()) return known->second;
+        return pictures_[name] = read_picture(name);
+    }
+
+    std::shared_ptr<const Image> read_picture(const std::string& name) const {
         try {
             const auto bytes = zip_.read(name, LargestPicture);
             const auto size = io_image_size(bytes);
@@ -79,7 +90,7 @@ private:
         if (!zip_.has("project.json"))
             throw Error(ErrorCode::Malformed, "this is not a project of GSEditPro",
                         "open a .gsep file or a scene");
-        const auto bytes = zip_.read("project.json", LargestDescription);
+        const auto bytes = zip_.read("project.json", std::min(LargestDescription, FreeDescription + DescriptionPerFileByte * file_bytes_));
         return io::parse_description({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     }
 
@@ -92,7 +103,8 @@ private:
     }
 
     std::vector<std::byte> member(const std::string& name, std::uint64_t expected, const std::string& what) {
-        return io::unpack_member(zip_.read(name, LargestMember), expected, budget_, what);
+        // Members are packed already and stored as they are.
+        return io::unpack_member(zip_.read(name, file_bytes_), expected, budget_, what);
     }
 
     [[noreturn]] void throw_other_scene(std::size_t splats) const {
@@ -133,6 +145,7 @@ private:
         const std::string what = fmt::format("the label \"{}\"", label.name);
         label.weight = read_array<float>(entry.weight, count, what);
         label.manual = read_array<std::int8_t>(entry.manual, count, what);
+        budget_.spend_known(2 * count, what);   // its bits, and the choice by hand where the file has neither
         if (label.weight == nullptr && label.manual == nullptr)
             label.manual = std::make_shared<const std::vector<std::int8_t>>(count, std::int8_t{0});
         if (!entry.absent.empty())
@@ -142,19 +155,11 @@ private:
     }
 
     io::ZipReader zip_;
+    std::uint64_t file_bytes_;
     io::UnpackBudget budget_;
+    std::map<std::string, std::shared_ptr<const Image>> pictures_;   // edits may share them
     io::ProjectDescription description_;
 };
-
-template <class F>
-auto with_path(const std::filesystem::path& path, F&& body) {
-    try {
-        return body();
-    } catch (const Error& error) {
-        if (!error.path().empty()) throw;
-        throw Error(error.code(), error.message(), error.hint(), path);
-    }
-}
 
 /// Where the scene of a project may be, best first.
 std::vector<std::filesystem::path> scene_candidates(const io::ProjectDescription& description,
@@ -251,7 +256,7 @@ SceneSource scene_source(const std::filesystem::path& path, GaussianSet loaded) 
 
 ProjectData load_project(const std::filesystem::path& path) {
     return with_path(path, [&] {
-        const MappedFile file(path);
+        const FileBytes file(path);
         OpenProject open(file.bytes());
         const io::ProjectDescription& description = open.description();
         ProjectData project;
@@ -279,8 +284,8 @@ ProjectData parse_project(std::span<const std::byte> bytes, const GaussianSet* b
 
 ProjectSummary read_project_summary(const std::filesystem::path& path) {
     return with_path(path, [&] {
-        const MappedFile file(path);
-        const OpenProject open(file.bytes());
+        const FileBytes file(path);
+        OpenProject open(file.bytes());
         const io::ProjectDescription& description = open.description();
         ProjectSummary summary;
         summary.program = description.program;
@@ -306,8 +311,8 @@ bool is_project_file(const std::filesystem::path& path) {
     if (!std::filesystem::is_regular_file(path, failure)) return false;
     if (path.extension() == ".gsep") return true;
     try {
-        const MappedFile file(path);
-        if (!file.text().starts_with("PK")) return false;
+        if (read_start(path, 2) != "PK") return false;
+        const FileBytes file(path);
         return io::ZipReader(file.bytes(), "the file").has("project.json");
     } catch (const Error&) {
         return false;

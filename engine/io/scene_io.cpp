@@ -7,17 +7,20 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <fstream>
 #include <optional>
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
+#include "engine/io/format_loss.h"
 #include "engine/io/formats.h"
 
 namespace gse {
 namespace {
 
 constexpr std::string_view LfsPointer = "version https://git-lfs";
+constexpr std::size_t LongestPlyHeader = 16384;  // of a PLY that is looked at in a folder
 constexpr const char* ReadableHint = "known are .ply, .compressed.ply, .splat, .ksplat, .spz and .sog";
 
 std::string lower(std::string text) {
@@ -25,17 +28,6 @@ std::string lower(std::string text) {
         return static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
     });
     return text;
-}
-
-/// Adds the path to errors of readers, which know only bytes.
-template <class F>
-auto with_path(const std::filesystem::path& path, F&& body) {
-    try {
-        return body();
-    } catch (const Error& error) {
-        if (!error.path().empty()) throw;
-        throw Error(error.code(), error.message(), error.hint(), path);
-    }
 }
 
 /// N of a folder "iteration_N".
@@ -69,22 +61,53 @@ Scene load_file(const std::filesystem::path& path) {
     const std::string name = lower(path.filename().string());
     if (name == "lod-meta.json") return io::load_sog_levels(path);
     if (name == "meta.json") return io::load_sog_folder(path);
-    const MappedFile file(path);
+    const FileBytes file(path);
     return parse_scene(file.bytes(), name);
 }
 
-Scene load_folder(const std::filesystem::path& folder) {
+/// The scene a folder stands for by itself: unpacked SOG, or an Inria output folder.
+std::optional<std::filesystem::path> scene_of_layout(const std::filesystem::path& folder) {
     std::error_code ignored;
-    if (std::filesystem::exists(folder / "lod-meta.json", ignored))
-        return load_file(folder / "lod-meta.json");
-    if (std::filesystem::exists(folder / "meta.json", ignored)) return load_file(folder / "meta.json");
+    for (const char* meta : {"lod-meta.json", "meta.json"})
+        if (std::filesystem::exists(folder / meta, ignored)) return folder / meta;
     for (const std::filesystem::path& candidate : {folder / "point_cloud", folder})
-        if (const auto scene = highest_iteration(candidate)) return load_file(*scene);
-    if (std::filesystem::exists(folder / "point_cloud.ply", ignored))
-        return load_file(folder / "point_cloud.ply");
-    throw Error(ErrorCode::NotFound,
-                "the folder holds neither meta.json nor point_cloud/iteration_N/point_cloud.ply",
-                "name a scene file", folder);
+        if (const auto scene = highest_iteration(candidate)) return scene;
+    if (std::filesystem::exists(folder / "point_cloud.ply", ignored)) return folder / "point_cloud.ply";
+    return std::nullopt;
+}
+
+/// By its name a scene. PLY files hold meshes and points too: those whose header names nothing that splats
+/// have are left out.
+bool looks_like_scene(const std::filesystem::path& path) {
+    const std::string name = lower(path.filename().string());
+    std::error_code ignored;
+    if (name.starts_with('.') || !std::filesystem::is_regular_file(path, ignored)) return false;
+    for (const char* ending : {".splat", ".ksplat", ".spz", ".sog"})
+        if (name.ends_with(ending)) return true;
+    if (!name.ends_with(".ply")) return false;
+    std::string header(LongestPlyHeader, '\0');
+    std::ifstream stream(path, std::ios::binary);
+    stream.read(header.data(), static_cast<std::streamsize>(header.size()));
+    header.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+    const bool whole = header.starts_with("ply") && header.find("end_header") != std::string::npos;
+    return !whole || header.find("scale_0") != std::string::npos ||
+           header.find("packed_position") != std::string::npos;
+}
+
+Scene load_folder(const std::filesystem::path& folder) {
+    if (const auto scene = scene_of_layout(folder)) return load_file(*scene);
+    const auto files = scenes_in_folder(folder);
+    if (files.size() == 1) return load_file(files.front());
+    if (files.empty())
+        throw Error(ErrorCode::NotFound, "the folder holds no scene", ReadableHint, folder);
+    constexpr std::size_t most_named = 5;
+    std::string names;
+    for (std::size_t at = 0; at < std::min(files.size(), most_named); ++at)
+        names += (at > 0 ? ", " : "") + files[at].filename().string();
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the folder holds {} scenes ({}{})", files.size(), names,
+                            files.size() > most_named ? ", ..." : ""),
+                "name the one you mean", folder);
 }
 
 std::string format_of_name(const std::filesystem::path& path) {
@@ -93,6 +116,17 @@ std::string format_of_name(const std::filesystem::path& path) {
         if (name.ends_with("." + format)) return format;
     throw Error(ErrorCode::InvalidArgument, "the name does not end in a scene format that can be written",
                 "use .ply, .compressed.ply, .splat or .spz", path);
+}
+
+/// Reads back what is about to be written: the error is that of whoever opens the file, not an estimate.
+void warn_of_losses(const std::string& name, const Scene& scene, const GaussianSet& rows, const std::string& bytes,
+                    const std::string& format, const std::vector<std::uint32_t>& order) {
+    const auto view = std::as_bytes(std::span(bytes));
+    const Scene back = parse_scene(view, "written." + format);
+    const std::string loss = io::describe_loss(rows, back.gaussians, order);
+    if (!loss.empty()) log::warning("{} keeps rounded values: {}", name, loss);
+    if (scene.info.antialiased && !back.info.antialiased)
+        log::warning("{} does not say that the scene was trained with antialiasing; .ply and .spz do", name);
 }
 
 }  // namespace
@@ -139,18 +173,33 @@ Scene load_scene(const std::filesystem::path& path) {
     return scene;
 }
 
+std::vector<std::filesystem::path> scenes_in_folder(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    std::error_code failure;
+    if (!std::filesystem::is_directory(folder, failure) || scene_of_layout(folder)) return files;
+    std::filesystem::directory_iterator entry(folder, failure);
+    for (; !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure))
+        if (looks_like_scene(entry->path())) files.push_back(entry->path());
+    if (failure)
+        throw Error(ErrorCode::Unreadable, "the folder cannot be read (" + failure.message() + ")",
+                    "check its permissions", folder);
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
 std::vector<std::string> writable_formats() { return {"ply", "compressed.ply", "splat", "spz"}; }
 
-void save_scene(const std::filesystem::path& path, const Scene& scene, const SaveOptions& options) {
+SavedRows save_scene(const std::filesystem::path& path, const Scene& scene, const SaveOptions& options) {
     const std::string format = options.format.empty() ? format_of_name(path) : options.format;
     const bool labelled =
         options.from_label != nullptr || !options.label.empty() || !options.label_weight.empty();
     if (labelled && format != "ply")
         throw Error(ErrorCode::InvalidArgument, "only a plain .ply file has room for labels", "save as .ply",
                     path);
+    std::vector<std::uint32_t> order;
     const std::string bytes = with_path(path, [&]() -> std::string {
         if (format == "ply") return io::write_gaussian_ply(scene, options);
-        if (format == "compressed.ply") return io::write_compressed_ply(scene);
+        if (format == "compressed.ply") return io::write_compressed_ply(scene, &order);
         if (format == "splat") return io::write_splat(scene);
         if (format == "spz") return io::write_spz(scene);
         throw Error(ErrorCode::InvalidArgument,
@@ -159,7 +208,13 @@ void save_scene(const std::filesystem::path& path, const Scene& scene, const Sav
     });
     if (format == "compressed.ply")
         log::info("a compressed PLY is stored in another order: splat numbers change");
+    const GaussianSet rows = format == "ply" ? scene.gaussians : drop_unusable(scene.gaussians);
+    if (rows.empty() && !scene.gaussians.empty())
+        throw Error(ErrorCode::Malformed, fmt::format("none of the {} splats can be written as {}", scene.gaussians.size(), format),
+                    "their values are NaN or infinite", path);
+    if (format != "ply") warn_of_losses(path.filename().string(), scene, rows, bytes, format, order);
     write_file(path, bytes);
+    return {rows.size(), scene.gaussians.size() - rows.size()};
 }
 
 }  // namespace gse

@@ -10,27 +10,38 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/io/claims.h"
 
 namespace gse::io {
 namespace {
 
-constexpr std::size_t PieceBytes = std::size_t{1} << 20;
-constexpr std::uint64_t LargestPart = std::uint64_t{1} << 32;  // bytes of one unpacked file
-/// A texture may claim this many texels freely; beyond it, at most this many per compressed byte.
-constexpr std::uint64_t FreeTexels = std::uint64_t{1} << 24;
-constexpr std::uint64_t TexelsPerByte = 1000;
+constexpr std::size_t EntryPieceBytes = std::size_t{1} << 20;
 
 class Folder final : public SogFiles {
 public:
     explicit Folder(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    std::vector<std::byte> read(const std::string& name) const override {
+    std::vector<std::byte> read(const std::string& name, std::uint64_t most) const override {
         const std::filesystem::path relative(name);
         if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end())
             throw Error(ErrorCode::Malformed, "the SOG scene names a file outside of its folder", "",
                         folder_ / "meta.json");
-        const MappedFile file(folder_ / relative);
-        return {file.bytes().begin(), file.bytes().end()};
+        const InputFile file(folder_ / relative);
+        if (file.size() > most)
+            throw Error(ErrorCode::Malformed, "the file is larger than its place in a SOG scene allows", "",
+                        folder_ / relative);
+        std::vector<std::byte> content(static_cast<std::size_t>(file.size()));
+        file.read(0, content);
+        return content;
+    }
+
+    std::uint64_t stored_bytes() const override {
+        std::uint64_t bytes = 0;
+        std::error_code failure;
+        std::filesystem::directory_iterator entry(folder_, failure);
+        for (; !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure))
+            if (std::error_code ignored; entry->is_regular_file(ignored)) bytes += entry->file_size(ignored);
+        return bytes;
     }
 
 private:
@@ -39,7 +50,7 @@ private:
 
 class Archive final : public SogFiles {
 public:
-    explicit Archive(std::span<const std::byte> bytes) : zip_(nullptr, zip_discard) {
+    explicit Archive(std::span<const std::byte> bytes) : zip_(nullptr, zip_discard), stored_(bytes.size()) {
         zip_error_t error;
         zip_error_init(&error);
         zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error);
@@ -54,7 +65,7 @@ public:
         zip_.reset(zip);
     }
 
-    std::vector<std::byte> read(const std::string& name) const override {
+    std::vector<std::byte> read(const std::string& name, std::uint64_t most) const override {
         const zip_int64_t index = zip_name_locate(zip_.get(), name.c_str(), ZIP_FL_NODIR);
         if (index < 0)
             throw Error(ErrorCode::Malformed, fmt::format("the SOG archive holds no file \"{}\"", name),
@@ -64,19 +75,22 @@ public:
         std::vector<std::byte> content;
         while (file != nullptr) {
             const std::size_t filled = content.size();
-            content.resize(filled + PieceBytes);
-            const zip_int64_t got = zip_fread(file.get(), content.data() + filled, PieceBytes);
+            content.resize(filled + EntryPieceBytes);
+            const zip_int64_t got = zip_fread(file.get(), content.data() + filled, EntryPieceBytes);
             content.resize(filled + static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
             if (got == 0) return content;
-            if (got < 0 || content.size() > LargestPart) break;
+            if (got < 0 || content.size() > most) break;
         }
         throw Error(ErrorCode::Malformed,
                     fmt::format("the file \"{}\" of the SOG archive cannot be unpacked", name),
                     "the file is cut off or damaged; get it again");
     }
 
+    std::uint64_t stored_bytes() const override { return stored_; }
+
 private:
     std::unique_ptr<zip_t, void (*)(zip_t*)> zip_;
+    std::uint64_t stored_;   // bytes of the whole archive
 };
 
 }  // namespace
@@ -89,7 +103,7 @@ std::unique_ptr<SogFiles> open_sog_archive(std::span<const std::byte> bytes) {
     return std::make_unique<Archive>(bytes);
 }
 
-Texture decode_webp(std::span<const std::byte> bytes, const std::string& name) {
+Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, std::uint64_t stored_bytes) {
     const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
     int width = 0, height = 0;
     const auto fail = [&](const char* what) {
@@ -98,8 +112,7 @@ Texture decode_webp(std::span<const std::byte> bytes, const std::string& name) {
     };
     if (WebPGetInfo(data, bytes.size(), &width, &height) == 0) fail("is not a WebP picture");
     const std::uint64_t texels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    if (texels > FreeTexels && texels / TexelsPerByte > bytes.size())
-        fail("is larger than its bytes can describe");
+    check_claim({texels * 4, stored_bytes}, fmt::format("the texture \"{}\" of {} x {} texels", name, width, height));
     Texture texture;
     texture.width = static_cast<std::size_t>(width);
     texture.height = static_cast<std::size_t>(height);

@@ -13,11 +13,13 @@
 
 namespace gse::io {
 
-/// Gives the bytes of the file `name` of a scene. Throws Error when it is missing or broken.
+/// Gives the bytes of the file `name` of a scene. Throws Error when it is missing, broken or larger than `most`.
 class SogFiles {
 public:
     virtual ~SogFiles() = default;
-    virtual std::vector<std::byte> read(const std::string& name) const = 0;
+    virtual std::vector<std::byte> read(const std::string& name, std::uint64_t most) const = 0;
+    /// Bytes that all files take on the disk: what they claim to hold is measured by it.
+    virtual std::uint64_t stored_bytes() const = 0;
 };
 
 /// Reads the scene that the file `meta` among these describes. Throws Error.
@@ -37,7 +39,8 @@ struct Texture {
     const std::uint8_t* texel(std::size_t index) const { return rgba.data() + index * 4; }
 };
 
-/// Decodes a WebP picture. `name` is for messages. Throws Error (Malformed).
-Texture decode_webp(std::span<const std::byte> bytes, const std::string& name);
+/// Decodes a WebP picture that lies in a scene of `stored_bytes`. `name` is for messages. Throws Error (Malformed)
+/// or OutOfMemory.
+Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, std::uint64_t stored_bytes);
 
 }  // namespace gse::io

@@ -8,9 +8,13 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
+#include "engine/base/memory.h"
+#include "engine/io/claims.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 #include "engine/io/json_numbers.h"
@@ -23,6 +27,7 @@ using Json = nlohmann::json;
 
 constexpr std::size_t PaletteColumns = 64;  // palette entries side by side in the centroid texture
 constexpr std::size_t CodebookSize = 256;
+constexpr std::uint64_t LargestDescription = std::uint64_t{4} << 20;  // bytes of a meta.json, which has a few thousand
 constexpr std::uint64_t LargestCount = std::uint64_t{16383} * 16383;  // a WebP picture has no more texels
 
 [[noreturn]] void throw_malformed(const std::string& what) {
@@ -39,7 +44,7 @@ struct Source {
 
     Texture texture(const char* part, std::size_t index) const {
         const std::string name = meta.at(part).at("files").at(index).get<std::string>();
-        return decode_webp(files.read(name), name);
+        return decode_webp(files.read(name, std::uint64_t{1} << 32), name, files.stored_bytes());
     }
     Texture splat_texture(const char* part, std::size_t index) const {
         Texture result = texture(part, index);
@@ -184,6 +189,8 @@ Scene read_scene(const SogFiles& files, const Json& meta) {
     if (version > 2)
         throw Error(ErrorCode::Unsupported, fmt::format("SOG version {} is not known; 1 and 2 are", version));
     const Source source{meta, files, count_of(meta, version1), version1};
+    check_claim({splat_bytes(source.count, meta.contains("shN") ? MaxShDegree : 0), files.stored_bytes()},
+                fmt::format("the SOG scene's {} splats", source.count));
     source.splat_texture("sh0", 0);  // proves the count before anything of its size is made
     std::optional<Texture> centroids;
     if (meta.contains("shN") && !meta.at("shN").is_null()) centroids = source.texture("shN", 0);
@@ -207,7 +214,7 @@ Scene read_scene(const SogFiles& files, const Json& meta) {
 
 Json parse_json(std::span<const std::byte> bytes) {
     const char* text = reinterpret_cast<const char*>(bytes.data());
-    return Json::parse(text, text + bytes.size());
+    return gse::parse_json({text, bytes.size()}, "the description of the SOG scene");
 }
 
 /// JSON complaints (missing keys, wrong types, bad syntax) become ours.
@@ -244,15 +251,37 @@ GaussianSet concatenate(const std::vector<GaussianSet>& parts) {
     return GaussianSet(std::move(all));
 }
 
-/// Numbers of the files that a node and its children name for this level.
-void collect_files(const Json& node, const std::string& level, std::vector<std::size_t>& files) {
+/// Numbers of files in the order in which they were first named.
+struct FileNumbers {
+    std::vector<std::size_t> order;
+    std::set<std::size_t> seen;
+};
+
+/// The files that a node and its children name for this level; parse_json has bounded the depth.
+void collect_files(const Json& node, const std::string& level, FileNumbers& files) {
     if (node.contains("lods") && node.at("lods").contains(level)) {
         const std::size_t file =
             whole_number(node.at("lods").at(level).at("file"), LargestCount, "file number of a level");
-        if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+        if (files.seen.insert(file).second) files.order.push_back(file);
     }
     if (!node.contains("children")) return;
     for (const Json& child : node.at("children")) collect_files(child, level, files);
+}
+
+/// Each file once, however often it is listed; none outside of the scene's folder.
+std::vector<std::filesystem::path> part_files(const std::filesystem::path& folder, const Json& json) {
+    FileNumbers files;
+    collect_files(json.at("tree"), "0", files);
+    if (files.order.empty()) throw_malformed("names no file for its finest level");
+    std::vector<std::filesystem::path> paths;
+    std::set<std::filesystem::path> seen;
+    for (const std::size_t number : files.order) {
+        const auto name = std::filesystem::path(json.at("filenames").at(number).get<std::string>()).lexically_normal();
+        if (name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end())
+            throw_malformed("names a file outside of its folder");
+        if (seen.insert(name).second) paths.push_back(folder / name);
+    }
+    return paths;
 }
 
 }  // namespace
@@ -262,7 +291,7 @@ bool detect_sog(Bytes bytes, std::string_view) {
 }
 
 Scene read_sog(const SogFiles& files, const std::string& meta) {
-    return with_json_errors([&] { return read_scene(files, parse_json(files.read(meta))); });
+    return with_json_errors([&] { return read_scene(files, parse_json(files.read(meta, LargestDescription))); });
 }
 
 Scene parse_sog(Bytes bytes) { return read_sog(*open_sog_archive(bytes), "meta.json"); }
@@ -273,19 +302,18 @@ Scene load_sog_folder(const std::filesystem::path& meta) {
 
 Scene load_sog_levels(const std::filesystem::path& lod_meta) {
     return with_json_errors([&] {
-        const MappedFile file(lod_meta);
+        const FileBytes file(lod_meta);
         const Json json = parse_json(file.bytes());
-        std::vector<std::size_t> numbers_of_files;
-        collect_files(json.at("tree"), "0", numbers_of_files);
-        if (numbers_of_files.empty()) throw_malformed("names no file for its finest level");
         std::vector<GaussianSet> parts;
         Scene scene;
-        for (const std::size_t number : numbers_of_files) {
-            const auto name = json.at("filenames").at(number).get<std::string>();
-            Scene part = load_sog_folder(lod_meta.parent_path() / name);
+        std::uint64_t bytes = 0;
+        for (const auto& file_of_part : part_files(lod_meta.parent_path(), json)) {
+            Scene part = load_sog_folder(file_of_part);
             parts.push_back(part.gaussians);
+            bytes += part.gaussians.byte_size();
             if (parts.size() == 1) scene.info = std::move(part.info);
         }
+        if (parts.size() > 1) require_memory(bytes, "the scene's finest level");
         scene.gaussians = concatenate(parts);
         scene.info.warnings.push_back("of the levels of detail, only the finest is loaded");
         return scene;

@@ -5,7 +5,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/base/memory.h"
 #include "engine/io/byte_reader.h"
+#include "engine/io/claims.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 
@@ -47,8 +49,10 @@ Scene parse_splat(Bytes bytes) {
                     fmt::format("a .splat file has 32 bytes per splat; {} bytes are not a multiple of it",
                                 bytes.size()),
                     "the file is cut off or not a .splat file");
+    const std::size_t count = bytes.size() / RowBytes;
+    require_memory(splat_bytes(count, 0), fmt::format("the scene of {} splats", count));
     GaussianData data;
-    data.resize(bytes.size() / RowBytes);
+    data.resize(count);
     for (std::size_t row = 0; row < data.size(); ++row) parse_row(bytes.data() + row * RowBytes, data, row);
     Scene scene;
     scene.info.format = "splat";

@@ -15,15 +15,16 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/io/byte_reader.h"
+#include "engine/io/claims.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 #include "engine/io/half.h"
 #include "engine/io/inflate.h"
+#include "engine/io/spz_format.h"
 
 namespace gse::io {
 namespace {
 
-constexpr std::uint32_t Magic = 0x5053474e;  // "NGSP"
 constexpr std::size_t HeaderBytes = 16;
 constexpr std::size_t HeaderBytesV4 = 32;
 constexpr int HighestDegree = 4;
@@ -33,8 +34,6 @@ constexpr std::uint32_t CoordinateSystemExtension = 0xadbe0003;
 constexpr std::uint32_t RightUpBack = 4;
 constexpr std::uint32_t LastAxisFlip = 8;  // later values also exchange axes
 constexpr std::uint64_t LargestExtensions = 1 << 20;
-constexpr std::uint64_t HighestDeflateRatio = 1040;  // deflate cannot do better than 1032
-constexpr double ColourScale = 0.15;                 // not ShC0: the format keeps a wider range
 
 struct Header {
     std::uint32_t version = 0;
@@ -55,13 +54,13 @@ struct Arrays {
     Bytes position, alpha, colour, scale, rotation, sh;
 };
 
-[[noreturn]] void throw_malformed(const std::string& what) {
+[[noreturn]] void throw_bad_spz(const std::string& what) {
     throw Error(ErrorCode::Malformed, "the SPZ file " + what, "the file is cut off or damaged; get it again");
 }
 
 Header parse_header(Bytes bytes) {
-    if (bytes.size() < HeaderBytes) throw_malformed("ends inside its header");
-    if (load_scalar<std::uint32_t>(bytes.data()) != Magic) throw_malformed("does not begin with NGSP");
+    if (bytes.size() < HeaderBytes) throw_bad_spz("ends inside its header");
+    if (load_scalar<std::uint32_t>(bytes.data()) != SpzMagic) throw_bad_spz("does not begin with NGSP");
     Header header;
     header.version = load_scalar<std::uint32_t>(bytes.data() + 4);
     header.count = load_scalar<std::uint32_t>(bytes.data() + 8);
@@ -72,10 +71,10 @@ Header parse_header(Bytes bytes) {
     if (header.version < 1 || header.version > 4)
         throw Error(ErrorCode::Unsupported,
                     fmt::format("SPZ version {} is not known; 1 to 4 are", header.version));
-    if (header.degree > HighestDegree) throw_malformed(fmt::format("claims SH degree {}", header.degree));
+    if (header.degree > HighestDegree) throw_bad_spz(fmt::format("claims SH degree {}", header.degree));
     if (header.fractional_bits > 23)
-        throw_malformed(fmt::format("claims {} fractional bits", header.fractional_bits));
-    if (header.count == 0) throw_malformed("holds no splats");
+        throw_bad_spz(fmt::format("claims {} fractional bits", header.fractional_bits));
+    if (header.count == 0) throw_bad_spz("holds no splats");
     return header;
 }
 
@@ -177,7 +176,7 @@ GaussianData unpack(const Header& header, const Arrays& arrays) {
             data.log_scale[row * 3 + i] =
                 static_cast<float>(std::to_integer<int>(arrays.scale[row * 3 + i])) / 16 - 10;
             sh[i] = static_cast<float>((std::to_integer<int>(arrays.colour[row * 3 + i]) / 255.0 - 0.5) /
-                                       ColourScale);
+                                       SpzColourScale);
         }
         const std::byte* rest = arrays.sh.data() + row * header.sh_bytes();
         for (std::size_t i = 0; i < kept; ++i)
@@ -213,7 +212,7 @@ Scene make_scene(const Header& header, const Arrays& arrays, std::optional<std::
 /// v1-v3, already out of its gzip stream.
 Scene parse_flat(Bytes bytes) {
     const Header header = parse_header(bytes);
-    if (header.version == 4) throw_malformed("of version 4 lies inside a gzip stream");
+    if (header.version == 4) throw_bad_spz("of version 4 lies inside a gzip stream");
     const Bytes body = bytes.subspan(HeaderBytes);
     const Arrays arrays = split_arrays(header, body);
     const Bytes rest = body.subspan(static_cast<std::size_t>(header.count * header.row_bytes()));
@@ -221,21 +220,27 @@ Scene parse_flat(Bytes bytes) {
                       (header.flags & FlagExtensions) != 0 ? parse_extensions(rest) : std::nullopt);
 }
 
+/// Before anything is unpacked: the streams and the splats that follow from the header's count.
+void check_count(const Header& header, Bytes file) {
+    const std::uint64_t splats = splat_bytes(header.count, std::min(header.degree, MaxShDegree));
+    check_claim({splats + header.count * header.row_bytes(), file.size()},
+                fmt::format("the SPZ file's {} splats", header.count));
+}
+
 Scene parse_gzip(Bytes bytes) {
     const std::vector<std::byte> start = inflate_gzip(bytes, HeaderBytes);
     const Header header = parse_header(start);
     const std::uint64_t size = HeaderBytes + header.count * header.row_bytes();
-    if (size / HighestDeflateRatio > bytes.size())
-        throw_malformed(
-            fmt::format("promises {} splats but holds {} bytes only", header.count, bytes.size()));
+    check_count(header, bytes);
     return parse_flat(inflate_gzip(bytes, size + LargestExtensions));
 }
 
 Scene parse_streams(Bytes bytes) {
     const Header header = parse_header(bytes);
-    if (bytes.size() < HeaderBytesV4) throw_malformed("ends inside its header");
+    if (bytes.size() < HeaderBytesV4) throw_bad_spz("ends inside its header");
     const std::uint64_t table = load_scalar<std::uint32_t>(bytes.data() + HeaderBytes);
-    if (table < HeaderBytesV4 || table > bytes.size()) throw_malformed("places its table outside of itself");
+    if (table < HeaderBytesV4 || table > bytes.size()) throw_bad_spz("places its table outside of itself");
+    check_count(header, bytes);
     const std::array<std::uint64_t, 6> row_bytes = {header.position_bytes(), 1, 3, 3, header.rotation_bytes(),
                                                     header.sh_bytes()};
     std::array<std::vector<std::byte>, 6> streams;
@@ -245,11 +250,11 @@ Scene parse_streams(Bytes bytes) {
     std::size_t used = 0;
     for (std::size_t i = 0; i < row_bytes.size(); ++i) {
         if (row_bytes[i] == 0) continue;
-        if (used++ >= header.streams) throw_malformed("lacks some of its streams");
+        if (used++ >= header.streams) throw_bad_spz("lacks some of its streams");
         const auto compressed = toc.read<std::uint64_t>();
         const auto raw = toc.read<std::uint64_t>();
         if (raw != header.count * row_bytes[i])
-            throw_malformed(fmt::format("has a stream of {} bytes where {} splats need {}", raw, header.count,
+            throw_bad_spz(fmt::format("has a stream of {} bytes where {} splats need {}", raw, header.count,
                                         header.count * row_bytes[i]));
         streams[i] = decompress_zstd(frames.take(compressed), raw);
     }
@@ -262,7 +267,7 @@ bool is_gzip(Bytes bytes) {
     return bytes.size() >= 2 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b};
 }
 
-bool is_bare(Bytes bytes) { return bytes.size() >= 4 && load_scalar<std::uint32_t>(bytes.data()) == Magic; }
+bool is_bare(Bytes bytes) { return bytes.size() >= 4 && load_scalar<std::uint32_t>(bytes.data()) == SpzMagic; }
 
 }  // namespace
 

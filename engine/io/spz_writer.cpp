@@ -9,15 +9,14 @@
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 #include "engine/io/inflate.h"
+#include "engine/io/spz_format.h"
 
 namespace gse::io {
 namespace {
 
-constexpr std::uint32_t Magic = 0x5053474e;
 constexpr std::uint32_t Version = 3;
 constexpr int UsualFractionalBits = 12;  // steps of 1/4096 unit, range +-2048
 constexpr double LargestCode = 8388607;  // 2^23 - 1
-constexpr double ColourScale = 0.15;
 
 /// As many fractional bits (12 at most) as let every position fit; the reference writer would wrap far ones
 /// silently.
@@ -63,7 +62,7 @@ std::string write_spz(const Scene& scene) {
     flip_axes(data, {1, -1, -1});
     const int bits = fractional_bits(data.position);
     std::string raw;
-    append_value(raw, Magic);
+    append_value(raw, SpzMagic);
     append_value(raw, Version);
     append_value(raw, static_cast<std::uint32_t>(data.size()));
     append_value(raw, static_cast<std::uint8_t>(data.sh_degree));
@@ -77,7 +76,7 @@ std::string write_spz(const Scene& scene) {
     for (std::size_t row = 0; row < data.size(); ++row)
         for (std::size_t c = 0; c < 3; ++c)
             append_value(raw,
-                         to_byte((static_cast<double>(data.sh[row * stride + c]) * ColourScale + 0.5) * 255));
+                         to_byte((static_cast<double>(data.sh[row * stride + c]) * SpzColourScale + 0.5) * 255));
     for (const float value : data.log_scale)
         append_value(raw, to_byte((static_cast<double>(value) + 10) * 16));
     for (std::size_t row = 0; row < data.size(); ++row)

@@ -9,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/base/log.h"
 #include "engine/io/camera_checks.h"
 #include "engine/io/cameras.h"
@@ -67,7 +68,7 @@ WorldChange world_change(const Json& json, const std::filesystem::path& folder) 
     const std::filesystem::path file = folder / "dataparser_transforms.json";
     std::error_code ignored;
     if (folder.empty() || !std::filesystem::exists(file, ignored)) return change;
-    const Json parser = Json::parse(read_file(file));
+    const Json parser = parse_json(read_file(file), "dataparser_transforms.json");
     Affine applied;
     if (json.contains("applied_transform"))
         applied = affine(json.at("applied_transform"));
@@ -169,7 +170,7 @@ void set_pose(Camera& camera, const Json& frame, const WorldChange& change) {
 
 std::vector<View> parse_transforms_json(std::string_view text, const std::filesystem::path& folder) {
     try {
-        const Json file = Json::parse(text.begin(), text.end());
+        const Json file = parse_json(text, "the transforms file");
         if (!file.is_object() || !file.contains("frames")) throw_malformed("has no frames");
         const WorldChange change = world_change(file, folder);
         std::vector<View> views;

@@ -6,7 +6,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/base/log.h"
+#include "engine/base/path_text.h"
 
 namespace gse {
 namespace {
@@ -48,7 +50,7 @@ void merge(Json& into, const Json& values) {
 
 bool write_json(const std::filesystem::path& path, const Json& json) {
     try {
-        write_file(path, json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+        write_file(path, json_text(json, 2) + "\n");
         return true;
     } catch (const Error& error) {
         log::warning("{}", error.what());
@@ -65,8 +67,13 @@ std::vector<std::string> recent_names() {
     const auto files = json.find("files");
     if (files == json.end() || !files->is_array()) return names;
     for (const Json& file : *files)
-        if (file.is_string()) names.push_back(file.get<std::string>());
+        if (file.is_string()) names.push_back(path_of_text(file.get<std::string>()));
     return names;
+}
+
+void save_recent(std::vector<std::string> names) {
+    for (std::string& name : names) name = text_of_path(name);
+    save_user_json(recent_path(), {{"files", names}});
 }
 
 std::string absolute_name(const std::filesystem::path& path) {
@@ -89,7 +96,7 @@ Json load_user_json(const std::filesystem::path& path) {
         if (error.code() != ErrorCode::NotFound) log::warning("{}", error.what());
         return Json::object();
     }
-    Json json = Json::parse(text, nullptr, false);
+    Json json = try_parse_json(text);
     if (json.is_object()) return json;
     set_aside(path);
     return Json::object();
@@ -119,13 +126,13 @@ void add_recent(const std::filesystem::path& path, std::size_t most) {
     std::erase(names, name);
     names.insert(names.begin(), name);
     if (names.size() > most) names.resize(most);
-    save_user_json(recent_path(), {{"files", names}});
+    save_recent(names);
 }
 
 void forget_recent(const std::filesystem::path& path) {
     std::vector<std::string> names = recent_names();
     std::erase(names, absolute_name(path));
-    save_user_json(recent_path(), {{"files", names}});
+    save_recent(names);
 }
 
 }  // namespace gse

@@ -2,13 +2,18 @@
 #include "engine/io/video.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
+#include <sys/statvfs.h>
 
 #include <array>
+#include <cerrno>
+#include <string>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/pending_file.h"
 #include "engine/io/encoding.h"
+#include "engine/io/film_check.h"
 
 #ifdef GSE_HAVE_OPENCV
 #include <opencv2/core/utils/logger.hpp>
@@ -20,7 +25,10 @@ namespace gse {
 #ifdef GSE_HAVE_OPENCV
 
 struct VideoWriter::State {
-    std::filesystem::path path, temporary;
+    explicit State(const std::filesystem::path& name) : path(name), file(name) {}
+
+    std::filesystem::path path;
+    PendingFile file;
     int width = 0, height = 0;  // of the frames handed in
     cv::VideoWriter writer;
     cv::Mat picture;  // even size, blue-green-red
@@ -29,6 +37,8 @@ struct VideoWriter::State {
 };
 
 namespace {
+
+constexpr std::size_t ProbeBytes = std::size_t{1} << 20;
 
 /// Tries the codecs in order; OpenCV says on stderr what it misses, which is no news to the user.
 bool open_any_codec(cv::VideoWriter& writer, const std::filesystem::path& file, double rate, cv::Size size,
@@ -53,38 +63,24 @@ bool open_any_codec(cv::VideoWriter& writer, const std::filesystem::path& file, 
 
 }  // namespace
 
-VideoWriter::VideoWriter(const std::filesystem::path& path, int width, int height, double frames_per_second)
-    : state_(std::make_unique<State>()) {
+VideoWriter::VideoWriter(const std::filesystem::path& path, int width, int height, double frames_per_second) {
     if (width < 2 || height < 2 || !(frames_per_second > 0))
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("a film of {} x {} pixels at {} frames per second cannot be made", width,
                                 height, frames_per_second));
-    std::error_code failure;
-    if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), failure);
-    if (failure)
-        throw Error(ErrorCode::Unwritable, "the folder cannot be made (" + failure.message() + ")", "",
-                    path.parent_path());
-    state_->path = path;
-    state_->temporary =
-        path.parent_path() / ("." + path.stem().string() + ".part" + std::to_string(getpid()) +
-                                (path.extension() == ".webm" ? ".webm" : ".mp4"));
+    state_ = std::make_unique<State>(path);
     state_->width = width;
     state_->height = height;
     const cv::Size size(width / 2 * 2, height / 2 * 2);
     state_->picture.create(size, CV_8UC3);
-    if (!open_any_codec(state_->writer, state_->temporary, frames_per_second, size, state_->codec)) {
-        std::filesystem::remove(state_->temporary, failure);
+    if (!open_any_codec(state_->writer, state_->file.temporary(), frames_per_second, size, state_->codec)) {
+        state_->file.write(std::string(ProbeBytes, '\0'));  // if the disk is the reason, this says so
         throw Error(ErrorCode::Unwritable, "the film cannot be written: no codec opens this file",
-                    "check the rights of the folder and that OpenCV has FFmpeg", path);
+                    "name it .mp4 or .webm, and check that OpenCV has FFmpeg", path);
     }
 }
 
-VideoWriter::~VideoWriter() {
-    if (state_ == nullptr || state_->finished) return;
-    state_->writer.release();
-    std::error_code ignored;
-    std::filesystem::remove(state_->temporary, ignored);
-}
+VideoWriter::~VideoWriter() = default;  // the writer closes its file before that disappears
 
 void VideoWriter::add(const Image& frame) {
     GSE_CHECK(!state_->finished);
@@ -98,16 +94,21 @@ void VideoWriter::add(const Image& frame) {
                 *out++ = io::to_byte(static_cast<double>(frame.at(x, y, colours == 3 ? c : 0)) * 255);
     }
     state_->writer.write(state_->picture);
+    // The encoder passes over a full disk; without this the rest of a long film would be made for nothing.
+    struct statvfs disk {};
+    if (statvfs(state_->file.temporary().c_str(), &disk) == 0 && disk.f_blocks > 0 && disk.f_bfree == 0)
+        throw write_error("the film", ENOSPC, state_->path);
 }
 
 void VideoWriter::finish() {
     GSE_CHECK(!state_->finished);
     state_->writer.release();
-    std::error_code failure;
-    std::filesystem::rename(state_->temporary, state_->path, failure);
-    if (failure)
-        throw Error(ErrorCode::Unwritable, "the film cannot be written (" + failure.message() + ")",
-                    "check the free space and the rights of the folder", state_->path);
+    if (!io::film_is_whole(FileBytes(state_->file.temporary()).bytes())) {
+        state_->file.write(std::string(ProbeBytes, '\0'));  // as above
+        throw Error(ErrorCode::Unwritable, "the film was not written whole", "check the free space of the disk and write it again",
+                    state_->path);
+    }
+    state_->file.commit();
     state_->finished = true;
 }
 
