@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::size_t ColumnCount = 5;
 constexpr std::size_t ShColumn = 4;
-constexpr int EditShift = 32;  // identities of added rows: (edit << 32) | index
 
 std::size_t sh_stride(int degree) { return static_cast<std::size_t>(sh_coefficient_count(degree)) * 3; }
 
@@ -211,7 +210,7 @@ SceneDelta make_delta(const GaussianSet& before, std::span<const RowId> before_i
                       std::span<const std::int64_t> base_to_new, std::uint64_t edit_id) {
     GSE_CHECK_EQ(before_ids.size(), before.size());
     GSE_CHECK_EQ(base_to_new.size(), before.size());
-    GSE_CHECK(edit_id > 0 && edit_id < (std::uint64_t{1} << EditShift));
+    GSE_CHECK(edit_id > 0 && edit_id < (std::uint64_t{1} << EditIdShift));
     const GaussianSpans old_rows = before.spans(), new_rows = after.spans();
     const bool same_arrays = before.shares_all_with(after);
     SceneDelta delta;
@@ -239,7 +238,7 @@ SceneDelta make_delta(const GaussianSet& before, std::span<const RowId> before_i
     rows.clear();
     for (std::size_t row = 0; row < after.size(); ++row)
         if (has_origin[row] == 0) rows.push_back(row);
-    for (std::size_t i = 0; i < rows.size(); ++i) delta.added.push_back((edit_id << EditShift) | i);
+    for (std::size_t i = 0; i < rows.size(); ++i) delta.added.push_back((edit_id << EditIdShift) | i);
     delta.added_rows = gather(new_rows, rows);
     return delta;
 }

@@ -16,6 +16,7 @@ namespace gse {
 /// Identity of a row for the whole life of a document: rows of the base are 0..N-1, rows that edit `e` added
 /// are (e << 32) | index.
 using RowId = std::uint64_t;
+constexpr int EditIdShift = 32;
 
 struct SceneDelta {
     std::vector<RowId> changed;  // ascending

@@ -7,11 +7,11 @@
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/scene/strength.h"
 
 namespace gse {
 namespace {
 
-constexpr int EditShift = 32;
 constexpr float LoadedThreshold = 0.5f;  // labels of files are weights in [0,1] or bits
 constexpr std::uint32_t NoRow = ~std::uint32_t{0};
 
@@ -23,29 +23,57 @@ SharedIds base_ids(std::size_t count) {
     return std::make_shared<const std::vector<RowId>>(std::move(ids));
 }
 
-std::vector<const SceneDelta*> enabled_deltas(const std::vector<EditNode>& stack) {
-    std::vector<const SceneDelta*> deltas;
+/// What an edit of the stack does.
+struct Change {
+    const SceneDelta* delta = nullptr;
+    double strength = 1;
+    bool operator==(const Change&) const = default;
+};
+
+std::vector<Change> enabled_changes(const std::vector<EditNode>& stack) {
+    std::vector<Change> changes;
     for (const EditNode& edit : stack)
-        if (edit.enabled && edit.delta != nullptr) deltas.push_back(edit.delta.get());
-    return deltas;
+        if (edit.enabled && edit.delta != nullptr) changes.push_back({edit.delta.get(), edit.strength});
+    return changes;
+}
+
+/// Applies them one after the other; those at full strength that follow each other at once.
+std::pair<GaussianSet, std::vector<RowId>> apply_changes(const GaussianSet& set, std::span<const RowId> ids,
+                                                         std::span<const Change> changes) {
+    std::pair<GaussianSet, std::vector<RowId>> now{set, {ids.begin(), ids.end()}};
+    std::vector<const SceneDelta*> whole;
+    const auto apply_whole = [&] {
+        if (!whole.empty()) now = apply_deltas(now.first, now.second, whole);
+        whole.clear();
+    };
+    for (const Change& change : changes) {
+        if (change.strength == 1) {
+            whole.push_back(change.delta);
+            continue;
+        }
+        apply_whole();
+        now = apply_delta(now.first, now.second, with_strength(now.first, now.second, *change.delta, change.strength));
+    }
+    apply_whole();
+    return now;
 }
 
 /// Sets `current` and `row_ids` of `state` from its base and stack. `near` is a whole state: where its stack
 /// begins the same way over the same base, its result is where this one starts.
 void rebuild_rows(DocumentState& state, const DocumentState& near) {
-    const auto wanted = enabled_deltas(state.stack);
-    const auto done = enabled_deltas(near.stack);
+    const auto wanted = enabled_changes(state.stack);
+    const auto done = enabled_changes(near.stack);
     const bool ahead = near.row_ids != nullptr && state.base.shares_all_with(near.base) &&
                        done.size() <= wanted.size() && std::equal(done.begin(), done.end(), wanted.begin());
     const GaussianSet start = ahead ? near.current : state.base;
     const SharedIds start_ids = ahead ? near.row_ids : base_ids(state.base.size());
-    const std::span<const SceneDelta* const> rest = std::span(wanted).subspan(ahead ? done.size() : 0);
+    const std::span<const Change> rest = std::span(wanted).subspan(ahead ? done.size() : 0);
     if (rest.empty()) {
         state.current = start;
         state.row_ids = start_ids;
         return;
     }
-    auto [set, ids] = apply_deltas(start, *start_ids, rest);
+    auto [set, ids] = apply_changes(start, *start_ids, rest);
     state.current = std::move(set);
     state.row_ids =
         ids == *start_ids ? start_ids : std::make_shared<const std::vector<RowId>>(std::move(ids));
@@ -147,7 +175,7 @@ private:
     }
 
     bool may_return(RowId id) const {
-        const std::uint64_t edit = id >> EditShift;
+        const std::uint64_t edit = id >> EditIdShift;
         return edit == 0 || std::binary_search(edits_.begin(), edits_.end(), edit);
     }
 

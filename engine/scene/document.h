@@ -26,6 +26,7 @@ struct AbsentRows {
 struct NamedLabel {
     std::string name;
     float threshold = 0.5f;
+    double attention_threshold = -1;  // it was found with; 0 = what the model states, negative = not by a search
     std::shared_ptr<const std::vector<float>> weight;  // [N] in [0,1], from the views; never changed by hand
     std::shared_ptr<const std::vector<std::int8_t>>
         manual;  // [N] +1 added, -1 removed by hand, 0 = as the weight says
@@ -42,6 +43,7 @@ struct EditNode {
     std::string name;    // the sentence, or what was done
     std::string recipe;  // JSON: everything needed to repeat it; may be empty
     bool enabled = true;
+    double strength = 1;  // how much of it is seen, see with_strength()
     std::shared_ptr<const SceneDelta> delta;
     std::shared_ptr<const Image> thumbnail;  // may be null
     double seconds = 0;

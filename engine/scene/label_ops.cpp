@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/check.h"
+#include "engine/scene/depth_range.h"
 
 namespace gse {
 namespace {
@@ -243,13 +244,14 @@ std::vector<std::uint8_t> rows_in_area(const GaussianSet& set, const Camera& cam
     const double least_logit = options.least_opacity > 0
                                    ? std::log(options.least_opacity / (1 - options.least_opacity))
                                    : -std::numeric_limits<double>::infinity();
+    const double near = options.near > 0 ? options.near : fitted_near_plane(set.spans(), camera);
     const auto pick = [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t row = begin; row < end; ++row) {
             const Vec3 world{static_cast<double>(position[row * 3]),
                              static_cast<double>(position[row * 3 + 1]),
                              static_cast<double>(position[row * 3 + 2])};
             const Vec3 p = camera.to_camera(world);
-            if (!(p.z > options.near) || !(static_cast<double>(opacity[row]) >= least_logit)) continue;
+            if (!(p.z > near) || !(static_cast<double>(opacity[row]) >= least_logit)) continue;
             const double x = camera.fx * p.x / p.z + camera.cx, y = camera.fy * p.y / p.z + camera.cy;
             if (!mask.at(x, y)) continue;
             if (depth != nullptr) {

@@ -28,7 +28,7 @@ struct PickOptions {
     /// the same view; null = everything under the area, in front or behind.
     const Image* depth = nullptr;
     double depth_tolerance = 0.02;     // front: z <= depth * (1 + tolerance)
-    double near = 0.2;                 // nearer rows are not drawn (raster::Settings) and not picked
+    double near = 0;                   // nearer rows are not drawn and not picked; 0 = as they are drawn (depth_range.h)
     double least_opacity = 1.0 / 255;  // fainter rows cannot be seen and are not picked
     ThreadPool* pool = nullptr;        // null = the calling thread only
 };

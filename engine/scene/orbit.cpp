@@ -11,7 +11,7 @@
 namespace gse {
 namespace {
 
-constexpr double SmallestRadius = 1e-3;  // world units; a scene of one point still gets a camera beside it
+constexpr double SmallestRadius = 1e-3;  // world units, for splats without any size
 constexpr double HighElevationStep =
     0.35;  // radians between the lower and the upper ring, so that tops are seen
 constexpr double SteepestElevation = 1.3;  // radians; straight down has no defined "right"
@@ -25,9 +25,7 @@ OrbitParameters fit_orbit(const SceneStatistics& statistics, const Vec3& up) {
     orbit.centre = (statistics.robust_low + statistics.robust_high) * 0.5;
     if (length(up) > 0) orbit.up = normalized(up);
     const double half_diagonal = 0.5 * length(statistics.robust_high - statistics.robust_low);
-    const double scene_radius = half_diagonal > SmallestRadius ? half_diagonal
-                                : statistics.count > 0         ? SmallestRadius
-                                                               : 1;
+    const double scene_radius = half_diagonal > 0 ? half_diagonal : statistics.count > 0 ? SmallestRadius : 1;
     // The sphere around the bounds touches the left and right edge of the image.
     orbit.radius = FramingMargin * scene_radius / std::sin(0.5 * orbit.fov_x);
     return orbit;

@@ -53,9 +53,11 @@ struct Scene {
 struct SceneStatistics {
     std::size_t count = 0;
     std::size_t nan_rows = 0;              // any NaN in any attribute
-    std::size_t infinite_rows = 0;         // any infinity except a legal +-inf opacity logit or -inf log-scale
+    std::size_t infinite_rows = 0;         // any infinity except a legal +-inf opacity logit or -inf log-scale, or a value
+                                           // that nothing can be computed with (a position of 1e30, a colour of 1e10)
     std::size_t giant_rows = 0;            // largest standard deviation above the robust scene radius
     std::size_t invisible_rows = 0;        // opacity below 1/255
+    std::size_t visible_rows = 0;          // that can be drawn, with an opacity of 1/255 or more
     std::size_t zero_quaternion_rows = 0;  // |q| < 1e-8
     Vec3 bounds_low{}, bounds_high{};              // over finite positions
     Vec3 robust_low{}, robust_high{};              // 2nd to 98th percentile of visible finite rows
@@ -70,10 +72,14 @@ OrbitParameters fit_orbit(const SceneStatistics& statistics, const Vec3& up);
 /// `count` views evenly spaced on the orbit, at two alternating elevations so that tops are seen.
 std::vector<View> orbit_views(const OrbitParameters& orbit, int count, int width, int height);
 
-/// [N] 1 for rows that can be drawn, 0 for those with a NaN or an infinity that means nothing.
+/// [N] 1 for rows that can be drawn, 0 for those with a NaN, an infinity that means nothing or an absurd value.
 std::vector<std::uint8_t> usable_rows(const GaussianSet& set);
 
-/// Drops rows that cannot be drawn (NaN, illegal infinities); returns the kept rows.
+/// Drops rows that cannot be drawn (NaN, illegal infinities, absurd values); returns the kept rows.
 GaussianSet drop_unusable(const GaussianSet& set);
+
+/// The same rows with those that cannot be drawn made invisible and finite: what pictures, losses and figures are made from,
+/// while the scene keeps what came in. Shares all arrays where every row can be drawn.
+GaussianSet drawable(const GaussianSet& set);
 
 }  // namespace gse

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/scene/framing.h"
 #include "engine/scene/scene.h"
 
 namespace gse {
@@ -11,18 +12,23 @@ namespace {
 
 constexpr double InvisibleOpacity = 1.0 / 255.0;  // the rasterizer's smallest drawn alpha
 constexpr double ZeroQuaternionNorm = 1e-8;
+constexpr float LargestValue = 1e15f;             // its square is still far from what a float holds
+constexpr float LargestColour = 1e4f;             // SH coefficient; trained ones stay below 100
 constexpr double LowQuantile = 0.02;
 constexpr double HighQuantile = 0.98;
+constexpr double SplatReach = 3;  // standard deviations: what is seen of splats that are all in one place
+
+constexpr float HiddenLogScale = -10, HiddenLogit = -100;   // of a row that is not to be seen
 
 enum class Oddity { None, Nan, Infinite };
 
 Oddity worse(Oddity a, Oddity b) { return a == Oddity::Nan || b == Oddity::None ? a : b; }
 
-Oddity oddity(std::span<const float> values) {
+Oddity oddity(std::span<const float> values, float largest = LargestValue) {
     Oddity result = Oddity::None;
     for (const float value : values) {
         if (std::isnan(value)) return Oddity::Nan;
-        if (std::isinf(value)) result = Oddity::Infinite;
+        if (std::abs(value) > largest) result = Oddity::Infinite;
     }
     return result;
 }
@@ -31,11 +37,11 @@ Oddity oddity(std::span<const float> values) {
 /// none.
 Oddity row_oddity(const GaussianSpans& set, std::size_t row, std::size_t sh_stride) {
     Oddity result = worse(oddity(set.position.subspan(row * 3, 3)), oddity(set.rotation.subspan(row * 4, 4)));
-    result = worse(result, oddity(set.sh.subspan(row * sh_stride, sh_stride)));
+    result = worse(result, oddity(set.sh.subspan(row * sh_stride, sh_stride), LargestColour));
     if (std::isnan(set.opacity_logit[row])) result = Oddity::Nan;
     for (const float value : set.log_scale.subspan(row * 3, 3)) {
         if (std::isnan(value)) result = Oddity::Nan;
-        if (value == std::numeric_limits<float>::infinity()) result = worse(result, Oddity::Infinite);
+        if (value > LargestValue) result = worse(result, Oddity::Infinite);
     }
     return result;
 }
@@ -103,8 +109,10 @@ SceneStatistics compute_statistics(const GaussianSet& gaussians) {
     SceneStatistics statistics;
     statistics.count = set.size;
     std::vector<float> finite, visible;  // positions [M,3]
+    std::vector<float> log_scales;       // of the visible ones' largest axes
     finite.reserve(set.size * 3);
     visible.reserve(set.size * 3);
+    log_scales.reserve(set.size);
     double opacity_sum = 0;
     std::size_t opacity_count = 0;
     for (std::size_t row = 0; row < set.size; ++row) {
@@ -123,11 +131,21 @@ SceneStatistics compute_statistics(const GaussianSet& gaussians) {
         const auto position = set.position.subspan(row * 3, 3);
         if (oddity(position) != Oddity::None) continue;
         finite.insert(finite.end(), position.begin(), position.end());
-        if (odd == Oddity::None && opacity >= InvisibleOpacity)
-            visible.insert(visible.end(), position.begin(), position.end());
+        if (odd != Oddity::None || opacity < InvisibleOpacity) continue;
+        visible.insert(visible.end(), position.begin(), position.end());
+        const auto scale = set.log_scale.subspan(row * 3, 3);
+        log_scales.push_back(std::max({scale[0], scale[1], scale[2]}));
     }
+    statistics.visible_rows = visible.size() / 3;
     if (opacity_count > 0) statistics.mean_opacity = opacity_sum / static_cast<double>(opacity_count);
     set_bounds(statistics, finite, visible);
+    // Where the splats are larger than what their centres span, they are what is seen.
+    const double splat_size = middle_size(log_scales);
+    if (0.5 * length(statistics.robust_high - statistics.robust_low) < splat_size) {
+        const Vec3 reach = Vec3{1, 1, 1} * (SplatReach * splat_size / std::sqrt(3.0));
+        statistics.robust_low = statistics.robust_low - reach;
+        statistics.robust_high = statistics.robust_high + reach;
+    }
     const double robust_radius = 0.5 * length(statistics.robust_high - statistics.robust_low);
     if (robust_radius > 0) statistics.giant_rows = count_giants(set, robust_radius);
     return statistics;
@@ -142,6 +160,32 @@ std::vector<std::uint8_t> usable_rows(const GaussianSet& gaussians) {
     return keep;
 }
 
-GaussianSet drop_unusable(const GaussianSet& gaussians) { return gaussians.filtered(usable_rows(gaussians)); }
+GaussianSet drop_unusable(const GaussianSet& gaussians) {
+    const auto keep = usable_rows(gaussians);
+    return std::find(keep.begin(), keep.end(), 0) == keep.end() ? gaussians : gaussians.filtered(keep);
+}
+
+GaussianSet drawable(const GaussianSet& gaussians) {
+    const auto usable = usable_rows(gaussians);
+    if (std::find(usable.begin(), usable.end(), std::uint8_t{0}) == usable.end()) return gaussians;
+    const SceneStatistics statistics = compute_statistics(gaussians);
+    const Vec3 middle = 0.5 * (statistics.robust_low + statistics.robust_high);
+    GaussianData data = gaussians.to_data();
+    const auto set_all = [](std::vector<float>& values, std::size_t row, std::size_t stride, float value) {
+        std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(row * stride), stride, value);
+    };
+    for (std::size_t row = 0; row < usable.size(); ++row) {
+        if (usable[row] != 0) continue;
+        if (oddity(std::span<const float>(data.position).subspan(row * 3, 3)) != Oddity::None)
+            for (int axis = 0; axis < 3; ++axis)
+                data.position[row * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(middle[axis]);
+        set_all(data.log_scale, row, 3, HiddenLogScale);
+        set_all(data.rotation, row, 4, 0);
+        data.rotation[row * 4] = 1;
+        data.opacity_logit[row] = HiddenLogit;
+        set_all(data.sh, row, data.sh_stride(), 0);
+    }
+    return GaussianSet(std::move(data));
+}
 
 }  // namespace gse
