@@ -147,12 +147,18 @@ struct RowPair {
     }
 };
 
+/// Difference of two values; what is not finite counts as wholly different, never as equal.
+double value_difference(const Image& a, const Image& b, std::size_t i) {
+    const double difference = static_cast<double>(a.data[i]) - b.data[i];
+    return std::isfinite(difference) ? difference : 1;
+}
+
 /// Largest channel difference of a pixel.
 double pixel_difference(const Image& a, const Image& b, std::size_t pixel) {
     double largest = 0;
     for (int c = 0; c < a.channels; ++c) {
         const auto i = pixel * static_cast<std::size_t>(a.channels) + static_cast<std::size_t>(c);
-        largest = std::max(largest, std::abs(static_cast<double>(a.data[i]) - b.data[i]));
+        largest = std::max(largest, std::abs(value_difference(a, b, i)));
     }
     return largest;
 }
@@ -191,7 +197,7 @@ double boundary_tolerance_px(int width, int height) {
 double psnr_db(const Image& a, const Image& b, const Region& region) {
     check_same_size(a, b, region);
     const double error = region_mean(a, region, [&](std::size_t i) {
-        const double difference = static_cast<double>(a.data[i]) - b.data[i];
+        const double difference = value_difference(a, b, i);
         return difference * difference;
     });
     return error > 0 ? std::min(PsnrLimitDb, -10 * std::log10(error)) : PsnrLimitDb;
@@ -199,7 +205,7 @@ double psnr_db(const Image& a, const Image& b, const Region& region) {
 
 double mean_absolute_error(const Image& a, const Image& b, const Region& region) {
     check_same_size(a, b, region);
-    return region_mean(a, region, [&](std::size_t i) { return std::abs(static_cast<double>(a.data[i]) - b.data[i]); });
+    return region_mean(a, region, [&](std::size_t i) { return std::abs(value_difference(a, b, i)); });
 }
 
 double ssim(const Image& a, const Image& b, const Region& region) {
@@ -244,7 +250,7 @@ double mean_colour_error(const Image& a, const Image& b, const Region& region) {
         if (!region.contains(pixel)) continue;
         for (int c = 0; c < a.channels; ++c) {
             const auto i = pixel * static_cast<std::size_t>(a.channels) + static_cast<std::size_t>(c);
-            sum[static_cast<std::size_t>(c)] += static_cast<double>(a.data[i]) - b.data[i];
+            sum[static_cast<std::size_t>(c)] += value_difference(a, b, i);
         }
         ++count;
     }

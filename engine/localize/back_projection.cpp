@@ -17,7 +17,7 @@ LabelWeights back_project(const GaussianSpans& gaussians, std::span<const Masked
     if (views.empty() || failed * 2 > views.size())
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("the words were found in only {} of {} views", views.size() - failed, views.size()),
-                    "name something the scene shows and the model knows, or lower --attention-threshold");
+                    "name something the scene shows and the model knows, or lower the attention threshold");
     constexpr double least_total = 1e-8;
     std::vector<double> masked(gaussians.size), total(gaussians.size);
     LabelWeights result;

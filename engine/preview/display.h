@@ -24,7 +24,7 @@ struct Display {
     Mode mode = Mode::Beauty;
     int sh_degree = 3;
     bool antialiased = false;  // for scenes trained with the opacity compensation
-    float near_plane = 0.2f;
+    float near_plane = 0;      // 0 = follows scene and camera (scene/depth_range.h)
     std::array<float, 3> background{0, 0, 0};
     bool transparent = false;  // alpha instead of the background, not premultiplied
     std::array<float, 3> tint{1.0f, 0.45f, 0.1f};

@@ -7,8 +7,13 @@
 
 namespace gse::preview {
 
-/// `middle`: of the scene, for the scale of the depth colours.
-shaders::FrameData frame_data(const FrameRequest& request, const Division& division, const Vec3& middle);
+/// What a frame follows of the scene.
+struct SceneFacts {
+    Vec3 middle;            // for the scale of the depth colours
+    double near_plane = 0;  // where the display leaves it open
+};
+
+shaders::FrameData frame_data(const FrameRequest& request, const Division& division, const SceneFacts& facts);
 
 /// Division of the work for a scene and a picture's size; `few_threads`: of a CPU.
 Division divide(const vulkan::DeviceInfo& info, bool few_threads, bool portable, std::size_t rows,

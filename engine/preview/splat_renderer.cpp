@@ -8,6 +8,7 @@
 #include "engine/base/check.h"
 #include "engine/base/log.h"
 #include "engine/preview/frame_recorder.h"
+#include "engine/scene/depth_range.h"
 
 namespace gse::preview {
 namespace {
@@ -130,7 +131,8 @@ FramePlan SplatRenderer::State::plan_frame(const FrameRequest& request, bool lig
     result.has_values = has_values;
     result.store_depth = request.want_depth;
     result.store_light = light;
-    result.data = frame_data(request, result.division, middle);
+    result.data = frame_data(request, result.division,
+                             {middle, fitted_near_plane(store.shown().spans(), camera)});
     return result;
 }
 

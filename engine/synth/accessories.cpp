@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "engine/base/check.h"
 #include "engine/synth/materials.h"
@@ -10,10 +11,7 @@
 namespace gse::synth {
 namespace {
 
-constexpr double Tau = 6.283185307179586;
-constexpr Paint Main{Slot::Main};
-constexpr Paint Pale{Slot::Pale};
-constexpr Paint Deep{Slot::Deep};
+constexpr double FullTurn = 2 * std::numbers::pi;
 
 ShapeList make_hat(const Anchor& anchor, Random& random) {
     const double brim = std::max(0.33, anchor.head_radius * random.uniform(1.4, 1.55));
@@ -52,7 +50,7 @@ ShapeList make_crown(const Anchor& anchor, Random& random) {
             const double phase = u * Points - std::floor(u * Points);
             const double top = band + (height - band) * std::abs(2 * phase - 1);
             const double flare = 1 + 0.16 * v * top / height;
-            const double angle = Tau * (u + turn - 0.25);
+            const double angle = FullTurn * (u + turn - 0.25);
             return base + Vec3{radius * flare * std::cos(angle), top * v, radius * flare * std::sin(angle)};
         },
         Main));
@@ -61,11 +59,11 @@ ShapeList make_crown(const Anchor& anchor, Random& random) {
         Deep));
     constexpr std::array<Vec3, 3> Gems{Vec3{0.9, 0.05, 0.1}, Vec3{0.1, 0.3, 0.95}, Vec3{0.05, 0.75, 0.3}};
     for (int i = 0; i < Points; ++i) {
-        const double tip = Tau * (static_cast<double>(i) / Points + turn - 0.25);
+        const double tip = FullTurn * (static_cast<double>(i) / Points + turn - 0.25);
         const double flare = radius * 1.16;
         shapes.push_back(ellipsoid(base + Vec3{flare * std::cos(tip), height, flare * std::sin(tip)},
                                    {0.03, 0.03, 0.03}, Pale));
-        const double between = tip + 0.5 * Tau / Points;
+        const double between = tip + 0.5 * FullTurn / Points;
         const double gem = radius * 1.03 + 0.01;
         Shape stone =
             ellipsoid(base + Vec3{gem * std::cos(between), 0.085, gem * std::sin(between)},
@@ -114,8 +112,8 @@ ShapeList make_scarf(const Anchor& anchor, Random& random) {
     Shape ring = sheet(
         anchor.neck,
         [=](double u, double v) {
-            const double a = Tau * u;
-            const double t = Tau * v;
+            const double a = FullTurn * u;
+            const double t = FullTurn * v;
             const double out = thick * std::cos(t);
             return anchor.neck +
                    Vec3{(rx + out) * std::cos(a), 1.05 * thick * std::sin(t), (rz + out) * std::sin(a)};
@@ -147,11 +145,11 @@ Shape tongue(const Vec3& foot, double width, double height, double lean_x, doubl
     Shape shape = sheet(foot, [=](double u, double v) {
         const double radius = width * std::pow(1 - v, 0.8) * (0.55 + 1.1 * std::sqrt(v) * (1 - 0.4 * v));
         const double sway = 0.12 * height * std::sin(5.0 * v + 9.0 * foot.x + 7.0 * foot.z);
-        return foot + Vec3{radius * std::cos(Tau * u) + lean_x * v * v + sway * v, height * v,
-                           radius * std::sin(Tau * u) + lean_z * v * v};
+        return foot + Vec3{radius * std::cos(FullTurn * u) + lean_x * v * v + sway * v, height * v,
+                           radius * std::sin(FullTurn * u) + lean_z * v * v};
     });
     shape.paint_at = [](const SurfacePoint& point) {
-        const double streak = 0.5 + 0.5 * std::sin(Tau * point.u * 3);
+        const double streak = 0.5 + 0.5 * std::sin(FullTurn * point.u * 3);
         const Vec3 hot = mix({1.0, 0.93, 0.25}, {1.0, 0.72, 0.05}, streak);
         const Vec3 colour = mix(hot, {0.98, 0.25, 0.02}, smooth_step(0.1, 0.75, point.v + 0.2 * streak));
         return Paint{Slot::Glow, colour};
@@ -163,7 +161,7 @@ ShapeList make_flames(const Anchor& anchor, Random& random) {
     ShapeList shapes;
     constexpr int Ring = 9;
     for (int i = 0; i < Ring; ++i) {
-        const double angle = Tau * (i + random.uniform(-0.2, 0.2)) / Ring;
+        const double angle = FullTurn * (i + random.uniform(-0.2, 0.2)) / Ring;
         const double away = std::cos(angle);  // 1 = behind the object
         const Vec3 foot{(anchor.body_radius + 0.05) * std::sin(angle), 0.0,
                         (anchor.body_depth + 0.05) * away};

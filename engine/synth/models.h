@@ -7,6 +7,11 @@
 
 namespace gse::synth {
 
+/// Paints of a thing's own slots.
+constexpr Paint Main{Slot::Main};
+constexpr Paint Pale{Slot::Pale};
+constexpr Paint Deep{Slot::Deep};
+
 /// Where accessories sit on an object, in model space.
 struct Anchor {
     Vec3 top{0, 1, 0};          // highest point under a hat's middle

@@ -6,9 +6,6 @@
 namespace gse::synth {
 namespace {
 
-constexpr Paint Main{Slot::Main};
-constexpr Paint Pale{Slot::Pale};
-constexpr Paint Deep{Slot::Deep};
 constexpr Paint EyeWhite{Slot::Fixed, {0.97, 0.97, 0.95}};
 constexpr Paint Ink{Slot::Fixed, {0.03, 0.03, 0.04}};
 

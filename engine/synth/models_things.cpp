@@ -9,10 +9,7 @@
 namespace gse::synth {
 namespace {
 
-constexpr Paint Main{Slot::Main};
-constexpr Paint Pale{Slot::Pale};
-constexpr Paint Deep{Slot::Deep};
-constexpr Paint Ink{Slot::Fixed, {0.06, 0.06, 0.07}};
+constexpr Paint Tyre{Slot::Fixed, {0.06, 0.06, 0.07}};
 constexpr Paint Glass{Slot::Fixed, {0.16, 0.25, 0.36}};
 constexpr Paint Bark{Slot::Trim, {0.42, 0.25, 0.11}};
 
@@ -193,7 +190,7 @@ Model make_car(Random& random) {
         for (const double z : {cabin_front + 0.025, middle, cabin_back - 0.025})
             s.push_back(box({side * (w - 0.04), 0.5, z}, {0.022, 0.13, 0.03}, Main));
         for (const double z : {-half + 0.2, half - 0.2}) {
-            s.push_back(cone({side * (w - 0.08), 0.13, z}, {side * (w + 0.035), 0.13, z}, 0.135, 0.135, Ink));
+            s.push_back(cone({side * (w - 0.08), 0.13, z}, {side * (w + 0.035), 0.13, z}, 0.135, 0.135, Tyre));
             Shape hub = cone({side * (w + 0.02), 0.13, z}, {side * (w + 0.05), 0.13, z}, 0.07, 0.06,
                              {Slot::Fixed, {0.75, 0.76, 0.78}});
             s.push_back(dense(hub, 2));

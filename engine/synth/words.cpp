@@ -14,10 +14,6 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-bool contains(const Words& words, const std::string& word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
-
 void require_known(const Words& words, const std::string& word, const char* what) {
     if (contains(words, word)) return;
     std::string hint = "known words:";
@@ -37,6 +33,10 @@ const std::string& pick_accessory(Random& random) {
 }
 
 }  // namespace
+
+bool contains(const std::vector<std::string>& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 const Words& object_words() {
     static const Words words{"bear", "dog",      "cat",   "duck", "statue", "ball",

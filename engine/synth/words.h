@@ -11,6 +11,8 @@ namespace gse::synth {
 /// Throws Error for a word that is not in its list.
 void require_known_words(const SceneSpec& spec);
 
+bool contains(const std::vector<std::string>& words, const std::string& word);
+
 /// Position of a word in its list; the word is known.
 std::uint64_t word_index(const std::vector<std::string>& words, const std::string& word);
 
