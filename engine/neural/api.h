@@ -29,40 +29,43 @@ struct SampleRequest {
     std::uint64_t seed = 0;
 };
 
-/// A loaded text-to-image model (tokenizer, text encoder, UNet, VAE, scheduler).
+struct TunedModel;
+
+/// A loaded text-to-image model (tokenizer, text encoder, UNet, VAE, scheduler). It never changes, so that threads and jobs
+/// may share it.
 class TextToImage {
 public:
     virtual ~TextToImage() = default;
-    virtual std::unique_ptr<edit::AttentionSource> attention(const AttentionParameters& parameters) = 0;
-    std::unique_ptr<edit::AttentionSource> attention() { return attention(AttentionParameters{}); }
-    virtual std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const SdsParameters& parameters) = 0;
+    virtual std::unique_ptr<edit::AttentionSource> attention(const AttentionParameters& parameters) const = 0;
+    std::unique_ptr<edit::AttentionSource> attention() const { return attention(AttentionParameters{}); }
+    virtual std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const SdsParameters& parameters) const = 0;
     /// Words the model was trained on; empty = an open vocabulary.
     virtual std::vector<std::string> known_words() const = 0;
     /// Side of the square images the model works at.
     virtual int image_size() const = 0;
     virtual std::string name() const = 0;
-    virtual Image sample(const SampleRequest& request) = 0;
-    virtual Image img2img(const Image& image, const SampleRequest& request) = 0;
+    virtual Image sample(const SampleRequest& request) const = 0;
+    virtual Image img2img(const Image& image, const SampleRequest& request) const = 0;
     /// The bundle's text-image encoder; null when it has none.
-    virtual std::unique_ptr<edit::TextImageScore> text_image_score() { return nullptr; }
+    virtual std::unique_ptr<edit::TextImageScore> text_image_score() const { return nullptr; }
 
-    /// DreamBooth: learns what the pictures show under `instance_prompt`, while pictures of `class_prompt`, drawn from the
-    /// untouched model first, keep what it knows. Always begins at the loaded weights. What attention(), guidance(),
-    /// sample() and img2img() give from then on is of the tuned weights; objects they gave before keep theirs. Throws Error
-    /// (Cancelled) on a stop request; then, as after any Error, the model is as it was before the call.
-    virtual TuneReport tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
+    /// DreamBooth: a model of its own that has learned what the pictures show under `instance_prompt`, while pictures of
+    /// `class_prompt`, drawn from the loaded weights first, keep what it knows. Begins at the loaded weights, also where this
+    /// model is a tuned one. Throws Error (Cancelled) on a stop request.
+    virtual TunedModel tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
                             const std::string& instance_prompt, const std::string& class_prompt,
-                            const JobControl& job) = 0;
-    /// Back to the loaded weights.
-    virtual void untune() = 0;
-    virtual bool tuned() const = 0;
-    /// Number of the tuning in use, another one for each; 0 = the loaded weights.
-    virtual std::uint64_t tuning() const = 0;
-    /// The tuning as a file (kohya's names). Throws Error (InvalidArgument) unless the model is tuned with a rank.
+                            const JobControl& job) const = 0;
+    /// The tuning as a file (kohya's names). Throws Error (InvalidArgument) unless this is a model tuned with a rank.
     virtual void save_lora(const std::filesystem::path& path) const = 0;
-    /// Tunes the loaded weights by a file. Throws Error (NotFound, Malformed, Model).
-    virtual void load_lora(const std::filesystem::path& path, double strength) = 0;
-    void load_lora(const std::filesystem::path& path) { load_lora(path, 1.0); }
+    /// A model of its own: the loaded weights, tuned by a file. Throws Error (NotFound, Malformed, Model).
+    virtual std::shared_ptr<TextToImage> load_lora(const std::filesystem::path& path, double strength) const = 0;
+    std::shared_ptr<TextToImage> load_lora(const std::filesystem::path& path) const { return load_lora(path, 1.0); }
+};
+
+/// What tune() gives.
+struct TunedModel {
+    std::shared_ptr<TextToImage> model;
+    TuneReport report;
 };
 
 /// Everything the program asks of engine/neural.

@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 
 namespace gse::neural {
 namespace {
@@ -140,9 +141,10 @@ void read_text_keys(const Reader& reader, TextEncoderConfig& config) {
 
 Json read_json_file(const std::filesystem::path& path) {
     try {
-        return Json::parse(read_file(path));
-    } catch (const nlohmann::json::exception&) {
-        throw Error(ErrorCode::Malformed, "the file is not valid JSON", {}, path);
+        return parse_json<Json>(read_file(path), "the file");
+    } catch (const Error& error) {
+        if (!error.path().empty()) throw;
+        throw Error(error.code(), error.message(), {}, path);
     }
 }
 

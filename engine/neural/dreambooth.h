@@ -69,6 +69,10 @@ private:
     ThreadPool pool_;
 };
 
+/// Counts a step in the report. Throws Error (Model) as soon as most of the `planned` steps were not finite: what little was
+/// learned from the others is of no use.
+void count_step(TuneReport& report, const TuningStep& step, int planned);
+
 /// What a model learns from.
 struct TuningTask {
     std::span<const Image> instance;

@@ -55,7 +55,7 @@ struct DreamBoothParameters {
 /// What a tuning did. Losses are mean squared errors of the prediction, "before" and "after" over the same noise.
 struct TuneReport {
     int steps = 0;
-    int skipped = 0;   // steps whose loss or gradient was not finite: left out
+    int skipped = 0;   // of them: those whose loss or gradient was not finite, which were left out
     double class_seconds = 0, seconds = 0;   // drawing the class pictures; all together
     double instance_before = 0, instance_after = 0;
     double prior_before = 0, prior_after = 0;   // 0 without class pictures

@@ -62,7 +62,7 @@ EncodedPictures encode_instance(const ModelBundle& bundle, const TuningTask& tas
     return {bundle.token_ids({task.instance_prompt}), torch::cat(means), torch::cat(deviations)};
 }
 
-[[noreturn]] void stop_here() { throw Error(ErrorCode::Cancelled, "the tuning was stopped; the model is as it was"); }
+[[noreturn]] void stop_here() { throw Error(ErrorCode::Cancelled, "the tuning was stopped"); }
 
 /// The class pictures stay latents: decoding and encoding them again would only blur them.
 class ClassPictures {
@@ -216,8 +216,7 @@ void run_steps(DreamBoothTrainer& trainer, BatchSource& instance, BatchSource* p
         const auto result = trainer.step(scene_half, prior != nullptr ? &class_half : nullptr);
         report.instance_losses.push_back(result.instance_loss);
         if (prior != nullptr) report.prior_losses.push_back(result.prior_loss);
-        report.skipped += result.skipped ? 1 : 0;
-        ++report.steps;
+        count_step(report, result, parameters.steps);
         job.report("tuning", step + 1, parameters.steps);
     }
     if (report.skipped > 0)
@@ -225,6 +224,16 @@ void run_steps(DreamBoothTrainer& trainer, BatchSource& instance, BatchSource* p
 }
 
 }  // namespace
+
+void count_step(TuneReport& report, const TuningStep& step, int planned) {
+    ++report.steps;
+    report.skipped += step.skipped ? 1 : 0;
+    if (2 * report.skipped <= planned) return;
+    throw Error(ErrorCode::Model,
+                fmt::format("{} of the first {} tuning steps were not finite: the model learns nothing", report.skipped,
+                            report.steps),
+                "use a lower learning rate, or train_text_encoder off");
+}
 
 unsigned tuning_threads(const DreamBoothParameters& parameters, const torch::Device& device) {
     if (!device.is_cpu()) return 1;
@@ -264,7 +273,7 @@ TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameter
     run_steps(trainer, instance, prior ? &*prior : nullptr, report, parameters, job);
     measure(report.instance_after, report.prior_after);
     if (!std::isfinite(report.instance_after) || !std::isfinite(report.prior_after))
-        throw Error(ErrorCode::Model, "the tuning ended in values that are not finite; the model is as it was",
+        throw Error(ErrorCode::Model, "the tuning ended in values that are not finite",
                     "use a lower learning rate", bundle.path);
     report.seconds = seconds_now() - start;
     return {std::make_shared<const ModelBundle>(trainer.tuned()), trainer.lora(), report};

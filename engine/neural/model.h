@@ -14,4 +14,7 @@ std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const
 /// networks slower, not faster.
 void set_threads(int count);
 
+/// Threads of OpenBLAS, which has its own beside torch's; nothing happens with another library.
+void set_blas_threads(int count);
+
 }  // namespace gse::neural

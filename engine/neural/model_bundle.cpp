@@ -1,4 +1,5 @@
 // Finding, checking and loading the parts of a text-to-image model.
+#include "engine/neural/shared_tokenizer.h"
 #include "engine/neural/model_bundle.h"
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/base/memory.h"
 #include "engine/neural/key_map.h"
 #include "engine/neural/torch_errors.h"
 
@@ -91,17 +93,6 @@ Parts folder_parts(const fs::path& root) {
     if (fs::exists(root / "gseditpro.json"))
         parts.facts = ModelFacts::from_json(read_json_file(root / "gseditpro.json"), root / "gseditpro.json");
     return parts;
-}
-
-/// Where the merges of CLIP's tokenizer are: beside the checkpoint, or among the program's assets.
-fs::path find_tokenizer(const fs::path& beside) {
-    const char* assets = std::getenv("GSE_ASSETS");
-    const std::array<fs::path, 3> candidates{beside / "tokenizer", beside,
-                                             fs::path(assets != nullptr ? assets : GSE_ASSETS) / "tokenizer"};
-    for (const auto& candidate : candidates)
-        if (fs::exists(candidate / "merges.txt")) return candidate;
-    throw Error(ErrorCode::NotFound, "a single-file checkpoint has no tokenizer and none was found",
-                "put CLIP's merges.txt into a folder named tokenizer beside it", candidates[0]);
 }
 
 /// A configuration beside the checkpoint (unet_config.json, ...), else what the tensors' shapes tell.
@@ -258,9 +249,35 @@ torch::Tensor ModelBundle::encode_prompts(const std::vector<std::string>& prompt
     return text_encoder->forward(token_ids(prompts)).last_hidden;
 }
 
+namespace {
+
+/// The weights' files of a model, opened once.
+struct WeightFiles {
+    SafetensorsFile unet, vae, text;
+    explicit WeightFiles(const Parts& parts) : unet(parts.unet_file), vae(parts.vae_file), text(parts.text_file) {}
+};
+
+/// Compares configurations and files without memory for a single weight; returns the number of parameters.
+std::int64_t check_files(const Parts& parts, const WeightFiles& files, const Plans& plans) {
+    const WeightOptions described{torch::kMeta, torch::kFloat32, false};
+    const UNet unet(parts.unet, described);
+    const AutoencoderKl vae(parts.vae, described);
+    const ClipTextEncoder text(parts.text, described);
+    check_weights(*text, key_shapes(files.text), plans.text, parts.text_file);
+    check_weights(*unet, key_shapes(files.unet), plans.unet, parts.unet_file);
+    check_weights(*vae, key_shapes(files.vae), plans.vae, parts.vae_file);
+    return count_parameters(*unet) + count_parameters(*vae) + count_parameters(*text);
+}
+
+}  // namespace
+
 ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device) {
     const auto parts = find_parts(path);
     return guard_torch("loading the model", [&] {
+        const WeightFiles files(parts);
+        const auto plans = plans_of(parts, files.vae);
+        const auto parameters = static_cast<std::uint64_t>(check_files(parts, files, plans));
+        require_memory(parameters * sizeof(float), fmt::format("the model \"{}\"", parts.facts.name));
         const WeightOptions empty{torch::kCPU, torch::kFloat32, false};
         ModelBundle bundle{path,
                            Tokenizer(parts.tokenizer, parts.pad_token),
@@ -271,12 +288,9 @@ ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& 
                            parts.facts,
                            device};
         check_tokenizer(bundle.tokenizer, parts);
-        const SafetensorsFile unet_file(parts.unet_file), vae_file(parts.vae_file),
-            text_file(parts.text_file);
-        const auto plans = plans_of(parts, vae_file);
-        load_weights(*bundle.text_encoder, text_file, plans.text);
-        load_weights(*bundle.unet, unet_file, plans.unet);
-        load_weights(*bundle.vae, vae_file, plans.vae);
+        load_weights(*bundle.text_encoder, files.text, plans.text);
+        load_weights(*bundle.unet, files.unet, plans.unet);
+        load_weights(*bundle.vae, files.vae, plans.vae);
         freeze(bundle.text_encoder, device);
         freeze(bundle.unet, device);
         freeze(bundle.vae, device);
@@ -287,20 +301,11 @@ ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& 
 ModelDescription describe_model(const std::filesystem::path& path) {
     const auto parts = find_parts(path);
     return guard_torch("describing the model", [&] {
-        const WeightOptions described{torch::kMeta, torch::kFloat32, false};
-        const UNet unet(parts.unet, described);
-        const AutoencoderKl vae(parts.vae, described);
-        const ClipTextEncoder text(parts.text, described);
-        const SafetensorsFile unet_file(parts.unet_file), vae_file(parts.vae_file),
-            text_file(parts.text_file);
-        const auto plans = plans_of(parts, vae_file);
-        check_weights(*text, key_shapes(text_file), plans.text, parts.text_file);
-        check_weights(*unet, key_shapes(unet_file), plans.unet, parts.unet_file);
-        check_weights(*vae, key_shapes(vae_file), plans.vae, parts.vae_file);
+        const WeightFiles files(parts);
         return ModelDescription{parts.facts.name,
                                 parts.single_file ? "single file" : "diffusers folder",
                                 parts.facts.image_size,
-                                count_parameters(*unet) + count_parameters(*vae) + count_parameters(*text),
+                                check_files(parts, files, plans_of(parts, files.vae)),
                                 parts.scheduler.prediction_type,
                                 parts.facts.vocabulary};
     });

@@ -20,6 +20,7 @@ public:
     void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
                        const std::filesystem::path& work, const std::filesystem::path& output,
                        const JobControl& job) override {
+        set_blas_threads(torch::get_num_threads());   // batches, unlike edits, are worth it
         guard_torch("training the starter model",
                     [&] { neural::train_starter(parameters, source, work, output, job); });
     }

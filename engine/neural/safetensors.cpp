@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
+#include <span>
 
 #include "engine/base/error.h"
+#include "engine/base/json.h"
 
 namespace gse::neural {
 namespace {
@@ -33,14 +33,18 @@ constexpr std::array Types{TypeName{"F32", torch::kFloat32},   TypeName{"F16", t
                 "download or write it again", path);
 }
 
-std::uint64_t read_length(std::span<const std::byte> bytes, const std::filesystem::path& path) {
-    if (bytes.size() < LengthBytes) malformed(path, "it is shorter than its own header length");
+/// The JSON header; checks its length against the file's before it is read.
+std::string read_header(const InputFile& file, const std::filesystem::path& path) {
+    std::array<std::byte, LengthBytes> raw{};
+    if (file.size() < LengthBytes) malformed(path, "it is shorter than its own header length");
+    file.read(0, raw);
     std::uint64_t length = 0;
-    for (std::size_t i = 0; i < LengthBytes; ++i)
-        length |= std::to_integer<std::uint64_t>(bytes[i]) << (8 * i);
-    if (length > MaxHeaderBytes || length > bytes.size() - LengthBytes)
+    for (std::size_t i = 0; i < LengthBytes; ++i) length |= std::to_integer<std::uint64_t>(raw[i]) << (8 * i);
+    if (length > MaxHeaderBytes || length > file.size() - LengthBytes)
         malformed(path, "its header is longer than the file");
-    return length;
+    std::string text(static_cast<std::size_t>(length), '\0');
+    file.read(LengthBytes, std::as_writable_bytes(std::span(text)));
+    return text;
 }
 
 SafetensorsFile::Entry read_entry(const nlohmann::json& json, const std::string& name,
@@ -124,48 +128,37 @@ std::string make_header(const NamedTensors& tensors, const std::map<std::string,
 }  // namespace
 
 SafetensorsFile::SafetensorsFile(const std::filesystem::path& path) : path_(path), file_(path) {
-    const auto bytes = file_.bytes();
-    const auto length = read_length(bytes, path);
-    data_begin_ = LengthBytes + static_cast<std::size_t>(length);
-    const auto header = nlohmann::json::parse(
-        file_.text().substr(LengthBytes, static_cast<std::size_t>(length)), nullptr, false);
+    const std::string text = read_header(file_, path);
+    data_begin_ = LengthBytes + text.size();
+    const auto header = try_parse_json(text);
     if (!header.is_object()) malformed(path, "its header is not a JSON object");
     for (const auto& [name, value] : header.items()) {
         if (name == "__metadata__") {
-            for (const auto& [key, text] : value.items())
-                if (text.is_string()) metadata_[key] = text.get<std::string>();
+            for (const auto& [key, entry] : value.items())
+                if (entry.is_string()) metadata_[key] = entry.get<std::string>();
             continue;
         }
         entries_.emplace(name, read_entry(value, name, path));
     }
-    check_tiling(entries_, bytes.size() - data_begin_, path);
+    check_tiling(entries_, static_cast<std::size_t>(file_.size()) - data_begin_, path);
 }
 
-torch::Tensor SafetensorsFile::view_or_copy(const Entry& entry) const {
-    const auto* data = file_.bytes().data() + data_begin_ + entry.begin;
-    const auto options = torch::TensorOptions().dtype(entry.dtype);
-    const bool aligned = reinterpret_cast<std::uintptr_t>(data) % torch::elementSize(entry.dtype) == 0;
-    // from_blob takes a mutable pointer; the result is only read.
-    if (aligned && entry.begin != entry.end)
-        return torch::from_blob(const_cast<std::byte*>(data), entry.shape, options);
-    auto copy = torch::empty(entry.shape, options);
-    if (entry.begin != entry.end) std::memcpy(copy.data_ptr(), data, entry.end - entry.begin);
-    return copy;
+torch::Tensor SafetensorsFile::read(const Entry& entry) const {
+    auto tensor = torch::empty(entry.shape, torch::TensorOptions().dtype(entry.dtype));
+    file_.read(data_begin_ + entry.begin, {static_cast<std::byte*>(tensor.data_ptr()), entry.end - entry.begin});
+    return tensor;
 }
 
 torch::Tensor SafetensorsFile::tensor(const std::string& name) const {
     const auto found = entries_.find(name);
     if (found == entries_.end())
         throw Error(ErrorCode::Model, fmt::format("the weights file has no tensor \"{}\"", name), {}, path_);
-    return view_or_copy(found->second).clone();
+    return read(found->second);
 }
 
 void SafetensorsFile::copy_to(const std::string& name, torch::Tensor target) const {
-    const auto found = entries_.find(name);
-    if (found == entries_.end())
-        throw Error(ErrorCode::Model, fmt::format("the weights file has no tensor \"{}\"", name), {}, path_);
     const torch::NoGradGuard no_grad;
-    target.copy_(view_or_copy(found->second).view(target.sizes()));
+    target.copy_(tensor(name).view(target.sizes()));
 }
 
 void write_safetensors(const std::filesystem::path& path, const NamedTensors& tensors,

@@ -1,4 +1,4 @@
-// Safetensors files: memory-mapped reading with every malformed file refused, and atomic writing.
+// Safetensors files: reading tensor by tensor with every malformed file refused, and atomic writing.
 #pragma once
 
 #include <torch/torch.h>
@@ -13,13 +13,13 @@
 
 namespace gse::neural {
 
-/// One open file. Tensors are copied out of the map on request, so the object may go before them.
+/// One open file. Tensors are read on request, each into memory of its own, so the object may go before them.
 class SafetensorsFile {
 public:
     struct Entry {
         torch::Dtype dtype = torch::kFloat32;
         std::vector<std::int64_t> shape;
-        std::size_t begin = 0, end = 0;  // bytes in the data part; need not be aligned
+        std::size_t begin = 0, end = 0;  // bytes in the data part
     };
 
     /// Throws Error (NotFound, Unreadable, Malformed).
@@ -30,16 +30,17 @@ public:
     const std::map<std::string, std::string>& metadata() const { return metadata_; }
     bool contains(const std::string& name) const { return entries_.contains(name); }
 
-    /// A copy of the tensor in the type of the file. Throws Error (Model) when it is not there.
+    /// The tensor in the type of the file. Throws Error (Model) when it is not there, (Unreadable) when the file was cut off
+    /// since it was opened.
     torch::Tensor tensor(const std::string& name) const;
     /// Copies the tensor into `target` (same number of elements), converting to its type and device.
     void copy_to(const std::string& name, torch::Tensor target) const;
 
 private:
-    torch::Tensor view_or_copy(const Entry& entry) const;
+    torch::Tensor read(const Entry& entry) const;
 
     std::filesystem::path path_;
-    MappedFile file_;
+    InputFile file_;
     std::size_t data_begin_ = 0;
     std::map<std::string, Entry> entries_;
     std::map<std::string, std::string> metadata_;

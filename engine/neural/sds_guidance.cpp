@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "engine/base/error.h"
 #include "engine/neural/attention_source.h"
 #include "engine/neural/images.h"
 #include "engine/neural/torch_errors.h"
@@ -75,15 +75,16 @@ edit::GuidanceOutput SdsGuidance::evaluate(const edit::GuidanceInput& input) {
             const auto deviation = latents.detach() - moments.mean.detach() * bundle_->scaling_factor();
             result.gradient = result.gradient - parameters_.delta * pull_on_original(input, deviation, step);
         }
-        if (!torch::isfinite(result.gradient).all().item<bool>())
-            throw Error(ErrorCode::Model, "the model returned a value that is not a finite number",
-                        "its weights are damaged or the image holds non-finite pixels", bundle_->path);
+        edit::GuidanceOutput output;
+        output.scalars["timestep"] = static_cast<double>(t);
+        if (!torch::isfinite(result.gradient).all().item<bool>()) {   // before the clamp, which would hide an infinity
+            output.gradient = Image(input.rendered.width, input.rendered.height, 3, std::numeric_limits<float>::quiet_NaN());
+            return output;
+        }
         const auto gradient =
             torch::autograd::grad({latents}, {image}, {reduced(result.gradient, parameters_)})[0];
 
-        edit::GuidanceOutput output;
         output.gradient = to_image(gradient);
-        output.scalars["timestep"] = static_cast<double>(t);
         output.scalars["loss"] = 0.5 * result.gradient.square().mean().item<double>();
         output.scalars["latent_gradient_norm"] = result.gradient.norm().item<double>();
         output.scalars["gradient_norm"] = gradient.norm().item<double>();

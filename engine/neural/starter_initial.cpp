@@ -3,6 +3,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/neural/key_map.h"
 #include "engine/neural/starter_stages.h"
 
@@ -62,7 +63,7 @@ StarterParts initial_parts(const std::filesystem::path& folder, const StarterCon
                 configs.text.to_json(), folder / "text_encoder/config.json");
     expect_same(read_config<UNetConfig>(folder / "unet/config.json").to_json(), configs.unet.to_json(),
                 folder / "unet/config.json");
-    if (read_json_file(folder / "tokenizer/vocab.json") != Json::parse(vocabulary.vocab_json))
+    if (read_json_file(folder / "tokenizer/vocab.json") != parse_json<Json>(vocabulary.vocab_json, "the vocabulary"))
         throw Error(ErrorCode::InvalidArgument, "the initial model knows other words than this run trains",
                     StructureHint, folder / "tokenizer/vocab.json");
     StarterParts parts = fresh_parts(configs, 0);

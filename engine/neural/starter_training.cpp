@@ -10,6 +10,7 @@
 #include <exception>
 #include <mutex>
 #include <numbers>
+#include <sstream>
 #include <thread>
 
 #include "engine/base/error.h"
@@ -30,19 +31,19 @@ struct RunState {
 
 void save_checkpoint(const std::filesystem::path& path, const Stage& stage, torch::optim::AdamW& optimizer, Ema& ema,
                      const RunState& state) {
-    write_atomically(path, [&](const std::filesystem::path& temporary) {
-        torch::serialize::OutputArchive archive;
-        archive.write("step", torch::tensor(state.step));
-        archive.write("seconds", torch::tensor(state.seconds, torch::kDouble));
-        for (std::size_t i = 0; i < stage.replicas[0].size(); ++i) {
-            archive.write(fmt::format("p{}", i), stage.replicas[0][i].detach());
-            archive.write(fmt::format("e{}", i), ema.values()[i]);
-        }
-        torch::serialize::OutputArchive moments;
-        optimizer.save(moments);
-        archive.write("optimizer", moments);
-        archive.save_to(temporary.string());
-    });
+    torch::serialize::OutputArchive archive;
+    archive.write("step", torch::tensor(state.step));
+    archive.write("seconds", torch::tensor(state.seconds, torch::kDouble));
+    for (std::size_t i = 0; i < stage.replicas[0].size(); ++i) {
+        archive.write(fmt::format("p{}", i), stage.replicas[0][i].detach());
+        archive.write(fmt::format("e{}", i), ema.values()[i]);
+    }
+    torch::serialize::OutputArchive moments;
+    optimizer.save(moments);
+    archive.write("optimizer", moments);
+    std::ostringstream bytes;  // an archive that writes its own file does not say why it failed
+    archive.save_to(bytes);
+    write_file(path, bytes.view());
 }
 
 bool load_checkpoint(const std::filesystem::path& path, Stage& stage, torch::optim::AdamW& optimizer, Ema& ema,

@@ -15,7 +15,7 @@ std::string utf8(unsigned code) {
 }
 
 /// The printable symbol of every byte, in CLIP's id order (openai/CLIP simple_tokenizer: printable bytes first).
-std::vector<std::string> byte_symbols() {
+std::vector<std::string> symbols_of_bytes() {
     std::vector<std::string> symbols;
     const auto printable = [](unsigned byte) {
         return (byte >= '!' && byte <= '~') || (byte >= 0xA1 && byte <= 0xAC) || (byte >= 0xAE && byte <= 0xFF);
@@ -53,7 +53,7 @@ void merge_pair(Pieces& pieces, const std::pair<std::string, std::string>& pair)
 }  // namespace
 
 StarterVocabulary build_vocabulary(const std::vector<std::string>& words) {
-    std::vector<std::string> tokens = byte_symbols();
+    std::vector<std::string> tokens = symbols_of_bytes();
     for (std::size_t i = 0; i < 256; ++i) tokens.push_back(tokens[i] + "</w>");
     std::vector<Pieces> pending;
     for (const auto& word : words) {

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "engine/base/error.h"
+#include "engine/base/json.h"
 
 namespace gse::neural {
 
@@ -24,7 +25,7 @@ std::vector<std::string> split_caption(const std::string& text) {
 }
 
 WordTable::WordTable(const StarterVocabulary& vocabulary) : bos_(vocabulary.bos), eos_(vocabulary.eos) {
-    const auto json = nlohmann::json::parse(vocabulary.vocab_json);
+    const auto json = parse_json(vocabulary.vocab_json, "the vocabulary");
     for (const auto& [token, id] : json.items()) {
         constexpr std::string_view end = "</w>";
         if (token.size() > end.size() && token.ends_with(end))

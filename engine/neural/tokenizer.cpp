@@ -13,6 +13,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/neural/config.h"
 
 namespace gse::neural {
@@ -187,7 +188,7 @@ void Tokenizer::read_vocabulary(const std::filesystem::path& folder) {
     const auto path = folder / "vocab.json";
     if (std::filesystem::exists(path)) {
         // Not read_json_file: an ordered object looks each of 49408 names up one by one.
-        const auto json = nlohmann::json::parse(read_file(path), nullptr, false);
+        const auto json = try_parse_json(read_file(path));
         if (!json.is_object())
             throw Error(ErrorCode::Malformed, "the tokenizer's vocabulary is not a JSON object", {}, path);
         for (const auto& [token, id] : json.items()) {

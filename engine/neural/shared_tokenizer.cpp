@@ -1,0 +1,23 @@
+// The one file of the networks that depends on where the checkout is.
+#include "engine/neural/shared_tokenizer.h"
+
+#include <array>
+#include <cstdlib>
+
+#include "engine/base/error.h"
+
+namespace gse::neural {
+
+namespace fs = std::filesystem;
+
+fs::path find_tokenizer(const fs::path& beside) {
+    const char* assets = std::getenv("GSE_ASSETS");
+    const std::array<fs::path, 3> candidates{beside / "tokenizer", beside,
+                                             fs::path(assets != nullptr ? assets : GSE_ASSETS) / "tokenizer"};
+    for (const auto& candidate : candidates)
+        if (fs::exists(candidate / "merges.txt")) return candidate;
+    throw Error(ErrorCode::NotFound, "a single-file checkpoint has no tokenizer and none was found",
+                "put CLIP's merges.txt into a folder named tokenizer beside it", candidates[0]);
+}
+
+}  // namespace gse::neural

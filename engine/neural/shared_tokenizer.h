@@ -1,0 +1,11 @@
+// CLIP's tokenizer for checkpoints that come without one.
+#pragma once
+
+#include <filesystem>
+
+namespace gse::neural {
+
+/// Where the merges are: beside the checkpoint, or among the program's assets. Throws Error (NotFound).
+std::filesystem::path find_tokenizer(const std::filesystem::path& beside);
+
+}  // namespace gse::neural
