@@ -10,108 +10,18 @@
 
 #include "engine/base/check.h"
 #include "engine/base/random.h"
+#include "engine/edit/related_place.h"
+#include "engine/edit/words.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
 namespace {
-
-constexpr float InvisibleLogit = -5.5373f;  // opacity 1/255
-constexpr double BoundsTrim = 0.01;         // share of the rows cut off at either end of every axis
-
-/// Right-handed frame of the scene: x sideways, y up, z to the front.
-struct Frame {
-    Vec3 side, up, front;
-    Vec3 to_frame(const Vec3& p) const { return {dot(p, side), dot(p, up), dot(p, front)}; }
-    Vec3 to_world(const Vec3& p) const { return side * p.x + up * p.y + front * p.z; }
-};
-
-Frame make_frame(const Vec3& up_direction, const Vec3& front_direction) {
-    Frame frame;
-    frame.up = normalized(up_direction);
-    frame.front = front_direction - frame.up * dot(front_direction, frame.up);
-    if (length(frame.front) < 1e-6) {
-        const Vec3 helper = std::abs(frame.up.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-        frame.front = cross(frame.up, helper);
-    }
-    frame.front = normalized(frame.front);
-    frame.side = cross(frame.up, frame.front);
-    return frame;
-}
-
-/// Visible source rows in frame coordinates.
-std::vector<Vec3> source_points(const RegionSearch& search, const Frame& frame) {
-    std::vector<Vec3> points;
-    for (std::size_t row = 0; row < search.gaussians.size(); ++row) {
-        const auto p = search.gaussians.position().subspan(row * 3, 3);
-        const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-        if (search.source_bits[row] != 0 && finite && search.gaussians.opacity_logit()[row] > InvisibleLogit)
-            points.push_back(frame.to_frame({p[0], p[1], p[2]}));
-    }
-    return points;
-}
-
-double quantile(std::vector<double> values, double share) {
-    GSE_CHECK(!values.empty());
-    const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1) + 0.5);
-    std::nth_element(values.begin(), values.begin() + rank, values.end());
-    return values[static_cast<std::size_t>(rank)];
-}
-
-std::vector<double> axis_values(const std::vector<Vec3>& points, int axis) {
-    std::vector<double> values;
-    for (const auto& point : points) values.push_back(point[axis]);
-    return values;
-}
-
-struct Box {
-    Vec3 low, high;
-    Vec3 size() const { return high - low; }
-    Vec3 centre() const { return (low + high) * 0.5; }
-};
-
-Box trimmed_box(const std::vector<Vec3>& points, double trim) {
-    Box box;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto values = axis_values(points, axis);
-        box.low[axis] = quantile(values, trim);
-        box.high[axis] = quantile(values, 1 - trim);
-    }
-    return box;
-}
 
 std::vector<Vec3> slice(const std::vector<Vec3>& points, double low, double high) {
     std::vector<Vec3> result;
     for (const auto& point : points)
         if (point.y >= low && point.y <= high) result.push_back(point);
     return result.empty() ? points : result;
-}
-
-/// Cells of a box, x fastest.
-struct Grid {
-    Box box;
-    double side = 0;
-    std::array<int, 3> count{};
-    std::size_t size() const {
-        return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]) *
-               static_cast<std::size_t>(count[2]);
-    }
-    Vec3 centre(std::size_t cell) const {
-        const auto nx = static_cast<std::size_t>(count[0]), ny = static_cast<std::size_t>(count[1]);
-        const Vec3 index{static_cast<double>(cell % nx), static_cast<double>(cell / nx % ny),
-                         static_cast<double>(cell / (nx * ny))};
-        return box.low + (index + Vec3{0.5, 0.5, 0.5}) * side;
-    }
-};
-
-Grid make_grid(const Box& box, int cells) {
-    Grid grid;
-    grid.box = box;
-    const Vec3 size = box.size();
-    grid.side = std::max({size.x, size.y, size.z, 1e-9}) / std::max(cells, 1);
-    for (int axis = 0; axis < 3; ++axis)
-        grid.count[static_cast<std::size_t>(axis)] =
-            std::max(1, static_cast<int>(std::ceil(size[axis] / grid.side)));
-    return grid;
 }
 
 /// What the views say about one point.
@@ -177,14 +87,6 @@ std::vector<std::size_t> large_components(const Grid& grid, const std::vector<st
             cells.insert(cells.end(), part.begin(), part.end());
     std::sort(cells.begin(), cells.end());
     return cells;
-}
-
-AddRegion fill(const Frame& frame, const Grid& grid, const std::function<bool(const Vec3&)>& inside) {
-    AddRegion region;
-    region.side = grid.side;
-    for (std::size_t cell = 0; cell < grid.size(); ++cell)
-        if (inside(grid.centre(cell))) region.centres.push_back(frame.to_world(grid.centre(cell)));
-    return region;
 }
 
 /// A cap on the top of the source: as wide as what is up there, about as high as its radius, narrower
@@ -292,25 +194,39 @@ const std::map<std::string, std::string>& usual_places() {
     return places;
 }
 
+/// Last word of a phrase: a top hat is a hat.
+std::string head_of(const std::string& phrase) {
+    const auto words = words_of(phrase);
+    return words.empty() ? std::string() : words.back();
+}
+
+/// Where the votes for what the source wears or has on are counted: around it and above.
+Box worn_box(const std::vector<Vec3>& points) {
+    Box box = trimmed_box(points, BoundsTrim);
+    const Vec3 size = box.size();
+    const double wide = 0.35 * std::max({size.x, size.y, size.z});
+    box.low = box.low - Vec3{wide, 0.05 * size.y, wide};
+    box.high = box.high + Vec3{wide, 0.6 * size.y, wide};
+    return box;
+}
+
 }  // namespace
 
 AddRegion vote_region(const RegionSearch& search, const RegionParameters& parameters) {
     GSE_CHECK_EQ(search.masks.size(), search.views.size());
     GSE_CHECK_EQ(search.source_bits.size(), search.gaussians.size());
     const Frame frame = make_frame(search.up, search.front);
-    const auto points = source_points(search, frame);
+    const auto points = visible_points(search, frame, true);
     const auto voters = std::count_if(search.masks.begin(), search.masks.end(),
                                       [](const Mask& m) { return !m.data.empty(); });
     if (points.empty() || voters == 0) return {};
-    Box box = trimmed_box(points, BoundsTrim);
-    const Vec3 size = box.size();
-    const double wide = 0.35 * std::max({size.x, size.y, size.z});
-    box.low = box.low - Vec3{wide, 0.05 * size.y, wide};
-    box.high = box.high + Vec3{wide, 0.6 * size.y, wide};
-    const Grid grid = make_grid(box, parameters.cells);
+    const bool related = !place_name(search.relation).empty();
+    const RelatedPlace place(search.relation, points, related ? visible_points(search, frame, false) : std::vector<Vec3>{});
+    const Grid grid = make_grid(related ? place.box() : worn_box(points), parameters.cells);
     std::vector<double> agreement(grid.size(), 0);
     double best = 0;
     for (std::size_t cell = 0; cell < grid.size(); ++cell) {
+        if (related && !place.allows(grid.centre(cell))) continue;
         const Vote vote = vote_at(search, frame.to_world(grid.centre(cell)), grid.side);
         if (vote.counted * 2 < voters || vote.seen < parameters.least_seen * vote.counted) continue;
         agreement[cell] = static_cast<double>(vote.covered) / vote.counted;
@@ -331,7 +247,7 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
 
 AddRegion anchor_region(const RegionSearch& search, const std::string& place, int cells) {
     const Frame frame = make_frame(search.up, search.front);
-    const auto points = source_points(search, frame);
+    const auto points = visible_points(search, frame, true);
     if (points.empty()) return {};
     AddRegion region = place == "front"    ? front_region(frame, points, cells)
                        : place == "neck"   ? neck_region(frame, points, cells)
@@ -341,12 +257,20 @@ AddRegion anchor_region(const RegionSearch& search, const std::string& place, in
     return region;
 }
 
-std::string usual_place(const std::string& word) {
-    const auto found = usual_places().find(word);
+AddRegion usual_region(const RegionSearch& search, const std::string& thing, int cells) {
+    if (place_name(search.relation).empty()) return anchor_region(search, usual_place(thing), cells);
+    const Frame frame = make_frame(search.up, search.front);
+    const auto points = visible_points(search, frame, true);
+    if (points.empty()) return {};
+    return RelatedPlace(search.relation, points, visible_points(search, frame, false)).usual(frame, cells);
+}
+
+std::string usual_place(const std::string& thing) {
+    const auto found = usual_places().find(head_of(thing));
     return found == usual_places().end() ? "top" : found->second;
 }
 
-bool has_usual_place(const std::string& word) { return usual_places().contains(word); }
+bool has_usual_place(const std::string& thing) { return usual_places().contains(head_of(thing)); }
 
 GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std::uint64_t seed,
                          double opacity) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/image.h"
+#include "engine/edit/relation.h"
 #include "engine/scene/scene.h"
 
 namespace gse::edit {
@@ -16,7 +17,7 @@ struct AddRegion {
     std::vector<Vec3> centres;    // world
     double side = 0;              // of a cube, world units
     double agreement = 0;         // mean share of the views whose mask covers the cubes
-    std::string origin = "none";  // "attention" or the anchor: "top", "front", "neck", "around"
+    std::string origin = "none";  // "attention" or the place: "top", "front", "neck", "around", "beside", "left", ...
     bool empty() const { return centres.empty(); }
 };
 
@@ -29,6 +30,7 @@ struct RegionSearch {
     std::span<const Image> depths;  // per view [H,W,1] depth of the surface, 0 = nothing there
     Vec3 up{0, -1, 0};
     Vec3 front{0, 0, -1};  // where the thing looks
+    Relation relation = Relation::None;   // what the sentence says of the new thing's place: cells elsewhere do not count
 };
 
 struct RegionParameters {
@@ -49,10 +51,13 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
 /// (flames).
 AddRegion anchor_region(const RegionSearch& search, const std::string& place, int cells = 28);
 
-/// The place a word usually takes: "top" for what is not known.
-std::string usual_place(const std::string& word);
+/// Where the relation puts a thing of that name when nothing else says it; without a relation, where it usually goes.
+AddRegion usual_region(const RegionSearch& search, const std::string& thing, int cells = 28);
+
+/// The place a thing ("hat", "top hat") usually takes: "top" for what is not known.
+std::string usual_place(const std::string& thing);
 /// Whether the place is known, not only supposed.
-bool has_usual_place(const std::string& word);
+bool has_usual_place(const std::string& thing);
 
 /// `count` round splats of neutral colour, spread over the region; sized by the room each has. `opacity` in
 /// (0,1).

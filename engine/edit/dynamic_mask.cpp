@@ -7,15 +7,14 @@
 #include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/base/random.h"
+#include "engine/edit/scales.h"
 #include "engine/localize/clusters.h"
 #include "engine/localize/points.h"
 
 namespace gse::edit {
 namespace {
 
-constexpr int ClusterGrid = 64;            // method 2.7
-constexpr double ReferenceSide = 512;      // pictures for which request lengths in pixels are stated
-constexpr float LabelSeen = 0.05f;         // A13: where the label's render counts at all
+constexpr float LabelCounts = 0.05f;         // A13: where the label's render counts at all
 constexpr double LabelReachPx = 8;         // A13, of a 512-pixel picture
 constexpr float Memory = 0.5f;             // A13: weight of the mask before
 constexpr float TurnsOn = 0.6f, TurnsOff = 0.4f;   // F24: hysteresis
@@ -74,7 +73,7 @@ bool DynamicMasks::due(std::size_t view, int iteration) const {
 
 Mask DynamicMasks::found_in(const Image& shown, std::size_t view, int iteration) const {
     const AttentionQuery query{shown,
-                               request_.prompt,
+                               as_told(request_.prompt),
                                {word_},
                                plan_.view_words.empty() ? std::string() : plan_.view_words[view],
                                false,
@@ -100,7 +99,7 @@ void DynamicMasks::refresh(std::size_t view, int iteration, const Image& shown, 
     last_refresh_[view] = iteration;
     const double px = shown.width / ReferenceSide;
     Mask found = found_in(shown, view, iteration);
-    const Mask near_label = localize::dilate(localize::threshold_map(label_seen, LabelSeen), LabelReachPx * px);
+    const Mask near_label = localize::dilate(localize::threshold_map(label_seen, LabelCounts), LabelReachPx * px);
     for (std::size_t i = 0; i < found.data.size(); ++i) found.data[i] = found.data[i] != 0 && near_label.data[i] != 0 ? 1 : 0;
     found = localize::dilate(found, request_.dilate_px * px);
     const auto area = static_cast<double>(found.count());

@@ -26,7 +26,7 @@ std::unique_ptr<Segmenter> make_grabcut_segmenter(const GrabCutParameters& param
 /// Inside where the hint is at least `level`, joined to the positive clicks.
 std::unique_ptr<Segmenter> make_threshold_segmenter(double level = 0.5);
 
-/// GrabCut where there is OpenCV, the threshold otherwise.
+/// GrabCut where there is OpenCV, the threshold otherwise; may be called from several threads.
 std::unique_ptr<Segmenter> make_default_segmenter();
 
 }  // namespace gse::edit

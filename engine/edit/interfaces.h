@@ -38,6 +38,7 @@ struct GuidanceOutput {
 class Guidance {
 public:
     virtual ~Guidance() = default;
+    /// A gradient with a value that is not finite says that there is none this time; the step is left out.
     virtual GuidanceOutput evaluate(const GuidanceInput& input) = 0;
 };
 

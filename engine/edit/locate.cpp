@@ -11,6 +11,9 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/random.h"
+#include "engine/edit/confidence.h"
+#include "engine/edit/scales.h"
+#include "engine/edit/vocabulary.h"
 #include "engine/localize/clusters.h"
 #include "engine/localize/graph_cut.h"
 #include "engine/localize/points.h"
@@ -19,33 +22,20 @@
 namespace gse::edit {
 namespace {
 
-constexpr int ClusterGrid = 64;              // clustering happens on maps of this width (method 2.7)
 constexpr std::size_t LeastRegionCells = 4;  // smaller regions of a 64-cell map count as nothing found
+constexpr std::size_t RecognisedViews = 6;   // pictures that are compared with words
 constexpr int LeastViews = 3;                // fewer voting views cannot tell front from back
 constexpr double LargestMaskShare = 0.9;     // of the picture: such a mask has found nothing
 constexpr double LargestMaskGrowth = 4;      // of the attention region's area: the segmenter ran away
 constexpr double LeastOverlapIou = 0.1;      // of a text segmenter's mask and the attention region (A8)
 constexpr double LeastTextScore = 0.3;
 constexpr double LeastEvidenceShare = 0.2;  // of the mean evidence of the rows that are seen at all
-constexpr double ReferenceSide = 512;       // pictures for which request lengths in pixels are stated
 constexpr double AttentionShare = 0.5;      // of a vote: the attention itself, beside the mask cut out of it
 constexpr double AttentionLevel = 0.85;     // of the threshold: attention that counts half
 constexpr double AttentionSoftness = 0.05;  // how far from there it counts a quarter more or less
+constexpr float LabelSeen = 0.5f;           // share of a pixel from which it shows the artist's label
+constexpr std::uint64_t SearchSeed = 0;      // one for all: what is found does not follow the loop's dice
 constexpr double RivalLead = 0.5;           // another thing that has so much more takes the pixel from the mask
-
-/// Position of the word in the sentence, -1 = absent.
-int word_position(const std::vector<std::string>& words, const std::string& word) {
-    const auto found = std::find(words.begin(), words.end(), word);
-    return found == words.end() ? -1 : static_cast<int>(found - words.begin());
-}
-
-bool any_of_between(const std::vector<std::string>& words, int begin, int end,
-                    const std::vector<std::string>& wanted) {
-    for (int i = begin + 1; i < end; ++i)
-        if (std::find(wanted.begin(), wanted.end(), words[static_cast<std::size_t>(i)]) != wanted.end())
-            return true;
-    return false;
-}
 
 int grid_height(const Image& map) { return std::max(1, ClusterGrid * map.height / map.width); }
 
@@ -107,6 +97,12 @@ struct Search {
     bool absent = false;
 };
 
+/// The attention of a view on the grid where clusters and clicks are found.
+struct SmallMap {
+    Image map;
+    Mask region;
+};
+
 /// Steps of locate() over all views.
 class Locator {
 public:
@@ -142,6 +138,16 @@ private:
     }
 
     void render_all() {
+        if (tools_.memory != nullptr && tools_.memory->renders.size() == input_.views.size()) {
+            renders_ = tools_.memory->renders;
+            depths_ = tools_.memory->depths;
+            return;
+        }
+        render_views();
+        if (tools_.memory != nullptr) *tools_.memory = {renders_, depths_};
+    }
+
+    void render_views() {
         raster::ForwardOutput output;
         for (const auto& view : input_.views) {
             check_stop();
@@ -173,14 +179,14 @@ private:
 
     /// The word with a prompt that surely contains it and its rivals.
     Search search_for(const std::string& word, bool absent) const {
-        std::string sentence = request().prompt;
+        std::string sentence = as_told(request().prompt);
         if (!has_word(sentence, word)) sentence = sentence_before(request());   // "on the snow" was "on the grass"
         if (!has_word(sentence, word)) sentence = "a " + word;
         Search search{word, std::move(sentence), {}, request().rivals != "auto", absent};
         if (absent || request().rivals == "none") return search;
         for (const auto& rival :
-             search.rivals_given ? words_of(request().rivals) : things_named(sentence_before(request()))) {
-            if (rival == word) continue;
+             search.rivals_given ? phrases_of(request().rivals) : things_named(sentence_before(request()), {word})) {
+            if (rival == word || (!search.rivals_given && !knows(input_.known, rival))) continue;
             if (!has_word(search.prompt, rival)) search.prompt += ", " + rival;
             search.rivals.push_back(rival);
         }
@@ -192,14 +198,30 @@ private:
         for (std::size_t v = 0; v < input_.views.size(); ++v) {
             check_stop();
             views.push_back(attend(search, v));
-            if (!search.absent && !views.back().failed) segment(search, views.back());
             tools_.job.report(fmt::format("looking for \"{}\"", search.word), static_cast<int>(v + 1),
                               static_cast<int>(input_.views.size()));
         }
+        make_masks(search, views);
         return views;
     }
 
-    /// Attention map and its clean region (threshold, DBSCAN; GSEditPro 3.2).
+    /// Views have nothing to do with each other here.
+    void make_masks(const Search& search, std::vector<ViewEvidence>& views) {
+        const double level = threshold();
+        const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
+            for (std::size_t v = begin; v < end; ++v) {
+                check_stop();
+                const SmallMap small = find_region(views[v], level);
+                if (!search.absent && !views[v].failed) segment(search, views[v], small);
+            }
+        };
+        if (tools_.threads != nullptr)
+            tools_.threads->parallel_for(views.size(), 1, some);
+        else
+            some(0, views.size(), 0);
+    }
+
+    /// Attention map of a view.
     ViewEvidence attend(const Search& search, std::size_t v) {
         ViewEvidence view;
         view.render = renders_[v];
@@ -211,7 +233,7 @@ private:
                              input_.view_words.empty() ? std::string() : input_.view_words[v],
                              search.absent,
                              request().attention_repeats,
-                             Random::stream(request().seed, 5000 + v).next()};
+                             Random::stream(SearchSeed, 5000 + v).next()};
         auto maps = ask(query, search.rivals_given);
         GSE_CHECK_EQ(maps.size(), query.words.size());
         for (auto& map : maps) {
@@ -220,20 +242,26 @@ private:
         }
         view.map = std::move(maps.front());
         compete(view, maps, search.rivals_given);
-        const double level = threshold();
-        const Image small = localize::resize_image(view.map, ClusterGrid, grid_height(view.map));
-        small_region_ = localize::clean_clusters(localize::threshold_map(small, level), small,
-                                                 {request().dbscan_eps, request().dbscan_min_samples},
-                                                 request().keep_mass);
-        view.region = localize::resize_mask(small_region_, view.map.width, view.map.height);
+        return view;
+    }
+
+    /// The map's clean region (threshold, DBSCAN; GSEditPro 3.2) is the view's mask until a segmenter knows better.
+    SmallMap find_region(ViewEvidence& view, double level) const {
+        Image small = localize::resize_image(view.map, ClusterGrid, grid_height(view.map));
+        Mask small_region = localize::clean_clusters(localize::threshold_map(small, level), small,
+                                                     {request().dbscan_eps, request().dbscan_min_samples},
+                                                     request().keep_mass);
+        view.region = localize::resize_mask(small_region, view.map.width, view.map.height);
         view.mask = view.region;
         view.branch = "attention";
         view.captured = 1;
-        small_map_ = small;
         const bool everything = static_cast<double>(view.region.count()) >
                                 LargestMaskShare * static_cast<double>(view.region.data.size());
-        if (small_region_.count() < LeastRegionCells || everything) fail(view);
-        return view;
+        if (everything)
+            fail(view, ViewStep::Everything);
+        else if (small_region.count() < LeastRegionCells)
+            fail(view, has_attention(view.map) ? ViewStep::TooLittle : ViewStep::NoAttention);
+        return {std::move(small), std::move(small_region)};
     }
 
     /// A rival nobody asked for must not end the search: what the model cannot read of a long sentence is left out.
@@ -260,16 +288,21 @@ private:
         }
     }
 
-    static void fail(ViewEvidence& view) {
+    static bool has_attention(const Image& map) {
+        return std::any_of(map.data.begin(), map.data.end(), [](float value) { return value > 0; });
+    }
+
+    static void fail(ViewEvidence& view, ViewStep step) {
         view.failed = true;
+        view.step = step;
         view.branch = "none";
         view.captured = 0;
         std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{0});
     }
 
-    /// Refines the region of the last attend(): text segmenter, clicks, or the region itself (A8).
-    void segment(const Search& search, ViewEvidence& view) {
-        choose_clicks(view);
+    /// Refines the region that was found: text segmenter, clicks, or the region itself (A8).
+    void segment(const Search& search, ViewEvidence& view, const SmallMap& small) const {
+        choose_clicks(view, small);
         std::optional<Mask> from_text;
         double text_mass = 0;
         if (tools_.text_segmenter != nullptr) {
@@ -309,29 +342,52 @@ private:
                area <= LargestMaskGrowth * static_cast<double>(region.count());
     }
 
-    void choose_clicks(ViewEvidence& view) const {
+    void choose_clicks(ViewEvidence& view, const SmallMap& small) const {
         localize::PointParameters parameters;
         parameters.positive = request().positive_points;
         parameters.negative = request().negative_points;
-        const double scale_x = static_cast<double>(view.map.width) / small_map_.width;
-        const double scale_y = static_cast<double>(view.map.height) / small_map_.height;
-        for (const auto& point : localize::choose_points(small_map_, small_region_, parameters))
+        const double scale_x = static_cast<double>(view.map.width) / small.map.width;
+        const double scale_y = static_cast<double>(view.map.height) / small.map.height;
+        for (const auto& point : localize::choose_points(small.map, small.region, parameters))
             view.points.push_back({point.x * scale_x, point.y * scale_y, point.positive});
     }
 
+    /// What the views of one word came to.
+    struct Found {
+        localize::LabelWeights weights;
+        Label label;
+        Confidence confidence;
+        SearchProblem problem = SearchProblem::None;
+        std::string message, remedy;
+    };
+
+    Found nothing(const Search& search, SearchProblem problem, std::string message, std::string remedy) const {
+        const std::size_t rows = input_.gaussians.size();
+        Found found;
+        found.weights.weight.assign(rows, 0.0f);
+        found.weights.evidence.assign(rows, 0.0);
+        found.label = make_label(search.word, std::vector<float>(rows, 0.0f), 0.5f);
+        found.confidence.value = 0;
+        found.problem = problem;
+        found.message = std::move(message);
+        found.remedy = std::move(remedy);
+        return found;
+    }
+
     /// Fuses the masks into weights and a label.
-    std::pair<localize::LabelWeights, Label> label_of(const Search& search,
-                                                      const std::vector<ViewEvidence>& views) {
+    Found fuse(const Search& search, const std::vector<ViewEvidence>& views) {
         std::vector<localize::MaskedView> votes;
         for (std::size_t v = 0; v < views.size(); ++v)
             votes.push_back({input_.views[v].camera, vote_of(views[v], threshold()), views[v].failed});
-        auto weights =
-            localize::back_project(input_.gaussians.spans(), votes, input_.settings, tools_.rasterizer);
-        if (weights.views_used < LeastViews)
-            throw Error(ErrorCode::InvalidArgument,
-                        fmt::format("\"{}\" was found in {} views, at least {} are needed", search.word,
-                                    weights.views_used, LeastViews),
-                        "look from more views");
+        const auto voting = static_cast<std::size_t>(
+            std::count_if(votes.begin(), votes.end(), [](const auto& vote) { return !vote.failed; }));
+        if (voting < LeastViews || voting * 2 < views.size())
+            return nothing(search, SearchProblem::FewViews,
+                           fmt::format("\"{}\" was found in only {} of {} views", search.word, voting, views.size()),
+                           voting * 2 < views.size() ? common_remedy(views) : "look from more views");
+        Found found;
+        auto& weights = found.weights;
+        weights = localize::back_project(input_.gaussians.spans(), votes, input_.settings, tools_.rasterizer);
         const double least = least_evidence(weights);
         localize::SpreadParameters spread;
         spread.least_evidence_px = least;
@@ -343,8 +399,43 @@ private:
         cut.smoothness = request().label_smoothness;
         const auto changed = localize::cut_label(input_.gaussians.spans(), cut, weights);
         if (changed > 0) log::debug("{} splats took the label of those they belong to", changed);
-        Label label = localize::label_from_weights(search.word, weights, request().tau, least);
-        return {std::move(weights), std::move(label)};
+        found.label = localize::label_from_weights(search.word, weights, request().tau, least);
+        if (count_bits(found.label) == 0)
+            return nothing(search, SearchProblem::NothingLabelled,
+                           fmt::format("the views agree on no splat for \"{}\"", search.word),
+                           "name something the scene shows and the model knows, or lower tau");
+        found.confidence = confidence_of(views, weights, found.label, recognised(search.word));
+        if (found.confidence.value < request().least_confidence) {
+            found.problem = SearchProblem::Unsure;
+            found.message = fmt::format("it is not sure that \"{}\" was found (confidence {:.2f}, at least {:.2f} is needed)",
+                                        search.word, found.confidence.value, request().least_confidence);
+            found.remedy = "name something the scene shows, look at what was found, or label it by hand";
+        }
+        return found;
+    }
+
+    /// How well some of the pictures fit the word; negative where nobody can tell.
+    double recognised(const std::string& word) const {
+        if (tools_.recognition == nullptr) return -1;
+        std::vector<const Image*> some;
+        const std::size_t step = std::max<std::size_t>(1, renders_.size() / RecognisedViews);
+        for (std::size_t v = 0; v < renders_.size(); v += step) some.push_back(&renders_[v]);
+        const std::string sentence = sentence_before(request());
+        return tools_.recognition->of(has_word(sentence, word) ? sentence : "a " + word, word, some);
+    }
+
+    static std::string common_remedy(const std::vector<ViewEvidence>& views) {
+        std::vector<ViewStep> steps;
+        for (const auto& view : views) steps.push_back(view.step);
+        return search_remedy(steps);
+    }
+
+    static void take(Found& found, LocateResult& result) {
+        result.weights = std::move(found.weights);
+        result.confidence = found.confidence;
+        result.problem = found.problem;
+        result.message = std::move(found.message);
+        result.remedy = std::move(found.remedy);
     }
 
     /// The request's evidence is meant for scenes whose splats cover a few pixels; in denser ones no splat
@@ -368,95 +459,113 @@ private:
     void modify(LocateResult& result) {
         const Search search = search_for(request().source, false);
         result.word = search.word;
-        result.views = look(search);
-        std::tie(result.weights, result.label) = label_of(search, result.views);
-        if (count_bits(result.label) == 0)
-            throw Error(ErrorCode::NotFound, fmt::format("no splat was labelled \"{}\"", search.word),
-                        "name something the scene shows and the model knows, or lower --tau");
+        if (input_.label != nullptr) {
+            result.views = labelled_views();
+            result.label = label_by_hand(result.weights);
+        } else {
+            result.views = look(search);
+            Found found = fuse(search, result.views);
+            result.label = found.label;
+            take(found, result);
+        }
         result.source_label = result.label;
     }
 
-    /// The rows the new thing belongs to; the whole scene when they are not found.
-    void find_source(LocateResult& result) {
+    /// The artist's label, with weights that say nothing of their own.
+    Label label_by_hand(localize::LabelWeights& weights) const {
         const std::size_t rows = input_.gaussians.size();
-        if (request().source != request().target) {
-            const Search search = search_for(request().source, false);
-            try {
-                std::tie(result.weights, result.source_label) = label_of(search, look(search));
-                if (count_bits(result.source_label) > 0) return;
-            } catch (const Error& failure) {
-                if (failure.code() == ErrorCode::Cancelled) throw;
-            }
-            log::warning("\"{}\" was not found; the whole scene stands for it", request().source);
+        GSE_CHECK_EQ(input_.label->size(), rows);
+        weights.weight.assign(rows, 0.0f);
+        weights.evidence.assign(rows, 0.0);
+        Label label = make_label(request().source, std::vector<float>(rows, 0.0f), 0.5f);
+        label.bits = std::make_shared<const std::vector<std::uint8_t>>(*input_.label);
+        return label;
+    }
+
+    /// What the views show of the artist's label.
+    std::vector<ViewEvidence> labelled_views() {
+        std::vector<ViewEvidence> views;
+        const std::vector<float> values(input_.label->begin(), input_.label->end());
+        Image seen;
+        for (std::size_t v = 0; v < input_.views.size(); ++v) {
+            const Camera& camera = input_.views[v].camera;
+            tools_.rasterizer.forward_values(input_.gaussians.spans(), camera, input_.settings, values, seen);
+            ViewEvidence view;
+            view.render = renders_[v];
+            view.map = Image(camera.width, camera.height, 1);
+            view.mask = localize::threshold_map(seen, LabelSeen);
+            view.region = view.mask;
+            view.branch = "label";
+            view.failed = view.mask.count() == 0;
+            view.step = view.failed ? ViewStep::Hidden : ViewStep::Found;
+            views.push_back(std::move(view));
         }
-        result.source_label = make_label(request().source, std::vector<float>(rows, 1.0f), 0.5f);
+        return views;
+    }
+
+    /// The rows the new thing belongs to: labelled by hand, found, or (where it is no thing of its own) the whole scene.
+    void find_source(LocateResult& result) {
+        if (input_.label != nullptr) {
+            result.source_label = label_by_hand(result.weights);
+        } else if (request().source != request().target) {
+            const Search search = search_for(request().source, false);
+            result.word = search.word;
+            result.views = look(search);
+            Found found = fuse(search, result.views);
+            result.source_label = found.label;
+            take(found, result);
+        } else {
+            result.source_label = make_label(request().source, std::vector<float>(input_.gaussians.size(), 1.0f), 0.5f);
+        }
     }
 
     void add(LocateResult& result) {
+        result.label = make_label(request().target, std::vector<float>(input_.gaussians.size(), 0.0f), 0.5f);
         find_source(result);
+        if (result.problem != SearchProblem::None) return;
         const Search search = search_for(request().target, true);
         result.word = search.word;
         result.views = look(search);
         std::vector<Mask> masks;
         for (const auto& view : result.views) masks.push_back(view.failed ? Mask() : view.mask);
+        const bool of_source = request().source != request().target;
         const RegionSearch space{
-            input_.gaussians, *result.source_label.bits, input_.views, masks, depths_, input_.up,
-            input_.front};
+            input_.gaussians, *result.source_label.bits, input_.views, masks, depths_, input_.up, input_.front,
+            of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None};
         result.region = vote_region(space);
         const bool attended = !result.region.empty();
         if (!attended) {
-            const std::string place = usual_place(search.word);
-            log::info("the views do not agree where \"{}\" goes; it is put at the usual place: {}",
-                      search.word, place);
-            result.region = anchor_region(space, place);
+            result.region = usual_region(space, search.word);
+            log::info("the views do not agree where \"{}\" goes; it is put at the usual place: {}", search.word,
+                      result.region.origin);
         }
-        if (result.region.empty())
-            throw Error(ErrorCode::NotFound, fmt::format("no place was found for \"{}\"", search.word),
-                        "name what it belongs to with --source");
+        if (result.region.empty()) {
+            result.problem = SearchProblem::NoPlace;
+            result.message = fmt::format("no place was found for \"{}\"", search.word);
+            result.remedy = "name what it belongs to";
+            return;
+        }
         for (std::size_t v = 0; v < result.views.size(); ++v) {
             auto& view = result.views[v];
             view.mask = region_mask(result.region, input_.views[v].camera);
             view.branch = attended ? "attention" : "anchor";
             view.failed = view.mask.count() == 0;
+            view.step = view.failed ? ViewStep::Hidden : ViewStep::Found;
         }
         result.seeds =
-            seed_splats(result.region, request().seed_splats, input_.gaussians.sh_degree(), request().seed);
-        result.label = make_label(search.word, std::vector<float>(input_.gaussians.size(), 0.0f), 0.5f);
+            seed_splats(result.region, request().seed_splats, input_.gaussians.sh_degree(), SearchSeed);
     }
 
     const LocateInput& input_;
     const LocateTools& tools_;
     std::vector<Image> renders_, depths_;
-    Image small_map_;  // of the view attended last, 64 cells wide
-    Mask small_region_;
 };
 
 }  // namespace
 
-std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
-                                             std::optional<double> target_found_share) {
-    constexpr double present_share = 0.3;  // A7
-    if (request.mode == "add") return {EditMode::Add, "as asked"};
-    if (request.mode == "modify") return {EditMode::Modify, "as asked"};
-    if (target_found_share && *target_found_share >= present_share)
-        return {EditMode::Modify, "the scene shows \"" + request.target + "\" already"};
-    const auto words = words_of(request.prompt);
-    const int source = word_position(words, request.source), target = word_position(words, request.target);
-    if (source < 0) return {EditMode::Modify, "the sentence replaces \"" + request.source + "\""};
-    if (source == target) return {EditMode::Modify, "source and target are the same word"};
-    static const std::vector<std::string> joining{"wearing",  "with", "and",   "holding", "has",
-                                                  "having",   "on",   "under", "beside",  "near",
-                                                  "carrying", "plus", "to",    "behind"};
-    static const std::vector<std::string> turning{"made", "of", "into", "as"};
-    const int first = std::min(source, target), last = std::max(source, target);
-    bool worn = false;
-    for (int i = first + 1; i < last; ++i) worn = worn || says_worn(words, static_cast<std::size_t>(i));
-    const bool joined =
-        (worn || any_of_between(words, first, last, joining)) && !any_of_between(words, first, last, turning);
-    if (joined)
-        return {EditMode::Add,
-                "the sentence puts \"" + request.target + "\" beside \"" + request.source + "\""};
-    return {EditMode::Modify, "\"" + request.target + "\" describes \"" + request.source + "\""};
+void require_found(const LocateResult& located) {
+    if (located.problem == SearchProblem::None) return;
+    throw Error(ErrorCode::NotFound, located.message, located.remedy);
 }
 
 LocateResult locate(const LocateInput& input, const LocateTools& tools) {
@@ -464,32 +573,6 @@ LocateResult locate(const LocateInput& input, const LocateTools& tools) {
         throw Error(ErrorCode::InvalidArgument,
                     "there is nothing to look at: the scene or the list of views is empty");
     return Locator(input, tools).run();
-}
-
-EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster::Rasterizer& rasterizer) {
-    GSE_CHECK_EQ(located.views.size(), input.views.size());
-    EditPlan plan;
-    plan.views = input.views;
-    plan.view_words = input.view_words;
-    plan.label = *located.label.bits;
-    plan.seeds = located.seeds;
-    plan.settings = input.settings;
-    const std::vector<float> values(plan.label.begin(), plan.label.end());
-    const bool any = std::find(plan.label.begin(), plan.label.end(), std::uint8_t{1}) != plan.label.end();
-    Image seen;
-    for (std::size_t v = 0; v < input.views.size(); ++v) {
-        const Camera& camera = input.views[v].camera;
-        Mask mask = located.views[v].failed ? Mask(camera.width, camera.height) : located.views[v].mask;
-        if (any) {
-            rasterizer.forward_values(input.gaussians.spans(), camera, input.settings, values, seen);
-            for (std::size_t i = 0; i < mask.data.size(); ++i)
-                if (seen.data[i] > 0.5f) mask.data[i] = 1;
-        }
-        const double grow = input.request.dilate_px * (located.mode == EditMode::Add ? 2 : 1);
-        plan.masks.push_back(localize::dilate(mask, grow * camera.width / ReferenceSide));
-    }
-    if (!input.request.localize) std::fill(plan.label.begin(), plan.label.end(), std::uint8_t{1});
-    return plan;
 }
 
 }  // namespace gse::edit

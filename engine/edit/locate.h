@@ -7,9 +7,12 @@
 #include <vector>
 
 #include "engine/base/progress.h"
+#include "engine/base/thread_pool.h"
 #include "engine/edit/add_region.h"
 #include "engine/edit/interfaces.h"
+#include "engine/edit/recognition.h"
 #include "engine/edit/request.h"
+#include "engine/edit/search_outcome.h"
 #include "engine/edit/session.h"
 #include "engine/localize/back_projection.h"
 #include "engine/raster/rasterizer.h"
@@ -26,6 +29,15 @@ struct LocateInput {
     raster::Settings settings;
     Vec3 up{0, -1, 0};     // world up; where the top of a thing is
     Vec3 front{0, 0, -1};  // where it looks; for things that go before a face
+    /// [N] 0 or 1: the rows the edit is about, labelled by hand; nothing is looked for then. Null = the words say.
+    const std::vector<std::uint8_t>* label = nullptr;
+    std::vector<std::string> known = {};  // words of the model; empty = it takes any
+};
+
+/// What the views look like, kept from one search to the next over the same scene and views; empty = to be filled.
+struct ViewMemory {
+    std::vector<Image> renders;  // [H,W,3] in [0,1]
+    std::vector<Image> depths;   // [H,W,1], 0 = nothing there
 };
 
 /// The parts it calls. Both segmenters may be null: then the attention regions themselves are the masks.
@@ -35,6 +47,9 @@ struct LocateTools {
     Segmenter* segmenter = nullptr;
     TextSegmenter* text_segmenter = nullptr;
     JobControl job;
+    Recognition* recognition = nullptr;  // null: whether pictures show a word is judged by its attention alone
+    ViewMemory* memory = nullptr;        // may be null
+    ThreadPool* threads = nullptr;       // views are segmented side by side: only for segmenters that allow it; may be null
 };
 
 /// Everything one view contributed, for the window and the evidence pictures.
@@ -45,9 +60,10 @@ struct ViewEvidence {
     Mask region;                      // thresholded and cleaned attention
     std::vector<PointPrompt> points;  // clicks handed to the segmenter
     Mask mask;                        // the view's vote, not dilated
-    std::string branch;               // what made the mask: "text", "points", "attention", "anchor" or "none"
+    std::string branch;               // what made the mask: "text", "points", "attention", "anchor", "label" or "none"
     double captured = 0;              // share of the region's attention inside the mask
     bool failed = false;              // nothing was found: the view does not vote
+    ViewStep step = ViewStep::Found;  // where it failed
 };
 
 struct LocateResult {
@@ -61,11 +77,18 @@ struct LocateResult {
     AddRegion region;                // add mode: where the new thing goes
     GaussianData seeds;              // add mode: new rows
     int failed_views = 0;
+    Confidence confidence;
+    SearchProblem problem = SearchProblem::None;
+    std::string message, remedy;  // of the problem: what came of the search, and what to do
 };
 
-/// Labels what the request is about. Throws Error when the words are found in less than half of the views,
-/// when fewer than three views are left, or when no splat ends up labelled.
+/// Labels what the request is about. A search that comes to nothing is a result too, with its evidence and `problem`
+/// set: the views are then those of the word that was not found; the label is empty, but for `Unsure`, where it holds
+/// what was found. Throws Error only for input that cannot be looked at, a stop, and failures of the tools.
 LocateResult locate(const LocateInput& input, const LocateTools& tools);
+
+/// Throws Error (NotFound) with the message and the remedy of a search that came to nothing.
+void require_found(const LocateResult& located);
 
 /// Decides "auto" from the sentence and, when there is a text segmenter, from whether it finds the target
 /// word (A7). Returns the mode and the reason.

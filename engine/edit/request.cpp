@@ -2,10 +2,10 @@
 #include "engine/edit/request.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "engine/base/error.h"
 #include "engine/edit/add_region.h"
+#include "engine/edit/relation.h"
 
 namespace gse::edit {
 namespace {
@@ -14,55 +14,59 @@ bool contains(const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// One lower-case word; throws when there are several or none.
-std::string single_word(const std::string& text, const char* what) {
-    const auto words = words_of(text);
-    if (words.size() != 1)
-        throw Error(ErrorCode::InvalidArgument, std::string("the ") + what + " must be one word, not \"" + text + "\"",
-                    "give the one word that matters");
-    return words.front();
+/// Lower-case words with one space between them; throws when there are none.
+std::string phrase_of(const std::string& text, const char* what) {
+    auto phrase = as_told(text);
+    if (phrase.empty())
+        throw Error(ErrorCode::InvalidArgument, std::string("the ") + what + " \"" + text + "\" is not a word",
+                    "give the word or the words that matter");
+    return phrase;
 }
 
 }  // namespace
-
-std::vector<std::string> words_of(const std::string& sentence) {
-    std::vector<std::string> words;
-    std::string word;
-    for (const char letter : sentence + " ") {
-        const auto byte = static_cast<unsigned char>(letter);
-        const bool part_of_word = std::isalnum(byte) != 0 || byte >= 0x80 || letter == '-' || letter == '\'';
-        if (part_of_word) {
-            word += static_cast<char>(byte < 0x80 ? std::tolower(byte) : byte);
-        } else if (!word.empty()) {
-            words.push_back(std::move(word));
-            word.clear();
-        }
-    }
-    return words;
-}
 
 namespace {
 
 using Words = std::vector<std::string>;
 
-const Words Articles{"a", "an", "the", "its", "his", "her", "their", "some", "this", "that", "photo", "picture", "of"};
+const Words Articles{"a", "an", "the", "its", "his", "her", "their", "some", "this", "that", "photo", "picture", "of", Identifier};
 const Words Joiners{"wearing", "with", "holding", "has", "having", "carrying", "plus", "and", "made", "into", "as"};
 const Words Stops{"on",   "in", "at", "under", "beside",   "near",    "behind", "over",   "by",
                   "from", "to", "is", "of",    "standing", "sitting", "lying",  "turned", "changed"};
 const Words Turning{"made", "of", "into", "as"};   // what follows is not a thing beside the others
 
+const Words Pronouns{"it", "him", "her", "them", "itself", "himself", "herself"};
+
+}  // namespace
+
+std::vector<std::string> noun_terms(const std::string& sentence, const std::vector<std::string>& phrases) {
+    auto whole = compound_prepositions();
+    whole.insert(whole.end(), phrases.begin(), phrases.end());
+    return terms_of(sentence, whole);
+}
+
+bool ends_phrase(const std::string& term) {
+    return contains(Joiners, term) || contains(Stops, term) || relation_named(term).has_value();
+}
+
+bool is_pronoun(const std::string& term) { return contains(Pronouns, term); }
+
+namespace {
+
 /// Last word of the noun phrase that begins at `first`: articles and the "of" of "made of" are passed over.
 std::string head_of_phrase(const Words& words, std::size_t first) {
     while (first < words.size() && contains(Articles, words[first])) ++first;
     std::string head;
-    for (std::size_t i = first; i < words.size() && !contains(Joiners, words[i]) && !contains(Stops, words[i]); ++i)
-        head = words[i];
+    for (std::size_t i = first; i < words.size() && !ends_phrase(words[i]); ++i) head = words[i];
     return head;
 }
 
 }  // namespace
 
-bool has_word(const std::string& sentence, const std::string& word) { return contains(words_of(sentence), word); }
+bool says_something(const std::string& word) {
+    static const Words others{"add", "remove", "without", "no", "turn", "make", "it", "front", "side", "back", "view"};
+    return !contains(Articles, word) && !ends_phrase(word) && !contains(others, word);
+}
 
 bool says_worn(const std::vector<std::string>& words, std::size_t i) {
     static const Words one{"a", "an", "its", "his", "her", "their"};
@@ -70,54 +74,123 @@ bool says_worn(const std::vector<std::string>& words, std::size_t i) {
     return contains(one, words[i + 1]) || has_usual_place(words[i + 1]);
 }
 
-std::string guessed_target(const std::string& prompt, const std::string& source) {
-    const auto words = words_of(prompt);
+namespace {
+
+/// A word that may be the news of a sentence, with the words that describe it.
+struct Candidate {
+    std::string head;
+    Words phrase;
+};
+
+/// The word right before the source ("blue" bear, "blue" * bear); empty where it is not described.
+std::string description_of(const EditRequest& edit) {
+    auto words = noun_terms(edit.prompt, {edit.source});
+    std::erase(words, Identifier);
+    const auto found = std::find(words.begin(), words.end(), edit.source);
+    if (found == words.begin() || found == words.end()) return {};
+    const auto& word = *(found - 1);
+    return contains(Articles, word) || ends_phrase(word) ? std::string() : word;
+}
+
+/// Everything a sentence says of the source, in the order in which it is taken for the news.
+std::vector<Candidate> candidates_of(const Words& words, const std::string& source) {
+    std::vector<Candidate> list;
     const auto found = std::find(words.begin(), words.end(), source);
+    const auto add_phrase = [&](std::size_t first) {
+        const auto head = head_of_phrase(words, first);
+        if (head.empty()) return;
+        const auto begin = words.begin() + static_cast<std::ptrdiff_t>(first);
+        list.push_back({head, Words(begin, std::find(begin, words.end(), head) + 1)});
+    };
     if (source.empty() || found == words.end()) {
-        const auto head = head_of_phrase(words, 0);
-        return head.empty() && !words.empty() ? words.back() : head;
+        add_phrase(0);
+        for (std::size_t i = 0; i < words.size(); ++i)
+            if (ends_phrase(words[i])) add_phrase(i + 1);
+        return list;
     }
     const auto at = static_cast<std::size_t>(found - words.begin());
-    for (std::size_t i = at + 1; i < words.size(); ++i) {
-        if (!contains(Joiners, words[i]) && !says_worn(words, i)) continue;
-        const auto head = head_of_phrase(words, i + 1);
-        if (!head.empty()) return head;
+    for (std::size_t i = at + 1; i < words.size(); ++i)
+        if (contains(Joiners, words[i]) || says_worn(words, i)) add_phrase(i + 1);
+    for (std::size_t i = at; i > 0; --i) {   // nearest description first
+        const auto& word = words[i - 1];
+        if (word == Identifier) continue;
+        if (contains(Articles, word) || ends_phrase(word)) break;
+        list.push_back({word, {word}});
     }
-    const bool described = at > 0 && !contains(Articles, words[at - 1]) && !contains(Stops, words[at - 1]) &&
-                           !contains(Joiners, words[at - 1]);
-    return described ? words[at - 1] : source;
+    return list;
 }
+
+}  // namespace
+
+std::string guessed_target(const std::string& prompt, const std::string& source, const std::vector<std::string>& said) {
+    const auto words = noun_terms(prompt, {source});
+    const auto candidates = candidates_of(words, source);
+    const auto is_new = [&](const std::string& word) { return !contains(said, word) && !contains(Articles, word); };
+    for (const auto& candidate : candidates)
+        if (is_new(candidate.head)) return candidate.head;
+    for (const auto& candidate : candidates)   // "a red hat" where the hat was blue
+        if (std::any_of(candidate.phrase.begin(), candidate.phrase.end(), is_new)) return candidate.head;
+    if (!candidates.empty()) return candidates.front().head;
+    return !words.empty() && !has_word(prompt, source) ? words.back() : source;
+}
+
+std::vector<std::string> words_said(const std::vector<EditRequest>& applied) {
+    std::vector<std::string> said;
+    const auto forget = [&](const std::string& word) { std::erase(said, word); };
+    for (std::size_t i = 0; i < applied.size(); ++i) {
+        const auto& edit = applied[i];
+        if (!has_word(edit.prompt, edit.source))   // replaced by the target
+            for (const auto& word : words_of(edit.source)) forget(word);
+        const auto target = words_of(edit.target);
+        const bool described = !target.empty() && description_of(edit) == target.back();
+        for (std::size_t earlier = 0; described && earlier < i; ++earlier)   // described anew
+            if (applied[earlier].source == edit.source) forget(description_of(applied[earlier]));
+        for (const auto& word : words_of(edit.prompt))
+            if (!contains(said, word)) said.push_back(word);
+    }
+    return said;
+}
+
+namespace {
+
+/// Where the words that bring the target begin and end: its description alone, or with what joins it to the source.
+std::pair<std::size_t, std::size_t> bringing(const Words& words, std::size_t source, std::size_t target) {
+    const auto joins = [&](std::size_t i) { return ends_phrase(words[i]); };
+    std::size_t first = target, last = target + 1;
+    if (source < target) {
+        while (first > source + 1 && !joins(first)) --first;
+        while (first > source + 1 && joins(first - 1)) --first;
+        while (last < words.size() && !joins(last)) ++last;
+        if (last + 1 < words.size() && is_pronoun(words[last + 1])) last += 2;   // "beside it"
+    } else if (last < source && source < words.size() && names_thing(words, target)) {   // "a ball beside" a bear
+        while (first > 0 && !joins(first - 1)) --first;
+        for (last = source; !joins(last - 1);) --last;
+    }
+    return {first, last};
+}
+
+}  // namespace
 
 std::string sentence_before(const EditRequest& request) {
-    auto words = words_of(request.prompt);
-    const auto target = std::find(words.begin(), words.end(), request.target) - words.begin();
-    const auto source = std::find(words.begin(), words.end(), request.source) - words.begin();
-    const auto count = static_cast<std::ptrdiff_t>(words.size());
-    const auto joins = [&](std::ptrdiff_t i) {
-        const auto& word = words[static_cast<std::size_t>(i)];
-        return contains(Joiners, word) || contains(Stops, word);
+    auto words = noun_terms(request.prompt, {request.source, request.target});
+    const auto place = [&](const std::string& phrase) {
+        return static_cast<std::size_t>(std::find(words.begin(), words.end(), phrase) - words.begin());
     };
-    if (target < count && (source == count || source == target)) {
-        words[static_cast<std::size_t>(target)] = request.source;
-    } else if (target < count) {
-        std::ptrdiff_t first = target, last = target + 1;
-        if (source < target) {
-            while (first > source + 1 && !joins(first)) --first;
-            while (first > source + 1 && joins(first - 1)) --first;
-            while (last < count && !joins(last)) ++last;
-        }
-        words.erase(words.begin() + first, words.begin() + last);
+    const std::size_t target = place(request.target), source = place(request.source);
+    if (target < words.size() && (source == words.size() || source == target)) {
+        words[target] = request.source;
+    } else if (target < words.size()) {
+        const auto [first, last] = bringing(words, source, target);
+        words.erase(words.begin() + static_cast<std::ptrdiff_t>(first), words.begin() + static_cast<std::ptrdiff_t>(last));
     }
-    std::string sentence;
-    for (const auto& word : words) sentence += (sentence.empty() ? "" : " ") + word;
-    return sentence;
+    return joined(words);
 }
 
-std::vector<std::string> things_named(const std::string& sentence) {
-    const auto words = words_of(sentence);
+std::vector<std::string> things_named(const std::string& sentence, const std::vector<std::string>& phrases) {
+    const auto words = noun_terms(sentence, phrases);
     std::vector<std::string> things;
     for (std::size_t i = 0; i < words.size(); ++i) {
-        const bool begins = i == 0 || contains(Joiners, words[i - 1]) || contains(Stops, words[i - 1]);
+        const bool begins = i == 0 || ends_phrase(words[i - 1]);
         if (!begins || (i > 0 && contains(Turning, words[i - 1])) || contains(Turning, words[i])) continue;
         auto head = head_of_phrase(words, i);
         if (!head.empty() && !contains(things, head)) things.push_back(std::move(head));
@@ -125,24 +198,29 @@ std::vector<std::string> things_named(const std::string& sentence) {
     return things;
 }
 
+std::string instance_sentence(const EditRequest& request) {
+    const bool identified = has_word(request.prompt, Identifier) && !has_word(request.source, Identifier);
+    return "a photo of a " + (identified ? Identifier + " " : std::string()) + request.source;
+}
+
 EditRequest validated(EditRequest request) {
-    const auto words = words_of(request.prompt);
-    if (words.empty())
-        throw Error(ErrorCode::InvalidArgument, "the edit has no prompt", "describe the scene after the edit with --prompt");
+    check_fields(request);
+    if (words_of(request.prompt).empty())
+        throw Error(ErrorCode::InvalidArgument, "the edit has no prompt", "describe the scene after the edit in one sentence");
     if (request.mode != "auto" && request.mode != "modify" && request.mode != "add")
         throw Error(ErrorCode::InvalidArgument, "\"" + request.mode + "\" is not an edit mode", "use auto, modify or add");
-    if (!request.source.empty()) request.source = single_word(request.source, "source");
+    if (!request.source.empty()) request.source = phrase_of(request.source, "source");
     if (request.target.empty()) {
         if (request.source.empty())
             throw Error(ErrorCode::InvalidArgument, "neither a source nor a target word is given",
-                        "name what the edit is about with --source, and what is new with --target");
+                        "name what the edit is about, or the word of the sentence that is new");
         request.target = guessed_target(request.prompt, request.source);
     }
-    request.target = single_word(request.target, "target");
-    if (!contains(words, request.target))
+    request.target = phrase_of(request.target, "target");
+    if (!has_word(request.prompt, request.target))
         throw Error(ErrorCode::InvalidArgument,
                     "the prompt \"" + request.prompt + "\" does not contain the target word \"" + request.target + "\"",
-                    "use the word in the sentence, or choose another target");
+                    "use it in the sentence, or choose another target");
     if (request.source.empty()) request.source = request.target;
     return request;
 }

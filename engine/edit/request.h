@@ -6,18 +6,28 @@
 #include <vector>
 
 #include "engine/base/fields.h"
+#include "engine/edit/words.h"
 
 namespace gse::edit {
 
-/// The request of an artist. Defaults suit the starter model on two processor cores; method.md section 7 has the
-/// values of the full-size method, all of which can be set here.
-struct EditRequest {
-    // Words
+/// What is to change, in words.
+struct EditWords {
     std::string source;
     std::string prompt;
     std::string target;
     std::string mode = "auto";
-    std::uint64_t seed = 0;
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("source", self.source, "What in the scene the edit is about (\"bear\", \"teddy bear\"); empty = the target word.");
+        f("prompt", self.prompt, "A sentence that describes the scene after the edit (\"a golden statue\").");
+        f("target", self.target, "What in the prompt is new (\"golden\", \"top hat\"); empty = found by comparing.");
+        f("mode", self.mode, "modify (change what is there), add (put something new there) or auto.");
+    }
+};
+
+/// How it is looked for: with the words, everything that the networks are asked before the loop begins follows from these.
+struct SearchSettings {
     // Views
     int views = 24;
     int image_size = 96;
@@ -26,7 +36,6 @@ struct EditRequest {
     bool focus = true;
     // Localization
     std::string rivals = "auto";
-    double attention_threshold = 0;
     int attention_repeats = 3;
     double dbscan_eps = 2;
     int dbscan_min_samples = 4;
@@ -34,13 +43,60 @@ struct EditRequest {
     int positive_points = 5;
     int negative_points = 3;
     double fallback_mass = 0.5;
-    double tau = 0.4;
     double label_smoothness = 1.5;
     double evidence_px = 0.5;
+    double least_confidence = 0.25;   // measured: `gseditpro bench search`
+    // Adding
+    int seed_splats = 400;
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("views", self.views, "How many viewpoints the edit looks from.", Range{1, 512});
+        f("image_size", self.image_size, "Side of the pictures the edit works on, in pixels.", Range{16, 1024});
+        f("elevation", self.elevation, "Height of the lower ring of automatic views, degrees above the horizon.",
+          Range{-60, 80});
+        f("background", self.background, "Colour behind the scene: black, white, grey or #rrggbb.");
+        f("focus", self.focus, "Move the automatic views in on what was found and look again.");
+        f("rivals", self.rivals,
+          "Other things the scene shows (\"hat grass\", \"top hat, grass\"; auto: those the sentence names; none): pixels that attend more to "
+          "them are not taken for the source.");
+        f("attention_repeats", self.attention_repeats, "Attention passes per view, each with fresh noise.", Range{1, 100});
+        f("dbscan_eps", self.dbscan_eps, "DBSCAN radius in pixels of a 64-pixel map.", Range{1, 32});
+        f("dbscan_min_samples", self.dbscan_min_samples, "DBSCAN neighbours that make a core pixel.", Range{1, 1000});
+        f("keep_mass", self.keep_mass, "Clusters below this share of the largest one's attention are dropped.", Range{0, 1});
+        f("positive_points", self.positive_points, "Clicks inside for the segmenter.", Range{1, 50});
+        f("negative_points", self.negative_points, "Clicks outside for the segmenter.", Range{0, 50});
+        f("fallback_mass", self.fallback_mass,
+          "A segment that captures less of the attention than this gives way to the attention region.", Range{0, 1});
+        f("label_smoothness", self.label_smoothness,
+          "How much neighbouring splats of one colour share their label; 0 = every splat for itself.", Range{0, 100});
+        f("evidence_px", self.evidence_px, "Splats seen over fewer pixels than this are not labelled.", Range{0, 1e6});
+        f("least_confidence", self.least_confidence,
+          "A search that is less sure than this labels nothing; 0 = what was found is labelled, whatever it is.", Range{0, 1});
+        f("seed_splats", self.seed_splats, "New splats placed where something is added.", Range{10, 1e6});
+    }
+};
+
+/// What makes a label of what was found: another threshold asks no network.
+struct LabelThresholds {
+    double attention_threshold = 0;
+    double tau = 0.4;
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("attention_threshold", self.attention_threshold,
+          "Attention above this share of the maximum counts; 0 = what the model states (0.5 in the paper).", Range{0, 1});
+        f("tau", self.tau, "Splats of which the views say more than this are labelled: half a mask, half the attention, 0 to 1.", Range{0, 1});
+    }
+};
+
+/// How the labelled rows are changed: nothing of it has to be looked for again.
+struct LoopSettings {
+    std::uint64_t seed = 0;
     bool localize = true;
-    // Loop
     int iterations = 200;
     double guidance_weight = 1;
+    double strength = 1;
     bool gate_guidance = true;
     double dilate_px = 8;
     double preserve = 10;
@@ -85,15 +141,10 @@ struct EditRequest {
     double prune_scale = 0.1;
     double max_growth = 1.5;
     double max_aspect = 20;
-    // Adding
-    int seed_splats = 400;
-    // Running
     int snapshot_every = 20;
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
-        visit_words(self, f);
-        visit_localization(self, f);
         visit_loop(self, f);
         visit_rates(self, f);
         visit_growth(self, f);
@@ -101,45 +152,15 @@ struct EditRequest {
 
 private:
     template <class Self, class F>
-    static void visit_words(Self& self, F&& f) {
-        f("source", self.source, "What in the scene the edit is about, one word (\"bear\"); empty = the target word.");
-        f("prompt", self.prompt, "A sentence that describes the scene after the edit (\"a golden statue\").");
-        f("target", self.target, "The word of the prompt that is new (\"golden\", \"hat\"); empty = found by comparing.");
-        f("mode", self.mode, "modify (change what is there), add (put something new there) or auto.");
+    static void visit_loop(Self& self, F&& f) {
         f("seed", self.seed, "Seed of everything random.");
-        f("views", self.views, "How many viewpoints the edit looks from.", Range{1, 512});
-        f("image_size", self.image_size, "Side of the pictures the edit works on, in pixels.", Range{16, 1024});
-        f("elevation", self.elevation, "Height of the lower ring of automatic views, degrees above the horizon.",
-          Range{-60, 80});
-        f("background", self.background, "Colour behind the scene: black, white, grey or #rrggbb.");
-        f("focus", self.focus, "Move the automatic views in on what was found and look again.");
-    }
-    template <class Self, class F>
-    static void visit_localization(Self& self, F&& f) {
-        f("rivals", self.rivals,
-          "Other things the scene shows (\"hat grass\"; auto: those the sentence names; none): pixels that attend more to "
-          "them are not taken for the source.");
-        f("attention_threshold", self.attention_threshold,
-          "Attention above this share of the maximum counts; 0 = what the model states (0.5 in the paper).", Range{0, 1});
-        f("attention_repeats", self.attention_repeats, "Attention passes per view, each with fresh noise.", Range{1, 100});
-        f("dbscan_eps", self.dbscan_eps, "DBSCAN radius in pixels of a 64-pixel map.", Range{1, 32});
-        f("dbscan_min_samples", self.dbscan_min_samples, "DBSCAN neighbours that make a core pixel.", Range{1, 1000});
-        f("keep_mass", self.keep_mass, "Clusters below this share of the largest one's attention are dropped.", Range{0, 1});
-        f("positive_points", self.positive_points, "Clicks inside for the segmenter.", Range{1, 50});
-        f("negative_points", self.negative_points, "Clicks outside for the segmenter.", Range{0, 50});
-        f("fallback_mass", self.fallback_mass,
-          "A segment that captures less of the attention than this gives way to the attention region.", Range{0, 1});
-        f("tau", self.tau, "Splats of which the views say more than this are labelled: half a mask, half the attention, 0 to 1.", Range{0, 1});
-        f("label_smoothness", self.label_smoothness,
-          "How much neighbouring splats of one colour share their label; 0 = every splat for itself.", Range{0, 100});
-        f("evidence_px", self.evidence_px, "Splats seen over fewer pixels than this are not labelled.", Range{0, 1e6});
         f("localize", self.localize,
           "Let only the splats that were found change; off = every splat may (an ablation of the paper).");
-    }
-    template <class Self, class F>
-    static void visit_loop(Self& self, F&& f) {
         f("iterations", self.iterations, "Optimisation steps.", Range{0, 1e6});
         f("guidance_weight", self.guidance_weight, "How hard the model pulls, against keeping the rest.", Range{0, 1e6});
+        f("strength", self.strength,
+          "How much of the result is kept: 0 = none, below 1 = between before and after, above 1 = colours go beyond it.",
+          Range{0, 2});
         f("gate_guidance", self.gate_guidance, "Let the model pull inside the dilated mask only.");
         f("dilate_px", self.dilate_px, "Growth of the mask, in pixels of a 512-pixel picture (doubled when adding).",
           Range{0, 256});
@@ -199,36 +220,62 @@ private:
           Range{0, 10});
         f("max_growth", self.max_growth, "Largest number of labelled splats, relative to the start.", Range{1, 100});
         f("max_aspect", self.max_aspect, "Largest ratio of the axes of new splats.", Range{1, 1e6});
-        f("seed_splats", self.seed_splats, "New splats placed where something is added.", Range{10, 1e6});
         f("snapshot_every", self.snapshot_every, "Iterations between snapshots of a running edit.", Range{1, 1e6});
+    }
+};
+
+/// The request of an artist. Defaults suit the starter model on two processor cores; method.md section 7 has the
+/// values of the full-size method, all of which can be set here. What a stage depends on is the structs it is given.
+struct EditRequest : EditWords, SearchSettings, LabelThresholds, LoopSettings {
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        EditWords::visit_fields(self, f);
+        SearchSettings::visit_fields(self, f);
+        LabelThresholds::visit_fields(self, f);
+        LoopSettings::visit_fields(self, f);
     }
 };
 
 enum class EditMode { Modify, Add };
 
-/// Lower-case words of a sentence, without punctuation.
-std::vector<std::string> words_of(const std::string& sentence);
+/// The sentence's terms, with compound prepositions ("next to") as one: what a reader of noun phrases goes through.
+std::vector<std::string> noun_terms(const std::string& sentence, const std::vector<std::string>& phrases);
 
-/// Whether the sentence has the (lower-case) word.
-bool has_word(const std::string& sentence, const std::string& word);
+/// Whether a term stands between noun phrases: "wearing", "on", "next to".
+bool ends_phrase(const std::string& term);
+
+/// "it", "him", ...: what stands for the source after a preposition.
+bool is_pronoun(const std::string& term);
+
+/// Whether a (lower-case) word names or describes something: "bear", "golden"; not "the", "wearing" or "remove".
+bool says_something(const std::string& word);
 
 /// Whether the word at `i` is an "in" that puts something on: "in flames", "in a hat", but not "in gold", "in the snow".
 bool says_worn(const std::vector<std::string>& words, std::size_t i);
 
-/// The word of the prompt that is new, guessed from the sentence: what the source is "wearing", "with", "in" or "made of",
+/// The one word of the prompt that is new, guessed from the sentence: what the source is "wearing", "with", "in" or "made of",
 /// else the word before it ("golden" statue), else, where the prompt does not name the source, the first thing it names.
-std::string guessed_target(const std::string& prompt, const std::string& source);
+/// Words that the scene shows already (`said`) are no news: where the sentence has other ones, it is about those.
+std::string guessed_target(const std::string& prompt, const std::string& source, const std::vector<std::string>& said = {});
+
+/// Words that hold for a scene after these edits, in the order in which they were applied: what their sentences say, less
+/// what a later one replaced ("blue" of a bear that was made red since).
+std::vector<std::string> words_said(const std::vector<EditRequest>& applied);
 
 /// The prompt as it was before the edit: without the new word, or without the phrase that brings it ("wearing a red hat");
 /// where it stands in the source's place ("into a panda"), with the source instead. The words of a validated request.
 std::string sentence_before(const EditRequest& request);
 
 /// The things a sentence names, in its order, each once: the last words of its noun phrases ("a white dog wearing a hat on
-/// the snow": dog, hat, snow).
-std::vector<std::string> things_named(const std::string& sentence);
+/// the snow": dog, hat, snow). A thing named by one of the phrases ("teddy bear") is named whole.
+std::vector<std::string> things_named(const std::string& sentence, const std::vector<std::string>& phrases = {});
 
-/// Fills what the request leaves open (target and source word) and checks it. Throws Error with one sentence:
-/// an empty prompt, a target that is not in the prompt, an unknown mode.
+/// What pictures of the scene are captioned with while the model learns it: "a photo of a bear", with the identifier where
+/// the prompt has one ("a photo of a * bear").
+std::string instance_sentence(const EditRequest& request);
+
+/// Fills what the request leaves open (target and source) and checks it; both may be phrases of several words. Throws Error
+/// with one sentence: an empty prompt, a target that is not in the prompt, an unknown mode.
 EditRequest validated(EditRequest request);
 
 /// The mode of the request; `target_exists` decides "auto": what the scene shows already is modified, what is absent added.

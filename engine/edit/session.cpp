@@ -1,20 +1,26 @@
 // The edit loop.
 #include "engine/edit/session.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 #include <numeric>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/base/memory.h"
 #include "engine/base/random.h"
 #include "engine/edit/dynamic_mask.h"
+#include "engine/edit/edit_strength.h"
 #include "engine/edit/preservation.h"
+#include "engine/edit/scales.h"
 #include "engine/edit/working_set.h"
 #include "engine/localize/back_projection.h"
 #include "engine/localize/clusters.h"
@@ -23,10 +29,13 @@ namespace gse::edit {
 namespace {
 
 constexpr float SeenLabel = 0.5f;              // share of a pixel that the label must cover to be in a mask
-constexpr double ReferenceSide = 512;          // pictures for which request lengths in pixels are stated
 constexpr std::size_t CalibrationSteps = 20;        // method 2.5
 constexpr std::array LooksAgain{0.5, 0.75};    // shares of the iterations after which new splats are looked for
 constexpr double LeastLeft = 0.15;             // of the new splats; fewer: the model does not see the new thing yet
+// A guidance that is not finite is broken for good, not only now and then, when so many steps in a row were left out and
+// all that were are more than this share of the steps.
+constexpr std::size_t SkippedInARow = 10;
+constexpr double MostSkipped = 0.1;
 /// While training, colours below black get the full gradient of black (F18 names 0.01): what a large step has driven to black
 /// must be able to come back. WorkingSet keeps them from going further.
 constexpr float TrainingColourSlope = 1.0f;
@@ -37,6 +46,11 @@ double norm(const Image& image) {
     return std::sqrt(sum);
 }
 
+/// True when a render of 0-or-1 values shows any row that has a 1.
+bool shows_any(const Image& seen) {
+    return std::any_of(seen.data.begin(), seen.data.end(), [](float value) { return value > 0; });
+}
+
 bool finite(const Image& image) {
     return std::all_of(image.data.begin(), image.data.end(), [](float value) { return std::isfinite(value); });
 }
@@ -44,7 +58,12 @@ bool finite(const Image& image) {
 /// Draws views without replacement, cycle after cycle.
 class ViewCycle {
 public:
-    ViewCycle(std::vector<std::size_t> views, std::uint64_t seed) : views_(std::move(views)), random_(seed) {}
+    explicit ViewCycle(std::uint64_t seed) : random_(seed) {}
+    /// From here on these views, none of them drawn yet.
+    void begin(std::vector<std::size_t> views) {
+        views_ = std::move(views);
+        position_ = 0;
+    }
     std::size_t next() {
         if (position_ == 0)
             for (std::size_t i = views_.size(); i > 1; --i) std::swap(views_[i - 1], views_[random_.below(i)]);
@@ -78,22 +97,39 @@ struct StageSeconds {
            dynamic_mask = 0;
 };
 
+/// What is edited: the rows as they came in and as they are drawn, and which of them may be worked with.
+struct EditBase {
+    const GaussianSet& set;
+    GaussianSet drawn;
+    std::vector<std::uint8_t> usable;
+
+    explicit EditBase(const GaussianSet& base) : set(base), drawn(drawable(base)), usable(usable_rows(base)) {}
+
+    /// The label without rows that cannot be drawn.
+    std::vector<std::uint8_t> editable(std::vector<std::uint8_t> label) const {
+        for (std::size_t row = 0; row < label.size(); ++row) label[row] = label[row] != 0 && usable[row] != 0 ? 1 : 0;
+        return label;
+    }
+};
+
 /// Everything one run keeps between iterations.
 class Loop {
 public:
-    Loop(const GaussianSet& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools)
+    Loop(const EditBase& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools)
         : base_(base),
           plan_(plan),
-          label_(plan.label),
+          label_(base.editable(plan.label)),
           request_(request),
           tools_(tools),
-          set_(base, plan.label, plan.seeds, request, camera_extent(plan.views)),
+          set_(base.drawn, label_, plan.seeds, request, camera_extent(plan.views)),
           preservation_({request.l1, request.ssim, request.preserve}),
           masks_(plan, request, tools.word, tools.attention, tools.segmenter),
+          cycle_(request.seed),
           rest_(plan.views.size(), request.early_stop_change),
           random_(Random::stream(request.seed, 17)) {
         GSE_CHECK_EQ(plan.masks.size(), plan.views.size());
-        render_originals(base);
+        if (tools.start != nullptr) set_.resume(base.drawn, *tools.start);
+        render_originals();
         settings_.negative_colour_slope = TrainingColourSlope;
     }
 
@@ -101,27 +137,66 @@ public:
 
     EditResult run() {
         EditResult result;
-        ViewCycle cycle(visible_views(), request_.seed);
-        for (int iteration = 0; iteration < request_.iterations; ++iteration) {
-            if (tools_.new_label) take_label(result);
-            if (tools_.job.stop_requested() || !iterate(iteration, cycle.next(), result)) {
-                result.stopped = true;
-                break;
+        if (tools_.start != nullptr) result.iterations = tools_.start->iteration;
+        try {
+            const auto views = visible_views();
+            if (views.empty())
+                throw Error(ErrorCode::InvalidArgument, "no labelled splat is visible in any view",
+                            "correct the label, or choose views that show it");
+            draw_only(views);
+            while (result.iterations < request_.iterations && advance(result)) {
             }
-            result.iterations = iteration + 1;
-            if (looks_again(iteration)) look_again(iteration, result);
-            result.came_to_rest = request_.early_stop && rest_.visit(result.history.back().view, shown_,
-                                                                     masks_.mask(result.history.back().view));
-            if (tools_.iteration) tools_.iteration(result.history.back());
-            if (tools_.snapshot && snapshot_due(iteration)) take_snapshot(iteration);
-            tools_.job.report("editing", iteration + 1, request_.iterations);
-            if (set_.labelled() == 0 || result.came_to_rest) break;   // nothing is left to do
+        } catch (const std::bad_alloc&) {
+            keep_reached(result, out_of_memory());
+        } catch (const OutOfMemory& shortage) {
+            keep_reached(result, shortage);
         }
         finish(result);
         return result;
     }
 
 private:
+    /// One iteration and what belongs to it; false when it was the last.
+    bool advance(EditResult& result) {
+        const int iteration = result.iterations;
+        if (tools_.new_label) take_label(result);
+        if (tools_.job.stop_requested() || !iterate(iteration, cycle_.next(), result)) {
+            result.stopped = true;
+            return false;
+        }
+        result.iterations = iteration + 1;
+        if (looks_again(iteration)) look_again(iteration, result);
+        const IterationRecord& record = result.history.back();
+        result.came_to_rest = request_.early_stop && !record.skipped && rest_.visit(record.view, shown_, masks_.mask(record.view));
+        if (tools_.iteration) tools_.iteration(result.history.back());
+        if (tools_.snapshot && snapshot_due(iteration)) take_snapshot(iteration);
+        tools_.job.report("editing", iteration + 1, request_.iterations);
+        if (skipped_in_a_row_ >= SkippedInARow) give_up_on_guidance(result);
+        return set_.labelled() > 0 && !result.came_to_rest && !result.failure;   // else nothing is left to do
+    }
+
+    /// Too many steps were left out: says so, and leaves what was reached before them. Throws when there was nothing before.
+    void give_up_on_guidance(EditResult& result) const {
+        const std::size_t steps = result.history.size();
+        if (static_cast<double>(result.skipped_steps) <= MostSkipped * static_cast<double>(steps)) return;
+        Error failure(ErrorCode::Model,
+                      fmt::format("the guidance was not finite in {} of {} steps, the last {} of them in a row",
+                                  result.skipped_steps, steps, skipped_in_a_row_),
+                      "the model's weights are damaged, or it overflows: try another model or a lower guidance scale");
+        if (result.skipped_steps == steps) throw failure;
+        result.failure = std::move(failure);
+    }
+
+    /// The memory ran out: what the loop alone needs goes, so that what was reached can be put together.
+    void keep_reached(EditResult& result, const OutOfMemory& shortage) {
+        if (result.iterations == 0) throw shortage;
+        result.shortage = shortage;
+        originals_ = {};
+        output_ = {};
+        gradients_ = {};
+        for (Image* image : {&shown_, &gradient_, &label_seen_}) *image = {};
+    }
+
     bool snapshot_due(int iteration) const {
         if (tools_.snapshot_seconds > 0)
             return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_snapshot_).count() >=
@@ -131,35 +206,37 @@ private:
 
     void take_snapshot(int iteration) {
         const StageTimer timer(seconds_.snapshot);
-        auto now = set_.assemble();
-        tools_.snapshot({std::make_shared<const GaussianSet>(std::move(now.set)),
-                         std::make_shared<const std::vector<std::int64_t>>(std::move(now.base_to_new)), iteration + 1});
+        tools_.snapshot(set_.snapshot(base_.set, iteration + 1));
         last_snapshot_ = std::chrono::steady_clock::now();
     }
 
-    void render_originals(const GaussianSet& base) {
+    void render_originals() {
         const StageTimer timer(seconds_.originals);
         settings_ = plan_.settings;
         for (const auto& view : plan_.views) {
-            tools_.rasterizer.forward(base.spans(), view.camera, settings_, output_);
+            tools_.rasterizer.forward(base_.drawn.spans(), view.camera, settings_, output_);
             originals_.push_back(output_.colour);
         }
     }
 
     /// Views in which at least one labelled row is drawn; the others cannot change anything (method E5).
-    std::vector<std::size_t> visible_views() {
+    std::vector<std::size_t> visible_views() const {
         const auto values = label_values();
         std::vector<std::size_t> views;
         Image seen;
         for (std::size_t v = 0; v < plan_.views.size(); ++v) {
             tools_.rasterizer.forward_values(spans(set_.rows()), plan_.views[v].camera, settings_, values, seen);
-            if (std::any_of(seen.data.begin(), seen.data.end(), [](float value) { return value > 0; })) views.push_back(v);
-            else rest_.ignore(v);
+            if (shows_any(seen)) views.push_back(v);
         }
-        if (views.empty())
-            throw Error(ErrorCode::InvalidArgument, "no labelled splat is visible in any view",
-                        "correct the label, or choose views that show it");
         return views;
+    }
+
+    /// From here on only these views are drawn, and have to come to rest.
+    void draw_only(const std::vector<std::size_t>& views) {
+        rest_ = RestDetector(plan_.views.size(), request_.early_stop_change);
+        for (std::size_t v = 0; v < plan_.views.size(); ++v)
+            if (std::find(views.begin(), views.end(), v) == views.end()) rest_.ignore(v);
+        cycle_.begin(views);
     }
 
     std::vector<float> label_values() const {
@@ -168,13 +245,13 @@ private:
         return values;
     }
 
-    /// One step; false when the guidance was stopped, with everything as before.
+    /// One step, left out when the guidance is not finite; false when the guidance was stopped, with everything as before.
     bool iterate(int iteration, std::size_t view, EditResult& result) {
         {
             const StageTimer timer(seconds_.render);
             tools_.rasterizer.forward(spans(set_.rows()), plan_.views[view].camera, settings_, output_);
         }
-        show();
+        show(shown_);
         if (masks_.due(view, iteration)) refresh_mask(view, iteration);
         IterationRecord record;
         record.iteration = iteration;
@@ -189,45 +266,65 @@ private:
         }
         try {
             const StageTimer timer(seconds_.guidance);
-            if (!add_guidance(iteration, view, record)) ++result.skipped_steps;
+            record.skipped = !add_guidance(iteration, view, record);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Cancelled) throw;
             return false;
         }
-        {
-            const StageTimer timer(seconds_.backward);
-            tools_.rasterizer.backward(gradient_, {}, set_.first_row(), gradients_);
-        }
-        {
-            const StageTimer timer(seconds_.optimise);
-            set_.collect(gradients_);
-            record.anchor = set_.step(gradients_, iteration, request_);
-        }
+        skipped_in_a_row_ = record.skipped ? skipped_in_a_row_ + 1 : 0;
+        if (record.skipped) ++result.skipped_steps;
+        else record.anchor = step(iteration);
         densify(iteration, result);
         result.history.push_back(std::move(record));
         return true;
     }
 
-    /// Takes over a corrected label: rows, and masks from where it is seen in the base.
+    /// From the gradient on the picture to new rows; returns the anchors' loss.
+    double step(int iteration) {
+        {
+            const StageTimer timer(seconds_.backward);
+            tools_.rasterizer.backward(gradient_, {}, set_.first_row(), gradients_);
+        }
+        const StageTimer timer(seconds_.optimise);
+        set_.collect(gradients_);
+        return set_.step(gradients_, iteration, request_);
+    }
+
+    /// Takes over a corrected label: its rows, masks from where it is seen in the base, and the views that see it. A label
+    /// with which nothing would be left to edit is not taken.
     void take_label(EditResult& result) {
         auto label = tools_.new_label();
-        if (!label || label->size() != label_.size() || *label == label_) return;
-        const bool any = std::any_of(label->begin(), label->end(), [](std::uint8_t bit) { return bit != 0; });
-        if (!any && plan_.seeds.size() == 0) return;   // nothing would be left to edit
+        if (!label || label->size() != label_.size()) return;
+        *label = base_.editable(*label);
+        if (*label == label_) return;
+        std::vector<Mask> masks;
+        const auto seen_in = views_of_base(*label, masks);
+        if (seen_in.empty() && plan_.seeds.size() == 0)
+            return log::warning("the corrected label is seen in no view of the edit and was not taken over");
         label_ = std::move(*label);
-        set_.relabel(base_, label_, request_);
-        const std::vector<float> values(label_.begin(), label_.end());
+        set_.relabel(base_.drawn, label_, request_);
+        for (std::size_t v = 0; v < masks.size(); ++v) masks_.set_static(v, std::move(masks[v]));
+        const auto now = visible_views();
+        if (!now.empty() || !seen_in.empty()) draw_only(now.empty() ? seen_in : now);
+        ++result.label_changes;
+    }
+
+    /// Views in which the rows of a label are seen in the base, and where; per view.
+    std::vector<std::size_t> views_of_base(const std::vector<std::uint8_t>& label, std::vector<Mask>& masks) {
+        const std::vector<float> values(label.begin(), label.end());
+        std::vector<std::size_t> views;
         for (std::size_t v = 0; v < plan_.views.size(); ++v) {
             const Camera& camera = plan_.views[v].camera;
-            tools_.rasterizer.forward_values(base_.spans(), camera, settings_, values, label_seen_);
+            tools_.rasterizer.forward_values(base_.drawn.spans(), camera, settings_, values, label_seen_);
+            if (shows_any(label_seen_)) views.push_back(v);
             Mask mask = localize::threshold_map(label_seen_, SeenLabel);
             if (plan_.seeds.size() > 0)   // what is added needs its room as before
                 for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] |= plan_.masks[v].data[i];
             else
                 mask = localize::dilate(mask, request_.dilate_px * camera.width / ReferenceSide);
-            masks_.set_static(v, std::move(mask));
+            masks.push_back(std::move(mask));
         }
-        ++result.label_changes;
+        return views;
     }
 
     bool looks_again(int iteration) const {
@@ -241,11 +338,12 @@ private:
     void look_again(int iteration, EditResult& result) {
         const StageTimer timer(seconds_.dynamic_mask);
         std::vector<localize::MaskedView> votes;
+        Image shown;   // shown_ stays what the step has seen
         for (std::size_t v = 0; v < plan_.views.size(); ++v) {
             const Camera& camera = plan_.views[v].camera;
             tools_.rasterizer.forward(spans(set_.rows()), camera, settings_, output_);
-            show();
-            const Mask found = masks_.found_in(shown_, v, iteration);
+            show(shown);
+            const Mask found = masks_.found_in(shown, v, iteration);
             Image share(camera.width, camera.height, 1);
             std::copy(found.data.begin(), found.data.end(), share.data.begin());
             votes.push_back({camera, std::move(share), found.count() == 0});
@@ -256,9 +354,10 @@ private:
         result.pruned += set_.keep_added(seen.weight, seen.evidence, request_.look_again_tau, LeastLeft);
     }
 
-    void show() {
-        shown_.resize(output_.colour.width, output_.colour.height, 3);   // networks expect pictures in [0,1]
-        for (std::size_t i = 0; i < shown_.data.size(); ++i) shown_.data[i] = std::clamp(output_.colour.data[i], 0.0f, 1.0f);
+    /// What was rendered last, as networks expect pictures: in [0,1].
+    void show(Image& shown) const {
+        shown.resize(output_.colour.width, output_.colour.height, 3);
+        for (std::size_t i = 0; i < shown.data.size(); ++i) shown.data[i] = std::clamp(output_.colour.data[i], 0.0f, 1.0f);
     }
 
     void refresh_mask(std::size_t view, int iteration) {
@@ -268,7 +367,7 @@ private:
         tools_.rasterizer.forward(spans(set_.rows()), plan_.views[view].camera, settings_, output_);   // for backward()
     }
 
-    /// Adds the gated and calibrated guidance gradient; false when it was not finite and left out.
+    /// Adds the gated and calibrated guidance gradient; false when it is not finite, and then adds nothing.
     bool add_guidance(int iteration, std::size_t view, IterationRecord& record) {
         const GuidanceInput input{shown_, plan_.views[view], view,
                                   plan_.view_words.empty() ? std::string() : plan_.view_words[view], iteration,
@@ -276,6 +375,7 @@ private:
                                   Random::stream(request_.seed, 1000 + static_cast<std::uint64_t>(iteration)).next(),
                                   &originals_[view]};
         GuidanceOutput guidance = tools_.guidance.evaluate(input);
+        std::erase_if(guidance.scalars, [](const auto& scalar) { return !std::isfinite(scalar.second); });
         record.guidance = std::move(guidance.scalars);
         GSE_CHECK_EQ(guidance.gradient.data.size(), gradient_.data.size());
         if (!finite(guidance.gradient)) return false;
@@ -325,11 +425,11 @@ private:
     }
 
     void finish(EditResult& result) {
-        auto assembled = set_.assemble();
-        result.set = std::move(assembled.set);
-        result.base_to_new = std::move(assembled.base_to_new);
-        result.label = std::move(assembled.label);
-        result.generation = std::move(assembled.generation);
+        const EditSnapshot reached = set_.snapshot(base_.set, result.iterations);
+        result.set = reached.materialise();
+        result.base_to_new = reached.base_to_new();
+        result.label = reached.label();
+        result.generation = reached.generation();
         result.skipped_rows = set_.skipped_rows();
         result.guidance_scale = guidance_scale_;
         result.seconds = {{"originals", seconds_.originals}, {"render", seconds_.render},     {"preserve", seconds_.preserve},
@@ -338,7 +438,7 @@ private:
         result.masks_refreshed = masks_.refreshed();
     }
 
-    const GaussianSet& base_;
+    const EditBase& base_;
     const EditPlan& plan_;
     std::vector<std::uint8_t> label_;   // what may change now
     const EditRequest& request_;
@@ -346,6 +446,7 @@ private:
     WorkingSet set_;
     Preservation preservation_;
     DynamicMasks masks_;
+    ViewCycle cycle_;
     RestDetector rest_;
     Random random_;
     raster::Settings settings_;
@@ -354,6 +455,7 @@ private:
     std::vector<Image> originals_;
     Image gradient_;
     Image shown_, label_seen_;
+    std::size_t skipped_in_a_row_ = 0;
     std::vector<double> calibration_;   // norms of the first guidance gradients
     double guidance_scale_ = 0;
     StageSeconds seconds_;
@@ -412,16 +514,24 @@ double camera_extent(const std::vector<View>& views) {
 
 EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools) {
     GSE_CHECK_EQ(plan.label.size(), base.size());
+    const EditBase drawn_base(base);
+    const auto label = drawn_base.editable(plan.label);
     const bool nothing = plan.seeds.size() == 0 &&
-                         std::none_of(plan.label.begin(), plan.label.end(), [](std::uint8_t bit) { return bit != 0; });
+                         std::none_of(label.begin(), label.end(), [](std::uint8_t bit) { return bit != 0; });
     if (nothing)
         throw Error(ErrorCode::InvalidArgument, "nothing is labelled, so there is nothing to edit",
-                    "name something the scene shows, or lower --tau");
-    Loop loop(base, plan, request, tools);
+                    "name something the scene shows, or lower tau");
+    Loop loop(drawn_base, plan, request, tools);
     EditResult result = loop.run();
+    apply_strength(base, request.strength, result);
     result.changed_outside_label = count_changed_outside(base, loop.label(), result);
     GSE_CHECK_EQ(result.changed_outside_label, std::size_t{0});
     result.nonfinite = count_nonfinite(result);
+    const auto unusable = [](const std::vector<std::uint8_t>& usable) {
+        return static_cast<std::size_t>(std::count(usable.begin(), usable.end(), std::uint8_t{0}));
+    };
+    result.unusable_before = unusable(drawn_base.usable);
+    result.unusable = unusable(usable_rows(result.set));
     if (result.skipped_steps > 0) log::warning("{} guidance steps were not finite and left out", result.skipped_steps);
     return result;
 }

@@ -9,9 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/error.h"
+#include "engine/base/memory.h"
 #include "engine/base/progress.h"
 #include "engine/edit/interfaces.h"
 #include "engine/edit/request.h"
+#include "engine/edit/snapshot.h"
 #include "engine/raster/rasterizer.h"
 
 namespace gse::edit {
@@ -32,7 +35,8 @@ struct IterationRecord {
     std::size_t view = 0;
     double preservation = 0, anchor = 0;
     double guidance_norm = 0, preservation_norm = 0;   // norms of the gradients on the picture
-    std::map<std::string, double> guidance;            // what the guidance reports
+    std::map<std::string, double> guidance;            // what the guidance reports, where it is finite
+    bool skipped = false;                              // the guidance was not finite: the step changed nothing
 };
 
 struct EditResult {
@@ -46,23 +50,18 @@ struct EditResult {
     std::size_t label_changes = 0;           // labels taken over from `new_label`
     bool came_to_rest = false;               // by the early stop
     std::size_t masks_refreshed = 0;         // by the dynamic mask
-    std::size_t skipped_steps = 0;           // guidance gradients that were not finite
+    std::size_t skipped_steps = 0;           // left out because the guidance was not finite
     std::size_t skipped_rows = 0;            // rows whose gradient was not finite, summed over the steps
     std::size_t cloned = 0, split = 0, pruned = 0;
     std::size_t changed_outside_label = 0;   // rows outside the label that differ from the base in any bit; always 0
-    std::size_t nonfinite = 0;               // labelled rows with a NaN or infinity in the result
+    std::size_t nonfinite = 0;               // labelled rows with a NaN or infinity in the result; always 0
+    std::size_t unusable_before = 0;         // rows of the base that cannot be drawn (see usable_rows); never changed
+    std::size_t unusable = 0;                // rows of the result that cannot be drawn
+    std::optional<Error> failure;            // the guidance failed for good; the result is the last good state
+    std::optional<OutOfMemory> shortage;     // the memory ran out; the result is the last good state
     double guidance_scale = 0;               // factor the calibration gave the guidance's gradient
     std::map<std::string, double> seconds;   // per stage: "render", "preserve", "guidance", "backward", "optimise", ...
 };
-
-/// Receives the state of a running edit every few iterations; the set is immutable and may be kept.
-/// base_to_new[row] is the row of `set` that the base's row is now, -1 = removed.
-struct EditSnapshot {
-    std::shared_ptr<const GaussianSet> set;
-    std::shared_ptr<const std::vector<std::int64_t>> base_to_new;
-    int iteration = 0;
-};
-using SnapshotCallback = std::function<void(EditSnapshot snapshot)>;
 
 /// Receives every line of the loss history as it is written.
 using IterationCallback = std::function<void(const IterationRecord& record)>;
@@ -79,11 +78,17 @@ struct EditTools {
     std::string word = {};                // what the dynamic mask looks for
     /// Asked before every iteration: another label ([N] 0 or 1) that the artist has drawn meanwhile, or nothing.
     std::function<std::optional<std::vector<std::uint8_t>>()> new_label = {};
+    /// Goes on from this state of an earlier run over the same base, at its iteration; what it says of rows outside the
+    /// label does not count. Null = from the base.
+    const EditSnapshot* start = nullptr;
     double snapshot_seconds = 0;        // above 0: a snapshot whenever this much time has passed, instead of by iterations
 };
 
-/// Runs the edit. Rows outside the label come back bit-identical (checked at the end). The same plan, request and seed
-/// give the same bytes for any number of threads. Throws Error when no labelled row is visible in any view.
+/// Runs the edit. Rows outside the label come back bit-identical (checked at the end), and so do rows that cannot be drawn,
+/// labelled or not: they are in no picture and no loss. A step whose guidance is not finite is left out. When that goes on, or
+/// the memory runs out in the middle, the result is what was reached, with `failure` or `shortage`. The same plan, request and
+/// seed give the same bytes for any number of threads. Throws Error when no labelled row is visible in any view, and when
+/// the guidance was finite in no step.
 EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools);
 
 /// Extent of the views as 3DGS has it: 1.1 times the largest distance of a camera centre from their mean.

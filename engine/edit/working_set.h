@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "engine/base/random.h"
-#include "engine/edit/adam.h"
 #include "engine/edit/common_colour.h"
 #include "engine/edit/request.h"
+#include "engine/edit/row_table.h"
+#include "engine/edit/snapshot.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/scene/gaussian_set.h"
 
@@ -41,9 +42,10 @@ public:
     WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> label, const GaussianData& seeds,
                const EditRequest& request, double extent);
 
-    const GaussianData& rows() const { return rows_; }
-    std::size_t first_row() const { return first_row_; }
-    std::size_t labelled() const { return rows_.size() - first_row_; }
+    const RowTable& table() const { return table_; }
+    const GaussianData& rows() const { return table_.rows; }
+    std::size_t first_row() const { return table_.first_row; }
+    std::size_t labelled() const { return table_.labelled(); }
 
     /// Anchors, Adam on every attribute, clamps. Returns the anchor loss. Rows with a non-finite gradient are left as
     /// they are and counted.
@@ -62,39 +64,42 @@ public:
     /// become. Rows born in the run stay when the row they descend from does. Momentum and anchors begin anew.
     void relabel(const GaussianSet& base, std::span<const std::uint8_t> label, const EditRequest& request);
 
-    std::size_t skipped_rows() const { return skipped_rows_; }
-    const std::vector<std::int64_t>& origin() const { return origin_; }   // [labelled] base row or -1
-    const std::vector<int>& generation() const { return generation_; }    // [labelled]
-    const std::vector<std::uint32_t>& kept_rows() const { return unlabelled_; }   // base row of each unlabelled row
+    /// Takes up a state that an earlier run over the same base has reached, for the rows of this set's label. Momentum and
+    /// anchors begin there.
+    void resume(const GaussianSet& base, const EditSnapshot& start);
 
-    /// The edited set in the base's row order: surviving rows in place, new ones at the end.
-    struct Assembled {
-        GaussianSet set;
-        std::vector<std::int64_t> base_to_new;    // [N] row in `set` or -1
-        std::vector<std::uint8_t> label;          // [rows of set]
-        std::vector<int> generation;              // [rows of set]
-    };
-    Assembled assemble() const;
+    std::size_t skipped_rows() const { return skipped_rows_; }
+
+    /// The state now. Rows outside the label are those of `base`, which may hold what cannot be drawn (see drawable).
+    EditSnapshot snapshot(const GaussianSet& base, int iteration) const;
 
 private:
-    /// `origin`: the base row it is, -1 = born in the run; `ancestor`: the base row it descends from, -1 = a seed.
+    /// Without any row.
+    WorkingSet(const GaussianSet& base, const EditRequest& request, double extent);
+    /// Appends the rows of `base` that may not change: those without a label, and those that cannot be drawn. Returns 1 for
+    /// each of the others.
+    std::vector<std::uint8_t> take_unlabelled(const GaussianData& base, std::span<const std::uint8_t> label);
+    /// Appends a labelled row. `origin`: the base row it is, -1 = born in the run; `ancestor`: the base row it descends
+    /// from, -1 = a seed.
     void append(const GaussianData& from, std::size_t row, int generation, std::int64_t origin, std::int64_t ancestor);
+    /// Appends `row` (one row) as born of labelled row `index`.
+    void append_child(std::size_t index, const GaussianData& row, int generation);
+    /// Gives labelled row `index` the attributes of row `row` of `from`.
+    void set_attributes(std::size_t index, const GaussianData& from, std::size_t row);
     /// Replaces the infinities that are legal in a file (opacity 0 or 1, flat axes) by the guards' limits.
     void make_finite(std::size_t index);
-    void keep_rows(const std::vector<std::uint8_t>& keep);
     void remember_anchor();
     /// Adds the anchor's gradient to gradient_; returns its loss.
     double add_anchor(std::span<const float> now, std::span<const float> anchor, double weight);
-    std::span<const float> birth_sh_row(std::size_t index) const {
-        return std::span<const float>(birth_sh_).subspan(index * rows_.sh_stride(), rows_.sh_stride());
-    }
     std::span<float> tail(std::vector<float>& all, std::size_t stride) {
-        return std::span<float>(all).subspan(first_row_ * stride);
+        return std::span<float>(all).subspan(table_.first_row * stride);
     }
     void step_geometry(const raster::Gradients& gradients, int iteration, const EditRequest& request);
     void step_colour(const raster::Gradients& gradients, const EditRequest& request);
     void load_gradient(const std::vector<float>& gradient, std::size_t stride);
     void guard(const EditRequest& request);
+    /// Of the labelled row, as a logarithm.
+    float largest_scale(std::size_t index) const;
     bool prunable(std::size_t index, const EditRequest& request) const;
     void find_bad_rows(const raster::Gradients& gradients);
     std::vector<std::size_t> densify_candidates(const EditRequest& request) const;
@@ -104,23 +109,13 @@ private:
     std::size_t base_size_ = 0;
     std::size_t start_count_ = 0;
     bool adding_ = false;
-    std::size_t first_row_ = 0;
-    GaussianData rows_;
-    std::vector<std::uint32_t> unlabelled_;
-    std::vector<std::int64_t> origin_, ancestor_;
-    std::vector<int> generation_;
-    std::vector<float> birth_sh_;          // [labelled,K,3] colour when the row (or its ancestor) came to be
-    std::vector<float> birth_scale_;       // [labelled] largest log-scale then
-    GaussianData anchor_;                  // labelled rows at the last densification
+    RowTable table_;
+    std::vector<std::uint32_t> unlabelled_;   // base row of each unlabelled row, ascending
     GenerationSchedule schedule_;
-    AdamMoments position_, log_scale_, rotation_, opacity_, sh_;
     CommonColour common_;
-    std::vector<double> gradient_sum_;
-    std::vector<std::uint32_t> gradient_count_;
     std::size_t skipped_rows_ = 0;
-    std::vector<std::uint8_t> bad_;
+    std::vector<std::uint8_t> bad_;        // scratch
     std::vector<float> gradient_;          // scratch
-    std::vector<float> row_factor_;        // [labelled]
     int steps_ = 0;
     double anchor_loss_ = 0;
 };

@@ -1,0 +1,75 @@
+// Agreement of the views, attention inside the masks, share of the scene, and one figure of them.
+#include "engine/edit/confidence.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gse::edit {
+namespace {
+
+/// Share of what is seen that all views have one opinion of: 1 when every splat is always or never inside the masks, 0 when
+/// all are half the time.
+double agreement_of(const localize::LabelWeights& weights) {
+    double decided = 0, all = 0;
+    for (std::size_t row = 0; row < weights.weight.size(); ++row) {
+        decided += weights.evidence[row] * std::abs(2.0 * weights.weight[row] - 1);
+        all += weights.evidence[row];
+    }
+    return all > 0 ? decided / all : 0;
+}
+
+double share_of(const localize::LabelWeights& weights, const std::vector<std::uint8_t>& bits) {
+    double labelled = 0, all = 0;
+    for (std::size_t row = 0; row < bits.size(); ++row) {
+        labelled += bits[row] != 0 ? weights.evidence[row] : 0;
+        all += weights.evidence[row];
+    }
+    return all > 0 ? labelled / all : 0;
+}
+
+/// Mean over the views; one that found nothing has no attention inside.
+struct Attention {
+    double inside = 0;       // share of the attention inside the masks
+    double focus = 0;        // attention per pixel inside, over that inside and outside: 0.5 = as strong outside as inside
+};
+
+Attention attention_of(const std::vector<ViewEvidence>& views) {
+    Attention mean;
+    for (const auto& view : views) {
+        if (view.failed) continue;
+        double inside = 0, all = 0, area = 0;
+        for (std::size_t i = 0; i < view.map.data.size(); ++i) {
+            const bool in = view.mask.data[i] != 0;
+            inside += in ? view.map.data[i] : 0;
+            all += view.map.data[i];
+            area += in ? 1 : 0;
+        }
+        const double rest = static_cast<double>(view.map.data.size()) - area;
+        if (!(all > 0) || !(area > 0)) continue;
+        const double dense = inside / area, thin = rest > 0 ? (all - inside) / rest : 0;
+        mean.inside += inside / all;
+        mean.focus += dense / (dense + thin);
+    }
+    const auto count = static_cast<double>(std::max<std::size_t>(1, views.size()));
+    return {mean.inside / count, mean.focus / count};
+}
+
+/// 0 at one half, where nothing is said, to 1.
+double above_half(double value) { return std::clamp(2 * value - 1, 0.0, 1.0); }
+
+}  // namespace
+
+Confidence confidence_of(const std::vector<ViewEvidence>& views, const localize::LabelWeights& weights, const Label& label,
+                         double recognition) {
+    Confidence confidence;
+    const Attention attention = attention_of(views);
+    confidence.agreement = agreement_of(weights);
+    confidence.attention = attention.inside;
+    confidence.share = share_of(weights, *label.bits);
+    confidence.recognition = recognition;
+    // Each part can refuse: views at odds, attention all over the picture, a word that others fit better.
+    confidence.value = above_half(confidence.agreement) * above_half(attention.focus) * (recognition < 0 ? 1 : recognition);
+    return confidence;
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,12 @@
+// How sure a search is of what it found.
+#pragma once
+
+#include "engine/edit/locate.h"
+
+namespace gse::edit {
+
+/// From the views' masks and attention and what they were fused into; `recognition` as in Confidence.
+Confidence confidence_of(const std::vector<ViewEvidence>& views, const localize::LabelWeights& weights, const Label& label,
+                         double recognition);
+
+}  // namespace gse::edit

@@ -1,0 +1,36 @@
+// From what was located to what the edit loop works on.
+#include <algorithm>
+
+#include "engine/base/check.h"
+#include "engine/edit/locate.h"
+#include "engine/edit/scales.h"
+#include "engine/localize/clusters.h"
+
+namespace gse::edit {
+EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster::Rasterizer& rasterizer) {
+    GSE_CHECK_EQ(located.views.size(), input.views.size());
+    EditPlan plan;
+    plan.views = input.views;
+    plan.view_words = input.view_words;
+    plan.label = *located.label.bits;
+    plan.seeds = located.seeds;
+    plan.settings = input.settings;
+    const std::vector<float> values(plan.label.begin(), plan.label.end());
+    const bool any = std::find(plan.label.begin(), plan.label.end(), std::uint8_t{1}) != plan.label.end();
+    Image seen;
+    for (std::size_t v = 0; v < input.views.size(); ++v) {
+        const Camera& camera = input.views[v].camera;
+        Mask mask = located.views[v].failed ? Mask(camera.width, camera.height) : located.views[v].mask;
+        if (any) {
+            rasterizer.forward_values(input.gaussians.spans(), camera, input.settings, values, seen);
+            for (std::size_t i = 0; i < mask.data.size(); ++i)
+                if (seen.data[i] > 0.5f) mask.data[i] = 1;
+        }
+        const double grow = input.request.dilate_px * (located.mode == EditMode::Add ? 2 : 1);
+        plan.masks.push_back(localize::dilate(mask, grow * camera.width / ReferenceSide));
+    }
+    if (!input.request.localize) std::fill(plan.label.begin(), plan.label.end(), std::uint8_t{1});
+    return plan;
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,31 @@
+// Whether pictures show what a word means, by the model's own picture encoder.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/edit/text_image_score.h"
+
+namespace gse::edit {
+
+/// Compares a word with all others that a model with a fixed vocabulary knows. Sentences are encoded once.
+class Recognition {
+public:
+    /// `score` null or an empty list of words: nobody can tell.
+    Recognition(std::unique_ptr<TextImageScore> score, std::vector<std::string> known);
+    bool available() const { return score_ != nullptr && !known_.empty(); }
+    /// Share of the other words that fit the pictures less in the place that the word (or phrase) has in the sentence, in
+    /// [0,1]; negative when nobody can tell.
+    double of(const std::string& sentence, const std::string& word, const std::vector<const Image*>& pictures);
+
+private:
+    const std::vector<float>& vector_of(const std::string& sentence);
+
+    std::unique_ptr<TextImageScore> score_;
+    std::vector<std::string> known_;
+    std::map<std::string, std::vector<float>> vectors_;   // of sentences
+};
+
+}  // namespace gse::edit

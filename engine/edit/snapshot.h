@@ -1,0 +1,43 @@
+// The state of an edit at one moment, kept as what differs from the scene it works on.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "engine/scene/gaussian_set.h"
+
+namespace gse::edit {
+
+/// The rows of the label as they are at that moment.
+struct SnapshotRows {
+    GaussianData rows;                    // those that are the base's, in its order, then those born in the run
+    std::vector<std::uint32_t> kept;      // base row of each of the first ones, ascending
+    std::vector<std::int64_t> ancestor;   // [rows - kept] base row that a born one descends from, -1 = a seed
+    std::vector<int> generation;          // [rows]
+    std::vector<std::uint32_t> removed;   // base rows that are gone, ascending
+};
+
+/// May be kept: it is immutable, shares the arrays of the scene and holds the rows of the label beside them. The edited set
+/// has the base's rows in their order, without those that are gone, and the born ones at its end.
+struct EditSnapshot {
+    GaussianSet base;
+    std::shared_ptr<const SnapshotRows> rows;
+    int iteration = 0;
+
+    /// Rows of the edited set.
+    std::size_t size() const { return base.size() - rows->removed.size() + rows->ancestor.size(); }
+    /// The edited set, with arrays of its own.
+    GaussianSet materialise() const;
+    std::vector<std::int64_t> base_to_new() const;   // [base rows] row of the edited set, -1 = removed
+    std::vector<std::uint8_t> label() const;         // [size()] 1 = the row belongs to the label
+    std::vector<int> generation() const;             // [size()] 0 = there before the edit
+    /// What it holds beside the base's arrays.
+    std::size_t byte_size() const;
+};
+
+/// Receives the state of a running edit every few iterations.
+using SnapshotCallback = std::function<void(EditSnapshot snapshot)>;
+
+}  // namespace gse::edit

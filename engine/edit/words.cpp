@@ -1,0 +1,79 @@
+// Splitting sentences into words and finding phrases in them.
+#include "engine/edit/words.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace gse::edit {
+
+std::vector<std::string> words_of(const std::string& sentence) {
+    std::vector<std::string> words;
+    std::string word;
+    for (const char letter : sentence + " ") {
+        const auto byte = static_cast<unsigned char>(letter);
+        const bool part_of_word = std::isalnum(byte) != 0 || byte >= 0x80 || letter == '-' || letter == '\'';
+        if (part_of_word) {
+            word += static_cast<char>(byte < 0x80 ? std::tolower(byte) : byte);
+            continue;
+        }
+        if (!word.empty()) words.push_back(std::move(word));
+        word.clear();
+        if (Identifier.front() == letter) words.push_back(Identifier);
+    }
+    return words;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const auto& word : words) text += (text.empty() ? "" : " ") + word;
+    return text;
+}
+
+std::string as_told(const std::string& sentence) { return joined(words_of(sentence)); }
+
+std::string without_identifier(const std::string& sentence) {
+    auto words = words_of(sentence);
+    std::erase(words, Identifier);
+    return joined(words);
+}
+
+bool has_word(const std::string& sentence, const std::string& phrase) {
+    return first_word(sentence, phrase) < words_of(sentence).size();
+}
+
+std::size_t first_word(const std::string& sentence, const std::string& phrase) {
+    const auto words = words_of(sentence), wanted = words_of(phrase);
+    if (wanted.empty()) return words.size();
+    return static_cast<std::size_t>(std::search(words.begin(), words.end(), wanted.begin(), wanted.end()) - words.begin());
+}
+
+std::vector<std::string> terms_of(const std::string& sentence, const std::vector<std::string>& phrases) {
+    std::vector<std::vector<std::string>> wanted;
+    for (const auto& phrase : phrases) wanted.push_back(words_of(phrase));
+    std::stable_sort(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    const auto words = words_of(sentence);
+    std::vector<std::string> terms;
+    for (auto at = words.begin(); at != words.end();) {
+        const auto here = std::find_if(wanted.begin(), wanted.end(), [&](const auto& phrase) {
+            return phrase.size() > 1 && static_cast<std::size_t>(words.end() - at) >= phrase.size() &&
+                   std::equal(phrase.begin(), phrase.end(), at);
+        });
+        terms.push_back(here == wanted.end() ? *at : joined(*here));
+        at += here == wanted.end() ? 1 : static_cast<std::ptrdiff_t>(here->size());
+    }
+    return terms;
+}
+
+std::vector<std::string> phrases_of(const std::string& list) {
+    if (list.find(',') == std::string::npos) return words_of(list);
+    std::vector<std::string> phrases;
+    for (std::size_t begin = 0; begin <= list.size();) {
+        const std::size_t end = std::min(list.find(',', begin), list.size());
+        auto phrase = as_told(list.substr(begin, end - begin));
+        if (!phrase.empty()) phrases.push_back(std::move(phrase));
+        begin = end + 1;
+    }
+    return phrases;
+}
+
+}  // namespace gse::edit
