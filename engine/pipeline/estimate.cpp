@@ -1,0 +1,105 @@
+// The parts of an edit added up.
+#include "engine/pipeline/estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/error.h"
+
+namespace gse::pipeline {
+namespace {
+
+constexpr int ScanDistances = 4, ScanViews = 6;   // of the search's choice of a distance
+constexpr double LookAgainRounds = 2;             // over all views, when something is added
+constexpr double UsualFollow = 0.6;
+constexpr int ProbeSteps = 5;
+
+double scan_questions(const edit::EditRequest& request, const PlannedWork& work) {
+    return work.automatic_views && request.focus ? ScanDistances * std::min(request.views, ScanViews) : 0;
+}
+
+double words_of_search(bool adds) { return adds ? 2 : 1; }
+
+/// Masks that could follow the edit while the loop runs.
+double refreshes(const edit::EditRequest& request, int first_iteration) {
+    if (!request.dynamic_mask) return 0;
+    const double span = std::max(0.0, 1 - request.dynamic_from) * request.iterations;
+    const double visits = std::min(span, static_cast<double>(request.iterations - first_iteration));
+    const double every = std::max(1.0, request.dynamic_every * request.iterations);
+    return std::min(visits, request.views * std::ceil(span / every));
+}
+
+/// Pictures searched to see where something added is.
+double looks_again(const edit::EditRequest& request, bool adds) {
+    return adds && request.look_again ? LookAgainRounds * request.views : 0;
+}
+
+}  // namespace
+
+double estimated_seconds(const Measured& measured, const edit::EditRequest& request, const PlannedWork& work) {
+    double seconds = 0;
+    bool known = true;
+    const auto add = [&](double count, double each) {
+        if (count <= 0) return;
+        known &= each >= 0;
+        seconds += count * each;
+    };
+    add(work.loaded ? 0 : 1, measured.load);
+    add(work.tune_steps, measured.tune_step);
+    const double rounds = measured.rounds > 0 ? measured.rounds : 1;
+    const double search = (scan_questions(request, work) + rounds * request.views) * words_of_search(work.adds);
+    add(work.located ? 0 : search, measured.question);
+    add(work.shows_idea ? 1 : 0, measured.idea >= 0 ? measured.idea : 0);
+    const int steps = std::max(0, request.iterations - work.first_iteration);
+    add(steps, measured.guidance);
+    add(steps * static_cast<double>(work.rows) / measured.rows, measured.raster);
+    const double follow = measured.follow >= 0 ? measured.follow : UsualFollow;
+    add(follow * refreshes(request, work.first_iteration) + looks_again(request, work.adds),
+        measured.refresh >= 0 ? measured.refresh : measured.question);
+    add(1, measured.finish >= 0 ? measured.finish : 0);
+    return known ? seconds : -1;
+}
+
+void measure_search(Measured& measured, const EditJob& job, double seconds) {
+    const auto asked = static_cast<double>(job.questions());
+    if (asked <= 0) return;
+    const auto& request = job.recipe().request;
+    PlannedWork work;
+    work.automatic_views = job.automatic_views();
+    const double words = words_of_search(job.located().mode == edit::EditMode::Add);
+    measured.question = seconds / asked;
+    measured.rounds = std::max(1.0, asked / words - scan_questions(request, work)) / request.views;
+}
+
+void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
+    const auto& result = job.result();
+    const int steps = static_cast<int>(result.history.size());
+    if (steps < least_steps || steps == 0) return;
+    const auto seconds = [&](const char* stage) {
+        const auto found = result.seconds.find(stage);
+        return found == result.seconds.end() ? 0 : found->second;
+    };
+    measured.guidance = seconds("guidance") / steps;
+    measured.raster = (seconds("render") + seconds("preserve") + seconds("backward") + seconds("optimise") +
+                       seconds("densify") + seconds("snapshot")) / steps;
+    measured.rows = static_cast<double>(std::max<std::size_t>(1, job.scene().gaussians.size()));
+    const auto& request = job.recipe().request;
+    const double could = refreshes(request, request.iterations - steps);
+    if (result.masks_refreshed == 0 || could <= 0 || result.stopped) return;
+    const auto refreshed = static_cast<double>(result.masks_refreshed);
+    const bool adds = job.located().mode == edit::EditMode::Add;
+    measured.follow = refreshed / could;
+    measured.refresh = seconds("dynamic_mask") / (refreshed + looks_again(request, adds));
+}
+
+void measure_steps(Measured& measured, EditJob& job) {
+    try {
+        job.probe(1);   // the first step of a model takes longer than the others
+        job.probe(ProbeSteps);
+        measure_loop(measured, job, ProbeSteps);
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::Cancelled) throw;   // else: the edit itself will say what is wrong
+    }
+}
+
+}  // namespace gse::pipeline

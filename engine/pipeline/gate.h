@@ -1,0 +1,41 @@
+// The gate (method F25): before the long loop, pictures of what the model makes of the scene under the edit's prompt.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "engine/pipeline/edit_job.h"
+
+namespace gse::pipeline {
+
+struct GateParameters {
+    int views = 4;
+    double strength = 0.75;   // method 2.7: image to image at 0.75, 50 steps
+    int steps = 30;
+    double guidance_scale = 5;
+};
+
+/// One view as it is, and as the model paints it over with the edit's prompt. Both have the model's picture size.
+struct GatePicture {
+    std::size_t view = 0;   // index into the job's views
+    Image before, after;
+};
+
+struct Gate {
+    std::vector<GatePicture> pictures;
+    /// Mean cosine of the pictures' and the sentences' change; none when the model has no encoder to tell.
+    std::optional<double> score;
+    std::string verdict;   // the score in a sentence; empty without one
+    bool warns = false;    // the pictures do not show the edit
+};
+
+/// Views spread over the job's, each painted over by the model (tuned, if it is). Throws Error (Cancelled) on a stop request.
+Gate look_through_gate(EditJob& job, const GateParameters& parameters = {});
+
+/// gate_0.png, ...: before and after beside each other.
+void write_gate(const std::filesystem::path& folder, const Gate& gate);
+/// {"score", "verdict", "warns", "views"}.
+nlohmann::ordered_json gate_to_json(const Gate& gate);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,11 @@
+// Where the program's own files are: beside the sources, or installed.
+#pragma once
+
+#include <filesystem>
+
+namespace gse::pipeline {
+
+std::filesystem::path assets_path();
+std::filesystem::path starter_model_path();
+
+}  // namespace gse::pipeline

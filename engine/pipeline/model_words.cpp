@@ -1,0 +1,61 @@
+// What a model's files say about words.
+#include "engine/pipeline/model_words.h"
+
+#include <memory>
+#include <mutex>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/json.h"
+#include "engine/base/log.h"
+#ifdef GSE_NEURAL
+#include "engine/neural/prompt_reader.h"
+#endif
+
+namespace gse::pipeline {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t LongestHeader = 64u << 20;
+
+#ifdef GSE_NEURAL
+namespace {
+
+/// The reader of the model asked about last; null where it has none.
+std::shared_ptr<const neural::PromptReader> reader_of(const fs::path& model) {
+    static std::mutex mutex;
+    static fs::path path;
+    static std::shared_ptr<const neural::PromptReader> reader;
+    const std::lock_guard lock(mutex);
+    if (path == model) return reader;
+    path = model;
+    reader = nullptr;
+    try {
+        reader = std::make_shared<const neural::PromptReader>(model);
+    } catch (const Error& error) {   // what is wrong with the model is said when it is loaded
+        log::debug("where sentences are cut is not known: {}", error.what());
+    }
+    return reader;
+}
+
+}  // namespace
+
+std::size_t words_read(const fs::path& model, const std::vector<std::string>& words) {
+    const auto reader = reader_of(model);
+    return reader ? reader->words_read(words) : words.size();
+}
+#else
+std::size_t words_read(const fs::path&, const std::vector<std::string>& words) { return words.size(); }
+#endif
+
+std::vector<std::string> model_words(const fs::path& folder) {
+    std::vector<std::string> words;
+    const auto path = folder / "gseditpro.json";
+    const auto own = fs::exists(path) ? try_parse_json(read_start(path, LongestHeader)) : nlohmann::json();
+    if (!own.is_object() || !own.contains("vocabulary") || !own["vocabulary"].is_array()) return words;
+    for (const auto& word : own["vocabulary"])
+        if (word.is_string()) words.push_back(word.get<std::string>());
+    return words;
+}
+
+}  // namespace gse::pipeline

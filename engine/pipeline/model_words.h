@@ -1,0 +1,17 @@
+// What a model's files say about words; no network is loaded.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace gse::pipeline {
+
+/// Words of the model in `folder` (gseditpro.json), empty for an open vocabulary; no network is loaded.
+std::vector<std::string> model_words(const std::filesystem::path& folder);
+
+/// How many words of a sentence the model's text encoder reads; all of them where that is not known. Reads the model's
+/// tokenizer when it is another model than last time.
+std::size_t words_read(const std::filesystem::path& model, const std::vector<std::string>& words);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,89 @@
+// Recipes as JSON, and what their stages depend on.
+#include "engine/pipeline/recipe.h"
+
+#include <fmt/format.h>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/json.h"
+#include "engine/base/path_text.h"
+
+namespace gse::pipeline {
+namespace {
+
+constexpr int RecipeVersion = 1;
+
+using Json = nlohmann::ordered_json;
+
+/// What the networks are, and from where the scene is looked at.
+Json surroundings(const JobParameters& job) {
+    return {job.model, job.device, job.cameras, job.up, job.front};
+}
+
+}  // namespace
+
+nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe) {
+    nlohmann::ordered_json json;
+    json["version"] = RecipeVersion;
+    json["job"] = fields_to_json(recipe.job);
+    for (auto& value : json["job"])
+        if (value.is_string()) value = text_of_path(value.get<std::string>());
+    json["request"] = fields_to_json(recipe.request);
+    json["guidance"] = fields_to_json(recipe.guidance);
+    const auto attention = fields_to_json(recipe.attention);
+    if (attention != fields_to_json(neural::AttentionParameters{})) json["attention"] = attention;
+    if (recipe.use_dreambooth) json["dreambooth"] = fields_to_json(recipe.dreambooth);
+    return json;
+}
+
+EditRecipe read_recipe(const std::filesystem::path& path) {
+    const char* hint = "use the recipe.json of an edit";
+    const auto json = try_parse_json<nlohmann::ordered_json>(read_file(path));
+    if (!json.is_object() || !json.contains("version"))
+        throw Error(ErrorCode::Malformed, "this is not a recipe", hint, path);
+    EditRecipe recipe;
+    try {
+        int version = 0;
+        read_field("version", version, json["version"]);
+        if (version != RecipeVersion)
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("\"version\" is {}, and this program reads {}", version, RecipeVersion));
+        const auto read = [&](const char* part, auto& parameters) {
+            if (!json.contains(part)) return false;
+            if (!json[part].is_object())
+                throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" must be an object of settings", part));
+            fields_from_json(parameters, json[part]);
+            for (const auto& field : json[part].items()) recipe.given.insert(part + ("." + field.key()));
+            return true;
+        };
+        read("job", recipe.job);
+        read("request", recipe.request);
+        read("guidance", recipe.guidance);
+        read("attention", recipe.attention);
+        recipe.use_dreambooth = read("dreambooth", recipe.dreambooth);
+    } catch (const Error& error) {
+        throw Error(ErrorCode::InvalidArgument, "in the recipe, " + error.message(), hint, path);
+    }
+    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model}) {
+        *name = path_of_text(*name);
+        if (name->empty() || *name == "none" || std::filesystem::path(*name).is_absolute()) continue;
+        *name = std::filesystem::weakly_canonical(path.parent_path() / *name).string();
+    }
+    return recipe;
+}
+
+std::string search_key(const EditRecipe& recipe) {
+    Json key{fields_to_json<edit::EditWords>(recipe.request), fields_to_json<edit::SearchSettings>(recipe.request),
+             fields_to_json(recipe.attention), surroundings(recipe.job), recipe.job.use_label};
+    if (recipe.use_dreambooth) key.push_back(fields_to_json(recipe.dreambooth));
+    return key.dump();
+}
+
+std::string tuning_key(const EditRecipe& recipe) {
+    const auto& request = recipe.request;
+    return Json{fields_to_json(recipe.dreambooth), request.source, request.prompt, request.views, request.image_size,
+                request.elevation, request.background, surroundings(recipe.job)}
+        .dump();
+}
+
+}  // namespace gse::pipeline

@@ -1,0 +1,75 @@
+// Everything that decides what a run does and what comes of it.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "engine/base/fields.h"
+#include "engine/edit/request.h"
+#include "engine/neural/attention_parameters.h"
+#include "engine/neural/dreambooth_parameters.h"
+#include "engine/neural/sds_parameters.h"
+
+namespace gse::pipeline {
+
+/// Files and machine of a run; with the request and the guidance's settings this is the whole recipe.
+struct JobParameters {
+    std::string scene;
+    std::string cameras;
+    std::string model;
+    std::string device = "cpu";
+    int threads = 1;
+    std::string up = "auto";
+    std::string front;
+    bool use_label = false;
+    int turntable_size = 480;
+    int turntable_frames = 60;
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("scene", self.scene, "Scene file or folder.");
+        f("cameras", self.cameras,
+          "COLMAP folder, transforms.json or cameras.json; found beside the scene when empty, \"none\" for an orbit.");
+        f("model", self.model, "Diffusers folder or .safetensors checkpoint; empty = the starter model.");
+        f("device", self.device, "Where the networks run: cpu or cuda.");
+        f("threads", self.threads, "Threads of the networks; small ones gain nothing from more. Another number may round differently.", Range{1, 256});
+        f("up", self.up, "World up: auto, x, y, z, -x, -y or -z.");
+        f("front", self.front,
+          "Azimuth in degrees from which the scene shows its front; lets the model be told \"front view\" and so on.");
+        f("use_label", self.use_label,
+          "What the scene's label column marks may change; nothing is looked for, and the source may be any word.");
+        f("turntable_size", self.turntable_size, "Side of each half of the before/after film in pixels.",
+          Range{16, 4096});
+        f("turntable_frames", self.turntable_frames, "Frames of the before/after film.", Range{1, 10000});
+    }
+};
+
+/// Everything that decides the result.
+struct EditRecipe {
+    JobParameters job;
+    edit::EditRequest request;
+    neural::SdsParameters guidance;
+    neural::AttentionParameters attention;
+    bool use_dreambooth = false;   // the model learns the scene first (method S2)
+    neural::DreamBoothParameters dreambooth;
+    // Not written: "request.image_size" and so on.
+    std::set<std::string> given;                  // what the file that was read names
+    std::map<std::string, std::string> sources;   // where values come from that are not the program's; see model_settings.h
+};
+
+/// {"version", "job", "request", "guidance"}, "attention" where it is not as usual and "dreambooth" where it is used; reading
+/// throws Error for unknown or wrong entries. A relative scene path is taken relative to the recipe's folder.
+nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe);
+EditRecipe read_recipe(const std::filesystem::path& path);
+
+/// What the networks are asked before the loop begins follows from this and the scene: recipes with the same key find the same.
+/// Of a recipe whose request is validated.
+std::string search_key(const EditRecipe& recipe);
+
+/// What a tuning learns of a scene follows from this and the scene.
+std::string tuning_key(const EditRecipe& recipe);
+
+}  // namespace gse::pipeline

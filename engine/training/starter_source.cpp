@@ -1,0 +1,168 @@
+// Draws captioned pictures of the synthetic world with their part masks.
+#include "engine/training/starter_source.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/thread_pool.h"
+#include "engine/raster/rasterizer.h"
+#include "engine/synth/synth.h"
+#include "engine/training/starter_twins.h"
+
+namespace gse::training {
+namespace {
+
+/// What one picture shows; a function of seed and index alone.
+struct Shot {
+    synth::SceneSpec spec;       // as drawn
+    synth::SceneSpec twin;       // with the accessory, when `bare_twin`
+    bool bare_twin = false;
+    double azimuth = 0, elevation = 0, zoom = 1;
+    std::array<float, 3> background{};
+};
+
+Shot make_shot(std::uint64_t seed, std::uint64_t index) {
+    Random random = Random::stream(seed, index / 2);
+    Shot shot;
+    shot.spec = synth::training_spec(random);
+    // Front views oversampled: faces and accessories are seen there.
+    shot.azimuth = random.uniform() < 0.55 ? random.uniform(-1.2, 1.2) : random.uniform(-std::numbers::pi, std::numbers::pi);
+    shot.elevation = random.uniform(0.05, 0.75);
+    shot.zoom = random.uniform(0.8, 1.6);
+    shot.background = random_background(random);
+    const bool second = index % 2 == 1;
+    if (second && !shot.spec.accessory.empty()) {
+        shot.twin = shot.spec;
+        shot.bare_twin = true;
+        shot.spec.accessory.clear();
+        shot.spec.accessory_colour.clear();
+    } else if (second) {
+        shot.azimuth += random.uniform(0.6, std::numbers::pi);
+        shot.elevation = random.uniform(0.05, 0.75);
+        shot.zoom = random.uniform(0.8, 1.6);
+    }
+    return shot;
+}
+
+/// Coverage of one part, averaged over the latent cells.
+void store_coverage(const Image& pixels, std::uint8_t* cells) {
+    const int side = pixels.width / LatentCell;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            float sum = 0;
+            for (int k = 0; k < LatentCell * LatentCell; ++k)
+                sum += pixels.at(x * LatentCell + k % LatentCell, y * LatentCell + k / LatentCell, 0);
+            const float mean = std::clamp(sum / (LatentCell * LatentCell), 0.0f, 1.0f);
+            cells[y * side + x] = static_cast<std::uint8_t>(std::lround(mean * 255.0f));
+        }
+}
+
+/// Scratch of one thread.
+struct ShotPainter {
+    ThreadPool pool{1};
+    std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(pool);
+    raster::ForwardOutput output;
+    Image values;
+    std::vector<float> indicator;
+
+    void paint_parts(const synth::SynthScene& scene, const Camera& camera, neural::StarterPicture& picture) {
+        const std::size_t cells = static_cast<std::size_t>(camera.width / LatentCell) * (camera.width / LatentCell);
+        picture.coverage.resize(neural::StarterPartCount * cells);
+        for (int part = 0; part < neural::StarterPartCount; ++part) {
+            indicator.resize(scene.parts.size());
+            std::transform(scene.parts.begin(), scene.parts.end(), indicator.begin(),
+                           [part](synth::Part p) { return static_cast<int>(p) == part ? 1.0f : 0.0f; });
+            rasterizer->forward_values(scene.scene.gaussians.spans(), camera, {}, indicator, values);
+            store_coverage(values, &picture.coverage[static_cast<std::size_t>(part) * cells]);
+        }
+    }
+};
+
+class SyntheticSource : public neural::StarterSource {
+public:
+    explicit SyntheticSource(std::uint64_t seed) : seed_(seed), twins_(make_starter_twins(seed)) {}
+
+    neural::StarterPicture picture(std::uint64_t index, int size) const override {
+        thread_local ShotPainter painter;
+        const Shot shot = make_shot(seed_, index);
+        const synth::SynthScene scene = synth::generate(shot.spec);
+        const Camera camera = synth::scene_camera(scene, shot.azimuth, shot.elevation, shot.zoom, size, size);
+        neural::StarterPicture picture;
+        raster::Settings settings;
+        settings.background = shot.background;
+        painter.rasterizer->forward(scene.scene.gaussians.spans(), camera, settings, painter.output);
+        picture.rgb = to_bytes(painter.output.colour);
+        painter.paint_parts(scene, camera, picture);
+        if (shot.bare_twin) add_twin_accessory(painter, shot, camera, picture);
+        return picture;
+    }
+
+    neural::StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool insertion) const override {
+        const Shot shot = make_shot(seed_, index);
+        Random random(seed);
+        const auto caption = insertion ? accessory_caption(shot, random)
+                                       : synth::random_caption(shot.spec, shot.azimuth, random);
+        neural::StarterCaption result;
+        result.text = caption.text;
+        for (const auto& grounding : caption.groundings)
+            result.groundings.push_back(
+                {grounding.word, grounding.occurrence, static_cast<neural::StarterPart>(grounding.part)});
+        return result;
+    }
+
+    std::vector<std::string> vocabulary() const override { return synth::vocabulary(); }
+    std::string identity() const override { return "synthetic-2 " + std::to_string(seed_); }
+    const neural::StarterTwins* twins() const override { return twins_.get(); }
+
+private:
+    /// Insertion captions must name the accessory.
+    static synth::Caption accessory_caption(const Shot& shot, Random& random) {
+        for (int attempt = 0; attempt < 4; ++attempt) {
+            auto caption = synth::random_caption(shot.twin, shot.azimuth, random);
+            for (const auto& grounding : caption.groundings)
+                if (grounding.part == synth::Part::Accessory) return caption;
+        }
+        return synth::full_caption(shot.twin);
+    }
+
+    static void add_twin_accessory(ShotPainter& painter, const Shot& shot, const Camera& camera,
+                                   neural::StarterPicture& picture) {
+        const synth::SynthScene twin = synth::generate(shot.twin);
+        neural::StarterPicture twin_picture;
+        painter.paint_parts(twin, camera, twin_picture);
+        const auto cells = static_cast<std::ptrdiff_t>(picture.coverage.size() / neural::StarterPartCount);
+        std::copy(twin_picture.coverage.begin() + 2 * cells, twin_picture.coverage.end(),
+                  picture.coverage.begin() + 2 * cells);
+        picture.bare_twin = true;
+    }
+
+    std::uint64_t seed_;
+    std::unique_ptr<neural::StarterTwins> twins_;
+};
+
+}  // namespace
+
+std::array<float, 3> random_background(Random& random) {
+    const double kind = random.uniform();
+    if (kind < 0.35) return {0, 0, 0};
+    const float grey = static_cast<float>(random.uniform(0.02, 1.0));
+    if (kind < 0.7) return {grey, grey, grey};
+    const auto tint = [&] { return static_cast<float>(std::clamp(grey + random.uniform(-0.25, 0.25), 0.0, 1.0)); };
+    return {tint(), tint(), tint()};
+}
+
+std::vector<std::uint8_t> to_bytes(const Image& image) {
+    std::vector<std::uint8_t> bytes(image.data.size());
+    std::transform(image.data.begin(), image.data.end(), bytes.begin(), [](float value) {
+        return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0f, 1.0f) * 255.0f));
+    });
+    return bytes;
+}
+
+std::unique_ptr<neural::StarterSource> make_starter_source(std::uint64_t seed) {
+    return std::make_unique<SyntheticSource>(seed);
+}
+
+}  // namespace gse::training
