@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -23,13 +24,20 @@ public:
     // Files
     virtual void open(const std::filesystem::path& path) = 0;      // scene, folder, project, or a PNG with a recipe in it
     virtual void open_sample() = 0;
-    virtual void save_project(const std::filesystem::path& path) = 0;   // empty = where it was saved last
+    /// An empty path = where it was saved last. `then` (may be empty) is called once it is saved.
+    virtual void save_project(const std::filesystem::path& path, std::function<void()> then = {}) = 0;
+    /// Stops a running edit. Keep: what it reached and all else that is unsaved is written down, to be offered when the scene
+    /// is opened again or the program starts; else what it reached, or the result that waits, is dropped. Then calls `then`.
+    virtual void leave_edit(bool keep, std::function<void()> then) = 0;
+    virtual void answer(std::size_t index) = 0;                    // to the question the model holds
     virtual void recover(const std::string& project) = 0;
     virtual void discard_recovery(const std::string& project) = 0;
+    virtual void postpone_recovery(const std::string& project) = 0;   // it is offered again another time
     virtual void set_up_axis(const std::string& up) = 0;           // "y", "-y", "auto", ...
     virtual void repair_scene() = 0;                               // drops what cannot be drawn (undoable)
     // Work
     virtual void locate() = 0;
+    virtual void label_anyway() = 0;                               // what an unsure search found
     virtual void edit() = 0;
     virtual void pause(bool paused) = 0;
     virtual void cancel() = 0;                                     // the edit job
@@ -37,10 +45,11 @@ public:
     virtual void apply_result() = 0;
     virtual void discard_result() = 0;
     virtual void show_snapshot(int index) = 0;                     // -1 = newest
-    virtual void branch_from_snapshot(int index) = 0;              // takes that state as the result
+    virtual void take_snapshot(int iteration) = 0;                 // that state is the result that waits
+    virtual void branch_from_snapshot(int iteration) = 0;          // goes on from there with the settings as they are now
     // Labels (all undoable)
-    virtual void set_attention_threshold(double value) = 0;
-    virtual void set_label_threshold(float value) = 0;
+    virtual void set_attention_threshold(double value, bool drag_ends) = 0;   // one step of undo per drag
+    virtual void set_label_threshold(float value, bool drag_ends) = 0;
     virtual void set_active_label(int index) = 0;
     virtual void add_label(const std::string& name) = 0;
     virtual void rename_label(int index, const std::string& name) = 0;
@@ -55,6 +64,7 @@ public:
     virtual void redo() = 0;
     virtual void go_to(std::size_t position) = 0;
     virtual void set_edit_enabled(std::uint64_t id, bool enabled) = 0;
+    virtual void set_edit_strength(std::uint64_t id, double strength, bool drag_ends) = 0;   // a drag is one step of undo
     virtual void delete_edit(std::uint64_t id) = 0;
     virtual void move_edit(std::uint64_t id, int places) = 0;
     virtual void repeat_edit(std::uint64_t id) = 0;                // its settings into the prompt, with a new seed

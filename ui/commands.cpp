@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/base/random.h"
+#include "engine/scene/framing.h"
 #include "ui/sentence.h"
 #include "ui/state.h"
 
@@ -16,7 +17,6 @@ namespace {
 constexpr double AskAfterSeconds = 30;           // of work, before a cancel is asked about
 constexpr std::uint64_t LargestSeed = 1u << 31;  // still easy to read and to type
 constexpr float SmallestScale = 0.6f, LargestScale = 4.0f;
-constexpr double TrimShare = 0.02;  // of the labelled rows left out at either end of an axis when framing
 
 /// What was typed in this very frame goes first.
 void send_request(Context& context) {
@@ -24,56 +24,54 @@ void send_request(Context& context) {
     context.request_changed = false;
 }
 
-/// Asks whether unsaved work may go; acts at once when there is none.
+/// A running or finished edit that is not applied: keep it for later, wait, or let it go.
+void ask_about_edit(Context& context, const std::string& what, const std::function<void()>& act) {
+    auto& actions = context.actions;
+    auto& question = context.state.question;
+    const auto& model = context.model;
+    const bool running = model.edit_running;
+    question.title = running ? "An edit is running" : "An edit is not applied";
+    question.text =
+        running ? fmt::format("{} \"{}\" is at step {} of {}.", what, model.job.title, model.job.step, model.job.total)
+                : fmt::format("{} A finished edit waits to be applied or discarded.", what);
+    if (running && model.job.total <= 0) question.text = fmt::format("{} \"{}\" still works.", what, model.job.title);
+    question.text += " What is kept is offered when the scene is opened again or the program starts.";
+    question.answers = {
+        {!running                    ? "Keep it for later"
+         : model.snapshots.empty() ? "Stop and keep the settings"
+                                     : "Stop and keep the snapshot",
+         false, [&actions, act] { actions.leave_edit(true, act); }},
+        {running ? "Wait" : "Stay", false, {}},
+        // What else is unsaved is asked about next.
+        {"Discard it", true, [&actions, state = &context.state, what, act] {
+             actions.leave_edit(false, [state, what, act] { state->leave_asked = {what, act}; });
+         }}};
+    question.pending = true;
+}
+
+}  // namespace
+
 void with_unsaved_work(Context& context, const std::string& what, std::function<void()> act) {
     if (!context.model.unsaved) return act();
+    if (context.model.edit_running || context.model.result_waiting) return ask_about_edit(context, what, act);
     auto& actions = context.actions;
     auto& question = context.state.question;
     question.title = "Unsaved changes";
     question.text = fmt::format("{} The changes since the last save would be lost.", what);
     question.answers.clear();
     if (context.model.project_path.empty()) {
-        question.answers.push_back(
-            {"Save as...", false, [state = &context.state] { state->save_as_asked = true; }});
-    } else {
-        question.answers.push_back({"Save, then go on", false, [&actions, act] {
-                                        actions.save_project({});
-                                        act();
+        question.answers.push_back({"Save as...", false, [state = &context.state, act] {
+                                        state->save_as_asked = true;
+                                        state->after_save = act;
                                     }});
+    } else {
+        question.answers.push_back(
+            {"Save, then go on", false, [&actions, act] { actions.save_project({}, act); }});
     }
     question.answers.push_back({"Go on without saving", true, act});
     question.answers.push_back({"Stay", false, {}});
     question.pending = true;
 }
-
-/// Centre and radius of the labelled rows, without the outermost ones.
-bool label_ball(const Context& context, Vec3& centre, double& radius) {
-    const NamedLabel* label = context.active_label();
-    if (label == nullptr || label->bits == nullptr) return false;
-    const auto& set = context.document().current;
-    const auto positions = set.position();
-    std::vector<float> axis;
-    Vec3 low, high;
-    for (int dimension = 0; dimension < 3; ++dimension) {
-        axis.clear();
-        for (std::size_t row = 0; row < std::min(label->bits->size(), set.size()); ++row)
-            if ((*label->bits)[row] != 0 &&
-                std::isfinite(positions[row * 3 + static_cast<std::size_t>(dimension)]))
-                axis.push_back(positions[row * 3 + static_cast<std::size_t>(dimension)]);
-        if (axis.empty()) return false;
-        const auto cut = static_cast<std::size_t>(static_cast<double>(axis.size()) * TrimShare);
-        std::nth_element(axis.begin(), axis.begin() + static_cast<std::ptrdiff_t>(cut), axis.end());
-        low[dimension] = axis[cut];
-        const std::size_t upper = axis.size() - 1 - cut;
-        std::nth_element(axis.begin(), axis.begin() + static_cast<std::ptrdiff_t>(upper), axis.end());
-        high[dimension] = axis[upper];
-    }
-    centre = (low + high) * 0.5;
-    radius = length(high - low) * 0.5;
-    return true;
-}
-
-}  // namespace
 
 const std::vector<std::string>& scene_extensions() {
     static const std::vector<std::string> Endings{".ply",    ".spz",  ".sog",  ".splat",
@@ -127,6 +125,13 @@ std::string why_not_export(const Context& context, const std::string& path) {
     return {};
 }
 
+std::string views_text(const Context& context) {
+    const auto there = static_cast<int>(context.document().views.size()), used = context.request.views;
+    if (there == 0) return fmt::format("{} automatic view{}", used, used == 1 ? "" : "s");
+    if (there > used) return fmt::format("{} of {} views", used, there);
+    return fmt::format("{} view{}", there, there == 1 ? "" : "s");
+}
+
 void roll_seed(Context& context) {
     context.request.seed =
         Random(context.request.seed ^ static_cast<std::uint64_t>(ImGui::GetTime() * 1e6)).below(LargestSeed);
@@ -136,7 +141,7 @@ void roll_seed(Context& context) {
 void run_locate(Context& context) {
     if (!why_not_locate(context).empty()) return;
     // Only this run sees the sentence that was made up for it.
-    context.actions.set_request(locate_request(context.request));
+    context.actions.set_request(locate_request(context.request, context.state.prompt.problem));
     context.actions.locate();
     context.actions.set_request(context.request);
     context.request_changed = false;
@@ -170,6 +175,7 @@ void cancel_job(Context& context) {
 
 void open_path(Context& context, const std::string& path) {
     auto& actions = context.actions;
+    if (has_extension(path, std::vector<std::string>{".png"})) return actions.open(path_of(path));   // a prompt, no scene
     with_unsaved_work(context, "Another scene is to be opened.",
                       [&actions, path] { actions.open(path_of(path)); });
 }
@@ -191,7 +197,23 @@ void ask_open(Context& context) {
          .answer = [state](const std::filesystem::path& path) { state->open_asked = utf8_of(path); }});
 }
 
-void save_as(Context& context) {
+void recover(Context& context, const std::string& file) {
+    auto& actions = context.actions;
+    with_unsaved_work(context, "The work of another session is to be opened.",
+                      [&actions, file] { actions.recover(file); });
+}
+
+void discard_recovery(Context& context, const RecoveryView& found) {
+    auto& actions = context.actions;
+    auto& question = context.state.question;
+    question.title = "Discard the unsaved work?";
+    question.text = fmt::format("{}, {}. It cannot be brought back.", found.name, found.facts);
+    question.answers = {
+        {"Discard", true, [&actions, file = found.file] { actions.discard_recovery(file); }}, {"Keep", false, {}}};
+    question.pending = true;
+}
+
+void save_as(Context& context, std::function<void()> then) {
     if (!context.scene_open()) return;
     auto& actions = context.actions;
     std::filesystem::path start = path_of(context.model.project_path);
@@ -204,7 +226,7 @@ void save_as(Context& context) {
          .saves = true,
          .folder_allowed = false,
          .start = utf8_of(start),
-         .answer = [&actions](const std::filesystem::path& path) { actions.save_project(path); }});
+         .answer = [&actions, then](const std::filesystem::path& path) { actions.save_project(path, then); }});
 }
 
 void save(Context& context) {
@@ -215,7 +237,17 @@ void save(Context& context) {
 
 void quit(Context& context) {
     auto& actions = context.actions;
-    with_unsaved_work(context, "The window is to be closed.", [&actions] { actions.quit(); });
+    const auto& files = context.model.file_job;
+    if (!files.running) return with_unsaved_work(context, "The window is to be closed.", [&actions] { actions.quit(); });
+    auto& question = context.state.question;
+    question.title = "A file is not done";
+    question.text = fmt::format("\"{}\" is still at work.", files.title);
+    question.answers = {{"Wait", false, {}},
+                        {"Stop it", true, [&actions, state = &context.state] {
+                             actions.cancel_file_job();
+                             state->leave_asked = {"The window is to be closed.", [&actions] { actions.quit(); }};
+                         }}};
+    question.pending = true;
 }
 
 void add_label(Context& context) {
@@ -233,6 +265,19 @@ void add_label(Context& context) {
     show_panel(context.state, PanelId::Labels);
 }
 
+void label_by_hand(Context& context, const std::string& name) {
+    if (!context.scene_open()) return;
+    const auto& labels = context.document().labels;
+    const auto found = std::find_if(labels.begin(), labels.end(), [&](const NamedLabel& label) { return label.name == name; });
+    if (found == labels.end())
+        context.actions.add_label(name);
+    else
+        context.actions.set_active_label(static_cast<int>(found - labels.begin()));
+    context.state.viewport.tool = Tool::Brush;
+    context.state.viewport.stroke = false;
+    show_panel(context.state, PanelId::Labels);
+}
+
 void set_tool(Context& context, Tool tool) {
     auto& viewport = context.state.viewport;
     viewport.tool = viewport.tool == tool ? Tool::Orbit : tool;
@@ -246,15 +291,10 @@ void toggle_wipe(Context& context) {
 
 void frame_selection(Context& context) {
     if (!context.scene_open()) return;
-    Vec3 centre = context.model.orbit.centre;
-    double radius = context.model.orbit.radius * 0.5;
-    const auto& statistics = context.model.statistics;
-    if (statistics.count > 0) {
-        centre = (statistics.robust_low + statistics.robust_high) * 0.5;
-        radius = length(statistics.robust_high - statistics.robust_low) * 0.5;
-    }
-    label_ball(context, centre, radius);
-    context.state.viewport.camera.frame(centre, radius);
+    const NamedLabel* label = context.active_label();
+    const bool any = label != nullptr && label->bits != nullptr && context.model.labelled > 0;
+    context.state.viewport.camera.frame(any ? framing_bounds(context.document().current, *label->bits)
+                                            : context.model.framing);
 }
 
 void go_home(Context& context) {

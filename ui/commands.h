@@ -1,6 +1,7 @@
 // What menus, keys and buttons share: when a thing can be done, why not, and doing it.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "ui/context.h"
@@ -15,6 +16,9 @@ std::string why_not_label(const Context& context);  // there is no label, or a j
 std::string why_not_save(const Context& context);
 std::string why_not_export(const Context& context, const std::string& path);
 
+/// How many views an edit will look from, of those there are: "24 of 63 views", "24 automatic views".
+std::string views_text(const Context& context);
+
 /// Another seed.
 void roll_seed(Context& context);
 void run_locate(Context& context);
@@ -27,9 +31,16 @@ void ask_open(Context& context);
 void open_path(Context& context, const std::string& path);
 void open_sample(Context& context);
 void save(Context& context);
-void save_as(Context& context);
+/// `then` (may be empty) is called once it is saved.
+void save_as(Context& context, std::function<void()> then = {});
+/// Acts; asks first when there is unsaved work, a running or waiting edit included. `what` is to happen, as a sentence.
+void with_unsaved_work(Context& context, const std::string& what, std::function<void()> act);
+void recover(Context& context, const std::string& file);
+void discard_recovery(Context& context, const RecoveryView& found);
 void quit(Context& context);
 void add_label(Context& context);
+/// A label of that name to paint with the brush, where no words find the thing.
+void label_by_hand(Context& context, const std::string& name);
 void set_tool(Context& context, Tool tool);
 void toggle_wipe(Context& context);
 /// Sees what is labelled, else the scene.

@@ -26,14 +26,23 @@ public:
     void open_sample() override {
         later([this] { target_->open_sample(); });
     }
-    void save_project(const std::filesystem::path& path) override {
-        later([this, path] { target_->save_project(path); });
+    void save_project(const std::filesystem::path& path, std::function<void()> then) override {
+        later([this, path, then] { target_->save_project(path, then); });
+    }
+    void leave_edit(bool keep, std::function<void()> then) override {
+        later([this, keep, then] { target_->leave_edit(keep, then); });
+    }
+    void answer(std::size_t index) override {
+        later([this, index] { target_->answer(index); });
     }
     void recover(const std::string& project) override {
         later([this, project] { target_->recover(project); });
     }
     void discard_recovery(const std::string& project) override {
         later([this, project] { target_->discard_recovery(project); });
+    }
+    void postpone_recovery(const std::string& project) override {
+        later([this, project] { target_->postpone_recovery(project); });
     }
     void set_up_axis(const std::string& up) override {
         later([this, up] { target_->set_up_axis(up); });
@@ -43,6 +52,9 @@ public:
     }
     void locate() override {
         later([this] { target_->locate(); });
+    }
+    void label_anyway() override {
+        later([this] { target_->label_anyway(); });
     }
     void edit() override {
         later([this] { target_->edit(); });
@@ -65,14 +77,17 @@ public:
     void show_snapshot(int index) override {
         later([this, index] { target_->show_snapshot(index); });
     }
-    void branch_from_snapshot(int index) override {
-        later([this, index] { target_->branch_from_snapshot(index); });
+    void take_snapshot(int iteration) override {
+        later([this, iteration] { target_->take_snapshot(iteration); });
     }
-    void set_attention_threshold(double value) override {
-        later([this, value] { target_->set_attention_threshold(value); });
+    void branch_from_snapshot(int iteration) override {
+        later([this, iteration] { target_->branch_from_snapshot(iteration); });
     }
-    void set_label_threshold(float value) override {
-        later([this, value] { target_->set_label_threshold(value); });
+    void set_attention_threshold(double value, bool drag_ends) override {
+        later([this, value, drag_ends] { target_->set_attention_threshold(value, drag_ends); });
+    }
+    void set_label_threshold(float value, bool drag_ends) override {
+        later([this, value, drag_ends] { target_->set_label_threshold(value, drag_ends); });
     }
     void set_active_label(int index) override {
         later([this, index] { target_->set_active_label(index); });
@@ -112,6 +127,9 @@ public:
     }
     void set_edit_enabled(std::uint64_t id, bool enabled) override {
         later([this, id, enabled] { target_->set_edit_enabled(id, enabled); });
+    }
+    void set_edit_strength(std::uint64_t id, double strength, bool drag_ends) override {
+        later([this, id, strength, drag_ends] { target_->set_edit_strength(id, strength, drag_ends); });
     }
     void delete_edit(std::uint64_t id) override {
         later([this, id] { target_->delete_edit(id); });

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "ui/commands.h"
+#include "ui/keyboard.h"
 #include "ui/keys.h"
 #include "ui/menu.h"
 #include "ui/state.h"
@@ -44,7 +45,7 @@ void draw_help(Context& context) {
     const bool wide = ImGui::GetContentRegionAvail().x > context.em * 48;
     if (ImGui::BeginTable("columns", wide ? 2 : 1)) {
         ImGui::TableNextColumn();
-        for (const char* group : {"Camera", "Labels"}) draw_group(context, group);
+        for (const char* group : {"Camera", "Labels", "Keyboard"}) draw_group(context, group);
         ImGui::TableNextColumn();
         for (const char* group : {"Show", "Work", "Files", "Numbers"}) draw_group(context, group);
         ImGui::EndTable();
@@ -78,6 +79,48 @@ void draw_about(Context& context) {
     ImGui::EndPopup();
 }
 
+/// What is chosen, -1 = nothing yet. A list first, the buttons below it.
+int draw_answers(Context& context, const std::vector<Question::Answer>& answers) {
+    constexpr std::size_t most_rows = 10;
+    int chosen = -1;
+    const auto listed = static_cast<std::size_t>(
+        std::count_if(answers.begin(), answers.end(), [](const auto& answer) { return answer.listed; }));
+    if (listed > 0) {
+        const float rows = static_cast<float>(std::min(listed, most_rows)) + 0.5f;
+        ImGui::BeginChild("list", {context.em * 30, ImGui::GetFrameHeightWithSpacing() * rows}, true,
+                          ImGuiWindowFlags_NavFlattened);
+        for (std::size_t index = 0; index < answers.size(); ++index) {
+            if (!answers[index].listed) continue;
+            ImGui::PushID(static_cast<int>(index));
+            if (ImGui::Selectable(shortened(answers[index].text, context.em * 20).c_str())) chosen = static_cast<int>(index);
+            note(context, fmt::format("question.{}", index));
+            ImGui::SameLine(context.em * 22);
+            ImGui::TextDisabled("%s", answers[index].detail.c_str());
+            ImGui::PopID();
+        }
+        ImGui::EndChild();
+    }
+    const bool appears = ImGui::IsWindowAppearing();
+    const auto harmless = std::find_if(answers.begin(), answers.end(),
+                                       [](const auto& answer) { return !answer.dangerous && !answer.listed; });
+    bool first = true;
+    for (std::size_t index = 0; index < answers.size(); ++index) {
+        const auto& answer = answers[index];
+        if (answer.listed) continue;
+        if (!first) flow(button_width(answer.text));
+        if (button(context, {.name = fmt::format("question.{}", index),
+                             .text = answer.text,
+                             .look = answer.dangerous          ? Look::Danger
+                                     : first && listed == 0 ? Look::Primary
+                                                               : Look::Normal}))
+            chosen = static_cast<int>(index);
+        if (appears && harmless == answers.begin() + static_cast<std::ptrdiff_t>(index))
+            focus_last_item(context);  // Enter chooses what loses nothing
+        first = false;
+    }
+    return chosen;
+}
+
 void draw_question(Context& context) {
     auto& question = context.state.question;
     if (question.pending) ImGui::OpenPopup("###question");
@@ -88,24 +131,13 @@ void draw_question(Context& context) {
                                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove))
         return;
     ImGui::PushTextWrapPos(context.em * 30);
-    ImGui::TextUnformatted(question.text.c_str());
+    plain_text(question.text);
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
-    bool done = ImGui::IsKeyPressed(key::Escape, false) && !ImGui::IsWindowAppearing();
-    std::function<void()> act;
-    for (std::size_t index = 0; index < question.answers.size(); ++index) {
-        const auto& answer = question.answers[index];
-        if (index > 0) flow(button_width(answer.text));
-        if (button(context, {.name = fmt::format("question.{}", index),
-                             .text = answer.text,
-                             .look = answer.dangerous ? Look::Danger
-                                     : index == 0     ? Look::Primary
-                                                      : Look::Normal})) {
-            act = answer.act;
-            done = true;
-        }
-    }
-    if (done) ImGui::CloseCurrentPopup();
+    const bool done = ImGui::IsKeyPressed(key::Escape, false) && !ImGui::IsWindowAppearing();
+    const int chosen = draw_answers(context, question.answers);
+    const auto act = chosen >= 0 ? question.answers[static_cast<std::size_t>(chosen)].act : std::function<void()>();
+    if (done || chosen >= 0) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
     if (act) act();
 }

@@ -9,7 +9,7 @@ namespace gse::ui {
 namespace key {
 inline constexpr int Space = 32, LeftBracket = 91, RightBracket = 93, Grave = 96, Escape = 256, Enter = 257,
                      Tab = 258, Backspace = 259, Delete = 261, Right = 262, Left = 263, Down = 264, Up = 265,
-                     Home = 268, End = 269, F1 = 290, F5 = 294, F11 = 300, F12 = 301, KeypadEnter = 335;
+                     Home = 268, End = 269, F1 = 290, F5 = 294, F6 = 295, F11 = 300, F12 = 301, KeypadEnter = 335;
 }  // namespace key
 
 /// One line of the list of keys.
@@ -20,7 +20,7 @@ struct KeyHelp {
 };
 
 /// The fixed set; what the shortcuts and the camera do must agree with it.
-inline constexpr std::array<KeyHelp, 40> KeyTable{{
+inline constexpr std::array<KeyHelp, 46> KeyTable{{
     {"Camera", "Left drag (no tool), middle drag", "Orbit"},
     {"Camera", "Shift + middle drag, right drag", "Pan"},
     {"Camera", "Wheel", "Zoom to the cursor"},
@@ -28,7 +28,7 @@ inline constexpr std::array<KeyHelp, 40> KeyTable{{
     {"Camera", "W A S D, E up, Q down", "Fly (Shift fast, Alt slow)"},
     {"Camera", "F", "Frame what is labelled, else the scene"},
     {"Camera", "H", "Home"},
-    {"Camera", "Left, Right", "Previous, next view"},
+    {"Camera", "Left, Right (nothing has the focus)", "Previous, next view"},
     {"Labels", "B", "Brush"},
     {"Labels", "R", "Rectangle"},
     {"Labels", "L", "Lasso"},
@@ -40,16 +40,22 @@ inline constexpr std::array<KeyHelp, 40> KeyTable{{
     {"Labels", "Ctrl + I", "Invert the label"},
     {"Labels", "Ctrl + D", "Clear the label"},
     {"Labels", "Delete", "Delete the labelled splats"},
-    {"Show", "Tab", "Label overlay on, off"},
+    {"Show", "T", "Tint of what is labelled on, off"},
     {"Show", "V", "Wipe between before and after"},
     {"Show", "hold `", "Flip to the original"},
     {"Show", "Ctrl + Space", "Hide the panels"},
     {"Show", "F11", "Full screen"},
     {"Show", "Ctrl + +, Ctrl + -, Ctrl + 0", "Size of the interface"},
     {"Show", "F1", "This list"},
+    {"Keyboard", "Tab, Shift + Tab", "Next, previous control"},
+    {"Keyboard", "Arrows", "The control on that side; through a menu or a list"},
+    {"Keyboard", "Space, Enter", "Press what has the focus; change a slider"},
+    {"Keyboard", "F6, Shift + F6", "Next, previous panel"},
+    {"Keyboard", "Alt", "Open the menus"},
+    {"Work", "P", "Type in the prompt"},
     {"Work", "Shift + Enter, Ctrl + Enter", "Edit"},
     {"Work", "Ctrl + L", "Locate"},
-    {"Work", "Esc", "Leave the tool; cancel the job (asks after 30 s of work)"},
+    {"Work", "Esc", "Leave the control, the tool; cancel the job (asks after 30 s of work)"},
     {"Work", "Ctrl + Z", "Undo"},
     {"Work", "Ctrl + Shift + Z, Ctrl + Y", "Redo"},
     {"Files", "Ctrl + O", "Open"},

@@ -2,7 +2,8 @@
 #include "ui/layout.h"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+
+#include "engine/base/json.h"
 
 namespace gse::ui {
 namespace {
@@ -72,7 +73,7 @@ std::string Layout::to_json() const {
 
 Layout Layout::from_json(const std::string& text) {
     Layout layout = standard();
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = try_parse_json(text);
     if (json.is_discarded() || !json.is_object()) return layout;
     layout.right_em = std::clamp(number_or(json, "right_em", layout.right_em), LeastRightEm, MostRightEm);
     layout.right_split = std::clamp(number_or(json, "right_split", layout.right_split), 0.1f, 0.9f);

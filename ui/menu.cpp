@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "ui/commands.h"
+#include "ui/keyboard.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
 
@@ -30,6 +31,7 @@ bool item(Context& context, const Item& options) {
 
 bool begin_menu(Context& context, const char* name) {
     const bool open = ImGui::BeginMenu(name);
+    if (!open) open_menu_by_key(context, name);
     note(context, fmt::format("menu.{}", name));
     return open;
 }
@@ -139,7 +141,7 @@ void view_menu(Context& context) {
     if (item(context,
              {"menu.wipe", "Wipe before and after", "V", why, context.model.comparison == Comparison::Wipe}))
         toggle_wipe(context);
-    flag(context, "menu.tint", "Tint what is labelled", context.view.tint_labels, "Tab");
+    flag(context, "menu.tint", "Tint what is labelled", context.view.tint_labels, "T");
     flag(context, "menu.axes", "Axes", context.view.show_axes);
     flag(context, "menu.bounds", "Bounds", context.view.show_bounds);
     flag(context, "menu.cameras", "Cameras", context.view.show_views);
@@ -220,7 +222,7 @@ void draw_title(Context& context) {
     ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(text.c_str()).x -
                          context.em * 0.5f);
     ImGui::PushStyleColor(ImGuiCol_Text, model.unsaved ? palette::Text : palette::TextDim);
-    ImGui::TextUnformatted(text.c_str());
+    plain_text(text);
     ImGui::PopStyleColor();
     note(context, "menu.title");
     tooltip(path);

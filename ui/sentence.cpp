@@ -2,98 +2,138 @@
 // be run.
 #include "ui/sentence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 
 #include "engine/base/error.h"
-#include "engine/base/spelling.h"
+#include "engine/edit/vocabulary.h"
 
 namespace gse::ui {
 namespace {
-
-bool contains(const std::vector<std::string>& words, const std::string& word) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
-
-bool is_known(const std::vector<std::string>& known, const std::string& word) {
-    return known.empty() || contains(known, word);
-}
-
-/// The nearest known word; letters that changed places count as near, whatever the length.
-std::string suggestion_of(const std::string& word, const std::vector<std::string>& known) {
-    for (const auto& candidate : known) {
-        if (candidate.size() != word.size()) continue;
-        const auto [here, there] = std::mismatch(word.begin(), word.end(), candidate.begin());
-        std::string swapped = word;
-        const auto at = static_cast<std::size_t>(here - word.begin());
-        if (at + 1 < word.size()) std::swap(swapped[at], swapped[at + 1]);
-        if (swapped == candidate) return candidate;
-    }
-    return nearest_word(word, known);
-}
 
 std::string first_letter_up(std::string text) {
     if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     return text;
 }
 
+/// The request with the target that the sentence implies where none is chosen.
+edit::EditRequest with_target(edit::EditRequest request, const SentenceGround& ground) {
+    const auto source = edit::as_told(request.source);
+    if (request.target.empty() && !source.empty())
+        request.target = edit::guessed_target(request.prompt, source, ground.said);
+    return request;
+}
+
+/// Words that stand, in part at least, where the text encoder has stopped reading.
+bool unread(const std::string& sentence, const std::string& phrase, const SentenceGround& ground) {
+    return ground.words_read > 0 && edit::has_word(sentence, phrase) &&
+           edit::first_word(sentence, phrase) + edit::words_of(phrase).size() > ground.words_read;
+}
+
+std::string unknown_source(const std::string& source, const SentenceGround& ground) {
+    return fmt::format("The model does not know the word \"{}\" and cannot find it: label it by hand instead",
+                       edit::unknown_word(ground.known, source));
+}
+
+/// Whether the word number `index` of the sentence belongs to the phrase.
+bool within(const std::string& sentence, const std::string& phrase, std::size_t index) {
+    if (!edit::has_word(sentence, phrase)) return false;
+    const std::size_t first = edit::first_word(sentence, phrase);
+    return index >= first && index < first + edit::words_of(phrase).size();
+}
+
 /// What the engine would say, in the window's words where they are clearer.
-std::string problem_of(const edit::EditRequest& request, SentenceFacts& facts) {
+std::string problem_of(const edit::EditRequest& request, const SentenceGround& ground, SentenceFacts& facts) {
     if (request.prompt.empty() || facts.chips.empty())
         return "Describe the scene after the edit in one sentence";
     if (request.source.empty() && request.target.empty())
         return "Type what in the scene the edit is about, or click the word of the sentence that is new";
+    edit::EditRequest valid;
     try {
-        const auto valid = edit::validated(request);
-        facts.guessed_target = request.target.empty() ? valid.target : std::string();
+        valid = edit::validated(with_target(request, ground));
     } catch (const Error& error) {
         if (!request.source.empty() && request.target.empty())
             return "Click the word of the sentence that is new";
         return first_letter_up(error.message());
     }
+    facts.guessed_target = request.target.empty() ? valid.target : std::string();
+    if (!facts.source_known && !ground.labelled_by_hand)   // the words to use stand beside the source already
+        return unknown_source(valid.source, ground);
+    try {
+        edit::require_known_words(valid, ground.known, ground.labelled_by_hand);
+    } catch (const Error& error) {
+        // The words it knows stand beside the source already.
+        const bool source = !facts.source_known && !ground.labelled_by_hand;
+        return fmt::format("{}: {}", first_letter_up(error.message()),
+                           source ? "label it by hand instead, or use a word it knows" : error.hint());
+    }
+    for (const auto& word : {valid.source, valid.target})
+        if (unread(valid.prompt, word, ground))
+            return fmt::format("The model stops reading before \"{}\": shorten the sentence, or move the word forward", word);
     return {};
+}
+
+/// Why the source on its own cannot be looked for.
+std::string locate_problem_of(const std::string& source, const SentenceGround& ground, const SentenceFacts& facts) {
+    if (source.empty()) return facts.problem;
+    return facts.source_known ? std::string() : unknown_source(source, ground);
 }
 
 }  // namespace
 
-SentenceFacts facts_of(const edit::EditRequest& request, const std::vector<std::string>& known) {
+SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground) {
     SentenceFacts facts;
-    const auto source = edit::words_of(request.source);
     for (const auto& word : edit::words_of(request.prompt)) {
         Chip chip;
         chip.text = word;
-        chip.known = is_known(known, word);
-        if (!chip.known) chip.suggestion = suggestion_of(word, known);
-        chip.source = contains(source, word);
+        chip.known = edit::knows(ground.known, word);
+        if (!chip.known) {
+            const auto near = edit::nearest_words(word, ground.known, 1);
+            if (!near.empty()) chip.suggestion = near.front();
+        }
+        chip.source = within(request.prompt, request.source, facts.chips.size());
+        chip.read = ground.words_read == 0 || facts.chips.size() < ground.words_read;
+        if (!chip.read && facts.cut_at.empty()) facts.cut_at = word;
         facts.chips.push_back(std::move(chip));
     }
-    for (const auto& word : source) {
-        if (is_known(known, word)) continue;
-        facts.source_known = false;
-        facts.source_suggestion = suggestion_of(word, known);
+    const auto unknown = edit::unknown_word(ground.known, request.source);
+    facts.source_known = unknown.empty();
+    if (!facts.source_known) {
+        const std::size_t index = edit::first_word(request.source, unknown);
+        for (const auto& near : edit::nearest_words(unknown, ground.known))
+            facts.source_suggestions.push_back(with_word(request.source, index, near));
+        facts.source_help = edit::words_to_use(unknown, ground.known);
     }
-    facts.problem = problem_of(request, facts);
-    facts.locate_problem = source.size() == 1 ? std::string() : facts.problem;
-    const auto target = edit::words_of(request.target.empty() ? facts.guessed_target : request.target);
-    for (auto& chip : facts.chips) {
-        chip.target = contains(target, chip.text);
+    facts.problem = problem_of(request, ground, facts);
+    facts.locate_problem = locate_problem_of(edit::as_told(request.source), ground, facts);
+    const auto& target = request.target.empty() ? facts.guessed_target : request.target;
+    for (std::size_t index = 0; index < facts.chips.size(); ++index) {
+        auto& chip = facts.chips[index];
+        chip.target = within(request.prompt, target, index);
         chip.guessed = chip.target && request.target.empty();
     }
     return facts;
 }
 
-edit::EditRequest locate_request(const edit::EditRequest& request) {
-    try {
-        edit::validated(request);
-        return request;
-    } catch (const Error&) {
-        const auto source = edit::words_of(request.source);
-        edit::EditRequest alone = request;
-        alone.target = source.empty() ? std::string() : source.front();
-        alone.prompt = "a " + alone.target;
-        alone.mode = "modify";
-        return alone;
-    }
+edit::EditRequest locate_request(const edit::EditRequest& request, const std::string& problem) {
+    if (problem.empty()) return request;
+    edit::EditRequest alone = request;
+    alone.target = edit::as_told(request.source);
+    alone.prompt = "a " + alone.target;
+    alone.mode = "modify";
+    return alone;
+}
+
+std::string target_to(const std::string& sentence, const std::string& target, std::size_t index) {
+    const auto words = edit::words_of(sentence);
+    if (index >= words.size()) return target;
+    if (!edit::has_word(sentence, target)) return words[index];
+    const std::size_t first = edit::first_word(sentence, target), last = first + edit::words_of(target).size() - 1;
+    std::string phrase;
+    for (std::size_t i = std::min(first, index); i <= std::max(last, index); ++i) phrase += (phrase.empty() ? "" : " ") + words[i];
+    return phrase;
 }
 
 std::string with_word(const std::string& sentence, std::size_t index, const std::string& word) {

@@ -10,20 +10,32 @@
 
 namespace gse::ui {
 
-struct SentenceFacts {
-    std::vector<Chip> chips;        // one per word of the sentence
-    std::string problem;            // why the request cannot be run, one sentence; empty = it can
-    std::string locate_problem;     // why the source cannot be looked for; a sentence is not needed for that
-    std::string source_suggestion;  // nearest known word of an unknown source
-    bool source_known = true;
-    std::string guessed_target;  // the target when none is chosen
+/// What a sentence is held against.
+struct SentenceGround {
+    std::vector<std::string> known = {};  // words of the model; empty = it takes any word
+    std::vector<std::string> said = {};   // words that the scene shows already, from the edits applied
+    bool labelled_by_hand = false;   // the label says where: nothing has to be found
+    std::size_t words_read = 0;      // of the sentence, by the text encoder; 0 = not known, all of them
 };
 
-/// `known` empty = the model takes any word.
-SentenceFacts facts_of(const edit::EditRequest& request, const std::vector<std::string>& known);
+struct SentenceFacts {
+    std::vector<Chip> chips;                       // one per word of the sentence
+    std::string problem;                           // why the request cannot be run, one sentence; empty = it can
+    std::string locate_problem;                    // why the source cannot be looked for
+    std::vector<std::string> source_suggestions;   // the source with the nearest known words for its unknown one
+    std::string source_help;                       // what to use instead of it
+    bool source_known = true;
+    std::string guessed_target;  // the target when none is chosen
+    std::string cut_at;          // first word that the text encoder does not read; empty = it reads all
+};
 
-/// The request that Locate runs: without a sentence that can be run, the source alone is looked for.
-edit::EditRequest locate_request(const edit::EditRequest& request);
+SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground);
+
+/// The request that Locate runs: with a sentence that cannot be run (`problem`), the source alone is looked for.
+edit::EditRequest locate_request(const edit::EditRequest& request, const std::string& problem);
+
+/// The target grown to the word number `index` of the sentence: all words from the one to the other.
+std::string target_to(const std::string& sentence, const std::string& target, std::size_t index);
 
 /// The sentence with its word number `index` replaced.
 std::string with_word(const std::string& sentence, std::size_t index, const std::string& word);

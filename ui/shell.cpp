@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "engine/base/file.h"
 #include "ui/commands.h"
 #include "ui/deferred_actions.h"
+#include "ui/keyboard.h"
 #include "ui/menu.h"
 #include "ui/panels/panels.h"
 #include "ui/sentence.h"
@@ -36,7 +38,7 @@ bool begin_surface(const char* name, ImVec2 low, ImVec2 size, ImU32 colour) {
     const bool shown =
         ImGui::BeginChild(name, {std::max(1.0f, size.x), std::max(1.0f, size.y)}, false,
                           ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_NoScrollbar |
-                              ImGuiWindowFlags_NoScrollWithMouse);
+                              ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NavFlattened);
     ImGui::PopStyleColor();
     return shown;
 }
@@ -45,17 +47,31 @@ bool begin_surface(const char* name, ImVec2 low, ImVec2 size, ImU32 colour) {
 void update_sentence(Context& context) {
     auto& prompt = context.state.prompt;
     const auto& request = context.request;
-    const std::string key = fmt::format("{}\n{}\n{}\n{}\n{}", request.source, request.prompt, request.target,
-                                        request.mode, context.model.known_words.size());
+    const auto& model = context.model;
+    std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", request.source, request.prompt, request.target,
+                                  request.mode, model.known_words.size(), model.labelled_by_hand, model.words_read);
+    for (const auto& word : model.said_words) key += "\n" + word;
     if (key == prompt.key) return;
-    prompt.key = key;
-    SentenceFacts facts = facts_of(request, context.model.known_words);
+    prompt.key = std::move(key);
+    SentenceFacts facts =
+        facts_of(request, {model.known_words, model.said_words, model.labelled_by_hand, model.words_read});
     prompt.chips = std::move(facts.chips);
     prompt.problem = std::move(facts.problem);
     prompt.locate_problem = std::move(facts.locate_problem);
-    prompt.source_suggestion = std::move(facts.source_suggestion);
+    prompt.source_suggestions = std::move(facts.source_suggestions);
+    prompt.source_help = std::move(facts.source_help);
     prompt.source_known = facts.source_known;
     prompt.guessed_target = std::move(facts.guessed_target);
+    prompt.cut_at = std::move(facts.cut_at);
+}
+
+/// A search that came to nothing shows why.
+void show_failed_search(Context& context) {
+    const auto& search = context.model.search;
+    auto& shown = context.state.attention.problem_shown;
+    if (search.problem == edit::SearchProblem::None || search.number == shown) return;
+    shown = search.number;
+    show_panel(context.state, PanelId::Attention);
 }
 
 /// The accent below the tab in front.
@@ -141,6 +157,12 @@ void drag_splitters(Context& context, const Plan& plan) {
 Shell::Shell() : state_(std::make_unique<UiState>()), deferred_(std::make_unique<DeferredActions>()) {}
 Shell::~Shell() = default;
 
+std::string Shell::focused() const {
+    for (const auto& stop : state_->keyboard.stops)
+        if (has_focus(stop)) return std::string(stop.name);
+    return {};
+}
+
 bool Shell::animating() const { return state_->animating; }
 std::string Shell::layout() const { return state_->layout.to_json(); }
 void Shell::set_layout(const std::string& json) {
@@ -168,13 +190,22 @@ void Shell::write_widgets(const std::filesystem::path& path) const {
 }
 
 void Shell::answer_requests(Context& context) {
-    if (state_->save_as_asked) save_as(context);
-    state_->save_as_asked = false;
-    if (state_->quit_asked) quit(context);
-    state_->quit_asked = false;
-    if (state_->open_asked.empty()) return;
-    open_path(context, state_->open_asked);
-    state_->open_asked.clear();
+    if (std::exchange(state_->save_as_asked, false)) save_as(context, std::exchange(state_->after_save, {}));
+    if (std::exchange(state_->quit_asked, false)) quit(context);
+    if (const auto leave = std::exchange(state_->leave_asked, {}); leave.act)
+        with_unsaved_work(context, leave.what, leave.act);
+    if (const auto path = std::exchange(state_->open_asked, {}); !path.empty()) open_path(context, path);
+    const auto& asked = context.model.question;
+    if (asked.number == state_->question_seen) return;
+    state_->question_seen = asked.number;
+    auto& question = state_->question;
+    question = {asked.title, asked.text, {}, true};
+    for (std::size_t index = 0; index < asked.answers.size(); ++index) {
+        const auto& answer = asked.answers[index];
+        question.answers.push_back({answer.text, answer.dangerous,
+                                    [&actions = context.actions, index] { actions.answer(index); },
+                                    answer.detail, answer.listed});
+    }
 }
 
 void Shell::draw_tab_menu(Context& context, PanelId panel) {
@@ -198,7 +229,9 @@ void Shell::draw_area(Context& context, Area area) {
                                                   ImGuiTabBarFlags_FittingPolicyScroll |
                                                   ImGuiTabBarFlags_NoTooltip))
         return;
-    const bool bring = state_->front_changed[index];
+    // Taken first: a panel drawn below may bring another one to the front. SetSelected takes effect in the frame after, so
+    // the front is only read again then.
+    const bool bring = std::exchange(state_->front_changed[index], false);
     for (std::size_t at = 0; at < PanelCount; ++at) {
         const auto panel = static_cast<PanelId>(at);
         if (!layout.place(panel).open || layout.place(panel).area != area) continue;
@@ -212,13 +245,11 @@ void Shell::draw_area(Context& context, Area area) {
         draw_tab_menu(context, panel);
         if (!shown) continue;
         if (!bring) layout.front[index] = static_cast<int>(at);
-        if (ImGui::BeginChild(PanelNames[at], {0, 0}, false)) draw_panel(context, panel);
+        if (ImGui::BeginChild(PanelNames[at], {0, 0}, false, ImGuiWindowFlags_NavFlattened)) draw_panel(context, panel);
         ImGui::EndChild();
         note(context, fmt::format("panel.{}", PanelNames[at]));
         ImGui::EndTabItem();
     }
-    // SetSelected takes effect in the frame after: the front is only read again then.
-    state_->front_changed[index] = false;
     ImGui::EndTabBar();
 }
 
@@ -256,26 +287,27 @@ void Shell::draw_window(Context& context) {
     draw_menu_bar(context);
     draw_areas(context);
     ImGui::End();
-    draw_result_bar(context);
-    draw_toasts(context);
+    draw_bars(context);
     draw_dialogs(context);
 }
 
 void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
-    // Arrows, Alt, Tab and Space are keys of the editor; keyboard navigation between widgets would take them
-    // too.
-    ImGui::GetIO().ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
     const float em = ImGui::GetFontSize();
     if (em != styled_em_) apply_theme(ImGui::GetStyle(), em);
     styled_em_ = em;
-    widgets_.clear();
     Context context{model,           *deferred_, textures,   *state_,       widgets_,
                     current_fonts(), em,         model.view, model.request, model.exports, model.model_settings};
     state_->animating = false;
+    set_foreign_glyphs(&glyphs_);
+    begin_keyboard(context);
     update_sentence(context);
+    show_failed_search(context);
     handle_keys(context);
     answer_requests(context);
+    state_->keyboard.stops.clear();  // their names are those of the widgets
+    widgets_.clear();
     draw_window(context);
+    end_keyboard(context);
     if (context.request_changed) deferred_->set_request(context.request);
     if (context.view_changed) deferred_->set_view_settings(context.view);
     if (context.exports_changed) deferred_->set_exports(context.exports);

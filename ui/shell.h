@@ -45,8 +45,13 @@ public:
     /// Where the important widgets of the last frame are, in window coordinates: "prompt.edit", "tool.brush",
     /// "viewport"...
     const WidgetMap& widgets() const { return widgets_; }
+    /// The control that has the keyboard's focus and shows it; empty = none.
+    std::string focused() const;
     /// The same as a JSON file, for scripts that click.
     void write_widgets(const std::filesystem::path& path) const;
+
+    /// What texts of the window ask for beyond its fonts (theme.h).
+    ForeignGlyphs& glyphs() { return glyphs_; }
 
     UiState& state() { return *state_; }
 
@@ -60,6 +65,7 @@ private:
     std::unique_ptr<UiState> state_;
     std::unique_ptr<DeferredActions> deferred_;
     WidgetMap widgets_;
+    ForeignGlyphs glyphs_;
     float styled_em_ = 0;
 };
 

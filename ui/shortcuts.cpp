@@ -43,6 +43,10 @@ void resize_brush(Context& context, float factor) {
 }
 
 void plain_keys(Context& context) {
+    if (pressed('P')) {
+        show_panel(context.state, PanelId::Prompt);
+        context.state.focus = "prompt.sentence";
+    }
     if (!context.scene_open()) return;
     if (pressed('B')) set_tool(context, Tool::Brush);
     if (pressed('R')) set_tool(context, Tool::Rectangle);
@@ -50,10 +54,11 @@ void plain_keys(Context& context) {
     if (pressed('F')) frame_selection(context);
     if (pressed('H')) go_home(context);
     if (pressed('N')) toggle(context, &ViewSettings::front_only);
-    if (pressed(key::Tab)) toggle(context, &ViewSettings::tint_labels);
+    if (pressed('T')) toggle(context, &ViewSettings::tint_labels);
     if (pressed('V')) toggle_wipe(context);
-    if (pressed(key::Left)) step_view(context, -1);
-    if (pressed(key::Right)) step_view(context, 1);
+    const bool arrows_free = !context.state.keyboard.on || has_focus(context, "viewport");
+    if (pressed(key::Left) && arrows_free) step_view(context, -1);
+    if (pressed(key::Right) && arrows_free) step_view(context, 1);
     if (ImGui::IsKeyPressed(key::LeftBracket)) resize_brush(context, 1 / 1.15f);
     if (ImGui::IsKeyPressed(key::RightBracket)) resize_brush(context, 1.15f);
     if (pressed(key::Delete) && context.active_label() != nullptr && label_count(context) > 0)
@@ -84,7 +89,7 @@ void escape(Context& context) {
 
 void handle_keys(Context& context) {
     const auto& io = ImGui::GetIO();
-    const bool dialog = context.state.files.is_open() || context.state.help_open ||
+    const bool dialog = context.state.keyboard.popup_before || context.state.files.is_open() || context.state.help_open ||
                         context.state.about_open ||
                         ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     const bool typing = io.WantTextInput;
@@ -100,7 +105,7 @@ void handle_keys(Context& context) {
     if (io.KeyCtrl && !io.KeyAlt) return control_keys(context, typing);
     if (io.KeyShift && enter_pressed()) return run_edit(context);
     if (typing) return;
-    if (pressed(key::Escape)) escape(context);
+    if (pressed(key::Escape) && !context.state.keyboard.escape_taken) escape(context);
     if (!io.KeyAlt && !io.KeySuper) plain_keys(context);
 }
 

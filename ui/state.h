@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ui/context.h"
+#include "ui/keyboard.h"
 #include "ui/layout.h"
 #include "ui/viewport/camera_control.h"
 #include "ui/widgets/chips.h"
@@ -23,6 +24,8 @@ struct Question {
         std::string text;
         bool dangerous = false;
         std::function<void()> act;  // empty = nothing happens
+        std::string detail = {};
+        bool listed = false;  // one of many, in a list above the buttons
     };
     std::string title, text;
     std::vector<Answer> answers;
@@ -48,6 +51,7 @@ struct ViewportState {
     bool flipped = false;  // ` is held
     Comparison before_flip = Comparison::None;
     bool wipe_dragged = false;
+    float bars_bottom = 0;  // lower edge of what floated at the top in the last frame
     double moved_at = -10;  // ImGui time of the last move
     int drag_button = -1;   // mouse button that navigates, -1 = none
 };
@@ -58,9 +62,11 @@ struct PromptState {
     std::vector<Chip> chips;
     std::string problem;         // why the request cannot be run; empty = it can
     std::string locate_problem;  // the same for Locate alone
-    std::string source_suggestion;
+    std::vector<std::string> source_suggestions;
+    std::string source_help;
     bool source_known = true;
     std::string guessed_target;
+    std::string cut_at;  // first word that the text encoder does not read
     bool seed_locked = true;  // open: every edit gets another seed
     bool advanced = false;
 };
@@ -72,6 +78,7 @@ struct AttentionState {
     std::shared_ptr<const Image> picture_of;  // the map it was made from
     double picture_threshold = -1;
     double above = 0;  // share of the picture above the threshold
+    std::uint64_t problem_shown = 0;  // number of the failed search that was brought to the front
     bool points = true;
 };
 
@@ -114,10 +121,17 @@ struct UiState {
     HistoryState history;
     FileBrowser files;
     Question question;
+    KeyboardState keyboard;
     std::array<bool, AreaCount> front_changed{true, true, true};  // a tab has to be brought to the front
     bool help_open = false, about_open = false;
     bool save_as_asked = false;
+    std::function<void()> after_save;  // of save_as_asked
     bool quit_asked = false;
+    struct {
+        std::string what;
+        std::function<void()> act;   // empty = none
+    } leave_asked;                   // asked about once more: an edit was discarded, other work may be left
+    std::uint64_t question_seen = 0;   // number of the application's last question that was shown
     std::string open_asked;  // path to open, from outside; empty = none
     std::string model_path;
     std::string focus;  // widget that takes the keyboard next frame

@@ -166,6 +166,11 @@ void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale) {
     apply_theme(style, std::round(BaseFontPx * scale));
 }
 
+void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale, const ForeignGlyphs& glyphs, const GlyphPainter& painter) {
+    dress(atlas, style, scale);
+    if (!glyphs.all().empty()) add_foreign_glyphs(atlas, glyphs, painter);
+}
+
 ImU32 with_alpha(ImU32 colour, float alpha) {
     const auto byte = static_cast<ImU32>(std::lround(255.0f * (alpha < 0 ? 0 : alpha > 1 ? 1 : alpha)));
     return (colour & ~IM_COL32_A_MASK) | (byte << IM_COL32_A_SHIFT);

@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "ui/glyphs.h"
+
 namespace gse::ui {
 
 /// Colours by what they mean (sRGB, IM_COL32 order).
@@ -17,6 +19,7 @@ inline constexpr ImU32 Sunken = IM_COL32(23, 24, 26, 255);
 inline constexpr ImU32 Border = IM_COL32(56, 58, 63, 255);
 inline constexpr ImU32 Text = IM_COL32(222, 224, 227, 255);
 inline constexpr ImU32 TextDim = IM_COL32(150, 154, 161, 255);
+inline constexpr ImU32 Hint = IM_COL32(102, 105, 111, 255);  // what could be typed into an empty field
 inline constexpr ImU32 Accent = IM_COL32(86, 156, 224, 255);
 inline constexpr ImU32 AccentHover = IM_COL32(112, 175, 236, 255);
 inline constexpr ImU32 AccentDeep = IM_COL32(44, 92, 142, 255);
@@ -58,6 +61,8 @@ void apply_theme(ImGuiStyle& style, float em);
 
 /// Fonts of the system and the style for a scale: what a window calls when its scale changes.
 void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale);
+/// The same with characters that other fonts have; builds the atlas.
+void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale, const ForeignGlyphs& glyphs, const GlyphPainter& painter);
 
 /// The same colour with another opacity in [0,1].
 ImU32 with_alpha(ImU32 colour, float alpha);

@@ -14,6 +14,8 @@
 #include "engine/base/log.h"
 #include "engine/edit/locate.h"
 #include "engine/edit/request.h"
+#include "engine/math/framing.h"
+#include "engine/scene/camera_key.h"
 #include "engine/scene/document.h"
 
 namespace gse::ui {
@@ -110,7 +112,16 @@ struct AttentionView {
     std::string branch;                          // what made the mask
     double captured = 0;
     bool failed = false;
+    edit::ViewStep step = edit::ViewStep::Found; // where it failed
     Camera camera;
+};
+
+/// What came of the last search.
+struct SearchView {
+    std::uint64_t number = 0;                    // another one for each search; 0 = there was none
+    edit::Confidence confidence;
+    edit::SearchProblem problem = edit::SearchProblem::None;
+    std::string message, remedy;                 // of the problem
 };
 
 /// A place where a model was looked for.
@@ -122,6 +133,7 @@ struct ModelView {
     bool usable = false;
     std::string problem;         // what is missing or not supported, and what to do
     bool chosen = false;
+    bool checking = false;       // it is being loaded, to see whether it can be used
 };
 
 struct LogLine {
@@ -143,6 +155,29 @@ struct Toast {
     bool is_error = false;
     double age_seconds = 0;
     std::string button;          // empty = none
+};
+
+/// Something the application wants to know; what is chosen goes to Actions::answer.
+struct AskedQuestion {
+    struct Answer {
+        std::string text, detail = {};
+        bool dangerous = false;
+        bool listed = false;     // one of many, in a list above the buttons
+    };
+    std::uint64_t number = 0;    // another one for every question; 0 = none
+    std::string title, text;
+    std::vector<Answer> answers;
+};
+
+/// Work of a session that ended without saving it.
+struct RecoveryView {
+    std::string file;            // for recover() and discard_recovery()
+    std::string name;            // of the project or scene: "scene.ply"
+    std::string place;           // its whole path
+    std::string facts;           // "today 14:02, 4,914 splats, 2 edits"
+    std::string running;         // what ran or waited then; empty = nothing
+    std::shared_ptr<const Image> thumbnail;   // may be null
+    bool offered = false;        // also over an open scene
 };
 
 /// Settings of a picture or film to be written (Export panel and dialogs).
@@ -195,7 +230,7 @@ struct ModelSettings {
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
-        f("gate", self.gate, "Before the loop, show what the model itself makes of four views, and warn when that is not the edit.");
+        f("gate", self.gate, "Before the edit, show what the model itself makes of four views, and warn when that is not what was asked.");
         f("learn_scene", self.learn_scene, "DreamBooth: the model learns this scene from renders of it first.");
         f("learn_steps", self.learn_steps, "Steps of learning the scene.", Range{1, 10000});
         f("learn_rank", self.learn_rank, "0 = all weights learn; above: a LoRA of this rank, lighter and weaker.", Range{0, 256});
@@ -209,11 +244,6 @@ struct GateView {
     bool warns = false;                                   // they do not show the edit
 };
 
-/// One camera on the artist's path.
-struct CameraKey {
-    double time = 0;             // seconds
-    Camera camera;
-};
 
 /// Everything the panels read. Pointers are valid for the frame.
 struct ViewModel {
@@ -222,33 +252,41 @@ struct ViewModel {
     SceneStatistics statistics;
     std::string scene_path, project_path;
     std::string suggested_project;               // where a first save goes unless the artist says otherwise
-    bool unsaved = false;
+    bool unsaved = false;                        // a running or waiting edit counts
     std::string saved_at;                        // "saved 14:02 (autosave on)"
     std::vector<std::string> recent;             // paths, newest first
-    std::vector<std::string> recoverable;        // projects that can be recovered after a crash
+    std::vector<RecoveryView> recoverable;       // newest first
+    AskedQuestion question;
     // Viewport
     TextureId viewport = 0;                      // the rendered picture
     TextureId viewport_original = 0;             // to draw left of the wipe; 0 = the picture holds both sides already
     int viewport_width = 0, viewport_height = 0; // pixels of `camera`; the texture may have fewer while moving
     std::shared_ptr<const Image> viewport_depth; // [H,W,1] may be null; for front-only selection and picking
     Camera camera;                               // of the picture shown
-    OrbitParameters orbit;                       // home: the fitted orbit
+    OrbitParameters orbit;                       // home: the fitted orbit,
+    Bounds framing;                              // and what is to be seen from there
     double frames_per_second = 0, render_ms = 0;
     std::string renderer;                        // "native AVX-512", "Vulkan: llvmpipe"
     std::size_t labelled = 0;
     // Prompt
     edit::EditRequest request;                   // as edited by the panel, echoed by the application
+    edit::EditRequest request_defaults;          // what suits the model in use
     std::vector<std::string> known_words;        // of the chosen model; empty = open vocabulary
     bool words_known = false;                    // known_words has been read
-    ModelSettings model_settings;
+    std::vector<std::string> said_words;         // what the applied edits say of the scene: no news any more
+    bool labelled_by_hand = false;               // the active label says what may change, whatever the words find
+    std::size_t words_read = 0;                  // of the sentence, by the text encoder; 0 = all, or not known
+    ModelSettings model_settings, model_settings_defaults;
     Estimate estimate;
     std::string cannot_edit;                     // why Locate and Edit are off; empty = they are on
     // Localization
     std::vector<AttentionView> attention;
     std::string attention_word, attention_mode;  // "bear", "modify: ..."
     double attention_threshold = 0.5;
+    SearchView search;
     // Work
     JobView job;                                 // locate, edit
+    bool edit_running = false;                   // the job is an edit
     JobView file_job;                            // load, export, save
     GateView gate;
     std::vector<LossPoint> losses;

@@ -16,11 +16,16 @@ namespace gse::ui {
 namespace {
 
 std::string branch_words(const AttentionView& view) {
-    if (view.failed) return "The word was not found here; this view does not vote.";
+    if (view.failed) {
+        const std::string step = edit::step_text(view.step), remedy = edit::step_remedy(view.step);
+        return fmt::format("This view does not vote{}{}{}{}.", step.empty() ? "" : ": ", step, remedy.empty() ? "" : "; ",
+                           remedy);
+    }
     if (view.branch == "text") return "The mask was found from the word itself.";
     if (view.branch == "points") return "The mask was cut out from clicks placed on the attention.";
     if (view.branch == "attention") return "The mask is the attention above the threshold.";
     if (view.branch == "anchor") return "The mask is the place where the new thing goes.";
+    if (view.branch == "label") return "The mask is your label, seen from here.";
     if (view.branch == "none") return "There is no mask.";
     return view.branch.empty() ? std::string() : fmt::format("The mask was made by \"{}\".", view.branch);
 }
@@ -65,7 +70,8 @@ void draw_strip(Context& context, ImVec2 size, bool upright) {
             ? std::max(1, static_cast<int>((size.x - ImGui::GetStyle().ScrollbarSize + gap) / (side + gap)))
             : 1 << 20;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, gap));
-    const auto flags = upright ? ImGuiWindowFlags_None : ImGuiWindowFlags_HorizontalScrollbar;
+    const auto flags =
+        ImGuiWindowFlags_NavFlattened | (upright ? ImGuiWindowFlags_None : ImGuiWindowFlags_HorizontalScrollbar);
     if (ImGui::BeginChild("strip", size, false, flags))
         for (int index = 0; index < static_cast<int>(context.model.attention.size()); ++index) {
             if (index % columns != 0) ImGui::SameLine();
@@ -142,10 +148,11 @@ void draw_controls(Context& context, const AttentionView& view) {
     if (ImGui::SliderScalar("##attention.threshold", ImGuiDataType_Double, &threshold, &low, &high, "%.3f",
                             ImGuiSliderFlags_AlwaysClamp)) {
         state.threshold = threshold;
-        context.actions.set_attention_threshold(threshold);
+        context.actions.set_attention_threshold(threshold, false);
     }
     note(context, "attention.threshold");
     tooltip("Attention above this share of the maximum counts. All views and the label follow.");
+    if (ImGui::IsItemDeactivatedAfterEdit()) context.actions.set_attention_threshold(threshold, true);
     if (ImGui::IsItemDeactivated()) state.threshold = -1;
     wrapped_text(fmt::format("{} of this view is above it.", percent_text(state.above)));
     ImGui::Spacing();
@@ -163,6 +170,47 @@ void draw_controls(Context& context, const AttentionView& view) {
         context.actions.set_camera(view.camera);
 }
 
+/// What a search came to that labelled nothing, and the ways on.
+void draw_problem(Context& context) {
+    const auto& search = context.model.search;
+    if (search.problem == edit::SearchProblem::None) return;
+    coloured_text(palette::Warning, fmt::format("Nothing was labelled: {}.", search.message));
+    dim_text(fmt::format("What helps: {}.", search.remedy));
+    const std::string why = why_not_work(context);
+    if (button(context, {.name = "attention.by_hand",
+                         .text = "Label it by hand",
+                         .why_off = why,
+                         .tooltip = "Makes a label and gives you the brush"}))
+        label_by_hand(context, context.model.attention_word);
+    if (search.problem != edit::SearchProblem::Unsure) return;
+    constexpr const char* anyway = "Label this all the same";
+    flow(button_width(anyway));
+    if (button(context, {.name = "attention.anyway",
+                         .text = anyway,
+                         .why_off = why,
+                         .tooltip = "The pictures show what was found. If it is what you mean, it can be labelled."}))
+        context.actions.label_anyway();
+}
+
+/// How sure the search is, with what the figure is made of.
+void draw_confidence(Context& context) {
+    const auto& search = context.model.search;
+    if (search.number == 0 || search.confidence.value < 0) return;
+    const bool unsure = search.problem != edit::SearchProblem::None;
+    const std::string text = fmt::format("{} sure", percent_text(search.confidence.value));
+    flow(ImGui::CalcTextSize(text.c_str()).x + context.em);
+    badge(context, text, unsure ? palette::Warning : palette::Good);
+    note(context, "attention.confidence");
+    std::string parts = fmt::format("How sure the search is.\nThe views agree to {}.\n{} of the attention is inside the masks.\n{} "
+                                    "of what the views see is labelled.",
+                                    percent_text(search.confidence.agreement), percent_text(search.confidence.attention),
+                                    percent_text(search.confidence.share));
+    if (search.confidence.recognition >= 0)
+        parts += fmt::format("\nThe pictures fit the word better than {} of the others the model knows.",
+                             percent_text(search.confidence.recognition));
+    tooltip(parts);
+}
+
 /// Word, mode and how many views vote.
 void draw_summary(Context& context) {
     const auto& views = context.model.attention;
@@ -173,6 +221,8 @@ void draw_summary(Context& context) {
     const std::string votes = fmt::format("{} of {} views vote", voting, views.size());
     ImGui::TextUnformatted(shortened(votes, ImGui::GetContentRegionAvail().x).c_str());
     tooltip(context.model.attention_mode);
+    draw_confidence(context);
+    draw_problem(context);
 }
 
 /// The chosen view's pictures, `columns` beside each other; the first is left out where they would get too
@@ -210,11 +260,12 @@ void draw_wide(Context& context, const AttentionView& view) {
     const float pictures = space.x - strip - controls - 2 * gap;
     draw_strip(context, {strip, space.y}, true);
     ImGui::SameLine();
-    if (ImGui::BeginChild("pictures", {pictures, space.y}, false, ImGuiWindowFlags_NoScrollbar))
+    if (ImGui::BeginChild("pictures", {pictures, space.y}, false,
+                          ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NavFlattened))
         draw_pictures(context, view, {pictures, space.y}, 4);
     ImGui::EndChild();
     ImGui::SameLine();
-    if (ImGui::BeginChild("controls", {0, space.y}, false)) {
+    if (ImGui::BeginChild("controls", {0, space.y}, false, ImGuiWindowFlags_NavFlattened)) {
         draw_summary(context);
         draw_controls(context, view);
     }

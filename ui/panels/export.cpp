@@ -48,6 +48,7 @@ void path_row(Context& context, const char* name, std::string& path, std::vector
                              .confirm = "Choose",
                              .extensions = std::move(endings),
                              .saves = true,
+                             .replaces = false,
                              .folder_allowed = false,
                              .start = path,
                              .answer = [&actions, settings, member](const std::filesystem::path& chosen) {
@@ -116,7 +117,7 @@ void draw_picture(Context& context) {
     if (why.empty() && static_cast<double>(context.exports.width) * context.exports.height > LargestPixels)
         why = "That many pixels cannot be written";
     say(why, fmt::format("Writes a PNG of {} x {} pixels{} with the recipe inside: opening it again brings "
-                         "back prompt, seed and camera.",
+                         "back prompt, seed and camera. Files that exist stay: the next name is numbered.",
                          context.exports.width, context.exports.height,
                          context.exports.transparent ? " with alpha" : ""));
     if (button(context, {.name = "export.screenshot",

@@ -1,8 +1,10 @@
 // History: the stack of edits that can be switched, and the list of steps to go back to.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "engine/scene/strength.h"
 #include "ui/commands.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
@@ -54,6 +56,19 @@ void draw_buttons(Context& context, const EditNode& edit, std::size_t place, std
         context.actions.delete_edit(id);
 }
 
+/// How much of the edit is seen; follows the drag.
+void draw_strength(Context& context, const EditNode& edit) {
+    constexpr double least = 0;
+    double strength = edit.strength;
+    ImGui::SetNextItemWidth(std::min(ImGui::GetContentRegionAvail().x, context.em * 12));
+    const bool changed =
+        ImGui::SliderScalar("##strength", ImGuiDataType_Double, &strength, &least, &MostStrength, "Strength %.2f");
+    note(context, fmt::format("history.strength.{}", edit.id));
+    tooltip("1 is the edit as it was applied. Less: between before and after. More: colours go beyond it.");
+    const bool ends = ImGui::IsItemDeactivatedAfterEdit();
+    if (changed || ends) context.actions.set_edit_strength(edit.id, strength, ends);
+}
+
 void draw_edit(Context& context, std::size_t place, std::size_t count) {
     const EditNode& edit = context.document().stack[place];
     ImGui::PushID(static_cast<int>(edit.id));
@@ -80,6 +95,7 @@ void draw_edit(Context& context, std::size_t place, std::size_t count) {
     ImGui::TextUnformatted(shortened(proof_text(edit), ImGui::GetContentRegionAvail().x).c_str());
     ImGui::PopStyleColor();
     tooltip(proof_text(edit));
+    draw_strength(context, edit);
     draw_buttons(context, edit, place, count);
     if (edit.seconds > 0) {
         ImGui::SameLine();

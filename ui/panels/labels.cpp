@@ -22,10 +22,8 @@ void draw_rename(Context& context, int index) {
     if (labels.focus_name) ImGui::SetKeyboardFocusHere();
     labels.focus_name = false;
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
-    const bool entered =
-        ImGui::InputText("##labels.name", &labels.name,
-                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-    note(context, "labels.name");
+    const bool entered = text_input(context, "labels.name", labels.name, {},
+                                    ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
     if (entered || ImGui::IsItemDeactivated()) {
         const bool escaped = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape), false);
         const auto& name = context.document().labels[static_cast<std::size_t>(index)].name;
@@ -91,9 +89,12 @@ void draw_threshold(Context& context, const NamedLabel& label) {
             "label.");
         if (drag.changed) {
             labels.threshold = threshold;
-            context.actions.set_label_threshold(threshold);
+            context.actions.set_label_threshold(threshold, false);
         }
-        if (drag.released) labels.threshold = -1;
+        if (drag.released) {
+            if (labels.threshold >= 0) context.actions.set_label_threshold(labels.threshold, true);
+            labels.threshold = -1;
+        }
         const std::size_t above = labels.histogram.above(threshold);
         property(context, "Threshold", fmt::format("{:.3f}   ({} by weight)", threshold, count_text(above)));
     }
@@ -132,7 +133,8 @@ void draw_tools(Context& context, const std::string& why) {
         viewport.operation = static_cast<SetOperation>(operation);
     row_label(context, "Brush radius", "Also [ and ], or Alt + wheel over the picture");
     float radius = context.view.brush_px;
-    if (ImGui::SliderFloat("##labels.radius", &radius, 1, 300, "%.0f px", ImGuiSliderFlags_Logarithmic)) {
+    if (ImGui::SliderFloat("##labels.radius", &radius, 1, 300, "%.0f px",
+                           ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
         context.view.brush_px = std::max(1.0f, radius);
         context.view_changed = true;
     }

@@ -54,7 +54,7 @@ void draw_bar(Context& context) {
 void draw_log_panel(Context& context) {
     auto& state = context.state.log;
     draw_bar(context);
-    if (ImGui::BeginChild("lines", {0, 0}, false)) {
+    if (ImGui::BeginChild("lines", {0, 0}, false, ImGuiWindowFlags_NavFlattened)) {
         if (context.fonts.mono != nullptr) ImGui::PushFont(context.fonts.mono);
         for (const auto& line : context.model.log) {
             if (!shown(state, line)) continue;

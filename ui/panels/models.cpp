@@ -40,6 +40,8 @@ void draw_card(Context& context, const ModelView& model, int index) {
     if (!model.problem.empty()) coloured_text(model.usable ? palette::Warning : palette::Bad, model.problem);
     if (model.chosen) {
         coloured_text(palette::Accent, "In use");
+    } else if (model.checking) {
+        dim_text("It is being loaded, to see whether it can be used.");
     } else if (button(
                    context,
                    {.name = fmt::format("models.use.{}", index),

@@ -63,6 +63,29 @@ void draw_gate(Context& context) {
     if (!gate.verdict.empty()) coloured_text(gate.warns ? palette::Warning : palette::TextDim, gate.verdict);
 }
 
+std::string why_not_branch(const Context& context, int iteration) {
+    if (context.request.iterations <= iteration)
+        return fmt::format("Iterations is {}: set more than {} to go on from here", context.request.iterations, iteration);
+    return {};
+}
+
+/// What is given up by it is asked about first.
+void ask_branch(Context& context, int iteration) {
+    auto& actions = context.actions;
+    const auto branch = [&actions, iteration] { actions.branch_from_snapshot(iteration); };
+    const bool running = context.model.job.running;
+    if (!running && !context.model.result_waiting) return branch();
+    auto& question = context.state.question;
+    question.title = running ? "Stop the edit and branch?" : "Give up the result and branch?";
+    question.text = fmt::format("{} What came after iteration {} is given up; from there the edit goes on to iteration {} "
+                                "with the settings as they are now.",
+                                running ? "The running edit is stopped." : "The finished edit has not been applied.",
+                                iteration, context.request.iterations);
+    question.answers = {{running ? "Stop and branch" : "Branch", true, branch},
+                        {running ? "Let it work" : "Keep the result", false, {}}};
+    question.pending = true;
+}
+
 void draw_snapshots(Context& context) {
     const auto& snapshots = context.model.snapshots;
     if (snapshots.empty()) return;
@@ -83,11 +106,19 @@ void draw_snapshots(Context& context) {
     if (button(context,
                {.name = "progress.newest", .text = "Newest", .why_off = newest ? "The newest is shown" : ""}))
         context.actions.show_snapshot(-1);
+    flow(button_width("Take this state"));
+    if (button(context, {.name = "progress.take",
+                         .text = "Take this state",
+                         .why_off = context.model.result_waiting ? "" : "No finished edit waits",
+                         .tooltip = "It is the result then, to be applied or discarded."}))
+        context.actions.take_snapshot(snapshot.iteration);
     flow(button_width("Branch from here"));
-    if (button(context, {.name = "progress.branch",
-                         .text = "Branch from here",
-                         .tooltip = "Takes this state as the result, once the edit has ended."}))
-        context.actions.branch_from_snapshot(shown);
+    const std::string why = why_not_branch(context, snapshot.iteration);
+    const std::string help =
+        fmt::format("Goes on from iteration {} to {} with the settings as they are now.", snapshot.iteration,
+                    context.request.iterations);
+    if (button(context, {.name = "progress.branch", .text = "Branch from here", .why_off = why, .tooltip = help}))
+        ask_branch(context, snapshot.iteration);
 }
 
 void draw_curves(Context& context, float height) {
@@ -117,7 +148,7 @@ void draw_curves(Context& context, float height) {
     const float width =
         beside ? (ImGui::GetContentRegionAvail().x - gap) * 0.5f : ImGui::GetContentRegionAvail().x;
     const float each = beside ? height : std::max(context.em * 6, (height - gap) * 0.5f);
-    if (ImGui::BeginChild("losses", {width, each})) {
+    if (ImGui::BeginChild("losses", {width, each}, false, ImGuiWindowFlags_NavFlattened)) {
         checkbox(context, "progress.log", "log", state.logarithmic, "Logarithmic heights");
         ImGui::SameLine();
         plot(context,
@@ -130,7 +161,7 @@ void draw_curves(Context& context, float height) {
     }
     ImGui::EndChild();
     if (beside) ImGui::SameLine();
-    if (ImGui::BeginChild("norms", {width, each}))
+    if (ImGui::BeginChild("norms", {width, each}, false, ImGuiWindowFlags_NavFlattened))
         plot(context,
              {.name = "progress.norms",
               .height = ImGui::GetContentRegionAvail().y,
@@ -148,7 +179,7 @@ void draw_progress_panel(Context& context) {
     const bool beside = width > context.em * 38;
     const float left = std::clamp(width * 0.3f, context.em * 14, context.em * 24);
     const float height = std::max(context.em * 8, ImGui::GetContentRegionAvail().y);
-    if (beside) ImGui::BeginChild("job", {left, height});
+    if (beside) ImGui::BeginChild("job", {left, height}, false, ImGuiWindowFlags_NavFlattened);
     draw_result_notice(context, "progress");
     draw_job(context);
     draw_snapshots(context);
@@ -156,7 +187,7 @@ void draw_progress_panel(Context& context) {
     if (beside) {
         ImGui::EndChild();
         ImGui::SameLine();
-        if (ImGui::BeginChild("curves", {0, height})) draw_curves(context, height);
+        if (ImGui::BeginChild("curves", {0, height}, false, ImGuiWindowFlags_NavFlattened)) draw_curves(context, height);
         ImGui::EndChild();
     } else {
         draw_curves(context, context.em * 16);

@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/edit/vocabulary.h"
+#include "engine/scene/strength.h"
 #include "ui/commands.h"
+#include "ui/keyboard.h"
 #include "ui/panels/panels.h"
 #include "ui/sentence.h"
 #include "ui/state.h"
@@ -24,55 +27,89 @@ struct Group {
 };
 constexpr std::array<Group, 8> Groups{{{"views", "Views"},
                                        {"rivals", "Localization"},
-                                       {"iterations", "Loop"},
+                                       {"iterations", "Optimisation"},
                                        {"anchor_first", "Anchors"},
                                        {"rate_position", "Learning rates"},
                                        {"densify_from", "Growth"},
                                        {"seed_splats", "Adding"},
                                        {"snapshot_every", "Running"}}};
 
-constexpr double LeastStrength = 0.1, MostStrength = 5;
+constexpr double LeastStrength = 0;
 constexpr std::array<const char*, 3> Modes{"auto", "modify", "add"};
 constexpr std::array<const char*, 3> ModeHelp{"Modify when the scene shows the target already, else add it.",
                                               "Change what is there: colours, material, shape of the source.",
                                               "Put something new there, such as a hat on the bear."};
 
+/// What can be done about a source that the model does not know.
+void draw_unknown_source(Context& context) {
+    const auto& prompt = context.state.prompt;
+    const std::string word = edit::unknown_word(context.model.known_words, context.request.source);
+    if (context.model.labelled_by_hand) {
+        dim_text(fmt::format("The model does not know \"{}\": your label says where it is.", word));
+        return;
+    }
+    coloured_text(palette::Warning, fmt::format("The model does not know \"{}\" and cannot find it.", word));
+    for (std::size_t i = 0; i < prompt.source_suggestions.size(); ++i) {
+        const auto& suggestion = prompt.source_suggestions[i];
+        const std::string text = fmt::format("Use \"{}\"", suggestion);
+        if (i > 0) flow(button_width(text));
+        if (button(context, {.name = i == 0 ? "prompt.source.suggestion" : fmt::format("prompt.source.suggestion.{}", i),
+                             .text = text})) {
+            context.request.source = suggestion;
+            context.request_changed = true;
+        }
+    }
+    constexpr const char* by_hand = "Label it by hand instead";
+    if (!prompt.source_suggestions.empty()) flow(button_width(by_hand));
+    if (button(context, {.name = "prompt.source.by_hand",
+                         .text = by_hand,
+                         .why_off = context.scene_open() ? "" : "Open a scene first",
+                         .tooltip = "Makes a label and gives you the brush: what you paint may change"}))
+        label_by_hand(context, context.request.source);
+    if (prompt.source_suggestions.empty()) dim_text(fmt::format("Or use {}.", prompt.source_help));
+}
+
 void draw_source(Context& context) {
     auto& prompt = context.state.prompt;
     dim_text("What in the scene is it about?");
-    tooltip("One word. Empty: the target word itself is looked for.");
-    context.request_changed |= text_input(context, "prompt.source", context.request.source, "bear");
-    if (prompt.source_known) return;
-    coloured_text(palette::Warning, fmt::format("The model does not know \"{}\".", context.request.source));
-    if (prompt.source_suggestion.empty()) return;
-    const std::string text = fmt::format("Use \"{}\"", prompt.source_suggestion);
-    flow(button_width(text));
-    if (button(context, {.name = "prompt.source.suggestion", .text = text})) {
-        context.request.source = prompt.source_suggestion;
-        context.request_changed = true;
-    }
+    tooltip("A thing by its name, of one word or several. Empty: the target itself is looked for.");
+    context.request_changed |= text_input(context, "prompt.source", context.request.source, "for example: bear");
+    if (!prompt.source_known) draw_unknown_source(context);
 }
 
 void draw_sentence(Context& context) {
     auto& prompt = context.state.prompt;
     dim_text("The scene after the edit");
     tooltip("One sentence. Shift + Enter or Ctrl + Enter starts the edit.");
-    context.request_changed |=
-        text_input(context, "prompt.sentence", context.request.prompt, "a bear wearing a red hat");
+    const std::string before = context.request.prompt;
+    if (text_input(context, "prompt.sentence", context.request.prompt, "for example: a bear wearing a red hat")) {
+        context.request_changed = true;
+        // What was clicked belongs to the sentence it was clicked in.
+        if (edit::words_of(before) != edit::words_of(context.request.prompt)) context.request.target.clear();
+    }
     if (prompt.chips.empty()) return;
     const ChipClick click = chips(context, "prompt.chip", prompt.chips);
     if (click.chosen >= 0) {
         const auto& chip = prompt.chips[static_cast<std::size_t>(click.chosen)];
-        context.request.target = chip.target && !chip.guessed ? std::string() : chip.text;
+        const auto index = static_cast<std::size_t>(click.chosen);
+        auto& target = context.request.target;
+        if (click.extends) target = target_to(context.request.prompt, target, index);
+        else target = chip.target && !chip.guessed ? std::string() : chip.text;
         context.request_changed = true;
     }
     if (click.replaced >= 0) {
         const auto index = static_cast<std::size_t>(click.replaced);
         const auto& chip = prompt.chips[index];
-        if (chip.target && !chip.guessed) context.request.target = chip.suggestion;
+        if (chip.target && !chip.guessed) {
+            const std::size_t first = edit::first_word(context.request.prompt, context.request.target);
+            context.request.target = with_word(context.request.target, index - first, chip.suggestion);
+        }
         context.request.prompt = with_word(context.request.prompt, index, chip.suggestion);
         context.request_changed = true;
     }
+    if (!prompt.cut_at.empty())
+        coloured_text(palette::Warning, fmt::format("The model reads {} words of a sentence: from \"{}\" on nothing counts.",
+                                                    context.model.words_read, prompt.cut_at));
     const bool unknown =
         std::any_of(prompt.chips.begin(), prompt.chips.end(), [](const Chip& chip) { return !chip.known; });
     if (unknown) coloured_text(palette::Warning, "Words the model does not know have no effect.");
@@ -94,10 +131,13 @@ void draw_mode(Context& context) {
 
 void draw_strength(Context& context) {
     row_label(context, "Strength",
-              "How hard the model pulls, against keeping the rest as it is. 1 is normal.");
-    context.request_changed |=
-        ImGui::SliderScalar("##prompt.strength", ImGuiDataType_Double, &context.request.guidance_weight,
-                            &LeastStrength, &MostStrength, "%.2f", ImGuiSliderFlags_Logarithmic);
+              "How much of the edit is kept. 1: what the model made of it. Less: between before and after. More: colours go "
+              "beyond it. Of an applied edit it can be changed under History.");
+    const double before = context.request.strength;
+    context.request_changed |= ImGui::SliderScalar("##prompt.strength", ImGuiDataType_Double, &context.request.strength,
+                                                   &LeastStrength, &MostStrength, "%.2f");
+    if (!std::isfinite(context.request.strength)) context.request.strength = before;   // "1e999" was typed
+    context.request.strength = std::clamp(context.request.strength, LeastStrength, MostStrength);
     note(context, "prompt.strength");
     row_label(context, "Iterations", "Optimisation steps. More = closer to the sentence, and longer.");
     const int least = 1;
@@ -114,6 +154,7 @@ void draw_seed(Context& context) {
     ImGui::SetNextItemWidth(std::max(context.em * 3, ImGui::GetContentRegionAvail().x - buttons));
     context.request_changed |= ImGui::InputScalar("##prompt.seed", ImGuiDataType_U64, &context.request.seed);
     note(context, "prompt.seed");
+    takes_letters(context);
     ImGui::SameLine();
     if (icon_button(context, {.name = "prompt.seed.lock",
                               .icon = prompt.seed_locked ? Icon::Lock : Icon::Unlock,
@@ -136,11 +177,10 @@ void draw_model_settings(Context& context) {
 
 std::string estimate_text(const Estimate& estimate) {
     if (estimate.seconds < 0 && estimate.memory_mb < 0) return {};
-    std::string text = "Estimate: ";
-    if (estimate.seconds >= 0) text += fmt::format("about {}", duration_text(estimate.seconds));
+    std::string text = estimate.seconds >= 0 ? fmt::format("Estimate: about {}", duration_text(estimate.seconds))
+                                             : "Time: measured with the first search";
     if (estimate.memory_mb < 0) return text;
-    if (estimate.seconds >= 0) text += ", ";
-    text += bytes_text(estimate.memory_mb * 1e6);
+    text += ", " + bytes_text(estimate.memory_mb * 1e6);
     if (estimate.memory_free_mb >= 0)
         text += fmt::format(" of {} free", bytes_text(estimate.memory_free_mb * 1e6));
     return text;
@@ -202,13 +242,13 @@ void draw_advanced(Context& context) {
     if (button(context, {.name = "prompt.defaults",
                          .text = "Back to the defaults",
                          .tooltip = "All settings below; words and seed stay"})) {
-        edit::EditRequest fresh;
+        edit::EditRequest fresh = context.model.request_defaults;
         fresh.source = context.request.source, fresh.prompt = context.request.prompt,
         fresh.target = context.request.target;
         fresh.mode = context.request.mode, fresh.seed = context.request.seed;
         context.request = fresh;
         context.request_changed = true;
-        context.model_settings = {};
+        context.model_settings = context.model.model_settings_defaults;
         context.model_settings_changed = true;
     }
     bool in_groups = false, tree_open = false;
@@ -223,13 +263,14 @@ void draw_advanced(Context& context) {
         shown = in_groups && tree_open;
     };
     context.request_changed |= field_rows(
-        context, "request", context.request, [](const char*) { return true; }, before);
+        context, "request", context.request, [](const char*) { return true; }, before, context.model.request_defaults);
     if (tree_open) ImGui::TreePop();
-    tree_open = ImGui::TreeNodeEx("Before the loop", ImGuiTreeNodeFlags_SpanAvailWidth);
-    note(context, "prompt.group.Before the loop");
+    tree_open = ImGui::TreeNodeEx("Before the edit", ImGuiTreeNodeFlags_SpanAvailWidth);
+    note(context, "prompt.group.Before the edit");
     if (!tree_open) return;
     context.model_settings_changed |= field_rows(
-        context, "model_settings", context.model_settings, [](const char*) { return true; }, [](const char*, bool&) {});
+        context, "model_settings", context.model_settings, [](const char*) { return true; }, [](const char*, bool&) {},
+        context.model.model_settings_defaults);
     ImGui::TreePop();
 }
 
@@ -262,7 +303,7 @@ float footer_height(Context& context) {
 void draw_prompt_panel(Context& context) {
     // The buttons stay in sight, whatever is scrolled above them.
     const float height = std::max(context.em * 4, ImGui::GetContentRegionAvail().y - footer_height(context));
-    if (ImGui::BeginChild("words", {0, height}, false)) draw_words(context);
+    if (ImGui::BeginChild("words", {0, height}, false, ImGuiWindowFlags_NavFlattened)) draw_words(context);
     ImGui::EndChild();
     draw_estimate(context);
     draw_run(context);

@@ -107,7 +107,7 @@ void draw_scene_panel(Context& context) {
     const Vec3 size = statistics.robust_high - statistics.robust_low;
     property(context, "Size", fmt::format("{:.3g} x {:.3g} x {:.3g}", size.x, size.y, size.z));
     tooltip("Box of what is visible, without the outermost 2 % on each side");
-    property(context, "Views", std::to_string(state.views.size()));
+    property(context, "Views", views_text(context));
     if (state.info.antialiased) property(context, "Trained", "with opacity compensation");
     draw_findings(context);
     draw_up(context);

@@ -55,7 +55,10 @@ void draw_views_panel(Context& context) {
     if (checkbox(context, "views.show", "Show the cameras in the picture", context.view.show_views))
         context.view_changed = true;
     const auto& views = context.document().views;
-    if (views.empty()) return dim_text("The scene came without cameras. An edit makes its own.");
+    if (views.empty())
+        return dim_text(fmt::format("The scene came without cameras. An edit looks from {} around it.", views_text(context)));
+    if (static_cast<int>(views.size()) > context.request.views)
+        dim_text(fmt::format("An edit looks from {}, spread over all of them.", views_text(context)));
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(views.size()), context.em * 1.5f + ImGui::GetStyle().ItemSpacing.y);
     while (clipper.Step())

@@ -16,7 +16,6 @@ constexpr double ArrivedAngle = 5e-4;  // radians
 constexpr double ZoomPerNotch = 0.86;
 constexpr double NearestShare = 1e-4, FarthestShare = 1e4;  // of the home radius
 constexpr double PoleMargin = 0.02;  // radians the view keeps from straight up and down
-constexpr double FrameMargin = 1.15;
 
 /// Rotation by `angle` about a unit axis (Rodrigues).
 Mat3 about(const Vec3& axis, double angle) {
@@ -54,9 +53,21 @@ double angle_between(const Mat3& a, const Mat3& b) {
 
 Vec3 CameraPose::eye() const { return pivot - row(rotation, 2) * distance; }
 
+void CameraControl::set_home(const OrbitParameters& orbit, const Bounds& bounds) {
+    home_ = orbit;
+    home_bounds_ = bounds;
+}
+
 void CameraControl::set_size(int width, int height) {
-    width_ = std::max(1, width);
-    height_ = std::max(1, height);
+    width = std::max(1, width);
+    height = std::max(1, height);
+    if (width == width_ && height == height_) return;
+    width_ = width;
+    height_ = height;
+    if (!at_home_) return;
+    target_ = home_pose();
+    if (!gliding_) now_ = target_;
+    moved_ = true;
 }
 
 double CameraControl::focal_px() const { return width_ / (2 * std::tan(fov_x_ / 2)); }
@@ -69,17 +80,21 @@ void CameraControl::arrive() {
 void CameraControl::go(const CameraPose& target) {
     target_ = target;
     gliding_ = true;
+    at_home_ = false;
 }
 
 void CameraControl::adopt(const Camera& camera) {
     if (camera.width > 0 && camera.fx > 0) fov_x_ = 2 * std::atan(camera.width / (2 * camera.fx));
     const Vec3 eye = camera.centre();
-    const double along = dot(home_.centre - eye, camera.forward());
+    const double along = dot(home_bounds_.centre() - eye, camera.forward());
     target_.rotation = camera.rotation;
-    target_.distance = along > home_.radius * 0.05 ? along : std::max(home_.radius, 1e-6);
+    target_.distance = along > home_.radius * 0.05 ? along : home_.radius;
     target_.pivot = eye + camera.forward() * target_.distance;
+    const Camera home = home_camera(home_, home_bounds_, fov_x_, camera.width, camera.height);
+    at_home_ = same_view(camera, home);
+    if (at_home_) target_ = home_pose();
     arrive();
-    moved_ = false;
+    moved_ = at_home_;   // the picture may have another shape than the camera that came
 }
 
 void CameraControl::rotate(const Mat3& world_rotation) {
@@ -87,6 +102,7 @@ void CameraControl::rotate(const Mat3& world_rotation) {
     const Mat3 turned = world_rotation.transposed();
     now_.rotation = now_.rotation * turned;
     target_.rotation = target_.rotation * turned;
+    at_home_ = false;
     moved_ = true;
 }
 
@@ -108,6 +124,7 @@ void CameraControl::pan(double dx_px, double dy_px) {
     const Vec3 shift = row(now_.rotation, 0) * (-dx_px * per_px) + row(now_.rotation, 1) * (-dy_px * per_px);
     now_.pivot = now_.pivot + shift;
     target_.pivot = target_.pivot + shift;
+    at_home_ = false;
     moved_ = true;
 }
 
@@ -134,21 +151,26 @@ void CameraControl::fly(const Vec3& direction, double seconds, double speed) {
     const Vec3 shift = now_.rotation.transposed() * (direction * step);
     now_.pivot = now_.pivot + shift;
     target_.pivot = target_.pivot + shift;
+    at_home_ = false;
     moved_ = true;
 }
 
-void CameraControl::frame(const Vec3& centre, double radius) {
-    const double fov_y = 2 * std::atan(std::tan(fov_x_ / 2) * height_ / width_);
+void CameraControl::frame(const Bounds& bounds) {
     CameraPose next = target_;
-    next.pivot = centre;
-    next.distance =
-        std::max(radius, home_.radius * NearestShare) * FrameMargin / std::sin(std::min(fov_x_, fov_y) / 2);
+    next.pivot = bounds.centre();
+    next.distance = std::max(fitting_distance(bounds, next.rotation, fov_x_, width_, height_), home_.radius * NearestShare);
     go(next);
 }
 
+CameraPose CameraControl::home_pose() const {
+    const Camera camera = home_camera(home_, home_bounds_, fov_x_, width_, height_);
+    const Vec3 centre = home_bounds_.centre();
+    return {centre, length(centre - camera.centre()), camera.rotation};
+}
+
 void CameraControl::home() {
-    const Camera camera = orbit_camera(home_, 0, width_, height_);
-    go({home_.centre, std::max(home_.radius, 1e-9), camera.rotation});
+    go(home_pose());
+    at_home_ = true;
 }
 
 void CameraControl::look_from(const Vec3& direction) {
@@ -199,12 +221,13 @@ Camera CameraControl::camera() const {
 }
 
 bool same_view(const Camera& a, const Camera& b) {
-    constexpr double Tolerance = 1e-6;  // doubles that went through at most a resize
+    constexpr double Tolerance = 1e-6;       // doubles that went through at most a resize
+    constexpr double PlaceTolerance = 1e-9;  // of the way to the origin, which may be far from a small scene
     for (int at = 0; at < 9; ++at)
         if (std::abs(a.rotation.m[static_cast<std::size_t>(at)] -
                      b.rotation.m[static_cast<std::size_t>(at)]) > Tolerance)
             return false;
-    if (length(a.translation - b.translation) > Tolerance * (1 + length(a.translation))) return false;
+    if (length(a.translation - b.translation) > PlaceTolerance * length(a.translation)) return false;
     if (a.width <= 0 || b.width <= 0) return false;
     return std::abs(a.fx / a.width - b.fx / b.width) < Tolerance * (1 + a.fx / a.width);
 }

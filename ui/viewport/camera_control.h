@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "engine/math/camera.h"
+#include "engine/math/framing.h"
 
 namespace gse::ui {
 
@@ -20,8 +20,10 @@ struct CameraPose {
 /// Pixels are those of the picture given by set_size(). Drags act at once; wheel, frame and home glide.
 class CameraControl {
 public:
-    /// The fitted orbit: home, the world's up, and the size of things. Does not move the camera.
-    void set_home(const OrbitParameters& orbit) { home_ = orbit; }
+    /// The fitted orbit and what is to be seen from home; also the world's up, and the size of things. Does not move the
+    /// camera.
+    void set_home(const OrbitParameters& orbit, const Bounds& bounds);
+    /// A camera that has not moved since it was sent home sees all of the scene at the new size, too.
     void set_size(int width, int height);
     void set_fov(double radians) { fov_x_ = radians; }
     double fov() const { return fov_x_; }
@@ -37,8 +39,8 @@ public:
     void zoom(double notches, double x_px, double y_px, double depth);
     /// Moves along the camera's axes (right, down, forward), in scene sizes.
     void fly(const Vec3& direction, double seconds, double speed);
-    /// Sees a ball whole, from the present direction.
-    void frame(const Vec3& centre, double radius);
+    /// Sees a box whole, from the present direction.
+    void frame(const Bounds& bounds);
     void home();
     /// Looks at the pivot from this direction of the world.
     void look_from(const Vec3& direction);
@@ -60,11 +62,14 @@ private:
     void arrive();
     void go(const CameraPose& target);
 
+    CameraPose home_pose() const;
+
     OrbitParameters home_;
+    Bounds home_bounds_{{-1, -1, -1}, {1, 1, 1}};
     CameraPose now_, target_;
     double fov_x_ = 0.87;
     int width_ = 1, height_ = 1;
-    bool gliding_ = false, moved_ = false;
+    bool gliding_ = false, moved_ = false, at_home_ = false;
 };
 
 /// True when both see the same, whatever the size of the picture.

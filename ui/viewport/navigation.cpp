@@ -154,7 +154,7 @@ void update_camera(Context& context, bool keys_free) {
         state.camera_known = false;
         return;
     }
-    state.camera.set_home(context.model.orbit);
+    state.camera.set_home(context.model.orbit, context.model.framing);
     state.camera.set_size(static_cast<int>(std::lround(state.high.x - state.low.x)),
                           static_cast<int>(std::lround(state.high.y - state.low.y)));
     take_over(context);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "ui/commands.h"
+#include "ui/glyphs.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
@@ -107,7 +108,7 @@ void draw_view(Context& context, ImDrawList* list, const View& view, bool select
     if (apex) list->AddCircleFilled(*apex, context.em * (selected ? 0.26f : 0.18f), colour);
     if (apex && selected)
         list->AddText({apex->x + context.em * 0.5f, apex->y - context.em * 0.5f}, palette::Text,
-                      view.name.c_str());
+                      std::string(Shown(view.name).text()).c_str());
 }
 
 void draw_views(Context& context, ImDrawList* list) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "ui/commands.h"
+#include "ui/glyphs.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
@@ -16,29 +17,11 @@ namespace {
 constexpr std::size_t MostRecent = 8;
 
 void draw_recoverable(Context& context) {
-    const auto& projects = context.model.recoverable;
-    for (std::size_t index = 0; index < projects.size(); ++index) {
+    for (std::size_t index = 0; index < context.model.recoverable.size(); ++index) {
         begin_notice(context, fmt::format("start.recovery.{}", index), palette::Warning);
-        wrapped_text("The program ended without saving. There is unsaved work in");
-        wrapped_text(shortened(projects[index], ImGui::GetContentRegionAvail().x - context.em));
-        if (button(
-                context,
-                {.name = fmt::format("start.recover.{}", index), .text = "Recover", .look = Look::Primary}))
-            context.actions.recover(projects[index]);
-        flow(button_width("Discard"));
-        if (button(context, {.name = fmt::format("start.discard.{}", index),
-                             .text = "Discard",
-                             .tooltip = "The unsaved work is deleted"})) {
-            auto& actions = context.actions;
-            auto& question = context.state.question;
-            const std::string project = projects[index];
-            question.title = "Discard the unsaved work?";
-            question.text = project;
-            question.answers = {{"Discard", true, [&actions, project] { actions.discard_recovery(project); }},
-                                {"Keep", false, {}}};
-            question.pending = true;
-        }
+        draw_recovery(context, "start", index, false);
         end_notice();
+        ImGui::Spacing();
     }
 }
 
@@ -50,7 +33,7 @@ void draw_recent(Context& context) {
         const auto& recent = context.model.recent[index];
         const auto path = path_of(recent);
         ImGui::PushID(static_cast<int>(index));
-        if (ImGui::Selectable(utf8_of(path.filename()).c_str())) open_path(context, recent);
+        if (ImGui::Selectable(std::string(Shown(utf8_of(path.filename())).text()).c_str())) open_path(context, recent);
         note(context, fmt::format("start.recent.{}", index));
         tooltip(recent);
         ImGui::SameLine(context.em * 13);
@@ -76,10 +59,11 @@ void draw_start_page(Context& context) {
     const ImVec2 space = ImGui::GetContentRegionAvail();
     const float width = std::min(context.em * 32, space.x - context.em * 2);
     const float lines = 9.0f + static_cast<float>(std::min(MostRecent, context.model.recent.size())) +
-                        5.0f * static_cast<float>(context.model.recoverable.size());
+                        7.0f * static_cast<float>(context.model.recoverable.size());
     const float top = std::max(context.em, (space.y - lines * ImGui::GetTextLineHeightWithSpacing()) * 0.4f);
     ImGui::SetCursorPos({std::max(0.0f, (space.x - width) * 0.5f), top});
-    ImGui::BeginChild("page", {width, std::max(context.em * 3, space.y - top)}, false);
+    ImGui::BeginChild("page", {width, std::max(context.em * 3, space.y - top)}, false,
+                      ImGuiWindowFlags_NavFlattened);
     if (context.model.file_job.running) {
         draw_loading(context);
         return ImGui::EndChild();

@@ -25,9 +25,14 @@ SetOperation operation_now(const ViewportState& state);
 void draw_overlays(Context& context, ImDrawList* list);
 void draw_tool_cursor(Context& context, ImDrawList* list, bool hovered);
 void draw_start_page(Context& context);
-void draw_toasts(Context& context);
-/// Apply, discard and compare over the picture while a result waits.
-void draw_result_bar(Context& context);
+/// Messages at the lower right, clear of whatever can be pressed; none above `top` (screen). How high they are
+/// with their margin, 0 = none. Part of the current ImGui window, so that dialogs and menus lie above.
+float draw_toasts(Context& context, float top);
+/// Floats at the top of the picture: apply, discard and compare while a result waits, and work of another
+/// session that can be had back.
+void draw_bars(Context& context);
+/// What a session left: picture, scene, time, what ran; with its buttons, named PREFIX.recover.INDEX and so on.
+void draw_recovery(Context& context, const char* prefix, std::size_t index, bool can_wait);
 
 /// Depth along the view under a point of the window; not positive = nothing there or unknown.
 double depth_at(const Context& context, ImVec2 point);

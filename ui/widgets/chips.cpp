@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "ui/glyphs.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {
@@ -18,6 +21,7 @@ void squiggle(ImDrawList* list, ImVec2 low, float width, float em) {
 }
 
 std::string explained(const Chip& chip) {
+    if (!chip.read) return "The model stops reading before this word. Shorten the sentence.";
     if (!chip.known) {
         std::string text = fmt::format("The model does not know \"{}\".", chip.text);
         return chip.suggestion.empty()
@@ -28,7 +32,7 @@ std::string explained(const Chip& chip) {
         return "The target: what the edit is about. Click to let it be found again.";
     if (chip.target) return "The target, found by itself. Click to fix it.";
     if (chip.source) return "The source: what is looked for in the scene. Click to make it the target.";
-    return "Click to make this word the target of the edit.";
+    return "Click to make this word the target of the edit; with Shift, the words up to it.";
 }
 
 void draw_chip(Context& context, const Chip& chip, ImVec2 low, ImVec2 high) {
@@ -44,8 +48,11 @@ void draw_chip(Context& context, const Chip& chip, ImVec2 low, ImVec2 high) {
     if (chip.target) list->AddRect(low, high, palette::Accent, round, 0, std::max(1.0f, context.em * 0.08f));
     if (!chip.known) list->AddRect(low, high, palette::Warning, round, 0, 1);
     const ImVec2 at(low.x + context.em * 0.45f, low.y + context.em * 0.2f);
-    list->AddText(at, chip.known ? palette::Text : palette::Warning, chip.text.c_str());
-    const float width = ImGui::CalcTextSize(chip.text.c_str()).x;
+    const Shown shown(chip.text);
+    list->AddText(at, !chip.read ? palette::TextDim : chip.known ? palette::Text : palette::Warning, shown.begin(), shown.end());
+    const float width = ImGui::CalcTextSize(shown.begin(), shown.end()).x;
+    const float middle = std::round((low.y + high.y) * 0.5f);
+    if (!chip.read) list->AddLine({at.x, middle}, {at.x + width, middle}, palette::TextDim, 1);
     if (!chip.known) squiggle(list, {at.x, high.y - context.em * 0.16f}, width, context.em);
     if (chip.source && !chip.target)
         list->AddLine({at.x, high.y - context.em * 0.18f}, {at.x + width, high.y - context.em * 0.18f},
@@ -59,11 +66,15 @@ ChipClick chips(Context& context, std::string_view name, std::span<const Chip> w
     ImGui::PushID(name.data(), name.data() + name.size());
     for (int index = 0; index < static_cast<int>(words.size()); ++index) {
         const Chip& chip = words[static_cast<std::size_t>(index)];
-        const float width = ImGui::CalcTextSize(chip.text.c_str()).x + context.em * 0.9f;
+        const Shown shown(chip.text);
+        const float width = ImGui::CalcTextSize(shown.begin(), shown.end()).x + context.em * 0.9f;
         if (index > 0) flow(width);
         ImGui::PushID(index);
         const ImVec2 low = ImGui::GetCursorScreenPos();
-        if (ImGui::InvisibleButton("chip", {width, context.em * 1.5f})) click.chosen = index;
+        if (ImGui::InvisibleButton("chip", {width, context.em * 1.5f})) {
+            click.chosen = index;
+            click.extends = ImGui::GetIO().KeyShift;
+        }
         note(context, fmt::format("{}.{}", name, index));
         draw_chip(context, chip, low, {low.x + width, low.y + context.em * 1.5f});
         tooltip(explained(chip));

@@ -13,6 +13,7 @@ namespace gse::ui {
 struct Chip {
     std::string text;
     bool known = true;       // the model knows it
+    bool read = true;        // the text encoder reads this far
     bool target = false;     // what the edit is about
     bool guessed = false;    // target because nothing was chosen
     bool source = false;     // what is looked for in the scene
@@ -21,6 +22,7 @@ struct Chip {
 
 struct ChipClick {
     int chosen = -1;    // left click: the word becomes the target
+    bool extends = false;   // with Shift: the target reaches to the word
     int replaced = -1;  // its suggestion was taken
 };
 

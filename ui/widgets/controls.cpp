@@ -9,6 +9,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/glyphs.h"
+#include "ui/keyboard.h"
+
 namespace gse::ui {
 namespace {
 
@@ -28,11 +31,32 @@ void push_look(Look look) {
 }
 
 ImVec2 text_size(std::string_view text) {
-    return ImGui::CalcTextSize(text.data(), text.data() + text.size());
+    const Shown shown(text);
+    return ImGui::CalcTextSize(shown.begin(), shown.end());
+}
+
+void put_text(std::string_view text) {
+    const Shown shown(text);
+    ImGui::TextUnformatted(shown.begin(), shown.end());
+}
+
+/// A field whose text may hold characters that ImGui has no room for.
+bool edit_text(const char* id, const char* hint, std::string& text, ImGuiInputTextFlags flags) {
+    const ForeignGlyphs* glyphs = foreign_glyphs();
+    const Shown shown(text);
+    if (shown.begin() == text.data() || glyphs == nullptr) {
+        const bool changed = ImGui::InputTextWithHint(id, hint, &text, flags);
+        if (glyphs != nullptr && ImGui::IsItemEdited()) text = glyphs->meant(text);
+        return changed;
+    }
+    std::string edited(shown.text());
+    const bool changed = ImGui::InputTextWithHint(id, hint, &edited, flags);
+    if (edited != shown.text()) text = glyphs->meant(edited);
+    return changed;
 }
 
 std::string identified(std::string_view text, std::string_view name) {
-    return fmt::format("{}##{}", text, name);
+    return fmt::format("{}##{}", Shown(text).text(), name);
 }
 
 }  // namespace
@@ -51,9 +75,10 @@ void note_rect(Context& context, std::string_view name, ImVec2 low, ImVec2 high)
 
 void note(Context& context, std::string_view name, float text_width) {
     note_rect(context, name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax());
-    auto& rect = context.widgets.find(name)->second;
-    rect.text_width = text_width;
-    rect.enabled = (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) == 0;
+    const auto noted = context.widgets.find(name);
+    noted->second.text_width = text_width;
+    noted->second.enabled = (ImGui::GetItemFlags() & ImGuiItemFlags_Disabled) == 0;
+    note_stop(context, noted->first);
 }
 
 bool button(Context& context, const ButtonOptions& options) {
@@ -94,7 +119,7 @@ void tooltip(std::string_view text) {
     if (now - storage->GetFloat(since_id, now) < TooltipDelay) return;
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
-    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    put_text(text);
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
 }
@@ -102,13 +127,13 @@ void tooltip(std::string_view text) {
 void heading(Context& context, std::string_view text) {
     ImGui::Dummy({0, ImGui::GetStyle().ItemSpacing.y * 0.25f});
     if (context.fonts.bold != nullptr) ImGui::PushFont(context.fonts.bold);
-    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    put_text(text);
     if (context.fonts.bold != nullptr) ImGui::PopFont();
 }
 
 void wrapped_text(std::string_view text) {
     ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(text.data(), text.data() + text.size());
+    put_text(text);
     ImGui::PopTextWrapPos();
 }
 
@@ -127,7 +152,8 @@ void badge(Context& context, std::string_view text, ImU32 colour) {
     const ImVec2 high(low.x + size.x + 2 * pad_x, low.y + size.y + 2 * pad_y);
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled(low, high, with_alpha(colour, 0.18f), context.em * 0.25f);
-    list->AddText({low.x + pad_x, low.y + pad_y}, colour, text.data(), text.data() + text.size());
+    const Shown shown(text);
+    list->AddText({low.x + pad_x, low.y + pad_y}, colour, shown.begin(), shown.end());
     ImGui::Dummy({high.x - low.x, high.y - low.y});
 }
 
@@ -145,7 +171,7 @@ void property(Context& context, std::string_view label, std::string_view value) 
     const float start = ImGui::GetCursorPosX();
     const float width = ImGui::GetContentRegionAvail().x;
     ImGui::PushStyleColor(ImGuiCol_Text, palette::TextDim);
-    ImGui::TextUnformatted(label.data(), label.data() + label.size());
+    put_text(label);
     ImGui::PopStyleColor();
     const float value_at = start + std::max(width * LabelShare, text_size(label).x + context.em * 0.6f);
     ImGui::SameLine(value_at);
@@ -206,9 +232,11 @@ bool text_input(Context& context, std::string_view name, std::string& text, std:
                 ImGuiInputTextFlags flags) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
     const std::string hint_text(hint);
-    const bool changed =
-        ImGui::InputTextWithHint(identified("", name).c_str(), hint_text.c_str(), &text, flags);
+    ImGui::PushStyleColor(ImGuiCol_TextDisabled, palette::Hint);  // not to be taken for text that is there
+    const bool changed = edit_text(identified("", name).c_str(), hint_text.c_str(), text, flags);
+    ImGui::PopStyleColor();
     note(context, name);
+    takes_letters(context);
     return changed;
 }
 
@@ -289,7 +317,11 @@ std::string bytes_text(double bytes) {
 
 std::string percent_text(double share) { return fmt::format("{:.0f} %", share * 100); }
 
-std::string shortened(std::string_view text, float width_px) {
+void plain_text(std::string_view text) { put_text(text); }
+
+std::string shortened(std::string_view whole, float width_px) {
+    const Shown shown(whole);
+    const std::string_view text = shown.text();
     if (text_size(text).x <= width_px) return std::string(text);
     constexpr std::string_view Dots = "...";
     // Cut at code points: a byte of the form 10xxxxxx continues one.

@@ -35,6 +35,7 @@ void tooltip(std::string_view text);
 void heading(Context& context, std::string_view text);
 void dim_text(std::string_view text);  // wrapped, grey
 void wrapped_text(std::string_view text);
+void plain_text(std::string_view text);  // as ImGui::TextUnformatted
 void coloured_text(ImU32 colour, std::string_view text);  // wrapped
 void badge(Context& context, std::string_view text, ImU32 colour);
 void bullet_dot(ImU32 colour);  // a status dot before a line, then stays on the line

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/keyboard.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {
@@ -18,11 +19,12 @@ std::string identity(const FieldRow& row) { return fmt::format("##{}.{}", row.pr
 
 template <class T>
 std::string help_text(const FieldRow& row, const T& standard) {
+    const char* whose = row.stated ? "Default of the model" : "Default";
     if constexpr (std::is_same_v<T, bool>)
-        return fmt::format("{}\nDefault: {}.", row.help, standard ? "on" : "off");
+        return fmt::format("{}\n{}: {}.", row.help, whose, standard ? "on" : "off");
     if constexpr (std::is_same_v<T, std::string>)
-        return standard.empty() ? std::string(row.help) : fmt::format("{}\nDefault: {}.", row.help, standard);
-    return fmt::format("{}\nDefault: {}. Right click: back to it.", row.help, standard);
+        return standard.empty() ? std::string(row.help) : fmt::format("{}\n{}: {}.", row.help, whose, standard);
+    return fmt::format("{}\n{}: {}. Right click: back to it.", row.help, whose, standard);
 }
 
 /// Label, and the reset by right click on the control that was drawn last.
@@ -49,6 +51,7 @@ const char* number_format(double size) {
 template <class T>
 bool real_row(Context& context, const FieldRow& row, T& value, const T& standard) {
     label_of(context, row, value, standard);
+    const T before = value;
     constexpr ImGuiDataType Type = std::is_same_v<T, float> ? ImGuiDataType_Float : ImGuiDataType_Double;
     const T low = row.range ? static_cast<T>(row.range->low) : static_cast<T>(0);
     const T high = row.range ? static_cast<T>(row.range->high) : static_cast<T>(0);
@@ -67,6 +70,7 @@ bool real_row(Context& context, const FieldRow& row, T& value, const T& standard
         changed = ImGui::DragScalar(identity(row).c_str(), Type, &value, speed, row.range ? &low : nullptr,
                                     row.range ? &high : nullptr, format, ImGuiSliderFlags_AlwaysClamp);
     }
+    if (!std::isfinite(value)) value = before;   // "1e999" was typed
     if (changed && row.range) value = std::clamp(value, low, high);
     return finish(context, row, value, standard) || changed;
 }
@@ -74,6 +78,10 @@ bool real_row(Context& context, const FieldRow& row, T& value, const T& standard
 }  // namespace
 
 std::string field_label(const char* name) {
+    // Names that are known to files and commands, but say nothing to artists.
+    for (const auto& [from, to] : {std::pair{"gate", "Show the model's idea first"},
+                                   std::pair{"gate_guidance", "Change inside the mask only"}})
+        if (std::string_view(name) == from) return to;
     std::string label(name);
     std::replace(label.begin(), label.end(), '_', ' ');
     for (const auto& [from, to] : {std::pair{" px", " (px)"}, std::pair{"sh degree", "SH degree"},
@@ -127,7 +135,9 @@ bool field_row(Context& context, const FieldRow& row, double& value, double stan
 bool field_row(Context& context, const FieldRow& row, std::string& value, const std::string& standard) {
     label_of(context, row, value, standard);
     const bool changed = ImGui::InputText(identity(row).c_str(), &value);
-    return finish(context, row, value, standard) || changed;
+    const bool reset = finish(context, row, value, standard);
+    takes_letters(context);
+    return reset || changed;
 }
 
 }  // namespace gse::ui

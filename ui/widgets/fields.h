@@ -16,6 +16,7 @@ struct FieldRow {
     const char* name;
     const char* help;
     std::optional<Range> range;
+    bool stated = false;   // the default is what the model states, another than the program's
 };
 
 /// One row each: label with help, control, right click = back to `standard`. True when the value changed.
@@ -29,22 +30,37 @@ bool field_row(Context& context, const FieldRow& row, std::string& value, const 
 /// "attention_threshold" -> "attention threshold"
 std::string field_label(const char* name);
 
+/// What the program takes where nobody says anything.
+template <class P>
+const P& program_defaults() {
+    static const P defaults{};
+    return defaults;
+}
+
+/// The value of the same name and type in another struct of the kind; Value{} when there is none.
+template <class Value, class P>
+Value value_named(const P& parameters, const char* name) {
+    Value found{};
+    P::visit_fields(parameters, [&](const char* other, const auto& value, const char*, auto...) {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, Value>)
+            if (std::string_view(other) == name) found = value;
+    });
+    return found;
+}
+
 /// Rows for the fields that `wanted(name)` lets through; `before(name)` may put a header first and say
-/// whether the rows that follow are shown (a folded group).
+/// whether the rows that follow are shown (a folded group). `standard` has the values to go back to.
 template <class P, class Wanted, class Before>
-bool field_rows(Context& context, const char* prefix, P& parameters, Wanted&& wanted, Before&& before) {
-    [[maybe_unused]] static const P standard{};
+bool field_rows(Context& context, const char* prefix, P& parameters, Wanted&& wanted, Before&& before,
+                const P& standard = program_defaults<P>()) {
     bool changed = false, shown = true;
     P::visit_fields(parameters, [&](const char* name, auto& value, const char* help, auto... range) {
         using Value = std::remove_reference_t<decltype(value)>;
         before(name, shown);
         if (!shown || !wanted(name)) return;
-        Value fallback{};
-        P::visit_fields(standard, [&](const char* other, const auto& value_there, const char*, auto...) {
-            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value_there)>, Value>)
-                if (std::string_view(other) == name) fallback = value_there;
-        });
+        const auto fallback = value_named<Value>(standard, name);
         FieldRow row{prefix, name, help, std::nullopt};
+        row.stated = fallback != value_named<Value>(program_defaults<P>(), name);
         if constexpr (sizeof...(range) == 1) row.range = (range, ...);
         changed |= field_row(context, row, value, fallback);
     });

@@ -2,12 +2,15 @@
 #include "ui/widgets/file_browser.h"
 
 #include <fmt/format.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <set>
 
+#include "ui/keyboard.h"
 #include "ui/keys.h"
+#include "ui/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
 
@@ -83,7 +86,7 @@ std::string FileBrowser::why_not() const {
 }
 
 void FileBrowser::finish(const std::filesystem::path& path) {
-    if (question_.saves && is_there(path) && !overwrite_asked_) {
+    if (question_.saves && question_.replaces && is_there(path) && !overwrite_asked_) {
         overwrite_asked_ = true;
         return;
     }
@@ -102,12 +105,14 @@ void FileBrowser::activate(int index) {
     overwrite_asked_ = false;
 }
 
-void FileBrowser::keys() {
-    if (ImGui::GetIO().WantTextInput) return;
+void FileBrowser::keys(bool elsewhere) {
+    if (ImGui::GetIO().WantTextInput || elsewhere) return;
     const int count = static_cast<int>(listing_.entries.size());
     const auto step_to = [&](int index) {
         selected_ = std::clamp(index, 0, std::max(0, count - 1));
         scroll_ = true;
+        follow_ = entry_focused_;
+        keep_focus();
     };
     if (count > 0 && ImGui::IsKeyPressed(key::Down)) step_to(selected_ + 1);
     if (count > 0 && ImGui::IsKeyPressed(key::Up)) step_to(selected_ < 0 ? count - 1 : selected_ - 1);
@@ -147,6 +152,7 @@ void FileBrowser::draw_path(Context& context) {
         "##files.path", &typed_,
         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion, complete);
     note(context, "files.path");
+    takes_letters(context);
     tooltip("Type a path; Tab completes it, Enter goes there");
     if (!entered || typed_.empty()) return;
     const auto path = expanded_path(typed_);
@@ -194,16 +200,25 @@ void FileBrowser::draw_entry(Context& context, int index) {
     ImGui::TableNextColumn();
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float line = ImGui::GetTextLineHeight();
+    // To Tab and arrows the list is one control: its chosen entry.
+    const bool reached = index == std::max(0, selected_);
+    ImGui::PushItemFlag(ImGuiItemFlags_NoNav, !reached);
     const bool pressed =
         ImGui::Selectable("##entry", selected_ == index,
                           ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick |
                               ImGuiSelectableFlags_DontClosePopups);
     note(context, fmt::format("files.entry.{}", entry.name));
+    ImGui::PopItemFlag();
+    if (reached && follow_) {
+        focus_last_item(context);
+        follow_ = false;
+    }
+    entry_focused_ |= reached && has_focus();
     draw_icon(ImGui::GetWindowDrawList(), entry.is_folder ? Icon::Folder : Icon::File,
               {at.x + context.em * 0.6f, at.y + line * 0.5f}, context.em * 0.85f,
               entry.is_folder ? palette::Accent : palette::TextDim);
     ImGui::SetCursorScreenPos({at.x + context.em * 1.5f, at.y});
-    ImGui::TextUnformatted(entry.name.c_str());
+    plain_text(entry.name);
     ImGui::TableNextColumn();
     if (!entry.is_folder) ImGui::TextUnformatted(bytes_text(static_cast<double>(entry.bytes)).c_str());
     if (selected_ == index && scroll_) {
@@ -237,13 +252,10 @@ void FileBrowser::draw_entries(Context& context) {
 
 void FileBrowser::draw_footer(Context& context) {
     if (question_.saves) {
-        ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
-        if (ImGui::InputTextWithHint("##files.name", "name of the file", &name_,
-                                     ImGuiInputTextFlags_EnterReturnsTrue) &&
-            why_not().empty())
-            finish(chosen());
+        const bool entered =
+            text_input(context, "files.name", name_, "name of the file", ImGuiInputTextFlags_EnterReturnsTrue);
         if (ImGui::IsItemEdited()) overwrite_asked_ = false;
-        note(context, "files.name");
+        if (entered && why_not().empty()) finish(chosen());
     } else if (!question_.extensions.empty()) {
         if (checkbox(context, "files.all", "All files", all_files_)) enter(folder_);
         ImGui::SameLine();
@@ -294,12 +306,13 @@ void FileBrowser::draw(Context& context) {
     draw_path(context);
     const float height = ImGui::GetContentRegionAvail().y - footer_height(context, question_.saves);
     const float places = std::min(context.em * 10, ImGui::GetContentRegionAvail().x * 0.3f);
-    if (ImGui::BeginChild("places", {places, height}, true)) draw_places(context);
+    if (ImGui::BeginChild("places", {places, height}, true, ImGuiWindowFlags_NavFlattened)) draw_places(context);
     ImGui::EndChild();
     ImGui::SameLine();
-    if (ImGui::BeginChild("entries", {0, height}, true)) draw_entries(context);
+    entry_focused_ = false;
+    if (ImGui::BeginChild("entries", {0, height}, true, ImGuiWindowFlags_NavFlattened)) draw_entries(context);
     ImGui::EndChild();
-    if (!done_) keys();
+    if (!done_) keys(context.state.keyboard.on && !entry_focused_);
     draw_footer(context);
     if (done_ || !stays || ImGui::IsKeyPressed(key::Escape, false)) {
         open_ = false;

@@ -16,6 +16,7 @@ struct FileQuestion {
     std::string confirm;                  // text of the button
     std::vector<std::string> extensions;  // ".ply"; empty = all
     bool saves = false;                   // a name is asked for
+    bool replaces = true;                 // a file that exists is written over: asked about
     bool folder_allowed = false;          // the folder itself may be the answer
     std::string start;                    // file or folder to begin with; empty = where it was last
     std::function<void(const std::filesystem::path&)> answer;
@@ -34,7 +35,7 @@ private:
     void draw_entry(Context& context, int index);
     void draw_path(Context& context);
     void draw_footer(Context& context);
-    void keys();
+    void keys(bool elsewhere);  // another control of the dialog has the focus
     void activate(int index);
     void finish(const std::filesystem::path& path);
     std::filesystem::path chosen() const;
@@ -47,7 +48,7 @@ private:
     FolderListing listing_;
     int selected_ = -1;
     bool open_ = false, pending_ = false, all_files_ = false, scroll_ = false, done_ = false,
-         overwrite_asked_ = false;
+         overwrite_asked_ = false, entry_focused_ = false, follow_ = false;
 };
 
 }  // namespace gse::ui

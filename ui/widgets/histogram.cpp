@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ui/keyboard.h"
 #include "ui/widgets/controls.h"
 
 namespace gse::ui {
@@ -78,12 +79,18 @@ ThresholdDrag histogram(Context& context, std::string_view name, const WeightHis
     ImGui::InvisibleButton(std::string(name).c_str(), {width, height});
     note(context, name);
     ThresholdDrag drag;
-    if (ImGui::IsItemActive()) {
+    constexpr float KeyStep = 0.01f;
+    const int step = focus_step_sideways();
+    if (step != 0) {
+        const float wanted = std::clamp(threshold + KeyStep * static_cast<float>(step), 0.0f, 1.0f);
+        drag.changed = wanted != threshold;
+        threshold = wanted;
+    } else if (ImGui::IsItemActive() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
         const float wanted = std::clamp((ImGui::GetIO().MousePos.x - low.x) / width, 0.0f, 1.0f);
         drag.changed = wanted != threshold;
         threshold = wanted;
     }
-    drag.released = ImGui::IsItemDeactivated();
+    drag.released = ImGui::IsItemDeactivated() || (drag.changed && step != 0);
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled(frame.low, frame.high, palette::Sunken, context.em * 0.2f);
     list->PushClipRect(frame.low, frame.high, true);

@@ -1,0 +1,110 @@
+// What floats at the top of the picture: the result that waits, and work of another session that can be had back.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "ui/commands.h"
+#include "ui/state.h"
+#include "ui/viewport/viewport.h"
+#include "ui/widgets/controls.h"
+
+namespace gse::ui {
+namespace {
+
+constexpr float PictureEm = 7.5f;   // width of a thumbnail
+
+/// A small window over the picture that sizes itself.
+void begin_floating(const char* name, ImVec2 at) {
+    ImGui::SetNextWindowPos(at, ImGuiCond_Always, {0.5f, 0});
+    ImGui::SetNextWindowBgAlpha(0.96f);
+    ImGui::Begin(name, nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing);
+}
+
+/// Closes it and notes where it ends.
+void end_floating(Context& context) {
+    float& bottom = context.state.viewport.bars_bottom;
+    bottom = std::max(bottom, ImGui::GetWindowPos().y + ImGui::GetWindowHeight() + context.em * 0.4f);
+    ImGui::End();
+}
+
+void draw_result_bar(Context& context, ImVec2 at) {
+    begin_floating("result bar", at);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted("Edit done");
+    ImGui::SameLine();
+    const bool wipes = context.model.comparison == Comparison::Wipe;
+    if (button(context, {.name = "result.compare",
+                         .text = wipes ? "Stop comparing" : "Compare",
+                         .tooltip = "Wipe between before and after (V)"}))
+        toggle_wipe(context);
+    ImGui::SameLine();
+    if (button(context, {.name = "result.apply",
+                         .text = "Apply",
+                         .tooltip = "Keep it as an entry of the edit stack",
+                         .look = Look::Primary}))
+        context.actions.apply_result();
+    ImGui::SameLine();
+    if (button(context,
+               {.name = "result.discard", .text = "Discard", .tooltip = "Leave the scene as it was"}))
+        context.actions.discard_result();
+    end_floating(context);
+}
+
+void draw_thumbnail(Context& context, const Image& picture, TextureId texture) {
+    const float width = context.em * PictureEm;
+    const float height = std::min(width, width * static_cast<float>(picture.height) /
+                                             static_cast<float>(std::max(1, picture.width)));
+    ImGui::Image(imgui_texture(texture), {width, height});
+}
+
+}  // namespace
+
+void draw_recovery(Context& context, const char* prefix, std::size_t index, bool can_wait) {
+    const auto& found = context.model.recoverable[index];
+    const auto named = [&](const char* what) { return fmt::format("{}.{}.{}", prefix, what, index); };
+    if (const TextureId texture = context.textures.texture(found.thumbnail); texture != 0) {
+        draw_thumbnail(context, *found.thumbnail, texture);
+        note(context, named("thumbnail"));
+        ImGui::SameLine();
+    }
+    ImGui::BeginGroup();
+    wrapped_text(fmt::format("Unsaved work in {}", found.name));
+    note(context, named("name"));
+    tooltip(found.place);
+    dim_text(found.facts);
+    if (!found.running.empty()) wrapped_text(found.running);
+    const std::string file = found.file;
+    if (button(context, {.name = named("recover"), .text = "Recover", .look = Look::Primary}))
+        recover(context, file);
+    flow(button_width("Discard"));
+    if (button(context, {.name = named("discard"), .text = "Discard", .tooltip = "The unsaved work is deleted"}))
+        discard_recovery(context, found);
+    if (can_wait) {
+        flow(button_width("Later"));
+        if (button(context, {.name = named("later"),
+                             .text = "Later",
+                             .tooltip = "It is offered again when the scene is opened or the program starts"}))
+            context.actions.postpone_recovery(file);
+    }
+    ImGui::EndGroup();
+}
+
+void draw_bars(Context& context) {
+    auto& state = context.state.viewport;
+    const float top = state.low.y + context.em * 2.6f, middle = (state.low.x + state.high.x) * 0.5f;
+    state.bars_bottom = state.low.y;
+    if (!context.scene_open()) return;
+    if (context.model.result_waiting) draw_result_bar(context, {middle, top});
+    const auto& found = context.model.recoverable;
+    const auto offer = std::find_if(found.begin(), found.end(), [](const auto& one) { return one.offered; });
+    if (offer == found.end()) return;   // one at a time: the next comes when this one is answered
+    const float width = std::min(context.em * 30, state.high.x - state.low.x - context.em * 2);
+    ImGui::SetNextWindowContentSize({width, 0});
+    begin_floating("recovery", {middle, std::max(top, state.bars_bottom)});
+    draw_recovery(context, "recovery", static_cast<std::size_t>(offer - found.begin()), true);
+    end_floating(context);
+}
+
+}  // namespace gse::ui
