@@ -7,10 +7,11 @@
 #include <algorithm>
 #include <ctime>
 
-#include "app/scene_tools.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/io/user_files.h"
+#include "engine/pipeline/scene_tools.h"
 #include "engine/scene/label_ops.h"
 
 namespace gse::app {
@@ -18,7 +19,6 @@ namespace {
 
 constexpr double ToastSeconds = 7, ErrorToastSeconds = 20;
 constexpr std::size_t MostToasts = 4, MostLogLines = 2000;
-constexpr double MovingSeconds = 0.25;   // after the last movement of the camera the picture is refined
 
 double seconds_since(std::chrono::steady_clock::time_point then) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
@@ -49,7 +49,7 @@ ui::JobView job_view(const JobStatus& status) {
 }  // namespace
 
 Application::Application(ApplicationOptions options)
-    : options_(std::move(options)), work_(queue_), files_(queue_), saver_(queue_) {
+    : options_(std::move(options)), work_(queue_, JobThread::Priority::Patient), files_(queue_), saver_(queue_, JobThread::Priority::Patient) {
     queue_.set_wake(options_.wake);
     auto box = std::make_shared<LogBox>();
     log_source_ = box;
@@ -63,10 +63,13 @@ Application::Application(ApplicationOptions options)
     model_.request.prompt = "";
     model_.words_known = true;
     load_settings();
-    model_.models = scan_models(model_path_);
-    model_.known_words = model_words(model_path_.empty() ? starter_model_path() : std::filesystem::path(model_path_));
+    list_models();
+    const auto in_use = std::find_if(model_.models.begin(), model_.models.end(), [](const auto& row) { return row.chosen; });
+    if (!model_path_.empty() && in_use != model_.models.end() && !in_use->usable)
+        refuse_model(std::exchange(model_path_, {}), in_use->problem);
+    take_chosen_model();
     for (const auto& path : load_recent()) model_.recent.push_back(path.string());
-    for (const auto& found : find_recoverable()) model_.recoverable.push_back(found.file.string());
+    refresh_recoverable();
 }
 
 Application::~Application() {
@@ -74,28 +77,12 @@ Application::~Application() {
     queue_.set_wake({});
 }
 
-void Application::shut_down() {
-    work_.cancel();
-    files_.cancel();
-    save_settings();
-    while (saver_.running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    queue_.run();
-    if (document_.empty()) return;
-    if (document_.revision() == saved_revision_ && !pending_) {
-        autosave_->discard();
-        return;
-    }
-    last_autosave_ = {};
-    autosaved_revision_ = ~std::uint64_t{0};
-    autosave_if_due();
-    while (saver_.running()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-}
-
 bool Application::busy() const {
-    return work_.running() || files_.running() || !toasts_.empty() || seconds_since(last_move_) < 2 * MovingSeconds;
+    return work_.running() || files_.running() || leaving_ || !toasts_.empty() || seconds_since(last_move_) < 2 * MovingSeconds;
 }
 
 void Application::update(PreviewHost& preview) {
+    const JobStatus work = work_.status(), files = files_.status();   // before the queue: an ended job has left its result
     queue_.run();
     const auto now = Clock::now();
     const double frame = std::chrono::duration<double>(now - last_frame_).count();
@@ -103,11 +90,13 @@ void Application::update(PreviewHost& preview) {
     if (frame > 0) model_.frames_per_second = 0.9 * model_.frames_per_second + 0.1 / std::max(frame, 1e-4);
     refresh_log();
     refresh_live();
-    refresh_jobs();
+    refresh_jobs(work, files);
     refresh_document();
     refresh_toasts();
     autosave_if_due();
+    leave_when_stopped();
     if (document_.empty()) {
+        start_page_seen_ |= !files.running;
         model_.viewport = 0;
         return;
     }
@@ -124,11 +113,12 @@ void Application::update(PreviewHost& preview) {
     model_.renderer = picture.renderer;
 }
 
-void Application::refresh_jobs() {
-    model_.job = job_view(work_.status());
-    model_.file_job = job_view(files_.status());
+void Application::refresh_jobs(const JobStatus& work, const JobStatus& files) {
+    model_.job = job_view(work);
+    model_.file_job = job_view(files);
+    model_.edit_running = edit_running();
     model_.result_waiting = pending_.has_value() && !work_.running();
-    if (!work_.running() && wanted_threshold_ >= 0 && job_ && !pending_) set_attention_threshold(wanted_threshold_);
+    relabel_if_wanted();
 }
 
 void Application::take_found() {
@@ -141,7 +131,10 @@ void Application::take_found() {
     job_ = job;
     job_key_ = live_key_;
     job_set_ = job->scene().gaussians;
-    take_located(job, std::move(attention), relabel);
+    take_located(job, std::move(attention));
+    const auto& located = job->located();
+    if (!job->found()) report_error(Error(ErrorCode::NotFound, located.message, located.remedy));
+    else if (relabel) label_located(*job, {}, {});
 }
 
 void Application::refresh_live() {
@@ -157,15 +150,8 @@ void Application::refresh_live() {
     const bool more = live_->snapshots.size() != snapshots_.size() ||
                       (!snapshots_.empty() && live_->snapshots.back().iteration != snapshots_.back().iteration);
     if (!more) return;
-    snapshots_ = live_->snapshots;
-    model_.snapshots.clear();
-    for (const auto& snapshot : snapshots_) model_.snapshots.push_back({snapshot.iteration, snapshot.set->size()});
-    ++content_;
-}
-
-std::uint64_t Application::content_live() const {
-    if (pending_) return ~std::uint64_t{0};
-    return work_.running() && !snapshots_.empty() ? static_cast<std::uint64_t>(snapshots_.back().iteration) : 0;
+    newest_set_ = live_->newest;
+    take_snapshots(live_->snapshots);
 }
 
 void Application::refresh_document() {
@@ -173,7 +159,7 @@ void Application::refresh_document() {
     model_.scene_path = scene_path_;
     model_.project_path = project_path_;
     model_.suggested_project = document_.empty() ? std::string() : default_project_path().string();
-    model_.unsaved = !document_.empty() && document_.revision() != saved_revision_;
+    model_.unsaved = unsaved();
     model_.cannot_edit = document_.empty() ? "Open a scene first."
                          : work_.running() ? "A job is running."
                          : pending_        ? "Apply or discard the edit first."
@@ -183,6 +169,7 @@ void Application::refresh_document() {
         document_seen_ = document_.revision();
         ++content_;
         const auto& state = document_.state();
+        refresh_words();
         model_.labelled = state.active_label >= 0 && state.active_label < static_cast<int>(state.labels.size())
                               ? count_labelled(state.labels[static_cast<std::size_t>(state.active_label)])
                               : 0;
@@ -206,7 +193,10 @@ void Application::refresh_log() {
 }
 
 void Application::toast(std::string text, bool is_error, std::string button, std::function<void()> action) {
-    std::erase_if(toasts_, [&](const ToastState& old) { return old.toast.text == text; });
+    // The same news again, or told at more length: one of them is enough.
+    std::erase_if(toasts_, [&](const ToastState& old) { return text.find(old.toast.text) != std::string::npos; });
+    if (std::any_of(toasts_.begin(), toasts_.end(), [&](auto& old) { return old.toast.text.find(text) != std::string::npos; }))
+        return;
     if (toasts_.size() >= MostToasts) toasts_.erase(toasts_.begin());
     toasts_.push_back({{std::move(text), is_error, 0, std::move(button)}, Clock::now(), std::move(action)});
 }
@@ -238,20 +228,32 @@ void Application::press_toast(std::size_t index) {
     if (action) action();
 }
 
+void Application::ask(std::string title, std::string text, std::vector<AskedAnswer> answers) {
+    model_.question = {model_.question.number + 1, std::move(title), std::move(text), {}};
+    answers_.clear();
+    for (auto& [answer, act] : answers) {
+        model_.question.answers.push_back(std::move(answer));
+        answers_.push_back(std::move(act));
+    }
+}
+
+void Application::answer(std::size_t index) {
+    const auto answers = std::exchange(answers_, {});
+    if (index < answers.size() && answers[index]) answers[index]();
+}
+
 void Application::cancel_file_job() { files_.cancel(); }
 
-void Application::set_request(const edit::EditRequest& request) { model_.request = request; }
-
-void Application::choose_model(const std::string& path) {
-    if (path == starter_model_path().string() || path.empty()) model_path_.clear();
-    else model_path_ = path;
-    model_.models = scan_models(model_path_);
-    model_.known_words = model_words(model_path_.empty() ? starter_model_path() : std::filesystem::path(model_path_));
-    save_settings();
+void Application::set_request(const edit::EditRequest& request) {
+    model_.request = request;
+    // A word that was clicked in another sentence is no target of this one.
+    auto& target = model_.request.target;
+    if (!target.empty() && !edit::has_word(request.prompt, target)) target.clear();
+    refresh_reading();
 }
 
 void Application::set_ui_scale(float scale) {
-    model_.ui_scale = scale;
+    model_.ui_scale = chosen_scale_ = scale;
     if (options_.on_scale) options_.on_scale(scale);
     save_settings();
 }
@@ -262,10 +264,9 @@ void Application::toggle_fullscreen() {
 
 void Application::save_settings() {
     nlohmann::json json;
-    json["ui_scale"] = model_.ui_scale;
+    json["ui_scale"] = chosen_scale_;
     json["model"] = model_path_;
-    json["seconds_per_iteration"] = seconds_per_iteration_;
-    json["seconds_per_view"] = seconds_per_view_;
+    for (const auto& [key, measured] : measured_) json["measured"][key] = fields_to_json(measured);
     if (!layout_.empty()) json["layout"] = layout_;
     gse::save_settings(json);
 }
@@ -278,9 +279,16 @@ void Application::load_settings() {
     const auto text = [&](const char* key) {
         return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : std::string();
     };
-    model_.ui_scale = static_cast<float>(std::clamp(number("ui_scale", 0), 0.0, 4.0));
-    seconds_per_iteration_ = std::max(0.0, number("seconds_per_iteration", 0));
-    seconds_per_view_ = std::max(0.0, number("seconds_per_view", 0));
+    chosen_scale_ = static_cast<float>(std::clamp(number("ui_scale", 0), 0.0, 4.0));
+    model_.ui_scale = options_.ui_scale > 0 ? options_.ui_scale : chosen_scale_ > 0 ? chosen_scale_ : options_.desktop_scale;
+    if (json.contains("measured") && json["measured"].is_object())
+        for (const auto& [key, measured] : json["measured"].items()) {
+            try {
+                fields_from_json(measured_[key], measured);
+            } catch (const Error&) {   // of another version: it is measured anew
+                measured_.erase(key);
+            }
+        }
     model_path_ = text("model");
     layout_ = text("layout");
     layout_loaded_ = !layout_.empty();

@@ -5,28 +5,36 @@
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "app/edit_job.h"
-#include "app/job_thread.h"
+#include "app/engine_names.h"
 #include "app/preview_host.h"
+#include "engine/base/job_thread.h"
 #include "engine/io/autosave.h"
 #include "engine/io/project_file.h"
+#include "engine/neural/model_profile.h"
+#include "engine/pipeline/edit_job.h"
+#include "engine/pipeline/estimate.h"
 #include "engine/scene/document.h"
 #include "ui/actions.h"
 #include "ui/view_model.h"
 
 namespace gse::app {
 
+constexpr double MovingSeconds = 0.25;   // after the last movement of the camera the picture is refined
+
 struct ApplicationOptions {
     bool autosave = true;
     double autosave_seconds = 3;              // at most this much work is lost to a crash
     std::function<void()> wake = {};             // makes the window draw a frame
     std::function<void(float)> on_scale = {};
+    float ui_scale = 0;                       // for this start only; 0 = as the artist chose last
+    float desktop_scale = 1;                  // until the artist chooses
     std::function<void()> on_fullscreen = {};
 };
 
@@ -41,18 +49,29 @@ struct PendingResult {
     std::shared_ptr<const Image> thumbnail;
 };
 
+/// The edited set of one snapshot.
+struct SnapshotSet {
+    std::shared_ptr<const edit::SnapshotRows> of;   // that snapshot's rows; null = of none
+    GaussianSet set;
+};
+
 /// What the edit thread hands over while it runs; newest wins.
 struct LiveEdit {
     std::mutex mutex;
     std::deque<edit::EditSnapshot> snapshots;
+    SnapshotSet newest;   // of the last snapshot, put together on the edit's thread
     std::vector<ui::LossPoint> losses;
     std::uint64_t version = 0;
     std::optional<std::vector<std::uint8_t>> label;   // corrected by the artist, not taken over yet
     std::shared_ptr<EditJob> found;   // a search made for this edit, not shown yet
     std::vector<float> attention;     // of it, per splat
     bool relabel = false;             // what it found is the label now
+    bool adds = false;                // known once the search is over
+    std::string name, recipe, target; // of the edit, set before it starts
+    int iterations = 0;
     bool wants_gate = false;
     std::optional<ui::GateView> gate;
+    std::optional<edit::EditSnapshot> start;   // of an earlier run, to go on from
 };
 
 class Application : public ui::Actions {
@@ -73,16 +92,22 @@ public:
     /// Writes what is not saved to the recovery folder and stops all jobs.
     void shut_down();
     const Document& document() const { return document_; }
+    /// The word the next edit is about: what was clicked, else what the sentence implies for the scene as it is.
+    std::string target() const { return current_recipe().request.target; }
 
     // ui::Actions
     void open(const std::filesystem::path& path) override;
     void open_sample() override;
-    void save_project(const std::filesystem::path& path) override;
+    void save_project(const std::filesystem::path& path, std::function<void()> then = {}) override;
+    void leave_edit(bool keep, std::function<void()> then) override;
+    void answer(std::size_t index) override;
     void recover(const std::string& project) override;
     void discard_recovery(const std::string& project) override;
+    void postpone_recovery(const std::string& project) override;
     void set_up_axis(const std::string& up) override;
     void repair_scene() override;
     void locate() override;
+    void label_anyway() override;
     void edit() override;
     void pause(bool paused) override;
     void cancel() override;
@@ -90,9 +115,10 @@ public:
     void apply_result() override;
     void discard_result() override;
     void show_snapshot(int index) override;
-    void branch_from_snapshot(int index) override;
-    void set_attention_threshold(double value) override;
-    void set_label_threshold(float value) override;
+    void take_snapshot(int iteration) override;
+    void branch_from_snapshot(int iteration) override;
+    void set_attention_threshold(double value, bool drag_ends) override;
+    void set_label_threshold(float value, bool drag_ends) override;
     void set_active_label(int index) override;
     void add_label(const std::string& name) override;
     void rename_label(int index, const std::string& name) override;
@@ -106,6 +132,7 @@ public:
     void redo() override;
     void go_to(std::size_t position) override;
     void set_edit_enabled(std::uint64_t id, bool enabled) override;
+    void set_edit_strength(std::uint64_t id, double strength, bool drag_ends) override;
     void delete_edit(std::uint64_t id) override;
     void move_edit(std::uint64_t id, int places) override;
     void repeat_edit(std::uint64_t id) override;
@@ -135,6 +162,11 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
     struct Loaded;
+    /// A question to the artist: an answer and what it does (empty = nothing).
+    struct AskedAnswer {
+        ui::AskedQuestion::Answer answer;
+        std::function<void()> act;
+    };
     struct ToastState {
         ui::Toast toast;
         Clock::time_point born;
@@ -142,45 +174,94 @@ private:
     };
 
     // application.cpp: frame
-    void refresh_jobs();
+    void refresh_jobs(const JobStatus& work, const JobStatus& files);
     void refresh_live();
     void refresh_toasts();
     void refresh_document();
+    void refresh_words();
+    void refresh_reading();
     void refresh_log();
     void toast(std::string text, bool is_error = false, std::string button = {}, std::function<void()> action = {});
     void report_error(const Error& error);
+    void ask(std::string title, std::string text, std::vector<AskedAnswer> answers);
     void save_settings();
     void load_settings();
     bool require_scene();
 
     // application_files.cpp
+    void open_recipe(const std::filesystem::path& picture);
     void take_loaded(Loaded loaded);
-    void autosave_if_due();
+    void ask_which(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files);
     std::filesystem::path default_project_path() const;
-    std::uint64_t content_live() const;
     nlohmann::json ui_json() const;
     void ui_from_json(const nlohmann::json& json);
+
+    // application_recovery.cpp
+    void autosave_if_due();
+    void write_autosave(std::function<void()> then);
+    void discard_autosave();
+    void let_go();
+    void leave_when_stopped();
+    bool unsaved() const;
+    std::uint64_t content_live() const;
+    nlohmann::json edit_json() const;
     std::function<DocumentState()> state_with_live_edit() const;
+    std::function<std::shared_ptr<const Image>()> thumbnail() const;
+    void refresh_recoverable();
+
+    // application_export.cpp
+    std::filesystem::path free_place(const std::string& name) const;
+    void write_scene(const std::filesystem::path& path);
 
     // application_work.cpp
     bool job_fits() const;
+    std::optional<neural::TunedModel> known_tuning(const EditRecipe& recipe) const;
     EditRecipe current_recipe() const;
     Scene working_scene() const;
-    void take_located(std::shared_ptr<EditJob> job, std::vector<float> attention, bool relabel);
+    void take_located(std::shared_ptr<EditJob> job, std::vector<float> attention);
+    void show_located(const EditJob& job);
+    void label_located(const EditJob& job, const std::string& step, const std::string& merge_key);
+    void relabel_if_wanted();
+    void travel(const std::function<void()>& move);
     void take_found();
+    bool labelled_by_hand() const;
     bool label_drives_edit() const;
     bool edit_running() const;
+    void start_edit(std::optional<edit::EditSnapshot> start);
     void finish_edit(const Error* error);
+    std::string measured_key() const;
+    Measured measured_now() const;
+    void remember_measured(const std::string& key, const Measured& measured);
     void refresh_estimate();
+
+    // application_snapshots.cpp
+    void list_snapshots();
+    void take_snapshots(const std::deque<edit::EditSnapshot>& snapshots);
+    const edit::EditSnapshot* usable_snapshot(int iteration);
+    GaussianSet snapshot_set(const edit::EditSnapshot& snapshot);
+    void forget_snapshots();
+    void go_on_from_branch();
+
+    // application_models.cpp
+    std::string model_in_use() const;
+    void list_models();
+    void refuse_model(const std::string& path, std::string problem);
+    void take_chosen_model();
+    void try_model(const std::string& path, bool takes_settings);
+    void use_model(const std::string& path, const neural::ModelProfile& profile, bool takes_settings);
+    void use_profile(const neural::ModelProfile& profile, bool takes_settings);
+    void drop_model(const std::string& path, const Error& error);
 
     // application_labels.cpp
     NamedLabel* active_label_copy(DocumentState& state) const;
     void change_label(const std::string& name, const std::function<NamedLabel(NamedLabel)>& change,
                       const std::string& merge_key = {});
-    void change_stack(const std::string& name, const std::function<void(std::vector<EditNode>&)>& change);
+    void change_stack(const std::string& name, const std::function<void(std::vector<EditNode>&)>& change,
+                      const std::string& merge_key = {});
 
     // application_view.cpp
     PictureRequest picture_request();
+    void go_home();
     std::shared_ptr<const std::vector<float>> shown_values(const GaussianSet& set, int snapshot);
     OrbitParameters export_orbit() const;
 
@@ -193,16 +274,33 @@ private:
     nlohmann::json unknown_ = nlohmann::json::object();
     std::unique_ptr<ProjectWriter> writer_ = std::make_unique<ProjectWriter>();
     std::unique_ptr<Autosave> autosave_ = std::make_unique<Autosave>();
-    std::optional<Recoverable> recovered_;
+    std::optional<Recoverable> recovered_;   // open now, on disk until it is saved or autosaved anew
+    std::vector<std::function<void()>> answers_;   // to the question of the model
+    struct Leaving {
+        bool keep = false;
+        std::function<void()> then;
+    };
+    nlohmann::json kept_edit_;               // of an edit that was stopped before its first step
+    std::uint64_t opened_ = 0;               // documents so far
+    std::optional<Leaving> leaving_;         // waits for the edit to stop
+    bool keep_ = false;                      // the autosave stays when this document goes
+    bool autosaved_ = false;                 // there is an autosave of this document
+    bool start_page_seen_ = false;
+    std::shared_ptr<const Image> thumbnail_; // of the last autosave
+    Clock::time_point thumbnail_made_{};
     std::string scene_path_, project_path_;
     std::uint64_t saved_revision_ = 0, autosaved_revision_ = 0, autosaved_live_ = 0;
     Clock::time_point last_autosave_ = Clock::now();
     std::string layout_;
     bool layout_loaded_ = false;
+    float chosen_scale_ = 0;   // by the artist; 0 = as the desktop says
 
     // Work
     std::shared_ptr<neural::TextToImage> text_model_;
-    std::string text_model_path_, model_path_;
+    std::string text_model_path_, model_path_, model_tried_;
+    neural::ModelProfile profile_;   // of the model in use
+    EditRecipe defaults_;            // what settings are that nobody chose
+    std::map<std::string, std::string> model_problems_;   // by path, of models that were tried; empty = none yet
     std::shared_ptr<EditJob> job_;
     std::string job_key_, live_key_;
     GaussianSet job_set_;
@@ -211,10 +309,19 @@ private:
     std::shared_ptr<LiveEdit> live_ = std::make_shared<LiveEdit>();
     std::uint64_t live_seen_ = 0;
     std::deque<edit::EditSnapshot> snapshots_;
+    SnapshotSet newest_set_, looked_at_;
+    GaussianSet snapshot_base_;                  // what the snapshots are states of
+    std::optional<edit::EditSnapshot> branch_;   // to go on from when the running edit has ended
     std::optional<PendingResult> pending_;
     std::uint64_t next_edit_id_ = 1;
-    double seconds_per_iteration_ = 0, seconds_per_view_ = 0;   // measured by the last run, for the estimate
-    double wanted_threshold_ = -1;
+    std::map<std::string, Measured> measured_;   // by model and size of pictures
+    /// An attention threshold that the search has not been told yet.
+    struct Threshold {
+        double value = 0;
+        std::string merge_key;   // of the undo step it makes; empty = none: undo brought it back
+    };
+    std::optional<Threshold> wanted_threshold_;
+    double relabelled_threshold_ = -1;   // what job_ was last told
 
     // View
     Camera camera_;
@@ -236,15 +343,16 @@ private:
     JobThread work_, files_, saver_;   // last: their threads end before what they use
 };
 
+/// The attention itself on the splats: sum(alpha T map) / sum(alpha T) over the views.
+std::vector<float> splat_attention(EditJob& job);
+
 /// On the work thread: runs a located job with the artist's label (empty = as located), feeding `live`.
 void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_t>& label,
               const std::vector<float>& attention, LiveEdit& live);
 /// Takes what a finished run leaves. Throws Error (Cancelled) when it was stopped before its first step.
 void fill_pending(EditJob& job, PendingResult& pending);
 
-/// Where models were found and what they are; reads headers only.
-std::vector<ui::ModelView> scan_models(const std::string& chosen);
-/// Words of the model in `folder` (gseditpro.json), empty for an open vocabulary.
-std::vector<std::string> model_words(const std::filesystem::path& folder);
+/// Where models were found and what they are, those of `also` with them; reads headers only.
+std::vector<ui::ModelView> scan_models(const std::string& chosen, const std::vector<std::string>& also);
 
 }  // namespace gse::app

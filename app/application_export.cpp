@@ -4,12 +4,14 @@
 #include <algorithm>
 
 #include "app/application.h"
-#include "app/film.h"
-#include "app/scene_tools.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/base/path_text.h"
 #include "engine/io/image_file.h"
 #include "engine/io/scene_io.h"
+#include "engine/pipeline/film.h"
+#include "engine/pipeline/scene_tools.h"
 
 namespace gse::app {
 namespace {
@@ -46,16 +48,40 @@ raster::Settings settings_of(const ui::ViewSettings& view, bool antialiased) {
 
 }  // namespace
 
+/// The first name of "shot.png", "shot-2.png", ... that is free: an export never writes over what is there.
+std::filesystem::path Application::free_place(const std::string& name) const {
+    const auto wanted = place_for(name, project_path_, scene_path_);
+    std::error_code ignored;
+    const auto taken = [&](const std::filesystem::path& path) {
+        if (!std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) return false;
+        return !std::filesystem::is_directory(path, ignored) || !std::filesystem::is_empty(path, ignored);
+    };
+    const std::string file = wanted.filename().string();
+    const std::string ending = file.ends_with(".compressed.ply") ? ".compressed.ply" : wanted.extension().string();
+    std::string stem = file.substr(0, file.size() - ending.size());
+    int number = 2;
+    const auto dash = stem.find_last_not_of("0123456789");
+    const bool numbered = dash != std::string::npos && dash > 0 && stem[dash] == '-' && dash + 1 < stem.size() &&
+                          stem.size() - dash < 8;
+    if (numbered) {
+        number = std::stoi(stem.substr(dash + 1)) + 1;
+        stem.resize(dash);
+    }
+    auto path = wanted;
+    for (; taken(path); ++number) path = wanted.parent_path() / fmt::format("{}-{}{}", stem, number, ending);
+    return path;
+}
+
 void Application::set_exports(const ui::ExportSettings& settings) { model_.exports = settings; }
 
 void Application::export_picture() {
     if (!require_scene()) return;
     const auto exports = model_.exports;
-    const auto path = place_for(exports.picture_path, project_path_, scene_path_);
+    const auto path = free_place(exports.picture_path);
     auto settings = settings_of(model_.view, document_.state().info.antialiased);
     if (exports.transparent) settings.background = {0, 0, 0};
     const Camera camera = fitted(model_.camera, exports.width, exports.height);
-    const std::string recipe = recipe_to_json(current_recipe()).dump();
+    const std::string recipe = json_text(recipe_to_json(current_recipe()), -1);
     auto work = [=, set = shown_set_.empty() ? document_.state().current : shown_set_](const JobControl& control) {
         control.report("rendering", 0, 1);
         Painter painter;
@@ -75,7 +101,7 @@ void Application::export_picture() {
 void Application::export_turntable() {
     if (!require_scene()) return;
     const auto& exports = model_.exports;
-    const auto path = place_for(exports.film_path, project_path_, scene_path_);
+    const auto path = free_place(exports.film_path);
     auto film = std::make_shared<FilmRequest>();
     film->first = document_.state().current;
     if (exports.before_after) {
@@ -98,7 +124,21 @@ void Application::export_turntable() {
 
 void Application::export_scene() {
     if (!require_scene()) return;
-    const auto path = place_for(model_.exports.scene_path, project_path_, scene_path_);
+    const auto path = place_for(model_.exports.scene_path, project_path_, scene_path_), other = free_place(model_.exports.scene_path);
+    if (path == other) return write_scene(path);
+    std::error_code ignored;
+    const bool own = std::filesystem::equivalent(path, scene_path_, ignored);
+    std::vector<AskedAnswer> answers;
+    answers.push_back({{fmt::format("Write {}", other.filename().string())}, [this, other] { write_scene(other); }});
+    if (!own) answers.push_back({{"Replace it", "", true}, [this, path] { write_scene(path); }});
+    answers.push_back({{"Cancel"}, {}});
+    ask("The file exists",
+        own ? fmt::format("{} is the scene that is open, on which its edits build: it stays.", path.filename().string())
+            : fmt::format("There is a {} already. Replacing it cannot be undone.", path.filename().string()),
+        std::move(answers));
+}
+
+void Application::write_scene(const std::filesystem::path& path) {
     auto scene = std::make_shared<Scene>();
     scene->gaussians = document_.state().current;
     scene->info = document_.state().info;
@@ -139,7 +179,7 @@ void Application::export_camera_path(bool as_film) {
     if (model_.camera_keys.empty()) return toast("Add cameras to the path first.");
     const auto& exports = model_.exports;
     const auto keys = model_.camera_keys;
-    const auto path = place_for(as_film ? exports.film_path : exports.camera_path_path, project_path_, scene_path_);
+    const auto path = free_place(as_film ? exports.film_path : exports.camera_path_path);
     auto film = std::make_shared<FilmRequest>();
     if (as_film) {
         film->first = document_.state().current;

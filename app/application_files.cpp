@@ -6,8 +6,10 @@
 #include <ctime>
 
 #include "app/application.h"
-#include "app/scene_tools.h"
+#include "app/application_loaded.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
+#include "engine/base/json.h"
 #include "engine/base/log.h"
 #include "engine/io/autosave.h"
 #include "engine/io/cameras.h"
@@ -15,11 +17,17 @@
 #include "engine/io/project_file.h"
 #include "engine/io/scene_io.h"
 #include "engine/io/user_files.h"
+#include "engine/pipeline/scene_tools.h"
+#include "engine/scene/framing.h"
 
 namespace gse::app {
 namespace {
 
 constexpr double LeastVisibleShare = 0.05;   // cameras that see less of the splats belong to another world
+
+bool contains_word(const std::vector<std::string>& words, const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+}
 
 std::string clock_now() { return fmt::format("{:%H:%M}", fmt::localtime(std::time(nullptr))); }
 
@@ -36,19 +44,17 @@ std::optional<Vec3> up_of_cameras(const std::vector<View>& views) {
 
 }  // namespace
 
-/// What the file thread read.
-struct Application::Loaded {
-    std::filesystem::path path;       // scene or project
-    bool project = false;
-    bool recovered = false;
-    std::filesystem::path project_path;
-    DocumentState state;
-    ProjectData data;
-    SceneStatistics statistics;
-    std::vector<std::string> notes;
-};
-
 namespace {
+
+/// What can be opened of a folder that is no scene by itself.
+std::vector<std::filesystem::path> files_of_folder(const std::filesystem::path& folder) {
+    auto files = scenes_in_folder(folder);
+    if (files.empty()) return files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.is_regular_file() && entry.path().extension() == ".gsep") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
 
 /// Reads a scene with its cameras; what is odd is said in `notes`.
 template <class Loaded>
@@ -72,32 +78,32 @@ void load_scene_into(Loaded& loaded) {
             scene.info.up = *up;
             loaded.notes.push_back(fmt::format("Up axis guessed from {} cameras; Scene > Up changes it.", views.size()));
         }
-    for (const auto& warning : scene.info.warnings) loaded.notes.push_back(warning);
     loaded.state = initial_state(scene, std::move(views));
 }
 
 }  // namespace
 
+void Application::open_recipe(const std::filesystem::path& picture) {
+    try {
+        const auto text = read_png_text(picture);
+        const auto found = text.find("Recipe");
+        if (found == text.end())
+            throw Error(ErrorCode::InvalidArgument, "this picture carries no recipe", "drop a picture this program made", picture);
+        edit::EditRequest request;
+        fields_from_json(request, parse_json<nlohmann::ordered_json>(found->second, "the recipe in this picture").at("request"));
+        set_request(request);
+        toast("The prompt and its settings come from the picture.");
+    } catch (const Error& error) {
+        report_error(error);
+    } catch (const nlohmann::json::exception&) {
+        report_error(Error(ErrorCode::Malformed, "the recipe in this picture cannot be read", "", picture));
+    }
+}
+
 void Application::open(const std::filesystem::path& path) {
     if (work_.running()) return toast("Cancel the running job first.");
     const auto absolute = std::filesystem::absolute(path).lexically_normal();
-    if (absolute.extension() == ".png") {
-        try {
-            const auto text = read_png_text(absolute);
-            const auto found = text.find("Recipe");
-            if (found == text.end())
-                throw Error(ErrorCode::InvalidArgument, "this picture carries no recipe", "drop a picture this program made", absolute);
-            edit::EditRequest request;
-            fields_from_json(request, nlohmann::ordered_json::parse(found->second).at("request"));
-            set_request(request);
-            toast("The prompt and its settings come from the picture.");
-        } catch (const Error& error) {
-            report_error(error);
-        } catch (const nlohmann::json::exception&) {
-            report_error(Error(ErrorCode::Malformed, "the recipe in this picture cannot be read", "", absolute));
-        }
-        return;
-    }
+    if (absolute.extension() == ".png") return open_recipe(absolute);
     auto loaded = std::make_shared<Loaded>();
     loaded->path = absolute;
     auto work = [loaded](const JobControl& control) {
@@ -111,58 +117,50 @@ void Application::open(const std::filesystem::path& path) {
             loaded->state = loaded->data.state;
             loaded->notes = loaded->data.warnings;
         } else {
+            if (std::filesystem::is_directory(loaded->path)) loaded->choices = files_of_folder(loaded->path);
+            if (loaded->choices.size() > 1) return;
+            if (loaded->choices.size() == 1) loaded->path = loaded->choices.front();
             load_scene_into(*loaded);
         }
         control.report("looking", 0, 0);
         loaded->statistics = compute_statistics(loaded->state.current);
     };
     auto done = [this, loaded](const Error* error) {
+        if (error != nullptr) keep_ = false;   // what is open stays open
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
+        if (loaded->choices.size() > 1) return ask_which(loaded->path, loaded->choices);
         take_loaded(std::move(*loaded));
     };
-    if (!files_.start({fmt::format("Open {}", absolute.filename().string()), work, done}))
-        toast("Another file is being read or written; wait for it.");
+    if (files_.start({fmt::format("Open {}", absolute.filename().string()), work, done})) return;
+    keep_ = false;
+    toast("Another file is being read or written; wait for it.");
+}
+
+void Application::ask_which(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files) {
+    std::vector<AskedAnswer> answers;
+    for (const auto& file : files) {
+        std::error_code ignored;
+        const double megabytes = static_cast<double>(std::filesystem::file_size(file, ignored)) / 1e6;
+        answers.push_back({{file.filename().string(), fmt::format("{:.1f} MB", megabytes), false, true},
+                           [this, file] { open(file); }});
+    }
+    answers.push_back({{"Cancel"}, [this] { keep_ = false; }});
+    ask("Which one is to be opened?", fmt::format("{} holds several scenes.", folder.string()), std::move(answers));
 }
 
 void Application::open_sample() { open(assets_path() / "scenes/bear/scene.ply"); }
 
-void Application::recover(const std::string& project) {
-    auto loaded = std::make_shared<Loaded>();
-    loaded->path = project;
-    auto work = [loaded](const JobControl& control) {
-        control.report("recovering", 0, 0);
-        loaded->project = loaded->recovered = true;
-        loaded->data = gse::load_project(loaded->path);
-        loaded->state = loaded->data.state;
-        loaded->notes = loaded->data.warnings;
-        loaded->statistics = compute_statistics(loaded->state.current);
-        for (const auto& found : find_recoverable())
-            if (found.file == loaded->path) loaded->project_path = found.project;
-    };
-    auto done = [this, loaded](const Error* error) {
-        if (error != nullptr) return report_error(*error);
-        take_loaded(std::move(*loaded));
-        for (const auto& found : find_recoverable())   // from here on the own autosave holds it
-            if (found.file == loaded->path) {
-                autosave_if_due();
-                recovered_ = found;
-            }
-        toast("The work of the last session is back. Save it to keep it.");
-    };
-    files_.start({"Recover", work, done});
-}
-
-void Application::discard_recovery(const std::string& project) {
-    for (const auto& found : find_recoverable())
-        if (found.file == project) gse::discard(found);
-    std::erase(model_.recoverable, project);
-}
-
 void Application::take_loaded(Loaded loaded) {
+    const bool recovered = loaded.recovered.has_value();
+    let_go();
+    ++opened_;
+    kept_edit_ = {};
     job_.reset();
-    pending_.reset();
-    snapshots_.clear();
+    pending_ = std::move(loaded.pending);
+    forget_snapshots();
     model_.attention.clear();
+    const auto searches = std::exchange(model_.search, {}).number;
+    model_.search.number = searches;
     model_.losses.clear();
     model_.snapshots.clear();
     model_.shown_snapshot = -1;
@@ -172,22 +170,27 @@ void Application::take_loaded(Loaded loaded) {
     scene_path_ = source_.path.string();
     project_path_ = loaded.project_path.string();
     document_ = Document(std::move(loaded.state));
-    saved_revision_ = loaded.recovered ? ~std::uint64_t{0} : document_.revision();
-    autosaved_revision_ = loaded.recovered ? ~std::uint64_t{0} : document_.revision();
-    autosave_->discard();
+    if (pending_) pending_->before = document_.state().current;
+    saved_revision_ = recovered ? ~std::uint64_t{0} : document_.revision();
+    autosaved_revision_ = recovered ? ~std::uint64_t{0} : document_.revision();
+    thumbnail_.reset();
     for (const auto& node : document_.state().stack) next_edit_id_ = std::max(next_edit_id_, node.id + 1);
     model_.statistics = loaded.statistics;
     const auto& info = document_.state().info;
     RenderParameters home;
     model_.orbit = scene_orbit(Scene{document_.state().base, info, {}}, home);
+    model_.framing = framing_bounds(document_.state().current);
     camera_ = {};
     if (loaded.project) ui_from_json(loaded.data.ui);
-    if (camera_.width == 0) camera_ = orbit_camera(model_.orbit, 0.5, std::max(viewport_width_, 64), std::max(viewport_height_, 64));
+    if (camera_.width == 0) go_home();
     ++camera_version_;
     ++content_;
-    if (!loaded.recovered) add_recent(loaded.path);
+    if (!recovered) add_recent(loaded.path);
     model_.recent.clear();
     for (const auto& path : load_recent()) model_.recent.push_back(path.string());
+    recovered_ = std::move(loaded.recovered);
+    refresh_recoverable();
+    start_page_seen_ = true;
     for (const auto& note : loaded.notes) {
         log::info("{}", note);
         toast(note);
@@ -214,9 +217,16 @@ void Application::ui_from_json(const nlohmann::json& json) {
     try {   // a project of another version may miss any of these
         if (json.contains("view")) fields_from_json(model_.view, json["view"]);
         if (json.contains("exports")) fields_from_json(model_.exports, json["exports"]);
-        if (json.contains("request")) fields_from_json(model_.request, json["request"]);
+        if (json.contains("request")) {
+            edit::EditRequest request = model_.request;
+            fields_from_json(request, json["request"]);
+            set_request(request);
+            refresh_words();
+            // What an applied edit said already is no news, even if it was clicked once.
+            if (contains_word(model_.said_words, model_.request.target)) model_.request.target.clear();
+        }
         if (json.contains("model_settings")) fields_from_json(model_.model_settings, json["model_settings"]);
-        if (json.contains("model")) choose_model(json["model"].get<std::string>());
+        if (json.contains("model")) try_model(json["model"].get<std::string>(), !json.contains("request"));
         if (json.contains("layout")) {
             layout_ = json["layout"].get<std::string>();
             layout_loaded_ = true;
@@ -241,50 +251,6 @@ void Application::ui_from_json(const nlohmann::json& json) {
     }
 }
 
-std::function<DocumentState()> Application::state_with_live_edit() const {
-    const DocumentState state = document_.state();
-    if (!pending_ && !(work_.running() && !snapshots_.empty())) return [state] { return state; };
-    const GaussianSet after = pending_ ? pending_->set : *snapshots_.back().set;
-    const auto rows = pending_ ? pending_->base_to_new : snapshots_.back().base_to_new;
-    const std::string name = pending_ ? pending_->name
-                                      : fmt::format("{} (interrupted at iteration {})", model_.request.prompt,
-                                                    snapshots_.back().iteration);
-    return [state, after, rows, name, id = next_edit_id_] {
-        if (rows->size() != state.current.size()) return state;
-        EditNode node;
-        node.id = id;
-        node.name = name;
-        node.delta = std::make_shared<const SceneDelta>(make_delta(state.current, *state.row_ids, after, *rows, id));
-        auto stack = state.stack;
-        stack.push_back(std::move(node));
-        return with_stack(state, std::move(stack));
-    };
-}
-
-void Application::autosave_if_due() {
-    if (!options_.autosave || document_.empty() || saver_.running()) return;
-    const bool changed = document_.revision() != autosaved_revision_ || content_live() != autosaved_live_;
-    const double since = std::chrono::duration<double>(Clock::now() - last_autosave_).count();
-    if (!changed || since < options_.autosave_seconds) return;
-    if (document_.revision() == saved_revision_ && content_live() == 0) return;
-    last_autosave_ = Clock::now();
-    autosaved_revision_ = document_.revision();
-    autosaved_live_ = content_live();
-    auto data = std::make_shared<ProjectData>();
-    data->source = source_;
-    data->ui = ui_json();
-    data->unknown = unknown_;
-    saver_.start({"Autosave",
-                  [this, data, state = state_with_live_edit(), project = project_path_](const JobControl&) {
-                      data->state = state();   // here, not on the main thread: a large edit takes a while
-                      autosave_->write(*data, project, *writer_);
-                  },
-                  [this](const Error* error) {
-                      if (error != nullptr) return report_error(*error);
-                      if (recovered_) gse::discard(*recovered_), recovered_.reset();
-                  }});
-}
-
 /// Beside the scene; for the bundled one in the working folder.
 std::filesystem::path Application::default_project_path() const {
     const auto beside = std::filesystem::path(scene_path_).replace_extension(".gsep");
@@ -292,7 +258,7 @@ std::filesystem::path Application::default_project_path() const {
     return bundled ? std::filesystem::absolute("sample.gsep") : beside;
 }
 
-void Application::save_project(const std::filesystem::path& path) {
+void Application::save_project(const std::filesystem::path& path, std::function<void()> then) {
     if (!require_scene()) return;
     auto target = path.empty() ? std::filesystem::path(project_path_) : std::filesystem::absolute(path);
     if (target.empty()) target = default_project_path();
@@ -303,17 +269,18 @@ void Application::save_project(const std::filesystem::path& path) {
     data->ui = ui_json();
     data->unknown = unknown_;
     const auto revision = document_.revision();
-    auto done = [this, target, revision](const Error* error) {
+    auto done = [this, target, revision, then](const Error* error) {
         if (error != nullptr) return report_error(*error);
         project_path_ = target.string();
         saved_revision_ = revision;
         model_.saved_at = fmt::format("saved {}{}", clock_now(), options_.autosave ? " (autosave on)" : "");
-        if (document_.revision() == revision && !saver_.running()) autosave_->discard();
-        if (recovered_) gse::discard(*recovered_), recovered_.reset();
+        autosaved_revision_ = ~std::uint64_t{0};   // what is still unsaved is written anew: the last one is older than this
+        if (!unsaved() && recovered_) gse::discard(*recovered_), recovered_.reset();
         add_recent(target);
         model_.recent.clear();
         for (const auto& recent : load_recent()) model_.recent.push_back(recent.string());
         toast(fmt::format("Saved {}", target.filename().string()));
+        if (then) then();
     };
     if (!files_.start({fmt::format("Save {}", target.filename().string()),
                        [this, data, target](const JobControl& control) {
@@ -331,7 +298,7 @@ void Application::set_up_axis(const std::string& up) {
     document_.apply("Up axis", std::move(state));
     RenderParameters home;
     model_.orbit = scene_orbit(Scene{document_.state().base, document_.state().info, {}}, home);
-    camera_ = orbit_camera(model_.orbit, 0.5, std::max(viewport_width_, 64), std::max(viewport_height_, 64));
+    go_home();
     ++camera_version_;
 }
 

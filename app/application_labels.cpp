@@ -2,11 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/application.h"
+#include "engine/base/json.h"
 #include "engine/base/log.h"
 #include "engine/base/random.h"
 #include "engine/scene/label_ops.h"
+#include "engine/scene/strength.h"
 
 namespace gse::app {
 namespace {
@@ -52,9 +55,14 @@ void Application::change_label(const std::string& name, const std::function<Name
     document_.apply(name, std::move(state), merge_key);
 }
 
-void Application::set_label_threshold(float value) {
+void Application::set_label_threshold(float value, bool drag_ends) {
     change_label(fmt::format("Threshold {:.2f}", value),
-                 [&](NamedLabel label) { return with_threshold(std::move(label), value); }, "threshold");
+                 [&](NamedLabel label) {
+                     if (label.attention_threshold >= 0) model_.request.tau = std::stod(fmt::format("{:.4f}", value));   // a repeated search gives this label
+                     return with_threshold(std::move(label), value);
+                 },
+                 fmt::format("threshold{}", stroke_));
+    if (drag_ends) ++stroke_;
 }
 
 void Application::set_active_label(int index) {
@@ -121,7 +129,8 @@ void Application::clear_label() {
     change_label("Clear label", [](NamedLabel label) { return clear(std::move(label)); });
 }
 
-void Application::change_stack(const std::string& name, const std::function<void(std::vector<EditNode>&)>& change) {
+void Application::change_stack(const std::string& name, const std::function<void(std::vector<EditNode>&)>& change,
+                               const std::string& merge_key) {
     if (!require_scene()) return;
     if (work_.running() || pending_) {
         toast(pending_ ? "Apply or discard the edit first." : "The edit stack can be changed when the job is done.");
@@ -129,7 +138,7 @@ void Application::change_stack(const std::string& name, const std::function<void
     }
     auto stack = document_.state().stack;
     change(stack);
-    document_.apply(name, with_stack(document_.state(), std::move(stack)));
+    document_.apply(name, with_stack(document_.state(), std::move(stack)), merge_key);
 }
 
 void Application::delete_labelled_splats() {
@@ -159,15 +168,15 @@ void Application::delete_labelled_splats() {
 }
 
 void Application::undo() {
-    if (document_.can_undo()) document_.undo();
+    if (document_.can_undo()) travel([&] { document_.undo(); });
 }
 
 void Application::redo() {
-    if (document_.can_redo()) document_.redo();
+    if (document_.can_redo()) travel([&] { document_.redo(); });
 }
 
 void Application::go_to(std::size_t position) {
-    if (!document_.empty()) document_.go_to(position);
+    if (!document_.empty()) travel([&] { document_.go_to(position); });
 }
 
 void Application::set_edit_enabled(std::uint64_t id, bool enabled) {
@@ -175,6 +184,17 @@ void Application::set_edit_enabled(std::uint64_t id, bool enabled) {
         for (auto& node : stack)
             if (node.id == id) node.enabled = enabled;
     });
+}
+
+void Application::set_edit_strength(std::uint64_t id, double strength, bool drag_ends) {
+    if (!std::isfinite(strength)) return;
+    change_stack(fmt::format("Strength {:.2f}", strength),
+                 [&](std::vector<EditNode>& stack) {
+                     for (auto& node : stack)
+                         if (node.id == id) node.strength = std::clamp(strength, 0.0, MostStrength);
+                 },
+                 fmt::format("strength{}.{}", id, stroke_));
+    if (drag_ends) ++stroke_;
 }
 
 void Application::delete_edit(std::uint64_t id) {
@@ -199,7 +219,7 @@ void Application::repeat_edit(std::uint64_t id) {
     if (document_.empty()) return;
     for (const auto& node : document_.state().stack) {
         if (node.id != id || node.recipe.empty()) continue;
-        const auto json = nlohmann::ordered_json::parse(node.recipe, nullptr, false);
+        const auto json = try_parse_json<nlohmann::ordered_json>(node.recipe);
         if (!json.is_object() || !json.contains("request")) return;
         try {
             edit::EditRequest request;

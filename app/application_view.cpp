@@ -4,16 +4,16 @@
 #include <numbers>
 
 #include "app/application.h"
-#include "app/scene_tools.h"
+#include "app/engine_names.h"
 #include "engine/base/log.h"
 #include "engine/localize/focus.h"
+#include "engine/pipeline/scene_tools.h"
 
 namespace gse::app {
 namespace {
 
 using Values = std::shared_ptr<const std::vector<float>>;
 
-constexpr double MovingSeconds = 0.25;
 
 Values from_bits(const std::vector<std::uint8_t>& bits) {
     return std::make_shared<const std::vector<float>>(bits.begin(), bits.end());
@@ -75,12 +75,12 @@ Values Application::shown_values(const GaussianSet& set, int snapshot) {
     }
     if (!values || values->size() != state.current.size()) return nullptr;
     if (set.shares_all_with(state.current)) return values;
-    const auto* rows = pending_ && snapshot < 0 ? pending_->base_to_new.get()
-                       : !snapshots_.empty()
-                           ? snapshots_[snapshot < 0 ? snapshots_.size() - 1 : static_cast<std::size_t>(snapshot)].base_to_new.get()
-                           : nullptr;
-    if (rows == nullptr || rows->size() != state.current.size()) return nullptr;
-    return carried(*values, *rows, set.size(), 1.0f);
+    std::vector<std::int64_t> rows;   // of `set`, of each row of the state before
+    if (pending_ && snapshot < 0) rows = *pending_->base_to_new;
+    else if (!snapshots_.empty())
+        rows = (snapshot < 0 ? snapshots_.back() : snapshots_[static_cast<std::size_t>(snapshot)]).base_to_new();
+    if (rows.size() != state.current.size()) return nullptr;
+    return carried(*values, rows, set.size(), 1.0f);
 }
 
 PictureRequest Application::picture_request() {
@@ -93,11 +93,11 @@ PictureRequest Application::picture_request() {
         shown_key_ = key;
         shown_set_ = state.current;
         if (live && snapshot >= 0 && snapshot < static_cast<int>(snapshots_.size()))
-            shown_set_ = *snapshots_[static_cast<std::size_t>(snapshot)].set;
+            shown_set_ = snapshot_set(snapshots_[static_cast<std::size_t>(snapshot)]);
         else if (pending_)
             shown_set_ = pending_->set;
         else if (live)
-            shown_set_ = *snapshots_.back().set;
+            shown_set_ = snapshot_set(snapshots_.back());
         const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
         const bool tints = mode == ui::DisplayMode::Beauty && model_.view.tint_labels && !live && model_.comparison == ui::Comparison::None;
         const bool maps = mode >= ui::DisplayMode::Labels;
@@ -116,6 +116,11 @@ PictureRequest Application::picture_request() {
     request.content = content_ * 1000003 + static_cast<std::uint64_t>(model_.view.mode) * 31 +
                       (key.tint ? 7 : 0) + document_.revision() * 131;
     return request;
+}
+
+void Application::go_home() {
+    camera_ = home_camera(model_.orbit, model_.framing, model_.view.fov_degrees * std::numbers::pi / 180,
+                          std::max(viewport_width_, 64), std::max(viewport_height_, 64));
 }
 
 void Application::set_camera(const Camera& camera) {

@@ -3,108 +3,49 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include "app/application.h"
-#include "app/edit_output.h"
-#include "app/gate.h"
+#include "app/engine_names.h"
 #include "app/process.h"
-#include "app/scene_tools.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
+#include "engine/base/memory.h"
+#include "engine/base/path_text.h"
+#include "engine/base/process_memory.h"
 #include "engine/localize/clusters.h"
+#include "engine/pipeline/edit_output.h"
+#include "engine/pipeline/gate.h"
+#include "engine/pipeline/model_settings.h"
+#include "engine/pipeline/scene_tools.h"
 #include "engine/scene/label_ops.h"
 
 namespace gse::app {
 namespace {
 
 constexpr std::size_t MostSnapshots = 24;         // kept for the scrubber; thinned out beyond
+constexpr double LikelyLabel = 0.25;              // share of the splats, while there is no label that says
 constexpr double SnapshotSeconds = 0.7;           // a running edit is seen at least every second
-constexpr double FirstSecondsPerIteration = 0.04; // of the starter model on a common processor, until one run was measured
-constexpr double FirstSecondsPerView = 0.12;
-constexpr double SecondsPerTuningStep = 0.3;
+constexpr int LeastSteps = 8;                     // of a run that tells how long the next one takes
 constexpr double NetworkMb = 320;                 // libtorch and the starter model
-
-/// Attention in false colour (dark blue to yellow) over a dimmed render.
-std::shared_ptr<const Image> coloured_map(const Image& render, const Image& map) {
-    auto picture = std::make_shared<Image>(render.width, render.height, 3);
-    for (std::size_t i = 0; i < picture->pixel_count(); ++i) {
-        const float m = std::clamp(map.data[i], 0.0f, 1.0f);
-        const float colour[3] = {std::min(1.0f, 1.7f * m), m * m, 0.35f + 0.4f * m * (1 - m) - 0.35f * m};
-        for (std::size_t c = 0; c < 3; ++c)
-            picture->data[i * 3 + c] = 0.35f * (1 - m) * render.data[i * 3 + c] + (0.25f + 0.75f * m) * colour[c];
-    }
-    return picture;
-}
-
-std::shared_ptr<const Image> masked_picture(const Image& render, const Mask& mask) {
-    auto picture = std::make_shared<Image>(render);
-    constexpr float tint[3] = {1.0f, 0.55f, 0.1f};
-    const bool any = mask.data.size() == picture->pixel_count();
-    for (std::size_t i = 0; i < picture->pixel_count(); ++i)
-        for (std::size_t c = 0; c < 3; ++c) {
-            float& value = picture->data[i * 3 + c];
-            value = any && mask.data[i] != 0 ? 0.45f * value + 0.55f * tint[c] : 0.6f * value;
-        }
-    return picture;
-}
-
-ui::AttentionView attention_view(const edit::ViewEvidence& evidence, const View& view) {
-    ui::AttentionView shown;
-    shown.name = view.name;
-    shown.render = std::make_shared<const Image>(evidence.render);
-    shown.map = std::make_shared<const Image>(evidence.map);
-    shown.map_coloured = coloured_map(evidence.render, evidence.map);
-    shown.mask_picture = masked_picture(evidence.render, evidence.mask);
-    shown.points = evidence.points;
-    shown.branch = evidence.branch;
-    shown.captured = evidence.captured;
-    shown.failed = evidence.failed;
-    shown.camera = view.camera;
-    return shown;
-}
-
-/// The attention itself on the splats: sum(alpha T map) / sum(alpha T) over the views.
-std::vector<float> splat_attention(EditJob& job) {
-    const auto& set = job.scene().gaussians;
-    std::vector<double> inside(set.size()), all(set.size());
-    for (std::size_t v = 0; v < job.views().size(); ++v)
-        job.painter().rasterizer().contributions(set.spans(), job.views()[v].camera, job.plan().settings,
-                                                 job.located().views[v].map, inside, all);
-    std::vector<float> result(set.size());
-    for (std::size_t row = 0; row < result.size(); ++row)
-        result[row] = all[row] > 0 ? static_cast<float>(std::clamp(inside[row] / all[row], 0.0, 1.0)) : 0.0f;
-    return result;
-}
-
-double free_memory_mb() {
-    std::ifstream file("/proc/meminfo");
-    std::string key, unit;
-    double kb = 0;
-    while (file >> key >> kb >> unit)
-        if (key == "MemAvailable:") return kb / 1024;
-    return -1;
-}
-
-/// Words and views that decide what locate finds; another key asks for another search.
-std::string search_key(const EditRecipe& recipe) {
-    nlohmann::ordered_json json = fields_to_json(recipe.request);
-    for (const char* loop : {"seed", "iterations", "guidance_weight", "attention_threshold"}) json.erase(loop);
-    if (recipe.use_dreambooth) json["dreambooth"] = fields_to_json(recipe.dreambooth);
-    return json.dump() + recipe.job.model + recipe.job.up;
-}
 
 }  // namespace
 
 EditRecipe Application::current_recipe() const {
-    EditRecipe recipe;
+    EditRecipe recipe = defaults_;
     recipe.job.scene = scene_path_;
     recipe.job.model = model_path_;
     recipe.request = model_.request;
     recipe.use_dreambooth = model_.model_settings.learn_scene;
     recipe.dreambooth.steps = model_.model_settings.learn_steps;
     recipe.dreambooth.rank = model_.model_settings.learn_rank;
+    auto set_by_user = changed_fields("request", recipe.request, defaults_.request);
+    set_by_user.merge(changed_fields("dreambooth", recipe.dreambooth, defaults_.dreambooth));
+    apply_profile(profile_, recipe, set_by_user);
+    auto& request = recipe.request;
+    const auto source = edit::as_told(request.source);
+    if (request.target.empty() && !source.empty())
+        request.target = edit::guessed_target(request.prompt, source, model_.said_words);
     return recipe;
 }
 
@@ -115,40 +56,29 @@ Scene Application::working_scene() const {
     return scene;
 }
 
-bool Application::job_fits() const {
-    return job_ != nullptr && job_set_.shares_all_with(document_.state().current) && job_key_ == search_key(current_recipe());
+namespace {
+
+/// The key of what the recipe means once its words are completed; empty where they cannot be.
+std::string valid_search_key(EditRecipe recipe) {
+    try {
+        recipe.request = edit::validated(recipe.request);
+    } catch (const Error&) {
+        return {};
+    }
+    return search_key(recipe);
 }
 
-void Application::take_located(std::shared_ptr<EditJob> job, std::vector<float> attention, bool relabel) {
-    const auto& located = job->located();
-    model_.attention.clear();
-    for (std::size_t v = 0; v < located.views.size(); ++v)
-        model_.attention.push_back(attention_view(located.views[v], job->views()[v]));
-    model_.attention_word = located.word;
-    model_.attention_mode = fmt::format("{}: {}", located.mode == edit::EditMode::Add ? "add" : "modify", located.reason);
-    attention_values_ = std::make_shared<const std::vector<float>>(std::move(attention));
-    attention_set_ = job->scene().gaussians;
-    ++content_;
-    if (!relabel) return;
-    if (!document_.state().current.shares_all_with(job->scene().gaussians)) return;   // the scene changed meanwhile
-    const bool adds = located.mode == edit::EditMode::Add;
-    const auto& bits = *(adds ? located.source_label : located.label).bits;
-    const auto& weights = located.weights;
-    std::vector<float> weight(weights.weight);
-    const double tau = job->recipe().request.tau;
-    for (std::size_t row = 0; row < weight.size(); ++row)   // what no view told about stays out at any threshold
-        if (bits[row] == 0 && weight[row] > tau) weight[row] = 0;
-    DocumentState state = document_.state();
-    const std::string name = adds ? job->recipe().request.source : located.word;
-    auto found = std::find_if(state.labels.begin(), state.labels.end(), [&](const auto& label) { return label.name == name; });
-    if (found == state.labels.end()) found = state.labels.insert(state.labels.end(), empty_label(name, weight.size()));
-    *found = empty_label(name, weight.size());
-    found->threshold = static_cast<float>(tau);
-    found->weight = std::make_shared<const std::vector<float>>(std::move(weight));
-    *found = with_bits(*found);
-    state.active_label = static_cast<int>(found - state.labels.begin());
-    if (!edit_running()) model_.view.tint_labels = true;   // where it landed is to be seen
-    document_.apply(fmt::format("Locate \"{}\"", name), std::move(state));
+}  // namespace
+
+bool Application::job_fits() const {
+    return job_ != nullptr && job_set_.shares_all_with(document_.state().current) && job_key_ == valid_search_key(current_recipe());
+}
+
+/// What the last search's model learned, where it is what this recipe's would learn.
+std::optional<neural::TunedModel> Application::known_tuning(const EditRecipe& recipe) const {
+    const bool same = recipe.use_dreambooth && job_ != nullptr && job_set_.shares_all_with(document_.state().current) &&
+                      tuning_key(job_->recipe()) == tuning_key(recipe);
+    return same ? job_->tuned() : std::nullopt;
 }
 
 namespace {
@@ -158,8 +88,28 @@ struct Search {
     std::shared_ptr<EditJob> job;
     std::shared_ptr<neural::TextToImage> model;
     std::vector<float> attention;
-    double seconds_per_view = 0;
+    Measured measured;
 };
+
+double seconds_since(std::chrono::steady_clock::time_point then) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
+}
+
+void load(Search& search, const JobParameters& job, const JobControl& control) {
+    control.report("loading the model", 0, 0);
+    if (search.model) return;
+    const auto start = std::chrono::steady_clock::now();
+    search.model = load_recipe_model(job);
+    search.measured.load = seconds_since(start);
+}
+
+void look(Search& search) {
+    search.job->locate();
+    measure_search(search.measured, *search.job, search.job->times().seconds("locate"));
+    const double tuning = search.job->times().seconds("dreambooth");
+    if (tuning > 0) search.measured.tune_step = tuning / std::max(1, search.job->recipe().dreambooth.steps);
+    search.attention = splat_attention(*search.job);
+}
 
 }  // namespace
 
@@ -176,61 +126,35 @@ void Application::locate() {
         return report_error(error);
     }
     const auto key = search_key(recipe);
-    auto work = [search, recipe, scene = working_scene(), views = document_.state().views](const JobControl& control) {
-        control.report("loading the model", 0, 0);
-        if (!search->model) search->model = load_recipe_model(recipe.job);
-        search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model}, control);
-        const auto start = std::chrono::steady_clock::now();
-        search->job->locate();
-        search->seconds_per_view = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
-                                   static_cast<double>(search->job->views().size());
-        search->attention = splat_attention(*search->job);
+    const bool measured = measured_now().guidance >= 0;
+    auto work = [search, recipe, measured, tuned = known_tuning(recipe), scene = working_scene(),
+                 views = document_.state().views](const JobControl& control) {
+        load(*search, recipe.job, control);
+        search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned}, control);
+        look(*search);
+        if (!measured && search->job->found()) measure_steps(search->measured, *search->job);
     };
-    auto done = [this, search, key, model = model_path_](const Error* error) {
+    auto done = [this, search, key, recipe_key = measured_key(), model = model_path_](const Error* error) {
         if (search->model) text_model_ = search->model, text_model_path_ = model;
+        else if (error != nullptr && error->code() != ErrorCode::Cancelled) drop_model(model, *error);
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
         job_ = search->job;
         job_key_ = key;
         job_set_ = search->job->scene().gaussians;
-        seconds_per_view_ = search->seconds_per_view;
-        take_located(search->job, std::move(search->attention), true);
+        remember_measured(recipe_key, search->measured);
+        take_located(search->job, std::move(search->attention));
+        const auto& located = search->job->located();
+        if (!search->job->found()) return report_error(Error(ErrorCode::NotFound, located.message, located.remedy));
+        label_located(*search->job, {}, {});
     };
     const auto word = recipe.request.source.empty() ? recipe.request.target : recipe.request.source;
     work_.start({fmt::format("Locate \"{}\"", word), work, done, true});
 }
 
-void Application::set_attention_threshold(double value) {
-    model_.attention_threshold = value;
-    model_.request.attention_threshold = value;
-    wanted_threshold_ = value;
-    if (!job_ || work_.running() || pending_) return;   // taken up when the job is done (refresh_jobs)
-    wanted_threshold_ = -1;
-    auto attention = std::make_shared<std::vector<float>>();
-    work_.start({"New threshold",
-                 [job = job_, value, attention](const JobControl& control) {
-                     job->set_control(control);
-                     job->locate_again(value);
-                     *attention = splat_attention(*job);
-                 },
-                 [this, job = job_, attention](const Error* error) {
-                     if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
-                     take_located(job, std::move(*attention), true);
-                 },
-                 true});
+bool Application::edit_running() const {
+    const JobStatus status = work_.status();
+    return status.running && status.title.starts_with("Edit");
 }
-
-/// True when what is labelled, and not a new search, says what the edit may change.
-bool Application::label_drives_edit() const {
-    const auto& state = document_.state();
-    if (state.active_label < 0) return false;
-    const auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
-    if (count_labelled(label) == 0) return false;
-    const auto& request = model_.request;
-    const bool by_hand = !label.weight || std::all_of(label.weight->begin(), label.weight->end(), [](float w) { return w == 0; });
-    return by_hand || label.name == request.source || label.name == request.target;
-}
-
-bool Application::edit_running() const { return work_.running() && model_.job.title.rfind("Edit", 0) == 0; }
 
 namespace {
 
@@ -247,9 +171,27 @@ void show_gate(EditJob& job, LiveEdit& live) {
 
 }  // namespace
 
+namespace {
+
+/// What is running, for whoever has to tell about it.
+void describe(LiveEdit& live, const EditRecipe& recipe) {
+    live.name = recipe.request.prompt;
+    live.target = recipe.request.target;
+    live.recipe = json_text(recipe_to_json(recipe));
+    live.iterations = recipe.request.iterations;
+}
+
+}  // namespace
+
 void Application::edit() {
     if (!require_scene() || work_.running()) return;
     if (pending_) return toast("Apply or discard the last edit first.");
+    forget_snapshots();
+    model_.losses.clear();
+    start_edit(std::nullopt);
+}
+
+void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     EditRecipe recipe = current_recipe();
     try {
         recipe.request = edit::validated(recipe.request);
@@ -263,39 +205,48 @@ void Application::edit() {
     std::vector<std::uint8_t> label;
     if (label_drives_edit()) label = *document_.state().labels[static_cast<std::size_t>(document_.state().active_label)].bits;
     live_ = std::make_shared<LiveEdit>();
-    live_->wants_gate = model_.model_settings.gate;
+    live_->wants_gate = model_.model_settings.gate && !start;
+    describe(*live_, recipe);
+    live_->snapshots = snapshots_;
+    live_->losses = model_.losses;
+    live_->start = std::move(start);
     live_seen_ = 0;
-    snapshots_.clear();
-    model_.losses.clear();
-    model_.gate = {};
-    model_.snapshots.clear();
+    if (!live_->start) model_.gate = {};
+    list_snapshots();
     model_.shown_snapshot = -1;
+    snapshot_base_ = document_.state().current;
     auto pending = std::make_shared<PendingResult>();
-    auto work = [search, recipe, label, pending, live = live_, scene = working_scene(),
+    auto work = [search, recipe, label, pending, live = live_, tuned = known_tuning(recipe), scene = working_scene(),
                  views = document_.state().views](const JobControl& control) {
-        control.report("loading the model", 0, 0);
-        if (!search->model) search->model = load_recipe_model(recipe.job);
+        load(*search, recipe.job, control);
         if (search->job) {
             search->job->set_control(control);
+            search->job->take_settings(recipe, label.empty());
+            if (!search->job->found() && !label.empty()) search->job->use_label(label);
         } else {
-            search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model}, control);
-            try {
-                search->job->locate();
-                search->attention = splat_attention(*search->job);
-            } catch (const Error& error) {
-                if (error.code() == ErrorCode::Cancelled || label.empty()) throw;
-                log::info("the words were not found ({}); the label alone says what may change", error.message());
-                search->job->use_label_alone();
-            }
+            search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, label, {}, tuned}, control);
+            look(*search);
         }
-        search->job->set_loop_settings(recipe.request);
+        const double idea = search->job->times().seconds("gate");
         run_live(search->job, label, search->attention, *live);
+        if (live->wants_gate) search->measured.idea = search->job->times().seconds("gate") - idea;
+        measure_loop(search->measured, *search->job, LeastSteps);
+        const auto finishing = std::chrono::steady_clock::now();
         fill_pending(*search->job, *pending);
+        search->measured.finish = seconds_since(finishing);
+        if (const auto& shortage = search->job->result().shortage)
+            throw Error(ErrorCode::Foreign, shortage->message() + "; what the edit had reached can be applied",
+                        shortage->hint());
+        if (const auto& failure = search->job->result().failure)
+            throw Error(failure->code(), failure->message() + "; what the edit had reached can be applied", failure->hint());
     };
-    auto done = [this, search, pending, model = model_path_](const Error* error) {
+    auto done = [this, search, pending, recipe_key = measured_key(), model = model_path_](const Error* error) {
         if (search->model) text_model_ = search->model, text_model_path_ = model;
+        else if (error != nullptr && error->code() != ErrorCode::Cancelled) drop_model(model, *error);
+        remember_measured(recipe_key, search->measured);
         refresh_live();   // what was found last, and the last steps
-        if (error == nullptr && pending->set.size() > 0) pending_ = std::move(*pending);
+        if (branch_) return go_on_from_branch();
+        if (pending->set.size() > 0) pending_ = std::move(*pending);   // also what a shortage or a failure left
         finish_edit(error);
     };
     work_.start({fmt::format("Edit: {}", recipe.request.prompt), work, done, true});
@@ -305,6 +256,10 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
               const std::vector<float>& attention, LiveEdit& live) {
     const bool adds = job->located().mode == edit::EditMode::Add;
     if (!adds && !label.empty() && label != *job->located().label.bits) job->correct_label(label);
+    {
+        const std::lock_guard lock(live.mutex);
+        live.adds = adds;
+    }
     if (!attention.empty()) {   // from here on the loop leaves alone what the search found: it can be read
         const std::lock_guard lock(live.mutex);
         live.found = job;
@@ -312,11 +267,15 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
         live.relabel = label.empty();
         ++live.version;
     }
+    edit::require_found(job->located());
     if (live.wants_gate) show_gate(*job, live);
     EditObserver observer;
+    observer.start = live.start;
     observer.snapshot_seconds = SnapshotSeconds;
     observer.snapshot = [&live](edit::EditSnapshot snapshot) {
+        SnapshotSet newest{snapshot.rows, snapshot.materialise()};   // here, so that the window need not
         const std::lock_guard lock(live.mutex);
+        live.newest = std::move(newest);
         live.snapshots.push_back(std::move(snapshot));
         if (live.snapshots.size() > MostSnapshots)   // every second of the older half goes
             for (std::size_t i = 0; i < live.snapshots.size() / 2; ++i)
@@ -354,36 +313,32 @@ void fill_pending(EditJob& job, PendingResult& pending) {
     pending.name = job.recipe().request.prompt;
     pending.target = job.recipe().request.target;
     pending.adds = job.located().mode == edit::EditMode::Add;
-    pending.recipe = recipe_to_json(job.recipe()).dump();
-    pending.seconds = report["seconds"]["edit"].get<double>();
+    pending.recipe = json_text(recipe_to_json(job.recipe()), -1);
+    for (const auto& [stage, seconds] : result.seconds) pending.seconds += seconds;
     pending.psnr_outside_db = report["psnr_outside_db"].get<double>();
     pending.changed_outside_label = result.changed_outside_label;
     constexpr int thumbnail_px = 96;
     const Camera camera = orbit_camera(job.film_orbit(), 0.35, thumbnail_px, thumbnail_px);
-    pending.thumbnail = std::make_shared<const Image>(job.painter().paint(result.set.spans(), camera, job.plan().settings).colour);
+    pending.thumbnail = std::make_shared<const Image>(job.painter().paint(job.drawn_result().spans(), camera, job.plan().settings).colour);
 }
 
 void Application::finish_edit(const Error* error) {
     ++content_;
-    if (error != nullptr && error->code() != ErrorCode::Cancelled) report_error(*error);
+    const bool said = job_ && !job_->found();   // with its evidence
+    if (error != nullptr && error->code() != ErrorCode::Cancelled && !said) report_error(*error);
     if (!pending_) return;
-    const auto iterations = model_.losses.empty() ? 1.0 : static_cast<double>(model_.losses.back().iteration + 1);
-    seconds_per_iteration_ = pending_->seconds / iterations;
-    save_settings();
     toast(fmt::format("Outside the label {} splats changed, PSNR {:.1f} dB. Apply keeps the edit.",
                       pending_->changed_outside_label, pending_->psnr_outside_db));
 }
 
 void Application::apply_result() {
     if (!pending_) return;
+    const auto& before = document_.state();
+    if (!before.current.shares_all_with(pending_->before))
+        return toast("The scene was changed since: undo that to apply the edit, or discard the edit.", true);
     const PendingResult result = std::move(*pending_);
     pending_.reset();
     ++content_;
-    const auto& before = document_.state();
-    if (!before.current.shares_all_with(result.before)) {
-        toast("The scene was changed since; the edit does not fit it any more.", true);
-        return;
-    }
     EditNode node;
     node.id = next_edit_id_++;
     node.name = result.name;
@@ -409,6 +364,7 @@ void Application::apply_result() {
         label = combine(std::move(label), added, LabelOperation::Add);
     }
     document_.apply(fmt::format("Edit: {}", result.name), std::move(state));
+    model_.request.target.clear();   // it is done: the next sentence has news of its own
     model_.view.tint_labels = false;   // what was made is to be seen, not where
 }
 
@@ -421,40 +377,47 @@ void Application::pause(bool paused) { work_.pause(paused); }
 
 void Application::cancel() { work_.cancel(); }
 
-void Application::show_snapshot(int index) {
-    const int last = static_cast<int>(snapshots_.size()) - 1;
-    model_.shown_snapshot = index >= last || index < 0 ? -1 : index;
-    ++content_;
+std::string Application::measured_key() const {
+    return fmt::format("{} at {} px", model_in_use(), model_.request.image_size);
 }
 
-void Application::branch_from_snapshot(int index) {
-    if (work_.running() || !pending_ || snapshots_.empty()) {
-        if (work_.running()) toast("Cancel the edit first; then an earlier state can be taken.");
-        return;
-    }
-    const auto at = index < 0 ? snapshots_.size() - 1 : std::min(static_cast<std::size_t>(index), snapshots_.size() - 1);
-    const auto& snapshot = snapshots_[at];
-    pending_->set = *snapshot.set;
-    pending_->base_to_new = snapshot.base_to_new;
-    pending_->name = fmt::format("{} (iteration {})", model_.request.prompt, snapshot.iteration);
-    model_.shown_snapshot = -1;
-    ++content_;
-    toast(fmt::format("The state of iteration {} is the result now. Apply keeps it.", snapshot.iteration));
+Measured Application::measured_now() const {
+    const auto found = measured_.find(measured_key());
+    return found == measured_.end() ? Measured{} : found->second;
+}
+
+void Application::remember_measured(const std::string& key, const Measured& measured) {
+    Measured& known = measured_[key];
+    nlohmann::ordered_json news = fields_to_json(measured);
+    if (measured.raster < 0) news.erase("rows");
+    for (auto entry = news.begin(); entry != news.end();) entry = *entry < 0 ? news.erase(entry) : std::next(entry);
+    fields_from_json(known, news);
+    save_settings();
 }
 
 void Application::refresh_estimate() {
-    const auto& request = model_.request;
-    const double pixels = std::pow(request.image_size / 96.0, 2);
-    const double per_iteration = seconds_per_iteration_ > 0 ? seconds_per_iteration_ : FirstSecondsPerIteration * pixels;
-    const double per_view = seconds_per_view_ > 0 ? seconds_per_view_ : FirstSecondsPerView * pixels;
-    const double learning = model_.model_settings.learn_scene ? SecondsPerTuningStep * model_.model_settings.learn_steps : 0;
-    model_.estimate.seconds =
-        (job_fits() ? 0 : per_view * request.views + learning) + per_iteration * request.iterations;
+    PlannedWork work;
+    work.loaded = text_model_ != nullptr && text_model_path_ == model_path_;
+    work.located = job_fits();
+    work.automatic_views = document_.state().views.empty();
+    work.shows_idea = model_.model_settings.gate;
+    const bool learns = model_.model_settings.learn_scene && !work.located && !known_tuning(current_recipe());
+    work.tune_steps = learns ? model_.model_settings.learn_steps : 0;
+    work.rows = document_.state().current.size();
+    try {
+        work.adds = edit::decide_mode(edit::validated(model_.request), std::nullopt).first == edit::EditMode::Add;
+    } catch (const Error&) {   // not a sentence yet
+    }
+    model_.estimate.seconds = estimated_seconds(measured_now(), model_.request, work);
     const double scene_mb = static_cast<double>(document_.state().current.byte_size()) / 1e6;
-    // Working set, gradients, two moments and anchors of the labelled rows, and the snapshots that are kept.
-    model_.estimate.memory_mb = current_rss_mb() + (text_model_ ? 0 : NetworkMb) + 6 * scene_mb +
-                                static_cast<double>(MostSnapshots) * scene_mb * 0.25;
-    model_.estimate.memory_free_mb = free_memory_mb();
+    const double share = model_.labelled > 0 && work.rows > 0
+                             ? static_cast<double>(model_.labelled) / static_cast<double>(work.rows)
+                             : LikelyLabel;
+    // Working set, gradients, two moments and anchors of the labelled rows, and the snapshots that are kept: of the label's
+    // rows, and two put together (the newest and the one that is looked at).
+    model_.estimate.memory_mb = current_rss_mb() + (text_model_ ? 0 : NetworkMb) + (6 + 2) * scene_mb +
+                                static_cast<double>(MostSnapshots) * scene_mb * share;
+    model_.estimate.memory_free_mb = static_cast<double>(free_memory()) / (1 << 20);
 }
 
 }  // namespace gse::app

@@ -3,6 +3,7 @@
 #include "app/bench_preview.h"
 
 #include "app/bench_moving.h"
+#include "app/engine_names.h"
 
 #include <sys/resource.h>
 
@@ -13,11 +14,12 @@
 #include <memory>
 #include <optional>
 
-#include "app/scene_tools.h"
+#include "engine/pipeline/scene_tools.h"
 #include "engine/preview/resolve.h"
 #include "engine/preview/splat_renderer.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/vulkan/device.h"
+#include "engine/base/process_memory.h"
 
 namespace gse::app {
 namespace {
@@ -36,12 +38,6 @@ double cpu_ms() {
 double wall_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
         .count();
-}
-
-double peak_rss_mb() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
 double median(std::vector<double> values) {
@@ -155,21 +151,21 @@ preview::FrameRequest frame_request(const Camera& camera) {
     return request;
 }
 
-Json bench_vulkan(const Scene& scene, const PreviewBenchOptions& options, const std::vector<View>& views,
+Json bench_vulkan(const Scene& scene, const PreviewBenchOptions& options, const std::vector<Camera>& views,
                   Painter& painter, std::optional<Image>& first_light) {
     VulkanBench bench(scene, options.validation);
-    bench.draw(frame_request(views.back().camera));
+    bench.draw(frame_request(views.back()));
     Times times;
     Error2 worst{1e9, 0};
     for (const auto& view : views) {
         bench.renderer().invalidate();
-        times.measure([&] { bench.draw(frame_request(view.camera)); });
+        times.measure([&] { bench.draw(frame_request(view)); });
         bench.note_frame();
     }
     for (const auto& view : views) {
-        const Image light = bench.renderer().draw_light(frame_request(view.camera));
+        const Image light = bench.renderer().draw_light(frame_request(view));
         if (!first_light) first_light = light;
-        const auto error = difference(light, painter.paint(scene.gaussians.spans(), view.camera, {}).colour);
+        const auto error = difference(light, painter.paint(scene.gaussians.spans(), view, {}).colour);
         worst = {std::min(worst.psnr_db, error.psnr_db), std::max(worst.max_abs, error.max_abs)};
     }
     Json json = bench.json(times);
@@ -177,7 +173,7 @@ Json bench_vulkan(const Scene& scene, const PreviewBenchOptions& options, const 
     return json;
 }
 
-Json bench_native(const Scene& scene, const std::vector<View>& views, Painter& painter) {
+Json bench_native(const Scene& scene, const std::vector<Camera>& views, Painter& painter) {
     Times times;
     std::vector<std::uint8_t> rgba;
     const preview::Display display;
@@ -185,8 +181,8 @@ Json bench_native(const Scene& scene, const std::vector<View>& views, Painter& p
         const auto& output = painter.paint(scene.gaussians.spans(), camera, {});
         preview::resolve({&output.colour, &output.alpha}, display, 1, painter.pool(), rgba);
     };
-    draw(views.back().camera);
-    for (const auto& view : views) times.measure([&] { draw(view.camera); });
+    draw(views.back());
+    for (const auto& view : views) times.measure([&] { draw(view); });
     Json json = times.json();
     json["kernels"] = painter.rasterizer().name();
     return json;
@@ -195,7 +191,10 @@ Json bench_native(const Scene& scene, const std::vector<View>& views, Painter& p
 }  // namespace
 
 Json bench_preview(const Scene& scene, const PreviewBenchOptions& options) {
-    const auto views = orbit_views(scene_orbit(scene, {}), options.frames, options.width, options.height);
+    auto views = options.cameras;
+    if (views.empty())
+        for (const auto& view : orbit_views(scene_orbit(scene, {}), options.frames, options.width, options.height))
+            views.push_back(view.camera);
     Json json;
     json["splats"] = scene.gaussians.size();
     json["sh_degree"] = scene.gaussians.sh_degree();
@@ -208,16 +207,16 @@ Json bench_preview(const Scene& scene, const PreviewBenchOptions& options) {
         json["vulkan"] = bench_vulkan(scene, options, views, painter, vulkan_light);
     if (options.backend != "vulkan") {
         json["native"] = bench_native(scene, views, painter);
-        json["native"]["moving"] = bench_moving(scene, options.width, options.height);
+        if (options.moving) json["native"]["moving"] = bench_moving(scene, options.width, options.height);
     }
     if (options.compare_plain) {
         raster::ForwardOutput truth;
-        raster::make_plain_rasterizer()->forward(scene.gaussians.spans(), views[0].camera, {}, truth);
+        raster::make_plain_rasterizer()->forward(scene.gaussians.spans(), views[0], {}, truth);
         if (vulkan_light)
             json["vulkan"]["against_double"] = error_json(difference(*vulkan_light, truth.colour));
         if (json.contains("native"))
             json["native"]["against_double"] = error_json(
-                difference(painter.paint(scene.gaussians.spans(), views[0].camera, {}).colour, truth.colour));
+                difference(painter.paint(scene.gaussians.spans(), views[0], {}).colour, truth.colour));
     }
     json["peak_rss_mb"] = peak_rss_mb();
     return json;

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "engine/scene/scene.h"
 
@@ -14,6 +15,8 @@ struct PreviewBenchOptions {
     int frames = 16;            // one turn
     bool compare_plain = true;  // the first frame against the double version; takes seconds on large scenes
     bool validation = false;
+    bool moving = true;           // also the native preview's pictures a second while the camera moves
+    std::vector<Camera> cameras;  // at this size; an orbit fitted to the scene when empty
 };
 
 /// Draws an orbit frame by frame, each from nothing (no frame is skipped), after one frame to warm up. Times

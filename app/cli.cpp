@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <memory>
 
 #include "app/process.h"
-#include "app/progress_bar.h"
 #include "engine/base/log.h"
+#include "engine/base/printable.h"
+#include "engine/base/progress_bar.h"
 
 #ifndef GSE_VERSION
 #define GSE_VERSION "unknown"
@@ -21,6 +24,20 @@ std::string option_name(const std::string& field) {
     std::replace(name.begin(), name.end(), '_', '-');
     std::replace(name.begin(), name.end(), '.', '-');
     return name;
+}
+
+void require_finite_numbers(CLI::App& command) {
+    const CLI::Validator finite(
+        [](std::string& text) {
+            char* end = nullptr;
+            const double value = std::strtod(text.c_str(), &end);
+            return std::isfinite(value) ? std::string() : printable(text) + " is not a finite number";
+        },
+        "");
+    for (auto* option : command.get_options(
+             [](const CLI::Option* candidate) { return candidate->get_type_name().starts_with("FLOAT"); }))
+        option->check(finite);
+    for (auto* below : command.get_subcommands({})) require_finite_numbers(*below);
 }
 
 JobControl CommandContext::job() const {
@@ -48,7 +65,10 @@ int run_command_line(int argc, char** argv) {
     add_training_command(app, context);
     add_bench_command(app, context);
     add_eval_command(app, context);
-    for (auto* command : app.get_subcommands({})) command->fallthrough();
+    for (auto* command : app.get_subcommands({})) {
+        command->fallthrough();
+        require_finite_numbers(*command);
+    }
     app.parse_complete_callback([&] {
         if (context.quiet) log::set_level(log::Level::Warning);
     });

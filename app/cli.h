@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <set>
 #include <string>
 #include <type_traits>
 
@@ -17,20 +18,35 @@ int run_command_line(int argc, char** argv);
 /// "guidance_scale" -> "--guidance-scale".
 std::string option_name(const std::string& field);
 
-/// One option per field, with the field's help, range and default.
+/// Gives every option of the command that takes a number with a fraction the check that it is finite: a range alone lets
+/// NaN pass. Called once for all commands.
+void require_finite_numbers(CLI::App& command);
+
+/// The option of one field: its help, default and range; a flag gets its opposite too.
+template <class Value, class... Ranges>
+CLI::Option* add_field_option(CLI::App& command, const std::string& option, Value& value, const char* help,
+                              const Ranges&... range) {
+    if constexpr (std::is_same_v<Value, bool>) return command.add_flag(option + ",!--no-" + option.substr(2), value, help);
+    CLI::Option* added = command.add_option(option, value, help)->capture_default_str();
+    if constexpr (std::is_arithmetic_v<Value>) (added->check(CLI::Range(range.low, range.high)), ...);
+    return added;
+}
+
+/// One option per field; a prefix ("--dreambooth-") where the names are those of other settings too.
 template <class P>
-void bind_fields(CLI::App& command, P& parameters, const std::string& group) {
-    P::visit_fields(parameters, [&](const char* name, auto& value, const char* help, auto... range) {
-        using Value = std::remove_reference_t<decltype(value)>;
-        const std::string option = option_name(name);
-        CLI::Option* added = nullptr;
-        if constexpr (std::is_same_v<Value, bool>)
-            added = command.add_flag(option + ",!--no-" + option.substr(2), value, help);
-        else
-            added = command.add_option(option, value, help)->capture_default_str();
-        if constexpr (sizeof...(range) == 1 && std::is_arithmetic_v<Value>)
-            (added->check(CLI::Range(static_cast<double>(range.low), static_cast<double>(range.high))), ...);
-        added->group(group);
+void bind_fields(CLI::App& command, P& parameters, const std::string& group, const std::string& prefix = "--") {
+    P::visit_fields(parameters, [&](const char* name, auto& value, const char* help, const auto&... range) {
+        add_field_option(command, prefix + option_name(name).substr(2), value, help, range...)->group(group);
+    });
+}
+
+/// Adds the fields whose options stand on the command line, as "request.image_size".
+template <class P>
+void note_given(const CLI::App& command, const P& parameters, const std::string& part, std::set<std::string>& given,
+                const std::string& prefix = "--") {
+    P::visit_fields(parameters, [&](const char* name, const auto&, const char*, const auto&...) {
+        const auto* option = command.get_option_no_throw(prefix + option_name(name).substr(2));
+        if (option != nullptr && option->count() > 0) given.insert(part + "." + name);
     });
 }
 

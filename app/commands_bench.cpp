@@ -9,15 +9,18 @@
 #ifdef GSE_WINDOW
 #include "app/bench_preview.h"
 #endif
+#include "app/bench_speed.h"
 #include "app/cli.h"
-#include "app/clip_bench.h"
-#include "app/neural_loader.h"
-#include "app/scene_tools.h"
-#include "app/starter_bench.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/print.h"
+#include "engine/bench/clip_bench.h"
+#include "engine/bench/search_bench.h"
 #include "engine/io/cameras.h"
 #include "engine/io/scene_io.h"
+#include "engine/pipeline/neural_loader.h"
+#include "engine/pipeline/scene_tools.h"
 #include "engine/raster/bench.h"
 
 namespace gse::app {
@@ -87,7 +90,9 @@ void add_raster_bench(CLI::App& bench) {
     command->add_option("--repetitions", options->settings.repetitions, "Timed rounds")
         ->capture_default_str()
         ->check(CLI::Range(1, 10000));
-    command->add_option("--threads", options->settings.threads, "Threads; 0 = one per core")->capture_default_str();
+    command->add_option("--threads", options->settings.threads, "Threads; 0 = one per core")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 256));
     command->add_flag("--compare,!--no-compare", options->settings.compare_plain, "Measure the error against the plain version");
     command->add_option("--out", options->output, "Also write the JSON to this file");
     command->callback([options] {
@@ -95,35 +100,43 @@ void add_raster_bench(CLI::App& bench) {
         const auto json = bench_json(
             raster::bench_raster(scene.gaussians.spans(), bench_cameras(scene, *options), options->settings));
         if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
-        fmt::print("{}\n", json.dump(2));
+        print_json(json, 2);
     });
 }
 
-void add_starter_bench(CLI::App& bench, CommandContext& context) {
+/// "1280x720". Throws Error.
+void parse_size(const std::string& text, int& width, int& height) {
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 || width > 16384 || height > 16384)
+        throw Error(ErrorCode::InvalidArgument, "the size \"" + text + "\" is not understood", "write it like 1280x720");
+}
+
+void add_speed_bench(CLI::App& bench) {
     struct Options {
-        StarterBenchParameters parameters;
-        EditRecipe settings;
+        SpeedBenchOptions bench;
+        std::string raster_size = "512x512", preview_size = "1280x720";
         std::filesystem::path output;
     };
     auto options = std::make_shared<Options>();
-    auto* command = bench.add_subcommand("starter", "A model on held-out synthetic scenes: localization and edits");
-    command->add_option("--model", options->settings.job.model, "Model to measure; the starter when left out");
-    command->add_option("--threads", options->settings.job.threads, "Threads of the networks")->capture_default_str();
-    command->add_option("--out", options->output, "Also write the JSON to this file");
-    bind_fields(*command, options->parameters, "Cases");
-    options->settings.request.mode = "modify";
-    edit::EditRequest::visit_fields(options->settings.request, [&](const char* name, auto& value, const char* help, auto...) {
-        const std::string field = name;   // the words are the bench's own; its seed is that of the scenes
-        if (field == "source" || field == "prompt" || field == "target" || field == "mode" || field == "seed") return;
-        command->add_option(option_name(field), value, help)->capture_default_str()->group("Edit");
-    });
-    neural::SdsParameters::visit_fields(options->settings.guidance, [&](const char* name, auto& value, const char* help, auto...) {
-        command->add_option(option_name(name), value, help)->capture_default_str()->group("Guidance");
-    });
-    command->callback([options, &context] {
-        const auto json = run_starter_bench(options->parameters, options->settings, context.job());
-        if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
-        fmt::print("{}\n", json.dump(2));
+    auto* command = bench.add_subcommand("speed", "Rasterizer and preview on generated scenes: the README's table");
+    command->add_option("--splats", options->bench.splats, "Sizes of the scenes")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 20000000));
+    command->add_option("--seed", options->bench.seed, "Seed of the scenes")->capture_default_str();
+    command->add_option("--views", options->bench.views, "Cameras of the circle")->capture_default_str()->check(CLI::Range(1, 1000));
+    command->add_option("--repetitions", options->bench.repetitions, "Rounds over them, for the rasterizer")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 10000));
+    command->add_option("--size", options->raster_size, "The rasterizer's picture, WIDTHxHEIGHT")->capture_default_str();
+    command->add_option("--preview-size", options->preview_size, "The preview's picture, WIDTHxHEIGHT")->capture_default_str();
+    command->add_option("--scenes-out", options->bench.scenes_folder, "Also write the scenes and their cameras into this folder");
+    command->add_option("--out", options->output, "Also write the table to this file");
+    command->callback([options] {
+        parse_size(options->raster_size, options->bench.raster_width, options->bench.raster_height);
+        parse_size(options->preview_size, options->bench.preview_width, options->bench.preview_height);
+        const auto table = speed_table(options->bench);
+        if (!options->output.empty()) write_file(options->output, table);
+        fmt::print("{}", table);
     });
 }
 
@@ -147,7 +160,26 @@ void add_clip_bench(CLI::App& bench, CommandContext& context) {
                         "its folder needs a folder clip with config.json and model.safetensors");
         const auto json = bench_clip(*score, options->parameters, context.job());
         if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
-        fmt::print("{}\n", json.dump(2));
+        print_json(json, 2);
+    });
+}
+
+void add_search_bench(CLI::App& bench, CommandContext& context) {
+    struct Options {
+        SearchBenchParameters parameters;
+        EditRecipe settings;
+        std::filesystem::path output;
+    };
+    auto options = std::make_shared<Options>();
+    auto* command = bench.add_subcommand("search", "How sure searches are, for words a scene shows and words it does not show");
+    command->add_option("--model", options->settings.job.model, "Model to measure; the starter when left out");
+    command->add_option("--out", options->output, "Also write the JSON to this file");
+    bind_fields(*command, options->parameters, "Cases");
+    command->add_option("--views", options->settings.request.views, "Viewpoints of a search")->capture_default_str()->check(CLI::Range(3, 512));
+    command->callback([options, &context] {
+        const auto json = bench_search(options->parameters, options->settings, context.job());
+        if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
+        fmt::print("{}\n", json["summary"].dump(2));
     });
 }
 
@@ -170,13 +202,10 @@ void add_preview_bench(CLI::App& bench) {
     command->add_flag("--validation", options->bench.validation, "With Vulkan's validation layers (slow); counts messages");
     command->add_option("--out", options->output, "Also write the JSON to this file");
     command->callback([options] {
-        char rest = 0;
-        if (std::sscanf(options->size.c_str(), "%dx%d%c", &options->bench.width, &options->bench.height, &rest) != 2 ||
-            options->bench.width < 1 || options->bench.height < 1 || options->bench.width > 16384 || options->bench.height > 16384)
-            throw Error(ErrorCode::InvalidArgument, "the size \"" + options->size + "\" is not understood", "write it like 1280x720");
+        parse_size(options->size, options->bench.width, options->bench.height);
         const auto json = bench_preview(load_scene(options->scene), options->bench);
         if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
-        fmt::print("{}\n", json.dump(2));
+        print_json(json, 2);
     });
 }
 #endif
@@ -187,11 +216,12 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
     auto* bench = app.add_subcommand("bench", "Measure run time against error");
     bench->require_subcommand(1);
     add_raster_bench(*bench);
+    add_speed_bench(*bench);
 #ifdef GSE_WINDOW
     add_preview_bench(*bench);
 #endif
-    add_starter_bench(*bench, context);
     add_clip_bench(*bench, context);
+    add_search_bench(*bench, context);
 }
 
 }  // namespace gse::app

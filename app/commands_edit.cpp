@@ -7,13 +7,18 @@
 
 #include "app/cli.h"
 #include "app/dreambooth_options.h"
-#include "app/edit_job.h"
-#include "app/edit_output.h"
-#include "app/gate.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
+#include "engine/base/path_text.h"
+#include "engine/base/print.h"
+#include "engine/base/staged_folder.h"
 #include "engine/io/scene_io.h"
+#include "engine/pipeline/edit_job.h"
+#include "engine/pipeline/edit_output.h"
+#include "engine/pipeline/gate.h"
+#include "engine/pipeline/model_settings.h"
 
 namespace gse::app {
 namespace {
@@ -37,13 +42,13 @@ void add_options(CLI::App& command, const std::shared_ptr<EditOptions>& options)
     command.add_flag("--json", options->json, "Print the report as JSON");
     auto& job = options->recipe.job;
     command.add_option("scene", job.scene, "Scene file or folder");
-    JobParameters::visit_fields(job, [&](const char* name, auto& value, const char* help, auto... range) {
+    JobParameters::visit_fields(job, [&](const char* name, auto& value, const char* help, const auto&... range) {
         if (std::string(name) == "scene") return;
-        auto* option = command.add_option(option_name(name), value, help)->capture_default_str()->group("Files and machine");
-        if constexpr (sizeof...(range) == 1) (option->check(CLI::Range(range.low, range.high)), ...);
+        add_field_option(command, option_name(name), value, help, range...)->group("Files and machine");
     });
     bind_fields(command, options->recipe.request, "Edit");
     bind_fields(command, options->recipe.guidance, "Guidance (score distillation)");
+    bind_fields(command, options->recipe.attention, "Attention", "--attention-");
     add_dreambooth_options(command, options->recipe);
 }
 
@@ -79,6 +84,19 @@ void forget_sentence(EditRecipe& recipe) {
     recipe.request.target.clear();
     recipe.request.mode = "auto";
     recipe.guidance.before_prompt.clear();
+    for (const char* name : {"request.target", "request.mode", "guidance.before_prompt"}) recipe.given.erase(name);
+}
+
+/// Takes over what the model states and neither the recipe's file nor the command line does.
+void apply_model(EditOptions& options) {
+    auto& recipe = options.recipe;
+    auto given = recipe.given;
+    note_given(*options.command, recipe.job, "job", given);
+    note_given(*options.command, recipe.request, "request", given);
+    note_given(*options.command, recipe.guidance, "guidance", given);
+    note_given(*options.command, recipe.attention, "attention", given, "--attention-");
+    note_given(*options.command, recipe.dreambooth, "dreambooth", given, "--dreambooth-");
+    apply_profile(profile_of(recipe.job), recipe, given);
 }
 
 /// Reads the recipe of --recipe or --demo, or checks that a scene was named.
@@ -95,27 +113,81 @@ void complete(EditOptions& options) {
         throw Error(ErrorCode::InvalidArgument, "no scene is named", "give a scene file, --recipe or --demo");
     if (options.output.empty())
         options.output = std::filesystem::path("out") / (options.demo ? "demo" : std::filesystem::path(options.recipe.job.scene).stem());
+    apply_model(options);
     options.recipe.request = edit::validated(options.recipe.request);
+}
+
+/// Results beside their own scene would replace it, or be taken for it the next time.
+void refuse_own_folder(const std::filesystem::path& scene, const std::filesystem::path& output) {
+    std::error_code ignored;
+    const auto folder = std::filesystem::absolute(scene, ignored).lexically_normal().parent_path();
+    const auto real_folder = std::filesystem::canonical(scene, ignored).parent_path();
+    for (const auto& place : {scene, folder, real_folder})
+        if (std::filesystem::equivalent(place, output, ignored))
+            throw Error(ErrorCode::InvalidArgument, "--out is the folder of the scene itself, which the results would replace",
+                        "choose another folder", output);
+}
+
+/// Two scenes, pictures of about one raw picture per view together, a film of a tenth of its pixels.
+std::uint64_t bytes_of_results(const EditJob& job) {
+    const auto& recipe = job.recipe();
+    const auto pixels = [](int side) { return static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side) * 3; };
+    return 2 * job.scene().gaussians.byte_size() + job.views().size() * pixels(recipe.request.image_size) +
+           static_cast<std::uint64_t>(recipe.job.turntable_frames) * pixels(recipe.job.turntable_size) / 10;
 }
 
 void print_summary(const nlohmann::ordered_json& report, const std::filesystem::path& output) {
     const auto text = std::filesystem::absolute(output).lexically_normal().string();
-    fmt::print("{} splats, {} labelled, {} added, {} removed; outside the label {} changed (PSNR {:.1f} dB)\n",
+    print("{} splats, {} labelled, {} added, {} removed; outside the label {} changed (PSNR {:.1f} dB)\n",
                report["splats"].get<std::size_t>(), report["labelled"].get<long>(), report["added"].get<long>(),
                report["removed"].get<long>(), report["changed_outside_label"].get<std::size_t>(),
                report["psnr_outside_db"].get<double>());
-    fmt::print("{:.1f} s, {:.0f} MB at most\n", report["seconds"]["total"].get<double>(),
+    print("{}\n", report["confidence_text"].get<std::string>());
+    print("{:.1f} s, {:.0f} MB at most\n", report["seconds"]["total"].get<double>(),
                report["peak_rss_mb"].get<double>());
-    fmt::print("edited scene   {}/scene.ply\nbefore, labels {}/source.ply\nfilm           {}/before_after.mp4\n"
+    print("edited scene   {}/scene.ply\nbefore, labels {}/source.ply\nfilm           {}/before_after.mp4\n"
                "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
                text, text, text, text, text, text, text);
 }
 
+nlohmann::ordered_json locate_report(EditJob& job) {
+    nlohmann::ordered_json report;
+    report["splats"] = job.scene().gaussians.size();
+    report["labelled"] = std::count(job.located().label.bits->begin(), job.located().label.bits->end(), std::uint8_t{1});
+    report["new"] = job.located().seeds.size();
+    add_search(report, job);
+    report["seconds"] = job.times().to_json();
+    return report;
+}
+
+/// Ends an edit whose words were not found. What the search saw goes beside the place of the results, which may hold earlier
+/// ones.
+void require_search(EditJob& job, const std::filesystem::path& output) {
+    if (job.found()) return;
+    const std::filesystem::path place = std::filesystem::absolute(output).lexically_normal().string() + ".search";
+    try {
+        StagedFolder folder(place, {"report.json", {"report.json", "evidence"}});
+        write_evidence(folder.path() / "evidence", job.located(), job.views());
+        auto report = locate_report(job);
+        report["files"] = folder.listing();
+        write_file(folder.path() / "report.json", json_text(report, 2) + "\n");
+        folder.commit();
+    } catch (const Error& failure) {   // what was looked for was not found all the same
+        log::warning("{}", failure.what());
+        throw Error(ErrorCode::NotFound, job.located().message, job.located().remedy);
+    }
+    throw Error(ErrorCode::NotFound, job.located().message, job.located().remedy + "; what the views showed is in", place);
+}
+
 void run_edit_command(EditOptions& options, const CommandContext& context) {
     complete(options);
-    StagedFolder folder(options.output);
+    refuse_own_folder(options.recipe.job.scene, options.output);
+    StagedFolder folder(options.output, {"report.json", {"scene.ply", "source.ply", "recipe.json", "report.json", "evidence",
+                                                         "before_after.mp4", "before_after.png", "lora.safetensors"}});
     EditJob job(options.recipe, context.job());
+    folder.require_space(bytes_of_results(job));
     job.locate();
+    require_search(job, options.output);
     std::optional<Gate> gate;
     if (options.gate) gate = look_through_gate(job);
     job.run();
@@ -123,49 +195,57 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
     Scene edited = job.scene();
     edited.gaussians = job.result().set;
     edited.labels = {};
+    folder.keep_on_failure();
     save_scene(folder.path() / "scene.ply", edited, {.format = "ply"});
+    write_file(folder.path() / "recipe.json", json_text(recipe_to_json(job.recipe()), 2) + "\n");
     write_labelled_source(folder.path() / "source.ply", job);
     write_evidence(folder.path() / "evidence", job.located(), job.views());
     write_before_after(folder.path(), job);
     job.times().end();
     auto report = make_report(job);
     add_optional_parts(report, folder.path(), job, gate);
-    write_file(folder.path() / "report.json", report.dump(1) + "\n");
-    write_file(folder.path() / "recipe.json", recipe_to_json(job.recipe()).dump(2) + "\n");
+    report["files"] = folder.listing();
+    write_file(folder.path() / "report.json", json_text(report, 1) + "\n");
     folder.commit();
-    if (options.json) fmt::print("{}\n", report.dump(2));
+    if (options.json) print_json(report, 2);
     else print_summary(report, options.output);
+    const auto ended_by = [&](const Error& reason, ErrorCode code) {
+        return Error(code,
+                     fmt::format("{}; the edit ended after {} of {} iterations, and what it had reached is saved",
+                                 reason.message(), job.result().iterations, job.recipe().request.iterations),
+                     reason.hint(), options.output);
+    };
+    if (const auto& shortage = job.result().shortage) throw ended_by(*shortage, ErrorCode::Foreign);
+    if (const auto& failure = job.result().failure) throw ended_by(*failure, failure->code());
     if (job.result().stopped)
         throw Error(ErrorCode::Cancelled, "the edit was stopped; what it had reached is saved", "", options.output);
 }
 
 void run_locate_command(EditOptions& options, const CommandContext& context) {
     complete(options);
-    StagedFolder folder(options.output);
+    refuse_own_folder(options.recipe.job.scene, options.output);
+    if (std::filesystem::exists(options.output / "scene.ply"))
+        throw Error(ErrorCode::Unwritable, "the folder holds an edited scene, which what is found now would not belong to",
+                    "choose another place with --out", options.output);
+    StagedFolder folder(options.output, {"report.json", {"source.ply", "recipe.json", "report.json", "evidence"}});
     EditJob job(options.recipe, context.job());
     job.locate();
     write_labelled_source(folder.path() / "source.ply", job);
     write_evidence(folder.path() / "evidence", job.located(), job.views());
-    nlohmann::ordered_json report;
-    report["splats"] = job.scene().gaussians.size();
-    report["labelled"] = std::count(job.located().label.bits->begin(), job.located().label.bits->end(), std::uint8_t{1});
-    report["new"] = job.located().seeds.size();
-    report["mode"] = job.located().mode == edit::EditMode::Add ? "add" : "modify";
-    report["mode_reason"] = job.located().reason;
-    report["word"] = job.located().word;
-    report["views"] = job.views().size();
-    report["failed_views"] = job.located().failed_views;
-    report["seconds"] = job.times().to_json();
+    auto report = locate_report(job);
+    report["nonfinite_before"] = job.unusable();
     add_optional_parts(report, folder.path(), job, std::nullopt);
-    write_file(folder.path() / "report.json", report.dump(2) + "\n");
-    write_file(folder.path() / "recipe.json", recipe_to_json(job.recipe()).dump(2) + "\n");
+    write_file(folder.path() / "recipe.json", json_text(recipe_to_json(job.recipe()), 2) + "\n");
+    report["files"] = folder.listing();
+    write_file(folder.path() / "report.json", json_text(report, 2) + "\n");
     folder.commit();
-    if (options.json) fmt::print("{}\n", report.dump(2));
+    if (options.json) print_json(report, 2);
     else
-        fmt::print("{} of {} splats labelled for \"{}\" ({} mode), {} new\nlabels   {}/source.ply\nevidence {}/evidence/\n",
-                   report["labelled"].get<long>(), report["splats"].get<std::size_t>(),
+        print("{}\n{} of {} splats labelled for \"{}\" ({} mode), {} new\nlabels   {}/source.ply\nevidence {}/evidence/\n",
+                   edit::confidence_text(job.located().confidence), report["labelled"].get<long>(), report["splats"].get<std::size_t>(),
                    report["word"].get<std::string>(), report["mode"].get<std::string>(),
                    report["new"].get<std::size_t>(), options.output.string(), options.output.string());
+    edit::require_found(job.located());
 }
 
 }  // namespace

@@ -5,11 +5,15 @@
 
 #include "app/cli.h"
 #include "app/dreambooth_options.h"
-#include "app/edit_output.h"
-#include "app/eval_run.h"
-#include "app/eval_summary.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/path_text.h"
+#include "engine/base/staged_folder.h"
+#include "engine/bench/eval_run.h"
+#include "engine/bench/eval_summary.h"
+#include "engine/pipeline/edit_output.h"
+#include "engine/pipeline/model_settings.h"
 
 namespace gse::app {
 namespace {
@@ -35,34 +39,36 @@ void add_settings(CLI::App& command, EditRecipe& settings) {
         ->capture_default_str()
         ->check(CLI::Range(1, 256));
     const auto bind = [&](const std::string& group) {
-        return [&command, group](const char* name, auto& value, const char* help, auto... range) {
+        return [&command, group](const char* name, auto& value, const char* help, const auto&... range) {
             if (group == "Edit" && !is_asked_for(name)) return;
-            using Value = std::remove_reference_t<decltype(value)>;
-            const std::string option = option_name(name);
-            CLI::Option* added = nullptr;
-            if constexpr (std::is_same_v<Value, bool>)
-                added = command.add_flag(option + ",!--no-" + option.substr(2), value, help);
-            else
-                added = command.add_option(option, value, help)->capture_default_str();
-            if constexpr (sizeof...(range) == 1 && std::is_arithmetic_v<Value>)
-                (added->check(CLI::Range(static_cast<double>(range.low), static_cast<double>(range.high))),
-                 ...);
-            added->group(group);
+            add_field_option(command, option_name(name), value, help, range...)->group(group);
         };
     };
     edit::EditRequest::visit_fields(settings.request, bind("Edit"));
     neural::SdsParameters::visit_fields(settings.guidance, bind("Guidance (score distillation)"));
 }
 
+/// What the command line does not say is as the model states.
+void apply_model(const CLI::App& command, EditRecipe& settings) {
+    std::set<std::string> given;
+    note_given(command, settings.job, "job", given);
+    note_given(command, settings.request, "request", given);
+    note_given(command, settings.guidance, "guidance", given);
+    note_given(command, settings.dreambooth, "dreambooth", given, "--dreambooth-");
+    apply_profile(profile_of(settings.job), settings, given);
+}
+
 void run_eval_command(EvalOptions& options, const CommandContext& context) {
-    StagedFolder folder(options.output);
-    const auto report = run_eval(options.run, folder.path(), context.job());
+    StagedFolder folder(options.output, {"eval.json", {"eval.json", "eval.txt"}});
+    folder.keep_on_failure();  // from the first sheet on
+    auto report = run_eval(options.run, folder.path(), context.job());
     const auto table = eval_table(report);
-    write_file(folder.path() / "eval.json", report.dump(1) + "\n");
     write_file(folder.path() / "eval.txt", table);
+    report["files"] = folder.listing();
+    write_file(folder.path() / "eval.json", json_text(report, 1) + "\n");
     folder.commit();
     if (options.json)
-        fmt::print("{}\n", report.dump(1));
+        fmt::print("{}\n", json_text(report, 1));
     else
         fmt::print("{}\nfigures {}/eval.json\n", table,
                    std::filesystem::absolute(options.output).lexically_normal().string());
@@ -83,14 +89,12 @@ void add_eval_command(CLI::App& app, CommandContext& context) {
     command->add_option("--scenes", options->run.scenes,
                         "Real scenes to edit: PATH or PATH:source:sentence:target");
     bind_fields(*command, options->run.parameters, "Suite");
-    // A size at which 24 edits take minutes on two cores.
-    auto& request = options->run.settings.request;
-    request.views = 12;
-    request.image_size = 64;
-    request.iterations = 150;
     add_settings(*command, options->run.settings);
     add_dreambooth_options(*command, options->run.settings);   // of real scenes: the suite's are of the model's own world
-    command->callback([options, &context] { run_eval_command(*options, context); });
+    command->callback([options, command, &context] {
+        apply_model(*command, options->run.settings);
+        run_eval_command(*options, context);
+    });
 }
 
 }  // namespace gse::app

@@ -6,6 +6,9 @@
 
 #include "app/cli.h"
 #include "engine/base/error.h"
+#include "engine/base/json.h"
+#include "engine/base/path_text.h"
+#include "engine/base/print.h"
 #include "engine/io/project_file.h"
 #include "engine/io/scene_io.h"
 
@@ -15,11 +18,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json edit_json(const EditNode& edit) {
-    Json recipe = Json::parse(edit.recipe, nullptr, false);
+    Json recipe = try_parse_json<Json>(edit.recipe);
     if (recipe.is_discarded()) recipe = edit.recipe;
     return {{"id", edit.id},
             {"name", edit.name},
             {"enabled", edit.enabled},
+            {"strength", edit.strength},
             {"seconds", edit.seconds},
             {"psnr_outside_db", edit.psnr_outside_db},
             {"changed_outside_label", edit.changed_outside_label},
@@ -28,9 +32,9 @@ Json edit_json(const EditNode& edit) {
 
 Json summary_json(const ProjectSummary& summary, const std::filesystem::path& path) {
     Json json;
-    json["file"] = path.string();
+    json["file"] = text_of_path(path.string());
     json["program"] = summary.program;
-    json["scene"] = summary.scene.string();
+    json["scene"] = text_of_path(summary.scene.string());
     json["scene_found"] = summary.scene_found;
     json["splats"] = summary.splats;
     json["edits"] = Json::array();
@@ -44,16 +48,16 @@ Json summary_json(const ProjectSummary& summary, const std::filesystem::path& pa
 }
 
 void print_summary(const ProjectSummary& summary, const std::filesystem::path& path) {
-    fmt::print("{}\n", path.string());
-    fmt::print("  scene         {}{}\n",
+    print("{}\n", path.string());
+    print("  scene         {}{}\n",
                summary.scene.empty() ? "inside the project" : summary.scene.string(),
                summary.scene_found ? "" : " (not there)");
-    fmt::print("  splats        {}\n", summary.splats);
-    fmt::print("  views         {}\n", summary.views.size());
+    print("  splats        {}\n", summary.splats);
+    print("  views         {}\n", summary.views.size());
     for (const EditNode& edit : summary.stack)
-        fmt::print("  edit {:<9}{}{}\n", edit.id, edit.name, edit.enabled ? "" : " (off)");
+        print("  edit {:<9}{}{}\n", edit.id, edit.name, edit.enabled ? "" : " (off)");
     for (const NamedLabel& label : summary.labels)
-        fmt::print("  label         {} (threshold {:.3g})\n", label.name, label.threshold);
+        print("  label         {} (threshold {:.3g})\n", label.name, label.threshold);
 }
 
 const NamedLabel& find_label(const ProjectData& project, const std::string& name) {
@@ -83,8 +87,7 @@ std::size_t export_scene(const std::filesystem::path& project_path, const std::f
             chosen.bits};
         save.from_label = &columns;
     }
-    save_scene(output, scene, save);
-    return scene.gaussians.size();
+    return save_scene(output, scene, save).written;
 }
 
 struct ProjectOptions {
@@ -106,17 +109,19 @@ void add_project_command(CLI::App& app, CommandContext&) {
         ->needs(output);
     command->callback([options] {
         const ProjectSummary summary = read_project_summary(options->input);
+        std::error_code ignored;
+        if (!options->output.empty() && std::filesystem::equivalent(summary.scene, options->output, ignored))
+            throw Error(ErrorCode::InvalidArgument, "the output is the scene that the project was made from",
+                        "choose another name", options->output);
         if (!options->output.empty()) {
             const std::size_t splats = export_scene(options->input, options->output, options->label);
             if (!options->json) {
-                fmt::print("{} splats written to {}\n", splats, options->output.string());
+                print("{} splats written to {}\n", splats, options->output.string());
                 return;
             }
         }
         if (options->json)
-            fmt::print(
-                "{}\n",
-                summary_json(summary, options->input).dump(2, ' ', false, Json::error_handler_t::replace));
+            print_json(summary_json(summary, options->input));
         else
             print_summary(summary, options->input);
     });

@@ -7,13 +7,16 @@
 #include <numbers>
 
 #include "app/cli.h"
-#include "app/film.h"
-#include "app/scene_tools.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/base/path_text.h"
+#include "engine/base/print.h"
 #include "engine/io/cameras.h"
 #include "engine/io/image_file.h"
 #include "engine/io/scene_io.h"
+#include "engine/pipeline/film.h"
+#include "engine/pipeline/scene_tools.h"
 #include "engine/synth/synth.h"
 
 namespace gse::app {
@@ -26,7 +29,7 @@ Json to_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
 Json info_json(const Scene& scene, const std::filesystem::path& path, std::size_t cameras) {
     const SceneStatistics statistics = compute_statistics(scene.gaussians);
     Json json;
-    json["file"] = path.string();
+    json["file"] = text_of_path(path.string());
     json["format"] = scene.info.format;
     json["splats"] = scene.gaussians.size();
     json["sh_degree"] = scene.gaussians.sh_degree();
@@ -51,18 +54,18 @@ Json info_json(const Scene& scene, const std::filesystem::path& path, std::size_
 
 void print_info(const Json& json) {
     const auto number = [&](const char* key) { return json["lint"][key].get<std::size_t>(); };
-    fmt::print("{}\n", json["file"].get<std::string>());
-    fmt::print("  format        {}, SH degree {}\n", json["format"].get<std::string>(), json["sh_degree"].get<int>());
-    fmt::print("  splats        {} ({:.1f} MB of attributes)\n", json["splats"].get<std::size_t>(),
+    print("{}\n", json["file"].get<std::string>());
+    print("  format        {}, SH degree {}\n", json["format"].get<std::string>(), json["sh_degree"].get<int>());
+    print("  splats        {} ({:.1f} MB of attributes)\n", json["splats"].get<std::size_t>(),
                json["attribute_mb"].get<double>());
-    fmt::print("  cameras       {}\n", json["cameras"].get<std::size_t>());
-    fmt::print("  bounds        {} to {}\n", json["bounds"]["low"].dump(), json["bounds"]["high"].dump());
-    fmt::print("  robust bounds {} to {}\n", json["robust_bounds"]["low"].dump(), json["robust_bounds"]["high"].dump());
-    fmt::print("  up            {}{}\n", json["up"].dump(), json["up_known"].get<bool>() ? "" : " (assumed)");
-    fmt::print("  lint          {} NaN, {} infinite, {} giant, {} invisible, {} zero quaternions\n", number("nan"),
+    print("  cameras       {}\n", json["cameras"].get<std::size_t>());
+    print("  bounds        {} to {}\n", json["bounds"]["low"].dump(), json["bounds"]["high"].dump());
+    print("  robust bounds {} to {}\n", json["robust_bounds"]["low"].dump(), json["robust_bounds"]["high"].dump());
+    print("  up            {}{}\n", json["up"].dump(), json["up_known"].get<bool>() ? "" : " (assumed)");
+    print("  lint          {} NaN, {} infinite, {} giant, {} invisible, {} zero quaternions\n", number("nan"),
                number("infinite"), number("giant"), number("invisible"), number("zero_quaternion"));
-    for (const auto& label : json["labels"]) fmt::print("  label         {}\n", label.get<std::string>());
-    for (const auto& warning : json["warnings"]) fmt::print("  warning       {}\n", warning.get<std::string>());
+    for (const auto& label : json["labels"]) print("  label         {}\n", label.get<std::string>());
+    for (const auto& warning : json["warnings"]) print("  warning       {}\n", warning.get<std::string>());
 }
 
 struct SceneOptions {
@@ -75,17 +78,50 @@ struct SceneOptions {
     bool json = false;
 };
 
+/// What is known about one scene.
+Json info_of(const std::filesystem::path& path) {
+    const Scene scene = load_scene(path);
+    return info_json(scene, path, scene_cameras(path, "").size());
+}
+
+/// One broken file of several does not hide the others.
+void print_infos(const std::vector<std::filesystem::path>& paths, bool as_json) {
+    std::size_t failed = 0;
+    Json list = Json::array();
+    for (const auto& path : paths) {
+        try {
+            const Json json = info_of(path);
+            if (as_json) list.push_back(json);
+            else print_info(json);
+        } catch (const Error& error) {
+            log::error("{}", error.what());
+            ++failed;
+        }
+    }
+    if (as_json) print_json(list);
+    if (failed > 0)
+        throw Error(ErrorCode::Unreadable, fmt::format("{} of {} scenes cannot be read", failed, paths.size()));
+}
+
 void add_info(CLI::App& app, CommandContext&) {
-    auto options = std::make_shared<SceneOptions>();
-    auto* command = app.add_subcommand("info", "Print what a scene holds and what may be wrong with it");
-    command->add_option("scene", options->input, "Scene file or folder")->required();
-    command->add_flag("--json", options->json, "Print JSON");
+    struct InfoOptions {
+        std::vector<std::filesystem::path> scenes;
+        bool json = false;
+    };
+    auto options = std::make_shared<InfoOptions>();
+    auto* command = app.add_subcommand("info", "Print what scenes hold and what may be wrong with them");
+    command->add_option("scene", options->scenes, "Scene files or folders")->required();
+    command->add_flag("--json", options->json, "Print JSON; a list for several scenes");
     command->callback([options] {
-        const Scene scene = load_scene(options->input);
-        const Json json = info_json(scene, options->input, scene_cameras(options->input, "").size());
-        if (options->json) fmt::print("{}\n", json.dump(2));
+        if (options->scenes.size() > 1) return print_infos(options->scenes, options->json);
+        const Json json = info_of(options->scenes.front());
+        if (options->json) print_json(json);
         else print_info(json);
     });
+}
+
+std::string left_out_text(const SavedRows& rows) {
+    return rows.left_out == 0 ? "" : fmt::format(" ({} that the format cannot hold are left out)", rows.left_out);
 }
 
 void add_convert(CLI::App& app, CommandContext&) {
@@ -107,8 +143,13 @@ void add_convert(CLI::App& app, CommandContext&) {
         SaveOptions save;
         save.format = options->format;
         if (options->labels && !scene.labels.labels.empty()) save.from_label = &scene.labels.labels.front();
-        save_scene(options->output, scene, save);
-        fmt::print("{} splats written to {}\n", scene.gaussians.size(), options->output.string());
+        else if (!scene.labels.labels.empty())
+            log::warning("the labels of the scene are not written; --labels keeps them in a .ply");
+        std::error_code ignored;
+        if (std::filesystem::equivalent(options->input, options->output, ignored))
+            throw Error(ErrorCode::InvalidArgument, "the output is the input itself", "choose another name", options->output);
+        const SavedRows rows = save_scene(options->output, scene, save);
+        print("{} splats written to {}{}\n", rows.written, options->output.string(), left_out_text(rows));
     });
 }
 
@@ -129,7 +170,7 @@ void add_render(CLI::App& app, CommandContext&) {
         const auto& output = painter.paint(scene.gaussians.spans(), camera, settings);
         write_png(options->output, *transparent ? transparent_picture(output) : output.colour,
                       {{"Software", "GSEditPro"}, {"Recipe", fields_to_json(options->render).dump()}});
-        fmt::print("{}\n", options->output.string());
+        print("{}\n", options->output.string());
     });
 }
 
@@ -172,7 +213,7 @@ void add_turntable(CLI::App& app, CommandContext& context) {
     bind_fields(*command, options->scene.turn, "Turn");
     command->callback([options, &context] {
         write_film(options->scene.output, film_request(*options), context.job());
-        fmt::print("{}\n", options->scene.output.string());
+        print("{}\n", options->scene.output.string());
     });
 }
 
@@ -236,7 +277,7 @@ void add_synth(CLI::App& app, CommandContext&) {
         }
         save_scene(options->output, result.scene, save);
         if (!options->cameras.empty()) save_cameras_json(options->cameras, synth_ring(result));
-        fmt::print("{}: {}\n", options->output.string(), synth::full_caption(final_spec).text);
+        print("{}: {}\n", options->output.string(), synth::full_caption(final_spec).text);
     });
 }
 

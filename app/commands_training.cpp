@@ -3,9 +3,10 @@
 #include <memory>
 
 #include "app/cli.h"
-#include "app/neural_loader.h"
-#include "app/starter_source.h"
-#include "app/training_record.h"
+#include "app/engine_names.h"
+#include "engine/pipeline/neural_loader.h"
+#include "engine/training/starter_source.h"
+#include "engine/training/training_record.h"
 
 namespace gse::app {
 namespace {

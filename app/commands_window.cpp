@@ -8,16 +8,19 @@
 
 #include "app/application.h"
 #include "app/cli.h"
+#include "app/engine_names.h"
+#include "ui/foreign_fonts.h"
 #include "app/process.h"
 #include "app/viewport.h"
-#include "app/window.h"
 #include "app/window_textures.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
+#include "engine/base/process_memory.h"
 #include "engine/io/image_file.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/error.h"
+#include "engine/window/window.h"
 #include "ui/shell.h"
 #include "ui/theme.h"
 
@@ -27,7 +30,7 @@ namespace {
 struct OpenOptions {
     std::filesystem::path path;
     std::string preview = "auto", device;
-    int width = 1600, height = 900;
+    int width = 0, height = 0;   // 0 = as large as fits the screen
     float scale = 0;
     bool sample = false, validate = false;
 };
@@ -38,6 +41,7 @@ double seconds_since(Clock::time_point then) { return std::chrono::duration<doub
 
 constexpr double IdleWait = 0.5;      // nothing happens: the window only wakes for input
 constexpr double WorkingWait = 0.1;   // a job runs: its numbers move, the processor belongs to it
+constexpr double MovingFrame = 0.05;  // the camera moves: the panels are drawn anew with every picture, or after this time
 constexpr double ActiveSeconds = 0.6; // after input every frame is drawn
 
 /// The window and everything in it.
@@ -49,10 +53,11 @@ public:
           textures_(window_),
           app_({.wake = [] { Window::wake(); },
                 .on_scale = [this](float scale) { window_.set_ui_scale(scale); },
+                .ui_scale = options.scale,
+                .desktop_scale = window_.ui_scale(),
                 .on_fullscreen = [this] { window_.set_fullscreen(!window_.fullscreen()); }}) {
         if (const char* map = std::getenv("GSE_UI_MAP")) widget_map_ = map;
-        if (options.scale > 0) app_.set_ui_scale(options.scale);
-        else if (app_.model().ui_scale > 0) window_.set_ui_scale(app_.model().ui_scale);
+        if (app_.model().ui_scale != window_.ui_scale()) window_.set_ui_scale(app_.model().ui_scale);
         if (options.sample) app_.open_sample();
         else if (!options.path.empty()) app_.open(options.path);
     }
@@ -87,10 +92,17 @@ private:
         WindowOptions window;
         window.width = options.width;
         window.height = options.height;
-        window.ui_scale = options.scale;
         window.device = options.device;
         window.validation = options.validate;
-        window.dress = ui::dress;
+        window.dress = [this](ImFontAtlas& atlas, ImGuiStyle& style, float scale) {
+            ui::dress(atlas, style, scale, shell_.glyphs(), [this](char32_t character, float size_px) {
+                return foreign_fonts_.paint(character, size_px);
+            });
+            glyphs_dressed_ = shell_.glyphs().all().size();
+        };
+        window.take_character = [this](unsigned character) -> unsigned { return shell_.glyphs().shown(static_cast<char32_t>(character)); };
+        window.take_text = [this](const std::string& text) { return shell_.glyphs().shown(text); };
+        window.give_text = [this](const std::string& text) { return shell_.glyphs().meant(text); };
         window.on_drop = [this](const std::vector<std::filesystem::path>& paths) {
             if (!paths.empty()) shell_.request_open(paths.front());
         };
@@ -98,6 +110,8 @@ private:
     }
 
     void wait() {
+        while (viewport_.waits_for_picture() && seconds_since(frame_began_) < MovingFrame)
+            window_.wait(MovingFrame - seconds_since(frame_began_));
         const bool moving = viewport_.busy() || textures_.uploads_waiting() || shell_.animating() ||
                             seconds_since(last_input_) < ActiveSeconds;
         const auto before = Clock::now();
@@ -111,15 +125,18 @@ private:
     }
 
     void frame() {
+        frame_began_ = Clock::now();
         if (app_.layout_changed()) shell_.set_layout(app_.layout());
         app_.update(viewport_);
         lose_device_if_asked();
         if (!window_.begin_frame()) return;
         viewport_.record();
         shell_.draw(app_.model(), app_, textures_);
+        if (shell_.glyphs().all().size() != glyphs_dressed_) window_.renew_fonts();
         const bool captures = capture_wanted();
         if (captures) window_.request_capture();
         window_.end_frame();
+        viewport_.set_window_ms(seconds_since(frame_began_) * 1000);
         set_title();
         if (captures) write_capture();
         write_map();
@@ -163,6 +180,11 @@ private:
         state["stack"] = app_.document().empty() ? 0 : app_.document().state().stack.size();
         state["undo_position"] = app_.document().empty() ? 0 : app_.document().position();
         state["views_attended"] = model.attention.size();
+        state["source"] = model.request.source;
+        state["sentence"] = model.request.prompt;
+        state["target"] = app_.target();
+        state["search"] = {{"number", model.search.number},   {"confidence", model.search.confidence.value},
+                           {"message", model.search.message}, {"remedy", model.search.remedy}};
         state["job"] = {{"running", model.job.running}, {"paused", model.job.paused},   {"title", model.job.title},
                         {"stage", model.job.stage},     {"step", model.job.step},       {"outcome", model.job.outcome},
                         {"error", model.job.error}};
@@ -174,10 +196,13 @@ private:
         state["comparison"] = static_cast<int>(model.comparison);
         state["mode"] = model.view.mode;
         state["frames"] = frames_;
+        state["focus"] = shell_.focused();
         state["busy"] = viewport_.busy();
         state["devices_lost"] = devices_lost_;
         state["framebuffer"] = {window_.framebuffer_width(), window_.framebuffer_height()};
         state["recoverable"] = model.recoverable.size();
+        state["offers"] = nlohmann::ordered_json::array();
+        for (const auto& found : model.recoverable) state["offers"].push_back(found.name);
         state["validation_messages"] = window_.validation_messages();
         state["toasts"] = nlohmann::ordered_json::array();
         for (const auto& toast : model.toasts) state["toasts"].push_back(toast.text);
@@ -197,13 +222,15 @@ private:
     }
 
     ui::Shell shell_;   // before the window: dropped files reach it
+    ui::ForeignFonts foreign_fonts_;
+    std::size_t glyphs_dressed_ = 0;
     Window window_;
     Viewport viewport_;
     WindowTextures textures_;
     Application app_;
     std::filesystem::path widget_map_;
     std::string title_;
-    Clock::time_point last_input_ = Clock::now(), map_written_{};
+    Clock::time_point last_input_ = Clock::now(), map_written_{}, frame_began_{};
     std::size_t frames_ = 0, devices_lost_ = 0;
 };
 
@@ -227,9 +254,9 @@ void add_window_command(CLI::App& app, CommandContext&) {
     command->add_flag("--sample", options->sample, "Open the bundled scene");
     command->add_option("--preview", options->preview, "Who paints the viewport: auto, vulkan or native")->capture_default_str();
     command->add_option("--device", options->device, "Graphics device: number or part of its name");
-    command->add_option("--width", options->width, "Width of the window")->check(CLI::Range(320, 16384))->capture_default_str();
-    command->add_option("--height", options->height, "Height of the window")->check(CLI::Range(240, 16384))->capture_default_str();
-    command->add_option("--scale", options->scale, "Size of text and controls; 0 = as the desktop says")
+    command->add_option("--width", options->width, "Width of the window; what fits the screen unless it is given")->check(CLI::Range(320, 16384));
+    command->add_option("--height", options->height, "Height of the window")->check(CLI::Range(240, 16384));
+    command->add_option("--scale", options->scale, "Size of text and controls for this start; 0 = as chosen in the window")
         ->check(CLI::Range(0.0, 4.0));
     command->add_flag("--validate", options->validate, "Vulkan validation layers; any message is an error at the end");
     command->callback([options] { run_open(*options); });

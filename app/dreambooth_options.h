@@ -3,7 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "app/edit_job.h"
+#include "app/engine_names.h"
+#include "engine/pipeline/edit_job.h"
 
 namespace gse::app {
 

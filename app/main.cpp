@@ -1,10 +1,13 @@
 // Entry point: one place that turns an Error into a sentence and an exit code.
 #include <cstdio>
 #include <exception>
+#include <new>
 
 #include "app/cli.h"
 #include "app/process.h"
 #include "engine/base/error.h"
+#include "engine/base/memory.h"
+#include "engine/base/printable.h"
 
 namespace {
 
@@ -16,17 +19,26 @@ int exit_code(gse::ErrorCode code) {
     }
 }
 
+int failed(const gse::Error& error) {
+    std::fprintf(stderr, "gseditpro: %s\n", gse::printable(error.what()).c_str());
+    return exit_code(error.code());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     gse::app::prefer_fast_blas(argv);
+    gse::app::let_writes_fail();
     try {
-        return gse::app::run_command_line(argc, argv);
+        const int code = gse::app::run_command_line(argc, argv);
+        return gse::app::flush_output() ? code : 1;
     } catch (const gse::Error& error) {
-        std::fprintf(stderr, "gseditpro: %s\n", error.what());
-        return exit_code(error.code());
+        return failed(error);
+    } catch (const std::bad_alloc&) {
+        return failed(gse::out_of_memory());
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "gseditpro: unexpected failure (%s); please report it\n", error.what());
+        if (std::ferror(stdout) != 0 && !gse::app::flush_output()) return 1;  // printing failed, not the work
+        std::fprintf(stderr, "gseditpro: unexpected failure (%s); please report it\n", gse::printable(error.what()).c_str());
         return 70;
     }
 }

@@ -3,47 +3,34 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
 
 #include "app/application.h"
+#include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
+#include "engine/base/safetensors_header.h"
 
 namespace gse::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using HeaderJson = nlohmann::json;
 
 constexpr std::uint64_t LongestHeader = 64u << 20;
 constexpr std::size_t MostModels = 200;
 
-Json read_json(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    return file ? Json::parse(file, nullptr, false) : Json();
+HeaderJson read_json(const fs::path& path) {
+    return fs::exists(path) ? try_parse_json(read_start(path, LongestHeader)) : HeaderJson();
 }
 
-/// Header of a .safetensors file; a discarded value when it is none.
-Json safetensors_header(const fs::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    unsigned char raw[8] = {};
-    if (!file.read(reinterpret_cast<char*>(raw), sizeof raw)) return Json(Json::value_t::discarded);
-    std::uint64_t size = 0;
-    for (int i = 7; i >= 0; --i) size = size << 8 | raw[i];
-    if (size == 0 || size > LongestHeader) return Json(Json::value_t::discarded);
-    std::string text(size, '\0');
-    if (!file.read(text.data(), static_cast<std::streamsize>(size))) return Json(Json::value_t::discarded);
-    return Json::parse(text, nullptr, false);
-}
-
-std::uint64_t shape_at(const Json& header, const char* key, std::size_t from_end, std::uint64_t fallback) {
+std::uint64_t shape_at(const HeaderJson& header, const char* key, std::size_t from_end, std::uint64_t fallback) {
     if (!header.contains(key) || !header[key].contains("shape") || header[key]["shape"].size() <= from_end) return fallback;
     return header[key]["shape"][header[key]["shape"].size() - 1 - from_end].get<std::uint64_t>();
 }
 
 /// ux.md: told apart by keys and by the width of the cross-attention.
 void describe_checkpoint(const fs::path& path, ui::ModelView& model) {
-    const Json header = safetensors_header(path);
+    const HeaderJson header = safetensors_header(path);
     if (!header.is_object()) {
         model.problem = "this is not a safetensors file";
         return;
@@ -73,8 +60,8 @@ void describe_checkpoint(const fs::path& path, ui::ModelView& model) {
 }
 
 void describe_folder(const fs::path& path, ui::ModelView& model) {
-    const Json own = read_json(path / "gseditpro.json");
-    const Json text = read_json(path / "text_encoder/config.json");
+    const HeaderJson own = read_json(path / "gseditpro.json");
+    const HeaderJson text = read_json(path / "text_encoder/config.json");
     model.structure = own.is_object()                                             ? "starter"
                       : text.is_object() && text.value("hidden_size", 768) >= 1024 ? "Stable Diffusion 2.x"
                                                                                    : "Stable Diffusion 1.x";
@@ -128,7 +115,7 @@ std::vector<fs::path> model_folders() {
 
 }  // namespace
 
-std::vector<ui::ModelView> scan_models(const std::string& chosen) {
+std::vector<ui::ModelView> scan_models(const std::string& chosen, const std::vector<std::string>& also) {
     std::vector<ui::ModelView> models{describe(starter_model_path())};
     const auto add = [&](const fs::path& path) {
         const auto known = [&](const auto& model) { return model.path == path.string(); };
@@ -142,18 +129,10 @@ std::vector<ui::ModelView> scan_models(const std::string& chosen) {
             if (checkpoint || fs::exists(entry.path() / "model_index.json", failure)) add(entry.path());
         }
     }
+    for (const auto& path : also) add(path);
     if (!chosen.empty()) add(chosen);
-    for (auto& model : models) model.chosen = chosen.empty() ? &model == &models.front() : model.path == chosen;
+    for (auto& model : models) model.chosen = model.path == chosen;
     return models;
-}
-
-std::vector<std::string> model_words(const fs::path& folder) {
-    std::vector<std::string> words;
-    const Json own = read_json(folder / "gseditpro.json");
-    if (!own.is_object() || !own.contains("vocabulary") || !own["vocabulary"].is_array()) return words;
-    for (const auto& word : own["vocabulary"])
-        if (word.is_string()) words.push_back(word.get<std::string>());
-    return words;
 }
 
 }  // namespace gse::app

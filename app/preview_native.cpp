@@ -12,8 +12,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double MovingMs = 30;        // a picture while moving may take this long: the panels need the processor too
-constexpr double LeastScale = 0.2;
 constexpr float LeastSolid = 0.3f;     // of a pixel, to have a depth that can be picked
 
 /// Distance to the middle of the splats: the middle of the depth colours.
@@ -29,7 +27,7 @@ float depth_scale(const GaussianSet& set, const Camera& camera) {
         sum = sum + place;
         count += 1;
     }
-    return static_cast<float>(std::max(length((count > 0 ? sum / count : sum) - camera.centre()), 1e-3));
+    return static_cast<float>(std::max(length((count > 0 ? sum / count : sum) - camera.centre()), 1e-12));
 }
 
 bool same_camera(const Camera& a, const Camera& b) {
@@ -80,7 +78,6 @@ void NativePainter::paint_part(const PictureRequest& request, bool original, con
     const float middle = display.mode == preview::Mode::Depth ? depth_scale(set, camera) : 1.0f;
     preview::resolve({&light.colour, &light.alpha, &light.depth, wants_value ? &values_ : nullptr}, display, middle,
                      painter_.pool(), part_);
-    auto* depth = const_cast<Image*>(picture.depth.get());
     for (int y = 0; y < camera.height; ++y) {
         const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width);
         std::copy_n(&part_[row * 4], static_cast<std::size_t>(camera.width) * 4,
@@ -88,7 +85,7 @@ void NativePainter::paint_part(const PictureRequest& request, bool original, con
                                    static_cast<std::size_t>(first_column)) * 4]);
         for (int x = 0; x < camera.width; ++x) {
             const float alpha = light.alpha.data[row + static_cast<std::size_t>(x)];
-            depth->at(first_column + x, y, 0) =
+            picture.depth.at(first_column + x, y, 0) =
                 alpha > LeastSolid ? light.depth.data[row + static_cast<std::size_t>(x)] / alpha : 0.0f;
         }
     }
@@ -101,7 +98,7 @@ void NativePainter::paint(const PictureRequest& request, int width, int height, 
     picture.camera = request.camera;
     picture.full = width == request.camera.width && height == request.camera.height;
     picture.rgba.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
-    picture.depth = std::make_shared<Image>(width, height, 1);
+    picture.depth.resize(width, height, 1);
     Camera whole = request.camera.resized(width, height);
     whole.fy = request.camera.fy * height / request.camera.height;   // rounding of the height must not bend the picture
     whole.cy = request.camera.cy * height / request.camera.height;
@@ -144,28 +141,53 @@ void NativePreview::want(const PictureRequest& request) {
     changed_.notify_all();
 }
 
-std::optional<NativePicture> NativePreview::take() {
+std::shared_ptr<const NativePicture> NativePreview::take() {
     const std::lock_guard lock(mutex_);
-    return std::exchange(ready_, std::nullopt);
+    return std::exchange(ready_, nullptr);
+}
+
+bool NativePreview::painting() const {
+    const std::lock_guard lock(mutex_);
+    return (painting_ || wanted_.valid) && !ready_;
+}
+
+void NativePreview::set_window_ms(double milliseconds) {
+    const std::lock_guard lock(mutex_);
+    window_ms_ = milliseconds;
+}
+
+std::string NativePreview::name() const {
+    const std::lock_guard lock(mutex_);
+    return name_;
 }
 
 bool NativePreview::busy() const {
     const std::lock_guard lock(mutex_);
-    return painting_ || wanted_.valid || ready_.has_value() || !painted_full_;
+    return painting_ || wanted_.valid || ready_ || !painted_full_;
 }
 
-/// Follows the time pictures take: part of it does not depend on their size, so no formula knows the right one.
-void NativePreview::learn(const NativePicture& picture, bool moving) {
-    if (picture.full && picture.milliseconds <= MovingMs) moving_scale_ = 1;
-    else if (moving) {
-        const double step = std::clamp(std::sqrt(MovingMs / std::max(picture.milliseconds, 0.1)), 0.8, 1.12);
-        moving_scale_ = std::clamp(moving_scale_ * step, LeastScale, 1.0);
+std::shared_ptr<NativePicture> PictureStore::take() {
+    std::unique_ptr<NativePicture> picture;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!free_.empty()) {
+            picture = std::move(free_.back());
+            free_.pop_back();
+        }
     }
+    if (!picture) picture = std::make_unique<NativePicture>();
+    return {picture.release(), [store = shared_from_this()](NativePicture* used) {
+                const std::lock_guard lock(store->mutex_);
+                store->free_.emplace_back(used);
+            }};
 }
 
 void NativePreview::loop(const std::stop_token& end) {
     NativePainter painter;
-    name_ = painter.name();
+    {
+        const std::lock_guard lock(mutex_);
+        name_ = painter.name();
+    }
     while (!end.stop_requested()) {
         PictureRequest request;
         double scale = 1;
@@ -175,18 +197,18 @@ void NativePreview::loop(const std::stop_token& end) {
             request = wanted_.request;
             wanted_.valid = false;
             painting_ = true;
-            scale = request.moving ? moving_scale_ : 1;
+            scale = request.moving ? moving_scale_.scale() : 1;
         }
-        NativePicture picture;
+        const auto picture = store_->take();
         const int width = std::max(1, static_cast<int>(std::lround(request.camera.width * scale)));
         const int height = std::max(1, static_cast<int>(std::lround(request.camera.height * scale)));
-        painter.paint(request, width, height, picture);
+        painter.paint(request, width, height, *picture);
         {
             const std::lock_guard lock(mutex_);
-            learn(picture, request.moving);
-            painted_full_ = picture.full;
+            moving_scale_.learn(picture->milliseconds + window_ms_, scale);
+            painted_full_ = picture->full;
             painted_ = std::move(request);
-            ready_ = std::move(picture);
+            ready_ = picture;
             painting_ = false;
         }
         if (wake_) wake_();

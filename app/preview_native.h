@@ -11,8 +11,10 @@
 #include <thread>
 #include <vector>
 
+#include "app/engine_names.h"
+#include "engine/preview/moving_scale.h"
 #include "app/preview_host.h"
-#include "app/scene_tools.h"
+#include "engine/pipeline/scene_tools.h"
 #include "engine/preview/resolve.h"
 
 namespace gse::app {
@@ -21,7 +23,7 @@ struct NativePicture {
     std::vector<std::uint8_t> rgba;        // [height,width,4]
     int width = 0, height = 0;
     Camera camera;                         // at the size of the request, not of the picture
-    std::shared_ptr<const Image> depth;    // [height,width,1] alpha-normalised, 0 = nothing
+    Image depth;                           // [height,width,1] alpha-normalised, 0 = nothing
     double milliseconds = 0;
     bool full = false;                     // at the size asked for
 };
@@ -45,6 +47,16 @@ private:
     std::vector<std::uint8_t> part_;
 };
 
+/// Pictures that are used again: what the last holder lets go comes back, whichever thread that is.
+class PictureStore : public std::enable_shared_from_this<PictureStore> {
+public:
+    std::shared_ptr<NativePicture> take();
+
+private:
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<NativePicture>> free_;
+};
+
 class NativePreview {
 public:
     /// `wake` is called from the painting thread when a picture is ready.
@@ -54,10 +66,13 @@ public:
     NativePreview& operator=(const NativePreview&) = delete;
 
     void want(const PictureRequest& request);
-    /// The newest picture that has not been taken yet.
-    std::optional<NativePicture> take();
+    /// The newest picture that has not been taken yet, or null. Its memory is used again once nobody holds it.
+    std::shared_ptr<const NativePicture> take();
     bool busy() const;
-    std::string name() const { return name_; }
+    bool painting() const;   // something is being painted or waits for it
+    /// What the window needs for a frame beside the picture: the resolution while moving leaves room for it.
+    void set_window_ms(double milliseconds);
+    std::string name() const;
 
 private:
     struct Wanted {
@@ -65,15 +80,16 @@ private:
         bool valid = false;
     };
     void loop(const std::stop_token& end);
-    void learn(const NativePicture& picture, bool moving);
 
     mutable std::mutex mutex_;
     std::condition_variable_any changed_;
     Wanted wanted_;
     std::optional<PictureRequest> painted_;   // what the newest picture shows
     bool painted_full_ = false, painting_ = false;
-    std::optional<NativePicture> ready_;
-    double moving_scale_ = 0.5;               // share of the full width while moving
+    std::shared_ptr<const NativePicture> ready_;
+    std::shared_ptr<PictureStore> store_ = std::make_shared<PictureStore>();
+    preview::MovingScale moving_scale_;
+    double window_ms_ = 0;
     std::string name_;
     std::function<void()> wake_;
     std::jthread thread_;

@@ -1,15 +1,20 @@
 // Signals, rusage and the restart for OpenBLAS.
 #include "app/process.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
+#include <iostream>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -52,35 +57,23 @@ std::stop_token interrupt_token() {
     return watch.token();
 }
 
-double peak_rss_mb() {
-    struct rusage usage {};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) / 1024.0;
+void let_writes_fail() {
+    signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
+    // A file opened while stdout is closed would get its number, and what is printed with it. What is opened here
+    // cannot be used in the direction that counts, so the failure is seen.
+    for (int standard = STDIN_FILENO; standard <= STDERR_FILENO; ++standard)
+        if (fcntl(standard, F_GETFD) < 0) static_cast<void>(open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY));
 }
 
-double process_seconds() {
-    // Start of the process in clock ticks since boot: field 22 of /proc/self/stat, counted after the name in parentheses.
-    std::ifstream file("/proc/self/stat");
-    std::string text;
-    std::getline(file, text);
-    const auto close = text.rfind(')');
-    if (close == std::string::npos) return 0;
-    std::istringstream fields(text.substr(close + 2));
-    std::string field;
-    constexpr int start_field = 20;
-    for (int i = 0; i < start_field && fields >> field; ++i) {
-    }
-    struct timespec now {};
-    clock_gettime(CLOCK_BOOTTIME, &now);
-    const double ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - std::atof(field.c_str()) / ticks;
-}
-
-double current_rss_mb() {
-    std::ifstream file("/proc/self/statm");
-    double pages = 0, resident = 0;
-    file >> pages >> resident;
-    return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
+bool flush_output() {
+    errno = 0;
+    std::cout.flush();
+    const bool flushed = std::fflush(stdout) == 0 && std::cout.good() && std::ferror(stdout) == 0;
+    if (flushed) return true;
+    const std::string reason = errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : std::string();
+    std::fprintf(stderr, "gseditpro: the output cannot be printed%s; files that were asked for are written\n", reason.c_str());
+    return false;
 }
 
 void prefer_fast_blas(char** argv) {

@@ -1,4 +1,4 @@
-// What the program does with its own process: interrupts, memory figures, the right BLAS kernels.
+// What the program does with its own process: interrupts, failing output, the right BLAS kernels.
 #pragma once
 
 #include <stop_token>
@@ -8,14 +8,12 @@ namespace gse::app {
 /// A token that Ctrl-C (SIGINT) or SIGTERM turns on; a second Ctrl-C ends the program at once.
 std::stop_token interrupt_token();
 
-/// Largest resident memory so far, in MiB.
-double peak_rss_mb();
+/// Writes to a closed pipe or beyond the limit for file sizes give an error instead of ending the program; closed
+/// standard streams are stood in for.
+void let_writes_fail();
 
-/// Seconds since the process started (to a hundredth), restarts by exec included.
-double process_seconds();
-
-/// Memory of this process now, in MB.
-double current_rss_mb();
+/// Brings what was printed to its place; false, after a sentence on stderr, when that or an earlier print failed.
+bool flush_output();
 
 /// OpenBLAS before 0.3.26 does not know AMD's AVX-512 processors and falls back to half-width kernels; the core type can
 /// only be chosen before the library is loaded, so the program restarts itself once with OPENBLAS_CORETYPE set.

@@ -4,11 +4,12 @@
 #include <memory>
 #include <string>
 
+#include "app/engine_names.h"
 #include "app/preview_host.h"
 #include "app/preview_native.h"
-#include "app/window.h"
 #include "app/window_textures.h"
 #include "engine/preview/splat_renderer.h"
+#include "engine/window/window.h"
 
 namespace gse::app {
 
@@ -28,6 +29,11 @@ public:
     void record();
     /// A picture is being made or uploaded: draw another frame soon.
     bool busy() const;
+    /// The camera moves and the newest picture is still being painted, by threads that wake the window when it is there:
+    /// frames before that would show nothing new and take the processor from it.
+    bool waits_for_picture() const;
+    /// What a frame of the window takes beside the picture.
+    void set_window_ms(double milliseconds);
 
     void drop_device() override;
     void make_device(vulkan::Device& device) override;
@@ -47,16 +53,19 @@ private:
     void record_vulkan();
     void render_side(Side& side, const GaussianSet& set, std::shared_ptr<const std::vector<float>> values);
     void forget(Side& side);
+    /// False while the first scene of a side is on its way.
+    static bool shows_scene(const Side& side);
 
     Window& window_;
     PreviewBackend backend_;
     NativePreview native_;
     StreamedPicture picture_;
+    std::shared_ptr<const NativePicture> painted_, uploaded_;   // the newest one; what picture_ holds
     PictureRequest request_;
     PictureState state_;
     Side current_, original_;
     bool has_request_ = false, vulkan_busy_ = false;
-    double vulkan_ms_ = 0;
+    preview::MovingScale vulkan_scale_;
 };
 
 }  // namespace gse::app

@@ -128,9 +128,10 @@ void StreamedPicture::update(std::span<const std::uint8_t> rgba, int width, int 
     GSE_CHECK_EQ(rgba.size(), bytes);
     auto& device = window_.device();
     if (!texture_ || width != width_ || height != height_) {
-        if (id_ != 0) window_.remove_texture(id_);
         texture_ = make_picture(device, width, height);
-        id_ = window_.add_texture(static_cast<VkImageView>(texture_.view()));
+        const auto view = static_cast<VkImageView>(texture_.view());
+        if (id_ != 0) window_.replace_texture(id_, view);   // panels may hold the handle already
+        else id_ = window_.add_texture(view);
         width_ = width;
         height_ = height;
     }

@@ -8,8 +8,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "app/window.h"
+#include "app/engine_names.h"
 #include "engine/vulkan/resources.h"
+#include "engine/window/window.h"
 #include "ui/view_model.h"
 
 namespace gse::app {

@@ -1,0 +1,131 @@
+// Which model is in use: another one is tried before it takes the place of the one that works.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/application.h"
+#include "engine/base/error.h"
+#include "engine/pipeline/model_settings.h"
+
+namespace gse::app {
+namespace {
+
+std::string reason_of(const Error& error) {
+    return error.hint().empty() ? error.message() : fmt::format("{}; {}", error.message(), error.hint());
+}
+
+}  // namespace
+
+std::string Application::model_in_use() const {
+    return model_path_.empty() ? starter_model_path().string() : model_path_;
+}
+
+void Application::list_models() {
+    std::vector<std::string> tried;
+    for (const auto& [path, problem] : model_problems_) tried.push_back(path);
+    model_.models = scan_models(model_in_use(), tried);
+    for (auto& row : model_.models) {
+        row.checking = row.path == model_tried_;
+        const auto found = model_problems_.find(row.path);
+        if (found == model_problems_.end() || found->second.empty()) continue;
+        row.usable = false;
+        row.problem = found->second;
+    }
+    model_.known_words = model_words(model_in_use());
+}
+
+/// The row says why; what was in use stays.
+void Application::refuse_model(const std::string& path, std::string problem) {
+    model_problems_[path] = problem;
+    list_models();
+    const auto named = [&](const std::string& wanted) {
+        const auto row = std::find_if(model_.models.begin(), model_.models.end(),
+                                      [&](const auto& model) { return model.path == wanted; });
+        return row == model_.models.end() || row->name.empty() ? wanted : row->name;
+    };
+    toast(fmt::format("The model \"{}\" cannot be used: {}. \"{}\" stays in use.", named(path), problem,
+                      named(model_in_use())),
+          true);
+}
+
+void Application::use_model(const std::string& path, const neural::ModelProfile& profile, bool takes_settings) {
+    model_path_ = path == starter_model_path().string() ? std::string() : path;
+    model_problems_.erase(path);
+    use_profile(profile, takes_settings);
+    list_models();
+    save_settings();
+}
+
+/// What the artist has not changed takes the model's values, unless the settings came with this model.
+void Application::use_profile(const neural::ModelProfile& profile, bool takes_settings) {
+    EditRecipe next;
+    apply_profile(profile, next, {});
+    if (takes_settings) {
+        auto& learning = model_.model_settings;
+        if (learning.learn_steps == defaults_.dreambooth.steps) learning.learn_steps = next.dreambooth.steps;
+        if (learning.learn_rank == defaults_.dreambooth.rank) learning.learn_rank = next.dreambooth.rank;
+        move_defaults(model_.request, defaults_.request, next.request);
+    }
+    model_.request_defaults = next.request;
+    model_.model_settings_defaults.learn_steps = next.dreambooth.steps;
+    model_.model_settings_defaults.learn_rank = next.dreambooth.rank;
+    profile_ = profile;
+    defaults_ = std::move(next);
+}
+
+/// The model that was in use when the program was last left.
+void Application::take_chosen_model() {
+    try {
+        JobParameters job;
+        job.model = model_path_;
+        use_profile(profile_of(job), true);
+    } catch (const Error& error) {
+        refuse_model(std::exchange(model_path_, {}), reason_of(error));
+    }
+}
+
+void Application::choose_model(const std::string& path) { try_model(path, true); }
+
+void Application::try_model(const std::string& path, bool takes_settings) {
+    const std::string wanted = path.empty() ? starter_model_path().string() : path;
+    if (wanted == model_in_use()) return list_models();
+    if (work_.running()) return toast("Another model can be chosen when the job is done.");
+    const auto rows = scan_models(wanted, {});
+    const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& model) { return model.path == wanted; });
+    if (row != rows.end() && !row->usable) return refuse_model(wanted, row->problem);
+    // Headers can be right where weights are not: only what has been loaded is in use.
+    JobParameters job;
+    job.model = wanted;
+    neural::ModelProfile profile;
+    try {
+        profile = profile_of(job);
+    } catch (const Error& error) {
+        return refuse_model(wanted, reason_of(error));
+    }
+    auto model = std::make_shared<std::shared_ptr<neural::TextToImage>>();
+    model_tried_ = wanted;
+    model_problems_.try_emplace(wanted);
+    work_.start({fmt::format("Check the model \"{}\"", row == rows.end() ? wanted : row->name),
+                 [job, model](const JobControl& control) {
+                     control.report("loading the model", 0, 0);
+                     *model = load_recipe_model(job);
+                 },
+                 [this, wanted, model, profile, takes_settings](const Error* error) {
+                     model_tried_.clear();
+                     if (error != nullptr) return refuse_model(wanted, reason_of(*error));
+                     use_model(wanted, profile, takes_settings);
+                     text_model_ = *model;
+                     text_model_path_ = model_path_;
+                 }});
+    list_models();
+}
+
+/// A model that was in use and cannot be loaded any more gives way to the one that comes with the program.
+void Application::drop_model(const std::string& path, const Error& error) {
+    if (path.empty() || path != model_path_) return;
+    model_path_.clear();
+    take_chosen_model();
+    refuse_model(path, reason_of(error));
+}
+
+}  // namespace gse::app
