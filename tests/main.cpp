@@ -1,4 +1,15 @@
-// The one doctest main of every test program.
-#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+// The one doctest main of every test program: what was skipped is said once more at the end and in the exit code.
+#define DOCTEST_CONFIG_IMPLEMENT
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
+
+#include "tests/test_paths.h"
+
+int main(int argc, char** argv) {
+    doctest::Context context(argc, argv);
+    const int result = context.run();
+    const auto& missing = gse::test::skipped();
+    if (context.shouldExit() || result != 0 || missing.empty()) return result;
+    std::printf("[skip] %zu checks were left out, the first for want of %s\n", missing.size(), missing.front().c_str());
+    return gse::test::SkipCode;
+}

@@ -14,7 +14,8 @@ SHARED = pathlib.Path(os.environ.get("GSE_SHARED") or os.environ.get("GSE_SHARED
 
 def run(*arguments, timeout=600):
     """Runs the program; returns the finished process with text output."""
-    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, timeout=timeout)
+    return subprocess.run([PROGRAM, *map(str, arguments)], capture_output=True, text=True, errors="surrogateescape",
+                          timeout=timeout)
 
 
 def ply_bytes(rows, names=None, count=None, header_extra=""):
@@ -31,6 +32,21 @@ def grid_rows(side=6):
     """A small cube of visible splats."""
     return [(x * 0.1, y * 0.1, z * 0.1, 0, 0, 0, 0.5, -0.2, 0.1, 3.0, -3.0, -3.0, -3.0, 1, 0, 0, 0)
             for x in range(side) for y in range(side) for z in range(side)]
+
+
+def can_mount():
+    """Whether this user may have file systems of his own."""
+    try:
+        return subprocess.run(["unshare", "--user", "--map-root-user", "--mount", "sh", "-c", "mount -t tmpfs none /mnt"],
+                              capture_output=True).returncode == 0
+    except FileNotFoundError:
+        return False
+
+
+def run_in_namespace(script, *arguments):
+    """Runs a shell script that may mount; $0 is the program, $1... the arguments."""
+    return subprocess.run(["unshare", "--user", "--map-root-user", "--mount", "sh", "-ec", script, PROGRAM,
+                           *map(str, arguments)], capture_output=True, text=True, timeout=600)
 
 
 class ProgramTest(unittest.TestCase):

@@ -1,9 +1,13 @@
 """Bad input gets one clear sentence, an exit code that is not 0, and leaves nothing behind."""
+import json
 import os
 import pathlib
+import re
+import resource
+import subprocess
 import unittest
 
-from program import ProgramTest, grid_rows, ply_bytes, run
+from program import PROGRAM, SHARED, ProgramTest, grid_rows, ply_bytes, run
 
 ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
 
@@ -52,6 +56,49 @@ class BadScenes(ProgramTest):
         self.assertFalse((self.folder / "out").exists())
 
 
+HOSTILE = SHARED / "data/hostile"
+
+
+@unittest.skipUnless(HOSTILE.exists(), f"[skip] {HOSTILE} is not there")
+class HostileFiles(ProgramTest):
+    def test_bombs_and_deep_trees(self):
+        self.assert_one_sentence(run("info", HOSTILE / "sog_bomb268M.sog"), "268402689 splats", "cannot hold so much")
+        self.assert_one_sentence(run("info", HOSTILE / "spz4_bomb400M.spz"), "400000000 splats", "cannot hold so much")
+        self.assert_one_sentence(run("info", HOSTILE / "lod_deep"), "levels deep", "lod_deep")
+
+    def test_control_characters_are_escaped(self):
+        process = run("project", HOSTILE / "p_nul.gsep")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn(r"a\x00b\x1b[31mRED", process.stdout)
+        self.assertNotIn("\x1b", process.stdout)
+
+    def test_recipes_of_the_wrong_type(self):
+        for name in ["recipe_ver_null.json", "recipe_ver_str.json"]:
+            self.assert_one_sentence(run("edit", "--recipe", HOSTILE / name, "--out", self.folder / "out"), name, "recipe", "version", "null" if "null" in name else "number")
+        self.assertEqual(self.folder_listing(), [])
+
+
+class ManyScenes(ProgramTest):
+    def test_one_broken_scene_does_not_hide_the_others(self):
+        good = self.write("good.ply", ply_bytes(grid_rows()))
+        bad = self.write("bad.ply", b"not a scene")
+        process = run("info", good, bad, good)
+        self.assert_one_sentence(process, "1 of 3 scenes")
+        self.assertIn("bad.ply", process.stderr)
+        self.assertEqual(process.stdout.count("good.ply"), 2)
+        self.assertEqual(len(json.loads(run("info", good, good, "--json").stdout)), 2)
+
+    def test_a_scene_larger_than_the_memory(self):
+        """The sentence says what is needed and what is free."""
+        path = self.folder / "large.splat"
+        with open(path, "wb") as file:
+            file.truncate(32 * 100_000_000)   # takes no room on the disk
+        limit = 3 << 30
+        process = subprocess.run([PROGRAM, "info", str(path)], capture_output=True, text=True, timeout=600,
+                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
+        self.assertRegex(self.assert_one_sentence(process, "are free"), r"needs \d+(\.\d+)? GB of memory, and \d+(\.\d+)? [MG]B")
+
+
 class BadOptions(ProgramTest):
     def setUp(self):
         super().setUp()
@@ -87,6 +134,41 @@ class BadOptions(ProgramTest):
                           ["synth", self.folder / "p.ply", "--object", "dragonfly"]]:
             self.assert_one_sentence(run(*arguments))
         self.assertEqual(self.folder_listing(), ["scene.ply"])
+
+    def test_every_number_is_finite_and_in_its_range(self):
+        """NaN lies in no range, whichever option it is given to."""
+        for command, first in [("edit", [self.scene]), ("locate", [self.scene]), ("render", [self.scene, "p.png"]),
+                               ("turntable", [self.scene, "p.mp4"]), ("eval", []), ("bench", ["starter"]), ("train-starter", [])]:
+            text = run(command, *(["starter"] if command == "bench" else []), "--help").stdout
+            names = re.findall(r"^ +(--[a-z0-9-]+) FLOAT", text, re.MULTILINE)
+            if command in ("edit", "render", "turntable"):
+                self.assertTrue(names, command)
+            for name in names[::5]:   # the check is the same for all
+                for value in ["nan", "inf", "-inf", "1e999"] if name == names[0] else ["nan"]:
+                    process = run(command, *first, f"{name}={value}")
+                    self.assertEqual(process.returncode, 2, f"{command} {name}={value}: {process.stderr}")
+                    self.assertIn(name, process.stderr)
+                if command != "edit":
+                    break
+        self.assertEqual(self.folder_listing(), ["scene.ply"])
+
+    def test_recipe_fields_are_named(self):
+        seed = {"version": 1, "request": {"prompt": "a red bear", "source": "bear", "target": "red"}}
+        for part, name, value, word in [("request", "rate_colour", None, "null"), ("request", "rate_colour", 1e300, "0 to 10"),
+                                        ("request", "iterations", 2.5, "2.5"), ("request", "iterations", "many", "many"),
+                                        ("request", "seed", -1, "-1"), ("request", "prompt", 5, "text"),
+                                        ("request", "focus", 1, "true or false"), ("job", "threads", 4294967297, "threads"),
+                                        ("guidance", "weight", True, "true"), ("dreambooth", "steps", [], "list")]:
+            recipe = json.loads(json.dumps(seed))
+            recipe.setdefault(part, {})[name] = value
+            path = self.write("recipe.json", json.dumps(recipe).encode())
+            self.refuse_edit(["--recipe", path], name, word, "recipe.json")
+        for recipe in [{**seed, "request": []}, {**seed, "job": None}, {**seed, "guidance": "x"}, {**seed, "version": [1]},
+                       {**seed, "version": "1"}, {**seed, "request": {"no_such": 1}}, []]:
+            path = self.write("recipe.json", json.dumps(recipe).encode())
+            self.refuse_edit(["--recipe", path], "recipe")
+        path = self.write("recipe.json", b'{"version": 1, "request": {"rate_colour": NaN}}')
+        self.refuse_edit(["--recipe", path], "recipe")
 
     def test_usage_errors_exit_2(self):
         for arguments in [["frobnicate"], ["render"], ["render", self.scene, "p.png", "--width", "-4"]]:

@@ -1,5 +1,6 @@
 """info, convert, render, turntable, synth and bench do what their help says."""
 import json
+import re
 import unittest
 
 from program import SHARED, ProgramTest, grid_rows, ply_bytes, run
@@ -69,6 +70,28 @@ class Commands(ProgramTest):
         figures = json.loads(process.stdout)
         for key in ["forward_ms", "backward_ms", "ns_per_pair", "peak_rss_mb"]:
             self.assertGreater(figures[key], 0, key)
+
+    def test_bench_speed_prints_the_readme_table(self):
+        process = run("bench", "speed", "--splats", 300, 500, "--views", 2, "--repetitions", 1, "--size", "64x48",
+                      "--preview-size", "96x64", "--scenes-out", self.folder / "scenes", "--out", self.folder / "table.md")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual((self.folder / "table.md").read_text(), process.stdout)
+        rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in process.stdout.splitlines() if line.startswith("| ")]
+        self.assertEqual(rows[0], ["what", "splats", "picture", "processor time", "error against double precision"])
+        for splats in ["300", "500"]:
+            for what, size in [("rasterizer, forward", "64 x 48"), ("rasterizer, backward", "64 x 48")]:
+                row = next(row for row in rows if row[0] == what and row[1] == splats)
+                self.assertEqual(row[2], size)
+                self.assertRegex(row[3], r"^\d+ ms$")
+            forward, backward = ([float(number) for number in re.findall(r"\d[\d.e+-]*", row[4])]
+                                 for row in rows if row[0].startswith("rasterizer") and row[1] == splats)
+            self.assertGreater(forward[0], 60)    # dB
+            self.assertLess(backward[0], 1e-2)
+        self.assertEqual(self.info(self.folder / "scenes/speed_300/scene.ply")["splats"], 300)
+        self.assertEqual(len(json.loads((self.folder / "scenes/speed_300/cameras.json").read_text())), 2)
+
+    def test_bench_speed_refuses_a_size_it_does_not_understand(self):
+        self.assert_one_sentence(run("bench", "speed", "--size", "64"), "size", "1280x720")
 
     @unittest.skipUnless((SHARED / "data/scenes").is_dir(), "[skip] the shared scenes are not there")
     def test_every_shared_scene_opens(self):

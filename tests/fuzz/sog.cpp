@@ -13,7 +13,7 @@ using namespace gse;
 /// Parts as [u8 name length][name][u32 size][bytes], one after the other.
 class PlainParts final : public io::SogFiles {
 public:
-    explicit PlainParts(io::Bytes bytes) {
+    explicit PlainParts(io::Bytes bytes) : stored_(bytes.size()) {
         while (bytes.size() > 1) {
             const std::size_t name_size = std::to_integer<std::size_t>(bytes[0]);
             if (bytes.size() < 5 + name_size) return;
@@ -26,13 +26,16 @@ public:
             bytes = bytes.subspan(kept);
         }
     }
-    std::vector<std::byte> read(const std::string& name) const override {
+    std::vector<std::byte> read(const std::string& name, std::uint64_t most) const override {
         const auto found = parts_.find(name);
         if (found == parts_.end()) throw Error(ErrorCode::NotFound, "no such part");
+        if (found->second.size() > most) throw Error(ErrorCode::Malformed, "the part is too large");
         return found->second;
     }
+    std::uint64_t stored_bytes() const override { return stored_; }
 
 private:
+    std::uint64_t stored_ = 0;
     std::map<std::string, std::vector<std::byte>> parts_;
 };
 

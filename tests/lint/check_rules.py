@@ -19,13 +19,19 @@ ARROWS = {
     "neural": {"base", "edit"},
     "synth": {"base", "math", "scene"},
     "evaluate": {"base", "math", "scene"},
+    "pipeline": {"base", "math", "scene", "io", "raster", "localize", "edit", "neural", "evaluate"},
+    "bench": {"base", "math", "scene", "io", "raster", "localize", "edit", "neural", "synth", "evaluate", "pipeline"},
+    "training": {"base", "math", "scene", "io", "raster", "localize", "neural", "synth", "evaluate", "pipeline"},
+    "window": {"base", "vulkan"},
 }
 UI_FORBIDDEN = {"vulkan", "preview", "neural"}
 SOURCE_LIMIT = 600     # lines of a file
 FUNCTION_LIMIT = 60    # lines of a function body
 SUFFIXES = {".h", ".cpp", ".inl", ".cu", ".comp"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
-FOREIGN_OWNERS = {"torch/": {"neural"}, "ATen/": {"neural"}, "c10/": {"neural"}, "vulkan/": {"vulkan", "preview"}}
+JSON_PARSER = "engine/base/json.h"   # the one place that bounds the depth of JSON
+JSON_PARSE = re.compile(r"[Jj]son(::|\.)parse\s*\(")
+FOREIGN_OWNERS = {"torch/": {"neural"}, "ATen/": {"neural"}, "c10/": {"neural"}, "vulkan/": {"vulkan", "preview", "window"}}
 
 
 def folder_of(path):
@@ -107,6 +113,8 @@ def check_file(root, path):
         found = INCLUDE.match(line)
         if found:
             yield from check_include(relative, number, found.group(1), path.suffix == ".h")
+        if JSON_PARSE.search(line) and relative.parts[0] != "tests" and str(relative) != JSON_PARSER:
+            yield f"{relative}:{number}: JSON is parsed with parse_json() or try_parse_json()"
     if relative.parts[0] in {"engine", "app", "ui"}:
         for begin, length in function_lengths(lines):
             if length > FUNCTION_LIMIT:
@@ -138,6 +146,7 @@ def self_test():
         "engine/base/e.cpp": ("int x;\n", "first line must say"),
         "engine/base/f.cpp": ("// x\n" + "int x;\n" * 700, "lines (at most 600)"),
         "engine/base/g.cpp": ("// x\nvoid f(int a) {\n" + "    a += 1;\n" * 70 + "}\n", "a function of 72 lines"),
+        "app/j.cpp": ("// x\nauto a = nlohmann::json::parse(text);\n", "parsed with parse_json()"),
         "engine/raster/h.cpp": ("// x\n#include \"app/main.h\"\n", "must not include app"),
         "strange": (None, "not a top-level name"),
     }

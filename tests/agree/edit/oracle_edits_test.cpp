@@ -10,6 +10,7 @@
 #include "engine/edit/session.h"
 #include "engine/evaluate/metrics.h"
 #include "engine/localize/clusters.h"
+#include "engine/scene/delta.h"
 #include "engine/synth/synth.h"
 
 namespace {
@@ -51,6 +52,16 @@ Mask region(const OracleCase& oracle, const Camera& camera, raster::Rasterizer& 
     return localize::dilate(mask, radius);
 }
 
+edit::EditResult edit_of(const OracleCase& oracle, const edit::EditRequest& request, raster::Rasterizer& rasterizer) {
+    edit::EditPlan plan;
+    plan.views = ring(oracle.scene, 16, 0);
+    plan.label = oracle.label;
+    plan.seeds = oracle.seeds;
+    for (const auto& view : plan.views) plan.masks.push_back(region(oracle, view.camera, rasterizer, 2));
+    edit::OracleGuidance guidance(oracle.target, plan.views, plan.settings, rasterizer);
+    return edit::run_edit(oracle.scene.scene.gaussians, plan, request, {rasterizer, guidance, {}, {}});
+}
+
 struct Outcome {
     double inside_db = 0, outside_db = 0;
     edit::EditResult result;
@@ -59,15 +70,8 @@ struct Outcome {
 Outcome run(const OracleCase& oracle, edit::EditRequest request) {
     ThreadPool pool(2);
     const auto rasterizer = raster::make_fast_rasterizer(pool);
-    edit::EditPlan plan;
-    plan.views = ring(oracle.scene, 16, 0);
-    plan.label = oracle.label;
-    plan.seeds = oracle.seeds;
-    for (const auto& view : plan.views) plan.masks.push_back(region(oracle, view.camera, *rasterizer, 2));
-    edit::OracleGuidance guidance(oracle.target, plan.views, plan.settings, *rasterizer);
-    const edit::EditTools tools{*rasterizer, guidance, {}, {}};
     Outcome outcome;
-    outcome.result = edit::run_edit(oracle.scene.scene.gaussians, plan, request, tools);
+    outcome.result = edit_of(oracle, request, *rasterizer);
 
     // Held-out views: between those of the loop. Errors are pooled over the views.
     double inside_error = 0, outside_error = 0;
@@ -188,4 +192,61 @@ DOCTEST_TEST_CASE("an oracle addition grows from seeds") {
     std::printf("add: inside %.2f dB outside %.2f dB\n", outcome.inside_db, outcome.outside_db);
     DOCTEST_CHECK(outcome.inside_db >= LeastInsideDb);
     DOCTEST_CHECK(outcome.outside_db >= LeastOutsideDb);
+}
+
+namespace {
+
+/// Mean colour of what the views show inside the region of the edit.
+Vec3 mean_colour(const OracleCase& oracle, const GaussianSet& set, raster::Rasterizer& rasterizer) {
+    Vec3 sum;
+    double count = 0;
+    raster::ForwardOutput output;
+    for (const auto& view : ring(oracle.scene, 4, 0.1)) {
+        rasterizer.forward(set.spans(), view.camera, {}, output);
+        const Mask mask = region(oracle, view.camera, rasterizer, 0);
+        for (std::size_t i = 0; i < mask.data.size(); ++i) {
+            if (mask.data[i] == 0) continue;
+            sum = sum + Vec3{output.colour.data[3 * i], output.colour.data[3 * i + 1], output.colour.data[3 * i + 2]};
+            ++count;
+        }
+    }
+    return sum / count;
+}
+
+bool same_sets(const GaussianSet& a, const GaussianSet& b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t row = 0; row < a.size(); ++row)
+        if (!same_row(a.spans(), row, b.spans(), row)) return false;
+    return true;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("every position of the strength gives more of the edit than the one before, and nothing outside the label") {
+    constexpr double LeastStep = 0.05;   // of the full change: what an eye tells apart in a strong one
+    const auto oracle = recolour();
+    const GaussianSet& base = oracle.scene.scene.gaussians;
+    ThreadPool pool(2);
+    const auto rasterizer = raster::make_fast_rasterizer(pool);
+    edit::EditRequest request;
+    request.iterations = 60;
+    const auto full = edit_of(oracle, request, *rasterizer);
+    const Vec3 before = mean_colour(oracle, base, *rasterizer), way = mean_colour(oracle, full.set, *rasterizer) - before;
+    double last = 0;
+    for (const double strength : {0.25, 0.5, 0.75, 1.0, 1.5, 2.0}) {
+        DOCTEST_INFO("strength " << strength);
+        request.strength = strength;
+        const auto result = edit_of(oracle, request, *rasterizer);
+        const double share = dot(mean_colour(oracle, result.set, *rasterizer) - before, way) / dot(way, way);
+        DOCTEST_CHECK(share > last + LeastStep);
+        last = share;
+        DOCTEST_CHECK(same_sets(result.set, full.set) == (strength == 1));
+        DOCTEST_REQUIRE(result.label.size() == result.set.size());
+        DOCTEST_REQUIRE(result.generation.size() == result.set.size());
+        for (std::size_t row = 0; row < base.size(); ++row)
+            if (oracle.label[row] == 0)
+                DOCTEST_CHECK(same_row(base.spans(), row, result.set.spans(), static_cast<std::size_t>(result.base_to_new[row])));
+    }
+    request.strength = 0;
+    DOCTEST_CHECK(same_sets(edit_of(oracle, request, *rasterizer).set, base));
 }

@@ -61,6 +61,18 @@ inline Camera test_camera(int width, int height, double distance = 4.0) {
     return camera;
 }
 
+/// Scene and camera `factor` times as large: the same picture.
+inline GaussianData scaled(GaussianData data, double factor) {
+    for (float& value : data.position) value = static_cast<float>(factor * static_cast<double>(value));
+    for (float& value : data.log_scale) value += static_cast<float>(std::log(factor));
+    return data;
+}
+
+inline Camera scaled(Camera camera, double factor) {
+    camera.translation = camera.translation * factor;
+    return camera;
+}
+
 inline Image noise_image(int width, int height, int channels, std::uint64_t seed) {
     Image image(width, height, channels);
     Random random(seed);
@@ -123,7 +135,8 @@ inline std::vector<std::uint8_t> ambiguous_pixels(const GaussianData& data, cons
     const raster::plain::Inputs inputs{data.size(), data.sh_degree, position, scale, rotation, logit, sh};
     raster::plain::SplatList list;
     raster::plain::Picture picture;
-    const raster::plain::View view{camera, settings};
+    const raster::Settings settled = raster::with_depth_range(settings, spans(data), camera);
+    const raster::plain::View view{camera, settled};
     raster::plain::project_all(inputs, view, list);
     raster::plain::composite(list, view, picture);
     return picture.ambiguous;

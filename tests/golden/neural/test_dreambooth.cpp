@@ -3,6 +3,7 @@
 #include "engine/neural/dreambooth.h"
 #include "engine/neural/key_map.h"
 #include "tests/golden/neural/golden_case.h"
+#include "tests/golden/neural/tolerances.h"
 
 namespace {
 
@@ -12,15 +13,10 @@ using namespace gse::test;
 
 // The tolerances of the case's README.
 constexpr double LossTolerance = 1e-5;      // relative
-constexpr double GradientTolerance = 2e-4;  // of the largest gradient
 constexpr double MeanShare = 1e-3, WorstShare = 0.05;  // of the learning rate, weights after some steps
 constexpr double NormTolerance = 1e-3;      // relative, how far each parameter moved
 constexpr double IgnoredShare = 1e-2;       // of the median: parameters without a true gradient
-constexpr double LatentTolerance = 2e-5;
-// What the case's README states of the run, not stored in a file.
-constexpr double LearningRate = 1e-4;
-constexpr double LatentFactor = 0.18215;
-
+constexpr double ClassLatentTolerance = 2e-5;
 template <class Holder, class Config>
 Holder loaded(const GoldenCase& golden, const std::string& file, const LoadPlan& plan) {
     Holder module(Config::from_json(golden.json("config.json"), golden.folder));
@@ -31,9 +27,24 @@ Holder loaded(const GoldenCase& golden, const std::string& file, const LoadPlan&
 
 /// Everything the case starts from. The tokenizer is not used: the ids are given.
 struct Setup {
-    Setup() : golden("dreambooth"), unet("unet_sd1"), vae("vae"), text("clip_text_sd1"), pipeline("pipeline_sd1") {}
+    Setup() : golden("dreambooth"), unet("unet_sd1"), vae("vae"), text("clip_text_sd1"), pipeline("pipeline_sd1") {
+        if (present()) stated = golden.json("case.json");
+    }
     bool present() const {
         return golden.present && unet.present && vae.present && text.present && pipeline.present;
+    }
+    /// What case.json states of the run.
+    DreamBoothParameters parameters() const {
+        DreamBoothParameters parameters;
+        parameters.learning_rate = stated.at("learning_rate").get<double>();
+        parameters.prior_weight = stated.at("prior_weight").get<double>();
+        parameters.max_grad_norm = stated.at("max_grad_norm").get<double>();
+        parameters.weight_decay = stated.at("weight_decay").get<double>();
+        return parameters;
+    }
+    NoiseSchedule schedule() const {
+        const auto path = pipeline.folder / "scheduler/scheduler_config.json";
+        return NoiseSchedule(SchedulerConfig::from_json(read_json_file(path), path));
     }
     ModelBundle bundle() const {
         const auto vae_file = vae.tensors("diffusion_pytorch_model.safetensors");
@@ -42,10 +53,11 @@ struct Setup {
                 loaded<ClipTextEncoder, TextEncoderConfig>(text, "model.safetensors", text_encoder_plan()),
                 loaded<UNet, UNetConfig>(unet, "diffusion_pytorch_model.safetensors", unet_plan()),
                 loaded<AutoencoderKl, VaeConfig>(vae, "diffusion_pytorch_model.safetensors", vae_plan(vae_file)),
-                NoiseSchedule(SchedulerConfig{}),
+                schedule(),
                 {}};
     }
     GoldenCase golden, unet, vae, text, pipeline;
+    Json stated;
 };
 
 /// Rows [first, first + count) of step `s`.
@@ -62,13 +74,14 @@ torch::Tensor named(const NamedTensors& tensors, const std::string& name) {
     return {};
 }
 
-void check_weights_after(Margins& margins, const std::string& at, const NamedTensors& trained,
-                         const SafetensorsFile& io) {
+void check_weights_after(Margins& margins, const std::string& at, const NamedTensors& trained, const Setup& setup) {
+    const auto io = setup.golden.tensors();
+    const double rate = setup.parameters().learning_rate;
     std::size_t checked = 0;
     const auto compare = [&](const std::string& what, const torch::Tensor& actual, const torch::Tensor& expected) {
-        margins.near(at + what, actual, expected, WorstShare * LearningRate);
+        margins.near(at + what, actual, expected, WorstShare * rate);
         margins.near(at + what + " mean", (actual.detach() - expected).abs().mean(), torch::zeros({}),
-                     MeanShare * LearningRate);
+                     MeanShare * rate);
         ++checked;
     };
     for (const auto& [key, entry] : io.entries()) {
@@ -119,18 +132,19 @@ void check_variant(const std::string& variant, bool prior, bool text, int thread
     Margins margins("dreambooth " + variant);
     const auto bundle = setup.bundle();
     const auto io = setup.golden.tensors();
-    DreamBoothParameters parameters;
-    parameters.learning_rate = LearningRate;
+    auto parameters = setup.parameters();
     parameters.train_text_encoder = text;
     parameters.threads = threads;
     DreamBoothTrainer trainer(bundle, parameters);
+    const double latent_factor = setup.stated.at("latent_factor").get<double>();
+    margins.near("alphas_cumprod", bundle.schedule.alphas_cumprod(), io.tensor("alphas_cumprod"), CumprodTolerance);
     const auto moments = bundle.vae->encode_moments(io.tensor("pixel_values"));
     const auto steps = io.tensor("timesteps").size(0), batch = io.tensor("timesteps").size(1);
     for (std::int64_t s = 0; s < steps; ++s) {
-        const auto latents = (moments.sample(io.tensor("posterior_eps")[s]) * LatentFactor).detach();
+        const auto latents = (moments.sample(io.tensor("posterior_eps")[s]) * latent_factor).detach();
         const std::string at = variant + ".step" + std::to_string(s + 1) + ".";
         if (io.contains(at + "latents"))
-            margins.near("latents", latents, io.tensor(at + "latents"), LatentTolerance);
+            margins.near("latents", latents, io.tensor(at + "latents"), ClassLatentTolerance);
         const auto instance = rows_of(io, latents, s, prior ? std::pair{std::int64_t{0}, batch / 2} : std::pair{std::int64_t{0}, batch});
         const auto class_half = rows_of(io, latents, s, {batch / 2, batch / 2});
         auto step = trainer.accumulate(instance, prior ? &class_half : nullptr);
@@ -147,7 +161,7 @@ void check_variant(const std::string& variant, bool prior, bool text, int thread
                      io.tensor(at + "grad_norm"), GradientTolerance * largest(io.tensor(at + "grad_norm")));
         const std::string after = variant + ".after" + std::to_string(s + 1) + ".";
         if (!io.contains(after + "unet.delta_norm_per_tensor")) continue;
-        check_weights_after(margins, after, trainer.trained(), io);
+        check_weights_after(margins, after, trainer.trained(), setup);
         check_distances(margins, after, trainer.trained(), setup, bundle.unet);
     }
 }

@@ -6,6 +6,7 @@
 #include "engine/neural/unet.h"
 #include "engine/neural/vae.h"
 #include "tests/golden/neural/golden_case.h"
+#include "tests/golden/neural/tolerances.h"
 
 namespace {
 
@@ -14,10 +15,8 @@ using namespace gse::neural;
 using namespace gse::test;
 
 // The tolerances of the cases' README files.
-constexpr double OutputTolerance = 2e-5;
 constexpr double ClipSegTolerance = 2e-5;  // of the largest value, at least of 1
 constexpr double MapTolerance = 5e-6;
-constexpr double GradientTolerance = 2e-4;     // of the tensor's largest value
 constexpr double ClipGradientRelative = 1e-4;  // of each value ...
 constexpr double ClipGradientAbsolute = 1e-5;  // ... plus this share of the largest
 

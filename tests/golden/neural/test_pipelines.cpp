@@ -3,6 +3,7 @@
 #include "engine/neural/key_map.h"
 #include "engine/neural/pipelines.h"
 #include "tests/golden/neural/golden_case.h"
+#include "tests/golden/neural/tolerances.h"
 
 namespace {
 
@@ -13,8 +14,6 @@ using namespace gse::test;
 // The tolerances of the cases' README files.
 constexpr double LatentTolerance = 1e-4;  // of the largest value
 constexpr double ImageTolerance = 1e-3;
-constexpr double OutputTolerance = 2e-5;
-constexpr double GradientTolerance = 2e-4;  // of the largest value
 
 /// The pipeline's folder with its links in place, also where a checkout keeps links as small text files.
 void restore_links(const std::filesystem::path& from, const std::filesystem::path& to) {
@@ -45,15 +44,28 @@ torch::Tensor context_of(const SafetensorsFile& io) {
     return torch::cat({io.tensor("negative_prompt_embeds"), io.tensor("prompt_embeds")});
 }
 
+/// "mean.t421.s7.5." for that guidance scale, however the case writes the number.
+std::string scale_prefix(const SafetensorsFile& io, const std::string& at, double scale) {
+    constexpr std::string_view last = ".grad_latents";
+    for (const auto& [name, entry] : io.entries()) {
+        if (!name.starts_with(at + "s") || !name.ends_with(last)) continue;
+        const auto text = name.substr(at.size() + 1, name.size() - at.size() - 1 - last.size());
+        if (std::stod(text) == scale) return at + "s" + text + ".";
+    }
+    DOCTEST_FAIL("no tensors of guidance scale ", scale, " under ", at);
+    return {};
+}
+
 void check_sds_step(Margins& margins, const ModelBundle& bundle, const SafetensorsFile& io,
-                    const std::string& mode, std::int64_t t) {
+                    const std::string& mode, std::int64_t t, const std::vector<double>& scales) {
     auto image = io.tensor("image").requires_grad_(true);
     const auto moments = bundle.vae->encode_moments(image);
     const auto z = mode == "mean" ? moments.mean : moments.sample(io.tensor("posterior_eps"));
     const auto latents = z * bundle.scaling_factor();
     margins.near(mode + ".latents", latents, io.tensor(mode + ".latents"), OutputTolerance);
     const std::string at = mode + ".t" + std::to_string(t) + ".";
-    for (const auto& [scale, text] : {std::pair(7.5, "s7.5."), std::pair(100.0, "s100.")}) {
+    for (const double scale : scales) {
+        const auto scaled = scale_prefix(io, at, scale);
         const auto result = sds_gradient(
             bundle, latents,
             {io.tensor("noise"), t, scale, torch::cat({io.tensor("uncond"), io.tensor("cond")})});
@@ -62,11 +74,11 @@ void check_sds_step(Margins& margins, const ModelBundle& bundle, const Safetenso
                      OutputTolerance);
         margins.near(at + "eps_cond", result.epsilon_positive, io.tensor(at + "eps_cond"), OutputTolerance);
         margins.near(at + "w", torch::tensor(result.weight), io.tensor(at + "w"), OutputTolerance);
-        margins.near_relative(at + text + "grad_latents", result.gradient,
-                              io.tensor(at + text + "grad_latents"), GradientTolerance);
-        if (!io.contains(at + text + "grad_image")) continue;
+        margins.near_relative(scaled + "grad_latents", result.gradient,
+                              io.tensor(scaled + "grad_latents"), GradientTolerance);
+        if (!io.contains(scaled + "grad_image")) continue;
         const auto gradient = torch::autograd::grad({latents}, {image}, {result.gradient}, true)[0];
-        margins.near_relative(at + text + "grad_image", gradient, io.tensor(at + text + "grad_image"),
+        margins.near_relative(scaled + "grad_image", gradient, io.tensor(scaled + "grad_image"),
                               GradientTolerance);
     }
 }
@@ -124,16 +136,16 @@ DOCTEST_TEST_CASE("pipeline_sd1: text to image with guidance") {
     const auto io = pipeline.golden.tensors();
     const auto what = pipeline.golden.json("case.json");
     const auto bundle = pipeline.load();
-    const auto prompt = what["prompt"].get<std::string>(),
-               negative = what["negative_prompt"].get<std::string>();
+    const auto prompt = what.at("prompt").get<std::string>(),
+               negative = what.at("negative_prompt").get<std::string>();
     DOCTEST_CHECK(torch::equal(bundle.token_ids({prompt, negative}), io.tensor("input_ids")));
     const auto context = bundle.encode_prompts({negative, prompt});
     margins.near("context", context, context_of(io), OutputTolerance);
     const auto sampler = make_sampler(sampler_kind(bundle.schedule.config()), bundle.schedule,
-                                      what["steps"].get<std::int64_t>());
+                                      what.at("steps").get<std::int64_t>());
     DenoiseJob job;
     job.sampler = sampler.get();
-    job.guidance_scale = what["guidance_scale"].get<double>();
+    job.guidance_scale = what.at("guidance_scale").get<double>();
     job.context = context;
     const auto expected = io.tensor("latents_steps");
     job.after_step = [&](std::int64_t step, const torch::Tensor& latents) {
@@ -154,11 +166,11 @@ DOCTEST_TEST_CASE("pipeline_sd1: image to image with guidance") {
     const auto what = pipeline.golden.json("case.json");
     const auto bundle = pipeline.load();
     const auto sampler = make_sampler(sampler_kind(bundle.schedule.config()), bundle.schedule,
-                                      what["img2img"]["steps"].get<std::int64_t>());
+                                      what.at("img2img").at("steps").get<std::int64_t>());
     DenoiseJob job;
     job.sampler = sampler.get();
-    job.first = first_step(sampler->step_count(), what["img2img"]["strength"].get<double>());
-    job.guidance_scale = what["guidance_scale"].get<double>();
+    job.first = first_step(sampler->step_count(), what.at("img2img").at("strength").get<double>());
+    job.guidance_scale = what.at("guidance_scale").get<double>();
     job.context = context_of(io);
     const torch::NoGradGuard no_grad;
     const auto expected = io.tensor("img2img.latents_steps");
@@ -182,14 +194,15 @@ DOCTEST_TEST_CASE("sds: gradient on latents and image, mean and sampled posterio
     const auto bundle = pipeline.load();
     const auto io = golden.tensors();
     margins.near("alphas_cumprod", bundle.schedule.alphas_cumprod(), io.tensor("alphas_cumprod"), 2e-6);
-    std::size_t steps = 0;
-    for (const auto& [name, entry] : io.entries()) {  // "mean.t421.w": every mode and timestep of the case
-        if (!name.ends_with(".w")) continue;
-        const auto t = name.find(".t");
-        check_sds_step(margins, bundle, io, name.substr(0, t), std::stoll(name.substr(t + 2)));
-        ++steps;
-    }
-    DOCTEST_CHECK(steps > 0);
+    const auto stated = golden.json("case.json");
+    const auto timesteps = stated.at("timesteps").get<std::vector<std::int64_t>>();
+    const auto scales = stated.at("guidance_scales").get<std::vector<double>>();
+    for (const char* mode : {"mean", "sample"})
+        for (const auto t : timesteps) check_sds_step(margins, bundle, io, mode, t, scales);
+    std::size_t gradients = 0;  // none of the file's is left unread
+    for (const auto& [name, entry] : io.entries())
+        if (!name.starts_with("render.") && name.ends_with(".grad_latents")) ++gradients;
+    DOCTEST_CHECK(gradients == 2 * timesteps.size() * scales.size());
 }
 
 DOCTEST_TEST_CASE("sds: through the bilinear resize of a render") {
@@ -199,8 +212,10 @@ DOCTEST_TEST_CASE("sds: through the bilinear resize of a render") {
     Margins margins("sds render");
     const auto bundle = pipeline.load();
     const auto io = golden.tensors();
+    const auto stated = golden.json("case.json").at("render");
     auto render = io.tensor("render").requires_grad_(true);
-    const auto size = io.tensor("render.resized").size(2);
+    DOCTEST_CHECK(render.size(3) == stated.at("side").get<std::int64_t>());
+    const auto size = stated.at("resized").get<std::int64_t>();
     const auto resized = torch::upsample_bilinear2d(render, {size, size}, false);
     margins.near("resized", resized, io.tensor("render.resized"), OutputTolerance);
     const auto moments = bundle.vae->encode_moments(resized * 2 - 1);
@@ -208,7 +223,8 @@ DOCTEST_TEST_CASE("sds: through the bilinear resize of a render") {
     margins.near("latents", latents, io.tensor("render.latents"), OutputTolerance);
     const auto result =
         sds_gradient(bundle, latents,
-                     {io.tensor("noise"), 421, 7.5, torch::cat({io.tensor("uncond"), io.tensor("cond")})});
+                     {io.tensor("noise"), stated.at("timestep").get<std::int64_t>(), stated.at("guidance_scale").get<double>(),
+                      torch::cat({io.tensor("uncond"), io.tensor("cond")})});
     margins.near_relative("grad_latents", result.gradient, io.tensor("render.grad_latents"),
                           GradientTolerance);
     latents.backward(result.gradient);
@@ -238,7 +254,7 @@ DOCTEST_TEST_CASE("single_file_sd1: opened as a model, with the tokenizer beside
     const auto io = pipeline.golden.tensors();
     const auto what = pipeline.golden.json("case.json");
     const auto context = bundle.encode_prompts(
-        {what["negative_prompt"].get<std::string>(), what["prompt"].get<std::string>()});
+        {what.at("negative_prompt").get<std::string>(), what.at("prompt").get<std::string>()});
     DOCTEST_CHECK(difference(context, context_of(io)) <= OutputTolerance);
     const auto description = describe_model(path);
     DOCTEST_CHECK(description.layout == "single file");

@@ -2,6 +2,7 @@
 #include "engine/neural/schedulers.h"
 
 #include "tests/golden/neural/golden_case.h"
+#include "tests/golden/neural/tolerances.h"
 
 namespace {
 
@@ -10,14 +11,22 @@ using namespace gse::neural;
 using namespace gse::test;
 
 // The tolerances of the case's README.
-constexpr double CumprodTolerance = 2e-6;
 constexpr double ConversionTolerance = 1e-5;
 constexpr double TrajectoryRelative = 1e-4, TrajectoryAbsolute = 1e-4;
 constexpr double SigmaRelative = 1e-5;
 
-torch::Tensor fake_model(const torch::Tensor& x, double t) {
-    return 0.6 * x + 0.3 * torch::sin(3 * x + t / 250.0);
-}
+/// What stands in for a network: linear * x + sine * sin(frequency * x + t / period).
+struct FakeModel {
+    explicit FakeModel(const Json& stated)
+        : linear(stated.at("linear").get<double>()),
+          sine(stated.at("sine").get<double>()),
+          frequency(stated.at("frequency").get<double>()),
+          period(stated.at("period").get<double>()) {}
+    torch::Tensor operator()(const torch::Tensor& x, double t) const {
+        return linear * x + sine * torch::sin(frequency * x + t / period);
+    }
+    double linear, sine, frequency, period;
+};
 
 void near_scaled(Margins& margins, const std::string& what, const torch::Tensor& actual,
                  const torch::Tensor& expected, double relative, double absolute) {
@@ -31,11 +40,15 @@ struct Walk {
     SamplerKind kind;
     bool velocity = false;
     double eta = 0;
-    double strength = 1;
+    bool from_image = false;  // steps and strength as case.json states them under the walk's name
 };
 
+const char* config_file(SamplerKind kind) {
+    return kind == SamplerKind::Pndm ? "pndm_scheduler_config.json" : "ddim_scheduler_config.json";
+}
+
 SchedulerConfig config_for(const GoldenCase& golden, const Walk& walk) {
-    const auto path = golden.folder / "ddim_scheduler_config.json";
+    const auto path = golden.folder / config_file(walk.kind);
     auto config = SchedulerConfig::from_json(read_json_file(path), path);
     if (walk.velocity) config.prediction_type = "v_prediction";
     if (walk.kind == SamplerKind::Ddpm) config.steps_offset = 0;  // the case: "DDPM has none"
@@ -45,19 +58,23 @@ SchedulerConfig config_for(const GoldenCase& golden, const Walk& walk) {
 torch::Tensor start_of(const Walk& walk, const Sampler& sampler, const SafetensorsFile& io,
                        std::int64_t first) {
     if (walk.kind == SamplerKind::DdimInverse) return io.tensor("x0");
-    if (walk.strength < 1) return sampler.start_from(io.tensor("x0"), io.tensor("noise"), first);
+    if (walk.from_image) return sampler.start_from(io.tensor("x0"), io.tensor("noise"), first);
     return io.tensor("xT") * sampler.initial_sigma();
 }
 
 void check_walk(Margins& margins, const GoldenCase& golden, const Walk& walk) {
     const auto io = golden.tensors();
+    const auto stated = golden.json("case.json");
+    const FakeModel fake_model(stated.at("fake_model"));
     const auto expected = io.tensor(walk.name + ".latents");
     const auto noises = io.tensor("step_noises");
     const NoiseSchedule schedule(config_for(golden, walk));
     const std::int64_t steps =
-        walk.strength < 1 ? noises.size(0) : expected.size(0) - 1 - (walk.kind == SamplerKind::Pndm ? 1 : 0);
+        walk.from_image ? stated.at(walk.name).at("steps").get<std::int64_t>()
+                        : expected.size(0) - 1 - (walk.kind == SamplerKind::Pndm ? 1 : 0);
     const auto sampler = make_sampler(walk.kind, schedule, steps, walk.eta);
-    const auto first = walk.strength < 1 ? first_step(sampler->step_count(), walk.strength) : 0;
+    const auto first =
+        walk.from_image ? first_step(sampler->step_count(), stated.at(walk.name).at("strength").get<double>()) : 0;
     DOCTEST_REQUIRE(sampler->step_count() - first == expected.size(0) - 1);
     if (io.contains(walk.name + ".init_noise_sigma"))
         margins.near_relative(walk.name + ".init_noise_sigma", torch::tensor(sampler->initial_sigma()),
@@ -112,8 +129,8 @@ DOCTEST_TEST_CASE("schedulers: betas, products, noise and conversions") {
     const NoiseSchedule velocity(config_for(golden, {"", SamplerKind::Ddim, true}));
     margins.near("betas", schedule.betas(), io.tensor("betas"), CumprodTolerance);
     margins.near("alphas_cumprod", schedule.alphas_cumprod(), io.tensor("alphas_cumprod"), CumprodTolerance);
-    margins.near("final_alpha_cumprod", torch::tensor(schedule.alpha_cumprod(0)),
-                 io.tensor("final_alpha_cumprod"), CumprodTolerance);
+    const float last = schedule.config().set_alpha_to_one ? 1.0f : schedule.alpha_cumprod(0);
+    margins.near("final_alpha_cumprod", torch::tensor(last), io.tensor("final_alpha_cumprod"), CumprodTolerance);
     const auto t = io.tensor("add_noise.t"), x0 = io.tensor("add_noise.x0"),
                noise = io.tensor("add_noise.noise");
     const auto x_t = io.tensor("add_noise.out"), v = io.tensor("v.in");
@@ -132,7 +149,7 @@ DOCTEST_TEST_CASE("schedulers: trajectories of all samplers") {
     using enum SamplerKind;
     const std::vector<Walk> walks = {{"ddim_txt2img", Ddim},
                                      {"ddim_txt2img_v", Ddim, true},
-                                     {"ddim_img2img", Ddim, false, 0, 0.6},
+                                     {"ddim_img2img", Ddim, false, 0, true},
                                      {"ddim_eta1", Ddim, false, 1.0},
                                      {"ddim_inverse", DdimInverse},
                                      {"ddpm", Ddpm},

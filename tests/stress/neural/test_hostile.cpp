@@ -97,6 +97,14 @@ DOCTEST_TEST_CASE("tokenizer: any bytes give ids within the vocabulary") {
     DOCTEST_CHECK(tokenizer.encode(std::string(20000, '<')).truncated);
 }
 
+namespace {
+
+bool finite(const Image& image) {
+    return std::all_of(image.data.begin(), image.data.end(), [](float value) { return std::isfinite(value); });
+}
+
+}  // namespace
+
 DOCTEST_TEST_CASE("guidance and attention: odd images") {
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
@@ -111,18 +119,17 @@ DOCTEST_TEST_CASE("guidance and attention: odd images") {
             DOCTEST_CHECK(maps[0].width == width);
             edit::GuidanceInput input{image, view};
             const auto output = guidance.evaluate(input);
-            for (const auto* values : {&maps[0].data, &output.gradient.data})
-                DOCTEST_CHECK(
-                    std::all_of(values->begin(), values->end(), [](float v) { return std::isfinite(v); }));
+            DOCTEST_CHECK(finite(maps[0]));
+            DOCTEST_CHECK(finite(output.gradient));
         }
     Image broken(32, 32, 3, 0.5f);
     broken.at(3, 3, 1) = NAN;
     edit::GuidanceInput input{broken, view};
-    DOCTEST_CHECK(contains(message_of([&] { guidance.evaluate(input); }), "finite"));
+    DOCTEST_CHECK_FALSE(finite(guidance.evaluate(input).gradient));   // the loop leaves such a step out and counts it
     DOCTEST_CHECK(contains(message_of([&] { source.locate({broken, "a red bear", {"bear"}}); }), "finite"));
 }
 
-DOCTEST_TEST_CASE("guidance: damaged weights are said, not spread") {
+DOCTEST_TEST_CASE("guidance: what damaged weights give is seen as such") {
     TinyModel model;
     for (auto& [name, tensor] : model.unet)
         if (name == "conv_out.bias") tensor.fill_(NAN);
@@ -131,8 +138,7 @@ DOCTEST_TEST_CASE("guidance: damaged weights are said, not spread") {
     const Image image(32, 32, 3, 0.5f);
     const View view;
     edit::GuidanceInput input{image, view};
-    DOCTEST_CHECK(
-        contains(message_of([&] { SdsGuidance(bundle, "a red bear", {}).evaluate(input); }), "finite"));
+    DOCTEST_CHECK_FALSE(finite(SdsGuidance(bundle, "a red bear", {}).evaluate(input).gradient));
 }
 
 DOCTEST_TEST_CASE("configurations: random values never crash the reader") {

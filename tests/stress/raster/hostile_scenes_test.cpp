@@ -177,7 +177,7 @@ DOCTEST_TEST_CASE("places where numbers get large or coincide") {
     Hostile h;
     DOCTEST_SUBCASE("far world") { move_world(h, {1e6, -1e6, 1e6}); }
     DOCTEST_SUBCASE("camera inside the splats") {
-        h.settings.near_plane = 0.0f;
+        h.settings.near_plane = 1e-6f;
         const Vec3 eye = h.camera.centre();
         Random random(7);
         for (std::size_t row = 0; row < h.data.size(); ++row)

@@ -10,83 +10,26 @@
 #include <thread>
 
 #include "app/application.h"
-#include "app/film.h"
 #include "engine/io/image_file.h"
 #include "engine/io/scene_io.h"
+#include "engine/pipeline/film.h"
 #include "engine/scene/label_ops.h"
+#include "tests/ui/app/session.h"
+
+using namespace gse;
+using namespace gse::test;
+using namespace std::chrono_literals;
 
 namespace {
 
-using namespace gse;
-namespace fs = std::filesystem;
-using namespace std::chrono_literals;
-
-/// A viewport that paints nothing and remembers what was wanted.
-class NoPreview : public app::PreviewHost {
-public:
-    void want(const app::PictureRequest& request) override { last = request; }
-    app::PictureState state() override { return {}; }
-    app::PictureRequest last;
-};
-
-/// A folder of its own for settings, autosaves and results.
-struct Place {
-    fs::path folder;
-    Place() {
-        folder = fs::temp_directory_path() / ("gse_session_" + std::to_string(getpid()));
-        fs::remove_all(folder);
-        fs::create_directories(folder);
-        setenv("GSE_CONFIG_DIR", (folder / "config").c_str(), 1);
-        setenv("GSE_STATE_DIR", (folder / "state").c_str(), 1);
-    }
-    ~Place() {
-        std::error_code ignored;
-        fs::remove_all(folder, ignored);
-    }
-};
-
-struct Session {
-    NoPreview preview;
-    app::Application app;
-    explicit Session(bool autosave = true) : app({.autosave = autosave, .autosave_seconds = 0.2}) {
-        app.set_viewport_size(320, 240);
-    }
-    /// Frames until the condition holds; false after `seconds`.
-    template <class F>
-    bool until(F condition, double seconds = 120) {
-        const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-        while (std::chrono::steady_clock::now() < end) {
-            app.update(preview);
-            if (condition()) return true;
-            std::this_thread::sleep_for(5ms);
-        }
-        return false;
-    }
-    bool idle() {
-        return until([&] { return !app.model().job.running && !app.model().file_job.running; });
-    }
-    void open_bear() {
-        app.open_sample();
-        DOCTEST_REQUIRE(until([&] { return app.model().document != nullptr; }));
-        auto request = app.model().request;
-        request.source = "bear";
-        request.prompt = "a blue bear on the grass";
-        request.target = "blue";
-        request.views = 8;
-        request.image_size = 64;
-        request.iterations = 30;
-        app.set_request(request);
-    }
-};
-
-bool networks() {
-#ifdef GSE_WINDOW
-    const bool there = fs::exists(fs::read_symlink("/proc/self/exe").parent_path() / "../libgse_neural.so");
-#else
-    const bool there = false;
-#endif
-    if (!there) DOCTEST_MESSAGE("[skip] this build has no networks");
-    return there;
+/// The job that command line, evaluation and benches make of what is typed in the window.
+pipeline::EditJob job_of(const app::Application& app) {
+    pipeline::EditRecipe recipe;
+    recipe.request = app.model().request;
+    Scene scene;
+    scene.gaussians = app.document().state().current;
+    scene.info = app.document().state().info;
+    return {recipe, {scene, app.document().state().views, pipeline::load_recipe_model(recipe.job)}, {}};
 }
 
 }  // namespace
@@ -94,6 +37,7 @@ bool networks() {
 DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
     if (!networks()) return;
     const Place place;
+    const std::string sentence = "A blue bear, on the grass.";
     std::size_t applied_rows = 0;
     std::vector<float> applied_colours;
     {
@@ -101,6 +45,13 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         session.open_bear();
         auto& app = session.app;
         const auto base = app.document().state().current;
+        auto typed = app.model().request;
+        typed.source = "Bear";
+        typed.prompt = sentence;
+        typed.target.clear();   // guessed
+        app.set_request(typed);
+        auto same = job_of(app);
+        same.locate();
         app.locate();
         DOCTEST_REQUIRE(session.idle());
         DOCTEST_CHECK(app.model().job.error.empty());
@@ -108,6 +59,8 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         const auto active = static_cast<std::size_t>(app.document().state().active_label);
         DOCTEST_REQUIRE(active < app.document().state().labels.size());
         DOCTEST_CHECK(app.document().state().labels[active].name == "bear");
+        DOCTEST_CHECK(*app.document().state().labels[active].bits == *same.located().label.bits);
+        const auto searches = app.model().search.number;
         const auto found = count_labelled(app.document().state().labels[active]);
         DOCTEST_CHECK(found > 100);
         DOCTEST_CHECK(found < base.size());
@@ -115,7 +68,7 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         // A brush stroke takes away what lies under it, and undo gives it back.
         ui::ScreenRegion stroke;
         stroke.circles = {{160, 120}};
-        stroke.radius_px = 25;
+        stroke.radius_px = 5;   // part of the bear, which is small in the home view
         app.select(stroke, ui::SetOperation::Remove, true);
         const auto corrected = count_labelled(app.document().state().labels[active]);
         DOCTEST_CHECK(corrected < found);
@@ -129,11 +82,13 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         DOCTEST_CHECK(app.model().job.error.empty());
         DOCTEST_REQUIRE(app.model().result_waiting);
         DOCTEST_CHECK(app.model().losses.size() == 30);
+        DOCTEST_CHECK(app.model().search.number == searches);   // what was found is used, not looked for again
         DOCTEST_CHECK_FALSE(session.preview.last.set.shares_all_with(base));  // the waiting result is shown
         const auto label = *app.document().state().labels[active].bits;
         app.apply_result();
         const auto& state = app.document().state();
         DOCTEST_REQUIRE(state.stack.size() == 1);
+        DOCTEST_CHECK(nlohmann::ordered_json::parse(state.stack[0].recipe)["request"] == fields_to_json(same.recipe().request));
         DOCTEST_CHECK(state.stack[0].changed_outside_label == 0);
         // What the label leaves out has not moved by a bit; that includes what the brush took away.
         std::size_t changed_outside = 0, kept = 0;
@@ -150,6 +105,15 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         app.set_edit_enabled(state.stack[0].id, false);
         DOCTEST_CHECK(app.document().state().current.shares_all_with(base));
         app.undo();
+        // Of what is applied, more or less can be seen: a drag is one step, and the step can be undone.
+        const auto position = app.document().position();
+        app.set_edit_strength(app.document().state().stack[0].id, 0.5, false);
+        const auto half = app.document().state().current;
+        app.set_edit_strength(app.document().state().stack[0].id, 0.25, true);
+        DOCTEST_CHECK(app.document().position() == position + 1);
+        DOCTEST_CHECK_FALSE(app.document().state().current.shares_all_with(half));
+        app.undo();
+        DOCTEST_CHECK(app.document().state().stack[0].strength == 1);
         applied_rows = app.document().state().current.size();
         applied_colours.assign(app.document().state().current.sh().begin(),
                                app.document().state().current.sh().end());
@@ -167,7 +131,7 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
     DOCTEST_REQUIRE(current.size() == applied_rows);
     DOCTEST_CHECK(
         std::equal(current.sh().begin(), current.sh().end(), applied_colours.begin(), applied_colours.end()));
-    DOCTEST_CHECK(again.app.model().request.prompt == "a blue bear on the grass");
+    DOCTEST_CHECK(again.app.model().request.prompt == sentence);   // as it was typed
 }
 
 DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keeps what it reached") {
@@ -192,7 +156,7 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
     // A brush stroke corrects the label of the running edit: what it takes away is as it was in the next snapshot.
     ui::ScreenRegion stroke;
     stroke.circles = {{160, 120}};
-    stroke.radius_px = 25;
+    stroke.radius_px = 5;   // part of the bear, which is small in the home view
     DOCTEST_REQUIRE(session.app.document().state().active_label >= 0);   // the edit's own search shows what it found
     const auto active = static_cast<std::size_t>(session.app.document().state().active_label);
     const auto before = *session.app.document().state().labels[active].bits;
@@ -212,11 +176,191 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
         outside += before[row] != 0 && corrected[row] == 0 && shown.sh()[row * 3] != base.sh()[row * 3] ? 1 : 0;
     DOCTEST_CHECK(outside == 0);
     DOCTEST_CHECK(session.app.model().gate.pictures.size() == 4);   // what the model makes of it was shown first
-    session.app.branch_from_snapshot(0);
+    session.app.take_snapshot(session.app.model().snapshots.front().iteration);
     session.app.apply_result();
     DOCTEST_CHECK(session.app.document().state().stack.size() == 1);
     session.app.undo();
     DOCTEST_CHECK(session.app.document().state().stack.empty());
+}
+
+DOCTEST_TEST_CASE("a branch goes on from a snapshot with the settings as they are now, also out of a running edit") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.iterations = 5000;
+    app.set_request(request);
+    app.edit();
+    DOCTEST_REQUIRE(session.until([&] { return app.model().snapshots.size() >= 3; }));
+    const int from = app.model().snapshots[1].iteration;
+    request = app.model().request;
+    request.iterations = from;
+    app.set_request(request);
+    app.branch_from_snapshot(from);   // nothing would be left to do: the edit is not even stopped
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().job.running);
+    DOCTEST_CHECK(app.model().toasts.back().text.find("Iterations") != std::string::npos);
+    request.iterations = from + 12;
+    request.guidance_weight = 0.5;
+    app.set_request(request);
+    app.branch_from_snapshot(from);
+    DOCTEST_REQUIRE(session.until([&] { return app.model().result_waiting; }));
+    DOCTEST_CHECK(app.model().losses.back().iteration == from + 11);
+    for (std::size_t i = 1; i < app.model().losses.size(); ++i)   // the curve goes through, without what was given up
+        DOCTEST_CHECK(app.model().losses[i].iteration > app.model().losses[i - 1].iteration);
+    DOCTEST_CHECK(app.model().snapshots.back().iteration <= from + 12);
+    app.branch_from_snapshot(from - 1000000);   // before all of them: nothing happens
+    DOCTEST_CHECK(app.model().result_waiting);
+    // Out of the finished edit, once more.
+    request.iterations = from + 20;
+    app.set_request(request);
+    app.branch_from_snapshot(from);
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK(app.model().losses.back().iteration == from + 19);
+    DOCTEST_REQUIRE(app.model().result_waiting);
+    app.apply_result();
+    DOCTEST_REQUIRE(app.document().state().stack.size() == 1);
+    DOCTEST_CHECK(app.document().state().stack[0].changed_outside_label == 0);
+    const auto revision = app.document().revision();
+    app.branch_from_snapshot(from);   // they were states of another scene
+    DOCTEST_CHECK_FALSE(app.model().job.running);
+    DOCTEST_CHECK(app.document().revision() == revision);
+}
+
+DOCTEST_TEST_CASE("a threshold drag is one step of undo with its value, and undo restores the request too") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    app.locate();
+    DOCTEST_REQUIRE(session.settled());
+    const auto at = app.document().position();
+    const auto bits = [&] {
+        const auto& state = app.document().state();
+        return *state.labels[static_cast<std::size_t>(state.active_label)].bits;
+    };
+    const auto found = bits();
+    const double stated = app.model().attention_threshold;
+    DOCTEST_CHECK(stated > 0);
+    const auto drag = [&](std::initializer_list<double> values) {
+        for (const double value : values) {
+            app.set_attention_threshold(value, false);
+            session.until([] { return false; }, 0.05);
+        }
+        app.set_attention_threshold(*(values.end() - 1), true);
+        DOCTEST_REQUIRE(session.settled());
+    };
+    drag({0.45, 0.4, 0.36, 0.31});
+    DOCTEST_CHECK(app.document().position() == at + 1);
+    DOCTEST_CHECK(app.document().names().back() == "Attention threshold 0.310");
+    const auto low = bits();
+    DOCTEST_CHECK(low != found);
+    drag({0.6, 0.62});
+    DOCTEST_CHECK(app.document().position() == at + 2);   // another drag, another step
+    const auto high = bits();
+    DOCTEST_CHECK(high != low);
+    DOCTEST_CHECK(app.model().request.attention_threshold == 0.62);
+    const auto masks = app.model().attention[0].mask_picture;
+    app.undo();
+    DOCTEST_CHECK(bits() == low);
+    DOCTEST_CHECK(app.model().request.attention_threshold == 0.31);
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK(app.model().attention[0].mask_picture != masks);   // the evidence follows
+    DOCTEST_CHECK(app.document().position() == at + 1);   // and makes no step of its own
+    app.undo();
+    DOCTEST_CHECK(bits() == found);
+    DOCTEST_CHECK(app.model().request.attention_threshold == 0);   // as the model states
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK(app.model().attention_threshold == stated);
+    app.redo();
+    DOCTEST_CHECK(app.model().request.attention_threshold == 0.31);
+    DOCTEST_REQUIRE(session.settled());
+    // The label's own threshold is what the recipe calls tau.
+    const double tau = app.model().request.tau;
+    app.set_label_threshold(0.5f, false);
+    app.set_label_threshold(0.55f, true);
+    DOCTEST_CHECK(app.document().position() == at + 2);
+    DOCTEST_CHECK(app.document().names().back() == "Threshold 0.55");
+    DOCTEST_CHECK(app.model().request.tau == 0.55);
+    app.set_label_threshold(0.6f, true);
+    DOCTEST_CHECK(app.document().position() == at + 3);
+    app.undo();
+    app.undo();
+    DOCTEST_CHECK(app.model().request.tau == tau);
+}
+
+DOCTEST_TEST_CASE("a model that cannot be used is never in use: its row says why, the last good one stays") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    const auto starter = app::starter_model_path();
+    const auto chosen = [&] {
+        std::string paths;
+        for (const auto& row : app.model().models)
+            if (row.chosen) paths += row.path;
+        return paths;
+    };
+    const auto row_of = [&](const fs::path& path) {
+        for (const auto& row : app.model().models)
+            if (row.path == path.string()) return row;
+        return ui::ModelView{};
+    };
+    DOCTEST_CHECK(chosen() == starter.string());
+    const auto words = app.model().known_words;
+    // A folder without weights, and one whose weights are cut off: only loading it tells.
+    const fs::path empty = place.folder / "empty model", cut = place.folder / "cut model";
+    fs::create_directories(empty);
+    fs::copy(starter, cut, fs::copy_options::recursive);
+    const auto weights = cut / "unet/diffusion_pytorch_model.safetensors";
+    fs::permissions(weights, fs::perms::owner_all);
+    fs::resize_file(weights, fs::file_size(weights) / 2);
+    for (const auto& bad : {empty, cut, place.folder / "not there"}) {
+        app.choose_model(bad.string());
+        DOCTEST_REQUIRE(session.settled());
+        DOCTEST_CHECK(chosen() == starter.string());
+        DOCTEST_CHECK_FALSE(row_of(bad).usable);
+        DOCTEST_CHECK(row_of(bad).problem.size() > 8);
+        DOCTEST_CHECK(app.model().toasts.back().is_error);
+        DOCTEST_CHECK(app.model().toasts.back().text.find("stays in use") != std::string::npos);
+        DOCTEST_CHECK(app.model().known_words == words);
+    }
+    // A whole copy is taken; once it is gone, the one that comes with the program works again.
+    const fs::path good = place.folder / "good model";
+    fs::copy(starter, good, fs::copy_options::recursive);
+    app.choose_model(good.string());
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK(chosen() == good.string());
+    app.shut_down();
+    fs::remove_all(good);
+    Session again;
+    DOCTEST_CHECK(again.app.model().models.front().chosen);
+}
+
+DOCTEST_TEST_CASE("a scale for one start is not kept, a chosen one is") {
+    const Place place;
+    const auto scale_of = [](float for_this_start) {
+        app::Application app({.autosave = false, .ui_scale = for_this_start, .desktop_scale = 1.25f});
+        return app.model().ui_scale;
+    };
+    DOCTEST_CHECK(scale_of(0) == 1.25f);   // as the desktop says
+    {
+        app::Application app({.autosave = false, .ui_scale = 2});
+        DOCTEST_CHECK(app.model().ui_scale == 2);
+        app.shut_down();   // writes the settings
+    }
+    DOCTEST_CHECK(scale_of(0) == 1.25f);
+    {
+        app::Application app({.autosave = false});
+        app.set_ui_scale(1.5f);
+    }
+    DOCTEST_CHECK(scale_of(0) == 1.5f);
+    DOCTEST_CHECK(scale_of(3) == 3);
+    DOCTEST_CHECK(scale_of(0) == 1.5f);
 }
 
 DOCTEST_TEST_CASE("work that was not saved is found again, a running edit included") {

@@ -16,7 +16,7 @@ namespace gse::test {
 namespace {
 
 std::filesystem::path gallery_folder() {
-    const auto folder = std::filesystem::path(GSE_BINARY_DIR) / "ui_gallery";
+    const auto folder = binary_folder() / "ui_gallery";
     std::filesystem::create_directories(folder);
     return folder;
 }
@@ -41,7 +41,7 @@ const std::vector<Shot>& shots() {
          Situation::Scene,
          {},
          [](Harness& harness) {
-             harness.application.model().recent = {GSE_SOURCE_DIR "/assets/scenes/bear/scene.ply"};
+             harness.application.model().recent = {(source_folder() / "assets/scenes/bear/scene.ply").string()};
              harness.modifiers(false, true, false);
              harness.key('O');
              harness.modifiers(false, false, false);

@@ -9,6 +9,7 @@
 #include "engine/base/random.h"
 #include "engine/base/thread_pool.h"
 #include "engine/raster/rasterizer.h"
+#include "engine/scene/framing.h"
 #include "engine/synth/synth.h"
 
 namespace gse::test {
@@ -77,20 +78,43 @@ Image masked(const Image& render, const Image& values) {
 
 }  // namespace
 
+ui::RecoveryView recovery_of(const std::string& scene) {
+    auto picture = std::make_shared<Image>(160, 120, 3, 0.3f);
+    for (std::size_t i = 0; i < picture->pixel_count(); ++i)
+        picture->data[i * 3 + 1] = 0.3f + 0.4f * static_cast<float>(i) / static_cast<float>(picture->pixel_count());
+    return {"/home/mira/.local/state/gseditpro/autosave/" + scene + ".gsep",
+            scene + ".ply",
+            "/home/mira/scenes/" + scene + ".ply",
+            "today 14:02, 6 000 splats, 2 edits",
+            "\"a bear wearing a red hat\" was being edited, iteration 412",
+            picture,
+            true};
+}
+
 FakeApplication::FakeApplication(Situation situation)
     : document_(std::make_unique<Document>()), renderer_(std::make_unique<Renderer>()) {
     model_.recent = {"/home/mira/scenes/garden.ply", "/home/mira/scenes/b\xC3\xA4r im Wald.gsep",
                      "/home/mira/scenes/kitchen.spz"};
     make_rest();
     if (situation == Situation::Nothing) {
-        model_.recoverable = {"/home/mira/scenes/garden.gsep"};
+        model_.recoverable = {recovery_of("garden")};
         return;
     }
     make_scene();
     if (situation != Situation::Scene) make_attention();
     if (situation == Situation::Editing) make_work(true);
     if (situation == Situation::ResultWaiting) make_work(false);
+    if (situation != Situation::Scene) {
+        model_.search.number = 1;
+        model_.search.confidence = {0.74, 0.81, 0.68, 0.22};
+    }
     if (situation == Situation::Failed) {
+        model_.search.confidence.value = 0.21;
+        model_.search.problem = edit::SearchProblem::Unsure;
+        model_.search.message = "it is not sure that \"car\" was found (confidence 0.21, at least 0.35 is needed)";
+        model_.search.remedy = "name something the scene shows, look at what was found, or label it by hand";
+        model_.attention[1].failed = true;
+        model_.attention[1].step = edit::ViewStep::TooLittle;
         model_.job.title = "Edit: a bear wearing a red hat";
         model_.job.error =
             "The word \"hta\" was found in none of the views; check its spelling, or click another word of "
@@ -104,6 +128,7 @@ FakeApplication::~FakeApplication() = default;
 void FakeApplication::make_scene() {
     const auto synth = make_synth();
     model_.statistics = compute_statistics(synth.scene.gaussians);
+    model_.framing = framing_bounds(synth.scene.gaussians);
     model_.statistics.invisible_rows = 12;
     model_.orbit = fit_orbit(model_.statistics, synth.scene.info.up);
     auto views = orbit_views(model_.orbit, ViewCount, ViewSide, ViewSide);
@@ -214,7 +239,7 @@ void FakeApplication::make_work(bool running) {
     model_.job = {};
     model_.job.title = "Edit: a bear wearing a red hat";
     if (running) {
-        model_.job.running = model_.job.can_pause = true;
+        model_.job.running = model_.job.can_pause = model_.edit_running = true;
         model_.job.stage = "edit";
         model_.job.step = 212;
         model_.job.total = 400;
@@ -310,13 +335,13 @@ bool FakeApplication::asked(const std::string& start) const {
                        [&start](const std::string& call) { return call.starts_with(start); });
 }
 
-void FakeApplication::set_attention_threshold(double value) {
-    calls.push_back(fmt::format("set_attention_threshold {:.3f}", value));
+void FakeApplication::set_attention_threshold(double value, bool drag_ends) {
+    calls.push_back(fmt::format("set_attention_threshold {:.3f}{}", value, drag_ends ? " end" : ""));
     model_.attention_threshold = value;
 }
 
-void FakeApplication::set_label_threshold(float value) {
-    calls.push_back(fmt::format("set_label_threshold {:.3f}", value));
+void FakeApplication::set_label_threshold(float value, bool drag_ends) {
+    calls.push_back(fmt::format("set_label_threshold {:.3f}{}", value, drag_ends ? " end" : ""));
     auto state = document_->state();
     auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
     label.threshold = value;

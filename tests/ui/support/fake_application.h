@@ -15,6 +15,9 @@ namespace gse::test {
 /// What the window may be in.
 enum class Situation { Nothing, Scene, Located, Editing, ResultWaiting, Failed };
 
+/// An offer to recover work in SCENE.ply.
+ui::RecoveryView recovery_of(const std::string& scene);
+
 class FakeApplication final : public ui::Actions, public ui::Textures {
 public:
     explicit FakeApplication(Situation situation);
@@ -36,16 +39,27 @@ public:
 
     void open(const std::filesystem::path& path) override { calls.push_back("open " + path.string()); }
     void open_sample() override { calls.push_back("open_sample"); }
-    void save_project(const std::filesystem::path& path) override {
+    void save_project(const std::filesystem::path& path, std::function<void()> then) override {
         calls.push_back("save_project " + path.string());
+        if (then) then();
     }
+    void leave_edit(bool keep, std::function<void()> then) override {
+        calls.push_back(keep ? "leave_edit keep" : "leave_edit discard");
+        model_.edit_running = model_.job.running = model_.result_waiting = false;
+        if (then) then();
+    }
+    void answer(std::size_t index) override { calls.push_back("answer " + std::to_string(index)); }
     void recover(const std::string& project) override { calls.push_back("recover " + project); }
     void discard_recovery(const std::string& project) override {
         calls.push_back("discard_recovery " + project);
     }
+    void postpone_recovery(const std::string& project) override {
+        calls.push_back("postpone_recovery " + project);
+    }
     void set_up_axis(const std::string& up) override { calls.push_back("set_up_axis " + up); }
     void repair_scene() override { calls.push_back("repair_scene"); }
     void locate() override { calls.push_back("locate"); }
+    void label_anyway() override { calls.push_back("label_anyway"); }
     void edit() override { calls.push_back("edit"); }
     void pause(bool paused) override { calls.push_back(paused ? "pause" : "resume"); }
     void cancel() override { calls.push_back("cancel"); }
@@ -53,11 +67,12 @@ public:
     void apply_result() override { calls.push_back("apply_result"); }
     void discard_result() override { calls.push_back("discard_result"); }
     void show_snapshot(int index) override { calls.push_back("show_snapshot " + std::to_string(index)); }
-    void branch_from_snapshot(int index) override {
-        calls.push_back("branch_from_snapshot " + std::to_string(index));
+    void take_snapshot(int iteration) override { calls.push_back("take_snapshot " + std::to_string(iteration)); }
+    void branch_from_snapshot(int iteration) override {
+        calls.push_back("branch_from_snapshot " + std::to_string(iteration));
     }
-    void set_attention_threshold(double value) override;
-    void set_label_threshold(float value) override;
+    void set_attention_threshold(double value, bool drag_ends) override;
+    void set_label_threshold(float value, bool drag_ends) override;
     void set_active_label(int index) override {
         calls.push_back("set_active_label " + std::to_string(index));
     }
@@ -76,6 +91,9 @@ public:
     void go_to(std::size_t position) override { calls.push_back("go_to " + std::to_string(position)); }
     void set_edit_enabled(std::uint64_t id, bool on) override {
         calls.push_back("set_edit_enabled " + std::to_string(id) + (on ? " on" : " off"));
+    }
+    void set_edit_strength(std::uint64_t id, double strength, bool drag_ends) override {
+        calls.push_back("set_edit_strength " + std::to_string(id) + " " + std::to_string(strength) + (drag_ends ? " end" : ""));
     }
     void delete_edit(std::uint64_t id) override { calls.push_back("delete_edit " + std::to_string(id)); }
     void move_edit(std::uint64_t id, int places) override {

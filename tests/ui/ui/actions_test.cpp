@@ -29,11 +29,26 @@ bool key_asks(Harness& harness, int index, const std::string& call) {
 DOCTEST_TEST_CASE("the start page opens, recovers and discards") {
     Harness harness({Wide, High, 1, Situation::Nothing, false});
     DOCTEST_CHECK(asks(harness, "start.sample", "open_sample"));
-    DOCTEST_CHECK(asks(harness, "start.recover.0", "recover /home/mira/scenes/garden.gsep"));
+    DOCTEST_CHECK(asks(harness, "start.recover.0", "recover /home/mira/.local/state/gseditpro/autosave/garden.gsep"));
     DOCTEST_CHECK(asks(harness, "start.recent.1", "open /home/mira/scenes/b\xC3\xA4r im Wald.gsep"));
     harness.click("start.discard.0");
     DOCTEST_CHECK(!harness.application.asked("discard_recovery"));
     DOCTEST_CHECK(asks(harness, "question.0", "discard_recovery"));
+}
+
+DOCTEST_TEST_CASE("prompt: back to the defaults is back to what suits the model; the words stay") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& model = harness.application.model();
+    model.request_defaults.image_size = 512;
+    model.model_settings_defaults.learn_steps = 400;
+    model.request.views = 9;
+    const auto prompt = model.request.prompt;
+    harness.click("prompt.advanced");
+    harness.click("prompt.defaults");
+    DOCTEST_CHECK(model.request.image_size == 512);
+    DOCTEST_CHECK(model.request.views == edit::EditRequest{}.views);
+    DOCTEST_CHECK(model.model_settings.learn_steps == 400);
+    DOCTEST_CHECK(model.request.prompt == prompt);
 }
 
 DOCTEST_TEST_CASE("prompt: words, chips, suggestion, mode, seed") {
@@ -62,10 +77,64 @@ DOCTEST_TEST_CASE("prompt: words, chips, suggestion, mode, seed") {
     DOCTEST_CHECK(asks(harness, "prompt.edit", "edit"));
 }
 
+DOCTEST_TEST_CASE("a clicked target is that of its sentence, and another sentence has its own") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& request = harness.application.model().request;
+    harness.click("prompt.chip.4");
+    DOCTEST_REQUIRE(request.target == "red");
+    harness.click("prompt.sentence");
+    harness.type(" scarf");
+    DOCTEST_CHECK(request.prompt.ends_with(" scarf"));
+    DOCTEST_CHECK(request.target.empty());
+}
+
+DOCTEST_TEST_CASE("an unknown source is refused before work; a label by hand is the way on") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& model = harness.application.model();
+    model.request.source = "sign";
+    model.request.prompt = "a golden sign";
+    model.request.target = "golden";
+    model.known_words = {"a", "in", "bear", "golden", "sand"};
+    harness.frame(2);
+    harness.application.calls.clear();
+    DOCTEST_CHECK(!harness.rect("prompt.locate").enabled);
+    DOCTEST_CHECK(!harness.rect("prompt.edit").enabled);
+    DOCTEST_CHECK(harness.find("prompt.source.suggestion") == nullptr);   // "in" is no thing
+    DOCTEST_CHECK(asks(harness, "prompt.source.by_hand", "add_label sign"));
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("panel.Labels") != nullptr);
+    model.labelled_by_hand = true;   // something was painted
+    harness.shell.show(ui::PanelId::Prompt);
+    harness.frame(3);
+    DOCTEST_CHECK(!harness.rect("prompt.locate").enabled);
+    DOCTEST_CHECK(harness.rect("prompt.edit").enabled);
+    DOCTEST_CHECK(asks(harness, "prompt.edit", "edit"));
+}
+
+DOCTEST_TEST_CASE("a search that labelled nothing shows its pictures and the ways on") {
+    Harness harness({Wide, High, 1, Situation::Failed, false});
+    DOCTEST_REQUIRE(harness.find("panel.Attention") != nullptr);   // it came to the front by itself
+    DOCTEST_CHECK(harness.find("attention.view.1") != nullptr);
+    DOCTEST_CHECK(harness.find("attention.confidence") != nullptr);
+    DOCTEST_CHECK(asks(harness, "attention.anyway", "label_anyway"));
+    harness.shell.show(ui::PanelId::Log);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("panel.Attention") == nullptr);   // once is enough
+    harness.shell.show(ui::PanelId::Attention);
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "attention.by_hand", "set_active_label 0"));   // there is one of that name
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("panel.Labels") != nullptr);
+}
+
 DOCTEST_TEST_CASE("an open seed changes with every edit, a locked one does not") {
     Harness harness({Wide, High, 1, Situation::Scene, false});
     auto& request = harness.application.model().request;
+    request.prompt = "a bear wearing a red hat";
+    harness.frame(2);
+    harness.application.calls.clear();
     harness.click("prompt.edit");
+    DOCTEST_CHECK(harness.application.asked("edit"));
     DOCTEST_CHECK(request.seed == 0);
     harness.shell.show(ui::PanelId::Prompt);
     harness.click("prompt.seed.lock");
@@ -119,6 +188,7 @@ DOCTEST_TEST_CASE("labels: threshold, names, operations") {
     const auto bar = harness.rect("labels.threshold");
     harness.drag({bar.x + bar.width * 0.5f, bar.y + 10}, {bar.x + bar.width * 0.9f, bar.y + 10});
     DOCTEST_CHECK(harness.application.asked("set_label_threshold 0."));
+    DOCTEST_CHECK(harness.application.calls.back().ends_with(" end"));  // the step of undo ends with the drag
     DOCTEST_CHECK(harness.application.document().state().labels[0].threshold ==
                   doctest::Approx(0.9).epsilon(0.01));
     DOCTEST_CHECK(asks(harness, "labels.row.1", "set_active_label 1"));
@@ -149,6 +219,8 @@ DOCTEST_TEST_CASE("attention: choosing a view and the threshold") {
     const auto bar = harness.rect("attention.threshold");
     harness.drag({bar.x + bar.width * 0.35f, bar.y + 8}, {bar.x + bar.width * 0.6f, bar.y + 8});
     DOCTEST_CHECK(harness.application.asked("set_attention_threshold 0.6"));
+    const auto& calls = harness.application.calls;
+    DOCTEST_CHECK(std::count_if(calls.begin(), calls.end(), [](const auto& call) { return call.ends_with(" end"); }) == 1);
     DOCTEST_CHECK(harness.application.model().attention_threshold == doctest::Approx(0.6).epsilon(0.05));
     DOCTEST_CHECK(asks(harness, "attention.look", "set_camera"));
 }
@@ -164,7 +236,15 @@ DOCTEST_TEST_CASE("progress: pause, snapshots, cancel") {
     const auto bar = harness.rect("progress.snapshot");
     harness.drag({bar.x + bar.width - 8, bar.y + 8}, {bar.x + 8, bar.y + 8});
     DOCTEST_CHECK(harness.application.asked("show_snapshot 0"));
-    DOCTEST_CHECK(asks(harness, "progress.branch", "branch_from_snapshot"));
+    // What the branch gives up is asked about, whether the edit still runs or waits to be applied.
+    const int iteration = harness.application.model().snapshots.back().iteration;
+    harness.application.model().request.iterations = iteration + 100;
+    harness.frame(2);
+    DOCTEST_CHECK(!asks(harness, "progress.branch", "branch_from_snapshot"));
+    DOCTEST_CHECK(asks(harness, "question.0", "branch_from_snapshot"));
+    harness.application.model().request.iterations = 1;
+    harness.frame(2);
+    DOCTEST_CHECK_FALSE(harness.rect("progress.branch").enabled);  // nothing would be left to do
     // 33 s of work: asked first.
     DOCTEST_CHECK(!asks(harness, "job.cancel", "cancel"));
     DOCTEST_CHECK(asks(harness, "question.0", "cancel"));
@@ -186,6 +266,12 @@ DOCTEST_TEST_CASE("history: stack and steps") {
     Harness harness({Wide, High, 1, Situation::Located, false});
     DOCTEST_CHECK(asks(harness, "history.enabled.7", "set_edit_enabled 7 off"));
     DOCTEST_CHECK(asks(harness, "history.repeat.7", "repeat_edit 7"));
+    harness.shell.show(ui::PanelId::History);   // repeating shows the prompt
+    harness.frame(3);
+    const auto bar = harness.rect("history.strength.7");
+    harness.drag({bar.x + bar.width * 0.5f, bar.y + 8}, {bar.x + bar.width * 0.8f, bar.y + 8});
+    DOCTEST_CHECK(harness.application.asked("set_edit_strength 7 1."));
+    DOCTEST_CHECK(harness.application.calls.back().ends_with(" end"));  // the step of undo ends with the drag
     DOCTEST_CHECK(asks(harness, "history.delete.7", "delete_edit 7"));
     DOCTEST_CHECK(asks(harness, "history.undo", "undo"));
     DOCTEST_CHECK(asks(harness, "history.redo", "redo"));
@@ -198,7 +284,7 @@ DOCTEST_TEST_CASE("history: stack and steps") {
 }
 
 DOCTEST_TEST_CASE("views, export, scene, models, settings") {
-    Harness harness({Wide, High * 2, 1, Situation::Scene, false});
+    Harness harness({Wide, High * 3, 1, Situation::Scene, false});
     harness.shell.show(ui::PanelId::Views);
     harness.frame(3);
     DOCTEST_CHECK(asks(harness, "views.row.2", "look_through 2"));
@@ -291,7 +377,7 @@ DOCTEST_TEST_CASE("keys of files and exports") {
     DOCTEST_CHECK(key_asks(harness, key::F11, "toggle_fullscreen"));
     DOCTEST_CHECK(key_asks(harness, 'N', "set_view_settings"));
     DOCTEST_CHECK(!harness.application.model().view.front_only);
-    DOCTEST_CHECK(key_asks(harness, key::Tab, "set_view_settings"));
+    DOCTEST_CHECK(key_asks(harness, 'T', "set_view_settings"));
     DOCTEST_CHECK(!harness.application.model().view.tint_labels);
     DOCTEST_CHECK(key_asks(harness, key::Right, "look_through 0"));
     DOCTEST_CHECK(key_asks(harness, key::Right, "look_through 1"));

@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/base/random.h"
@@ -20,7 +21,7 @@ CameraControl at_home() {
     OrbitParameters orbit;
     orbit.centre = {1, -2, 3};
     orbit.radius = 4;
-    control.set_home(orbit);
+    control.set_home(orbit, {orbit.centre - Vec3{1, 1.5, 2}, orbit.centre + Vec3{1, 1.5, 2}});
     control.adopt(orbit_camera(orbit, 0.7, Width, Height));
     return control;
 }
@@ -137,12 +138,63 @@ DOCTEST_TEST_CASE("a glide ends, and then nothing moves") {
     DOCTEST_CHECK(seconds < 1.5);
     DOCTEST_CHECK(!control.gliding());
     DOCTEST_CHECK(!control.update(1.0 / 60));
-    DOCTEST_CHECK(control.pose().distance == doctest::Approx(4).epsilon(Rounding));
     OrbitParameters orbit;
     orbit.centre = {1, -2, 3};
     orbit.radius = 4;
-    orbit.fov_x = control.fov();
-    DOCTEST_CHECK(same_view(control.camera(), orbit_camera(orbit, 0, Width, Height)));
+    const Bounds bounds{orbit.centre - Vec3{1, 1.5, 2}, orbit.centre + Vec3{1, 1.5, 2}};
+    DOCTEST_CHECK(same_view(control.camera(), home_camera(orbit, bounds, control.fov(), Width, Height)));
+}
+
+DOCTEST_TEST_CASE("home and frame show a box whole and as large as can be, at any window shape") {
+    constexpr int shapes[][2] = {{1600, 900}, {900, 1600}, {640, 640}, {3000, 200}, {200, 3000}};
+    const Bounds boxes[] = {{{-1, -1, -1}, {1, 1, 1}}, {{4, -3, 2}, {4.2, 3, 2.1}}, {{-5, 0, -5}, {5, 0.2, 5}},
+                            {{1e-3, 1e-3, 1e-3}, {2e-3, 3e-3, 2e-3}}, {{1e4, 0, 0}, {3e4, 2e4, 1e4}}};
+    for (const auto& box : boxes)
+        for (const auto& shape : shapes)
+            for (const bool frames : {false, true}) {
+                DOCTEST_CAPTURE(shape[0]);
+                DOCTEST_CAPTURE(box.radius());
+                OrbitParameters orbit;
+                orbit.centre = box.centre();
+                orbit.radius = 4 * box.radius();
+                CameraControl control;
+                control.set_size(shape[0], shape[1]);
+                control.set_home(orbit, box);
+                control.adopt(orbit_camera(orbit, 2.2, shape[0], shape[1]));
+                if (frames) control.frame(box);
+                else control.home();
+                rest(control);
+                const Camera camera = control.camera();
+                double nearest = 1;   // to an edge, of the picture
+                for (int corner = 0; corner < 8; ++corner) {
+                    const Vec3 at = pixel(camera, {corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                                                   corner & 4 ? box.high.z : box.low.z});
+                    DOCTEST_CHECK(at.z > 0);
+                    const double x = at.x / shape[0], y = at.y / shape[1];
+                    nearest = std::min({nearest, x, 1 - x, y, 1 - y});
+                }
+                DOCTEST_CHECK(nearest > 0.04);
+                DOCTEST_CHECK(nearest < 0.06);
+            }
+}
+
+DOCTEST_TEST_CASE("a camera at home stays there when the window changes its shape, one that was moved does not") {
+    OrbitParameters orbit;
+    const Bounds box{{-0.3, -0.5, -0.3}, {0.3, 0.5, 0.3}};
+    for (const bool moved : {false, true}) {
+        CameraControl control;
+        control.set_home(orbit, box);
+        control.adopt(home_camera(orbit, box, 0.87, 64, 64));   // as it is opened, before the window has its size
+        control.set_size(1600, 500);
+        control.update(0.016);
+        DOCTEST_CHECK(same_view(control.camera(), home_camera(orbit, box, control.fov(), 1600, 500)));
+        if (moved) control.orbit(30, 10);
+        const CameraPose before = control.pose();
+        control.set_size(500, 1600);
+        control.update(0.016);
+        if (moved) DOCTEST_CHECK(control.pose().distance == before.distance);
+        else DOCTEST_CHECK(same_view(control.camera(), home_camera(orbit, box, control.fov(), 500, 1600)));
+    }
 }
 
 DOCTEST_TEST_CASE("a slow frame does not throw the camera") {
@@ -155,10 +207,10 @@ DOCTEST_TEST_CASE("a slow frame does not throw the camera") {
     DOCTEST_CHECK(std::isfinite(control.pose().distance));
 }
 
-DOCTEST_TEST_CASE("framing shows the whole ball") {
+DOCTEST_TEST_CASE("framing shows what is in the box") {
     auto control = at_home();
     const Vec3 centre{0.5, 0.25, -1};
-    control.frame(centre, 0.8);
+    control.frame({centre - Vec3{0.8, 0.8, 0.8}, centre + Vec3{0.8, 0.8, 0.8}});
     rest(control);
     const Camera camera = control.camera();
     Random random(8);
@@ -191,7 +243,7 @@ DOCTEST_TEST_CASE("a camera taken over is shown as it was") {
     const Camera camera = orbit_camera(orbit, 2.1, Width, Height);
     CameraControl control;
     control.set_size(Width, Height);
-    control.set_home(orbit);
+    control.set_home(orbit, {{-1, -1, -1}, {1, 1, 1}});
     control.adopt(camera);
     DOCTEST_CHECK(same_view(control.camera(), camera));
     DOCTEST_CHECK(control.pose().distance == doctest::Approx(2).epsilon(Rounding));

@@ -14,7 +14,7 @@ namespace gse::test {
 namespace {
 
 namespace key = ui::key;
-constexpr std::array<int, 32> Keys{'B',
+constexpr std::array<int, 38> Keys{'B',
                                    'R',
                                    'L',
                                    'F',
@@ -45,6 +45,12 @@ constexpr std::array<int, 32> Keys{'B',
                                    key::F1,
                                    key::F11,
                                    key::F12,
+                                   key::F6,
+                                   key::Up,
+                                   key::Down,
+                                   'P',
+                                   'T',
+                                   342,
                                    key::Space};
 constexpr int Steps = 1500;
 

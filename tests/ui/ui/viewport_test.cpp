@@ -140,7 +140,7 @@ DOCTEST_TEST_CASE("keys fly, frame and go home") {
     harness.key('H');
     harness.frame(90);
     DOCTEST_CHECK(length(harness.shell.state().viewport.camera.pose().pivot -
-                         harness.application.model().orbit.centre) < 1e-6);
+                         harness.application.model().framing.centre()) < 1e-6);
     // With Ctrl they are commands, not flight.
     before = camera.centre();
     harness.modifiers(false, true, false);

@@ -131,7 +131,8 @@ DOCTEST_TEST_CASE("what is said about a sentence") {
     request.source = "baer";
     request.prompt = "A bear wearing a red hta!";
     request.target = "red";
-    const auto facts = ui::facts_of(request, known);
+    const ui::SentenceGround ground{.known = known};
+    const auto facts = ui::facts_of(request, ground);
     DOCTEST_REQUIRE(facts.chips.size() == 6);
     DOCTEST_CHECK(facts.chips[0].known);
     DOCTEST_CHECK(facts.chips[4].target);
@@ -139,23 +140,81 @@ DOCTEST_TEST_CASE("what is said about a sentence") {
     DOCTEST_CHECK(!facts.chips[5].known);
     DOCTEST_CHECK(facts.chips[5].suggestion == "hat");
     DOCTEST_CHECK(!facts.source_known);
-    DOCTEST_CHECK(facts.source_suggestion == "bear");
-    DOCTEST_CHECK(facts.problem.empty());
+    DOCTEST_CHECK(facts.source_suggestions == std::vector<std::string>{"bear"});
+    // What is looked for must be known, unless a label says where it is; other words only warn.
+    DOCTEST_CHECK(facts.problem.find("\"baer\"") != std::string::npos);
+    DOCTEST_CHECK(facts.problem.find("by hand") != std::string::npos);
+    DOCTEST_CHECK(!facts.locate_problem.empty());
+    DOCTEST_CHECK(ui::facts_of(request, {.known = known, .labelled_by_hand = true}).problem.empty());
+    request.source = "bear";
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.empty());
+    request.target = "hta";
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.find("\"hta\"") != std::string::npos);
+    DOCTEST_CHECK(ui::facts_of(request, ground).locate_problem.empty());   // it can be looked for all the same
+    request.target = "red";
     // A model without a list of words knows every word.
-    for (const auto& chip : ui::facts_of(request, {}).chips) DOCTEST_CHECK(chip.known);
+    for (const auto& chip : ui::facts_of(request, ui::SentenceGround{}).chips) DOCTEST_CHECK(chip.known);
     DOCTEST_CHECK(ui::with_word("A bear, wearing", 1, "dog") == "a dog wearing");
     request.prompt.clear();
-    DOCTEST_CHECK(!ui::facts_of(request, known).problem.empty());
+    DOCTEST_CHECK(!ui::facts_of(request, ground).problem.empty());
     // Locate needs no sentence, Edit does.
-    DOCTEST_CHECK(ui::facts_of(request, known).locate_problem.empty());
-    request.source = "bear";
-    DOCTEST_CHECK(ui::locate_request(request).prompt == "a bear");
+    DOCTEST_CHECK(ui::facts_of(request, ground).locate_problem.empty());
+    DOCTEST_CHECK(ui::locate_request(request, ui::facts_of(request, ground).problem).prompt == "a bear");
     request.prompt = "a golden bear";
     request.target = "golden";
-    DOCTEST_CHECK(ui::locate_request(request).prompt == "a golden bear");
+    DOCTEST_CHECK(ui::locate_request(request, ui::facts_of(request, ground).problem).prompt == "a golden bear");
     request.source = "two words";
     request.prompt.clear();
-    DOCTEST_CHECK(!ui::facts_of(request, known).locate_problem.empty());
+    DOCTEST_CHECK(!ui::facts_of(request, ground).locate_problem.empty());
+}
+
+DOCTEST_TEST_CASE("the target follows the sentence, against what the scene shows already") {
+    edit::EditRequest request;
+    request.source = "bear";
+    request.prompt = "a blue bear wearing a red hat";
+    const auto target = [&](const ui::SentenceGround& ground) { return ui::facts_of(request, ground).guessed_target; };
+    DOCTEST_CHECK(target({}) == "hat");
+    DOCTEST_CHECK(target({.said = {"a", "bear", "wearing", "hat", "red"}}) == "blue");
+    DOCTEST_CHECK(target({.said = {"a", "blue", "bear"}}) == "hat");
+}
+
+DOCTEST_TEST_CASE("things of several words are marked, checked and looked for whole") {
+    edit::EditRequest request;
+    request.source = "teddy bear";
+    request.prompt = "a teddy bear wearing a top hat";
+    request.target = "top hat";
+    const std::vector<std::string> known{"a", "teddy", "bear", "wearing", "top", "hat"};
+    auto facts = ui::facts_of(request, {.known = known});
+    DOCTEST_CHECK(facts.problem.empty());
+    DOCTEST_CHECK(facts.locate_problem.empty());
+    for (std::size_t i = 0; i < facts.chips.size(); ++i) {
+        DOCTEST_CHECK(facts.chips[i].source == (i == 1 || i == 2));
+        DOCTEST_CHECK(facts.chips[i].target == (i == 5 || i == 6));
+    }
+    DOCTEST_CHECK(!ui::facts_of(request, {.known = known, .words_read = 6}).problem.empty());   // "hat" is not read
+    DOCTEST_CHECK(ui::locate_request(request, "not yet").prompt == "a teddy bear");
+    request.source = "tedyd bear";
+    facts = ui::facts_of(request, {.known = known});
+    DOCTEST_CHECK(facts.source_suggestions == std::vector<std::string>{"teddy bear"});
+    DOCTEST_CHECK(facts.locate_problem.find("\"tedyd\"") != std::string::npos);
+    // With Shift the target reaches to the word that is clicked, on either side.
+    DOCTEST_CHECK(ui::target_to(request.prompt, "hat", 5) == "top hat");
+    DOCTEST_CHECK(ui::target_to(request.prompt, "teddy", 2) == "teddy bear");
+    DOCTEST_CHECK(ui::target_to(request.prompt, "", 2) == "bear");
+}
+
+DOCTEST_TEST_CASE("where the text encoder stops reading is said, and a target beyond it is refused") {
+    edit::EditRequest request;
+    request.source = "bear";
+    request.prompt = "a bear standing on the grass wearing a red hat";
+    auto facts = ui::facts_of(request, {.words_read = 8});
+    DOCTEST_CHECK(facts.cut_at == "red");
+    DOCTEST_CHECK(facts.chips[7].read);
+    DOCTEST_CHECK(!facts.chips[8].read);
+    DOCTEST_CHECK(facts.problem.find("\"hat\"") != std::string::npos);
+    facts = ui::facts_of(request, {.words_read = 10});
+    DOCTEST_CHECK(facts.cut_at.empty());
+    DOCTEST_CHECK(facts.problem.empty());
 }
 
 DOCTEST_TEST_CASE("the thresholded picture keeps what is above and darkens the rest") {

@@ -26,6 +26,9 @@ class Recovery(WindowTest):
                 window.picture("14_recovery")
             window.click("start.recover.0")
             window.wait(lambda s: s["splats"] > 0, f"kill {kill}: the project did not open", 60)
+            if window.state()["result_waiting"]:   # the edit that ran when it was killed
+                window.click("result.apply")
+                window.wait(lambda s: s["stack"] >= 1, f"kill {kill}: the edit could not be applied", 20)
             state = window.state()
             self.assertGreaterEqual(state["splats"], original * 0.9)
             self.assertEqual(state["file_job"]["error"], "")

@@ -1,9 +1,12 @@
 """Drives the editor's window: starts Xvfb and the program, clicks and types with xdotool, looks at its state."""
+import ctypes
+import ctypes.util
 import json
 import os
 import pathlib
 import shutil
 import signal
+import struct
 import subprocess
 import tempfile
 import time
@@ -25,13 +28,15 @@ def free_display():
 class Window:
     """One run of the program on a display of its own."""
 
-    def __init__(self, folder, *arguments, width=WIDTH, height=HEIGHT):
+    def __init__(self, folder, *arguments, width=WIDTH, height=HEIGHT, sized=True):
+        """`sized`: the window is told to be as large as the screen; else it finds its size itself."""
         self.folder = pathlib.Path(folder)
         self.map = self.folder / "widgets.json"
         for old in (self.map, pathlib.Path(str(self.map) + ".state"), self.folder / "first_frame"):
             old.unlink(missing_ok=True)
         self.display = free_display()
-        self.server = subprocess.Popen(["Xvfb", self.display, "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp"],
+        self.server = subprocess.Popen(["Xvfb", self.display, "-screen", "0", f"{width}x{height}x24", "-nolisten", "tcp",
+                                        "-fbdir", str(self.folder)],
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         socket = pathlib.Path("/tmp/.X11-unix/X" + self.display[1:])
         self._until(socket.exists, 20, "the X server did not start")
@@ -39,7 +44,8 @@ class Window:
                                 GSE_UI_FIRST_FRAME=str(self.folder / "first_frame"),
                                 GSE_CONFIG_DIR=str(self.folder / "config"), GSE_STATE_DIR=str(self.folder / "state"))
         self.log = open(self.folder / "window.log", "ab")
-        self.process = subprocess.Popen([PROGRAM, "open", "--width", str(width), "--height", str(height), *map(str, arguments)],
+        size = ["--width", str(width), "--height", str(height)] if sized else []
+        self.process = subprocess.Popen([PROGRAM, "open", *size, *map(str, arguments)],
                                         env=self.environment, cwd=self.folder, stdout=self.log, stderr=self.log)
         self._until(lambda: pathlib.Path(str(self.map) + ".state").exists(), 60, "the window did not come up")
 
@@ -111,6 +117,19 @@ class Window:
             time.sleep(0.1)
         time.sleep(0.25)
 
+    def press(self, name, condition, message, seconds=120, pause=1):
+        """Clicks until condition(state) holds, or the program has ended: on a busy machine a click may fall between frames.
+        `pause`: how long a click may take to show, in seconds, before the next one."""
+        end = time.monotonic() + seconds * PATIENCE
+        next_click = 0.0
+        while self.process.poll() is None and not condition(self.state()):
+            if time.monotonic() > end:
+                raise AssertionError(f"{message}: {self.state()}")
+            if time.monotonic() >= next_click and self.widgets().get(name, {}).get("visible"):
+                self.click(name)
+                next_click = time.monotonic() + pause * PATIENCE
+            time.sleep(0.2)
+
     def cancel_job(self):
         """Stops the job; one that has worked for long asks first."""
         self.click("job.cancel")
@@ -147,6 +166,46 @@ class Window:
         self.xdotool("type", "--delay", "40", text)
         time.sleep(0.3)
 
+    def type(self, field, text):
+        """Replaces the text of the field of the prompt ("source", "sentence") that the keys are in, until it has arrived whole:
+        the X server may lose a key of a program that is busy."""
+        self.wait(lambda s: s["focus"] == "prompt." + field, f"the keys do not go to the {field}", 10)
+        for _ in range(4):
+            self.key("ctrl+a")
+            self.xdotool("type", "--delay", "40", text)
+            if self.steady(field) == text:
+                return
+        raise AssertionError(f"\"{text}\" arrived as \"{self.state()[field]}\"")
+
+    def press_close(self):
+        """What the close button of a desktop's title bar sends: WM_DELETE_WINDOW."""
+        found = subprocess.run(["xdotool", "search", "--name", "GSEditPro"], env=self.environment, check=True,
+                               stdout=subprocess.PIPE, text=True).stdout.split()
+        x11 = ctypes.CDLL(ctypes.util.find_library("X11") or "libX11.so.6")
+        x11.XOpenDisplay.restype = ctypes.c_void_p
+        x11.XInternAtom.restype = ctypes.c_ulong
+        x11.XInternAtom.argtypes = [ctypes.c_void_p, ctypes.c_char_p, ctypes.c_int]
+        x11.XSendEvent.argtypes = [ctypes.c_void_p, ctypes.c_ulong, ctypes.c_int, ctypes.c_long, ctypes.c_void_p]
+        x11.XCloseDisplay.argtypes = [ctypes.c_void_p]
+        display = x11.XOpenDisplay(self.display.encode())
+        event = (ctypes.c_long * 24)()   # XClientMessageEvent
+        event[0] = 33                    # ClientMessage
+        event[4] = int(found[-1])
+        event[5] = x11.XInternAtom(display, b"WM_PROTOCOLS", 0)
+        event[6] = 32
+        event[7] = x11.XInternAtom(display, b"WM_DELETE_WINDOW", 0)
+        x11.XSendEvent(display, int(found[-1]), 0, 0, event)
+        x11.XCloseDisplay(display)       # flushes
+        time.sleep(0.5)
+
+    def ended(self, seconds=60):
+        """The program's exit code once it has left by itself."""
+        try:
+            self.process.wait(seconds * PATIENCE)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"the window stays: {self.state()}")
+        return self.close()
+
     def picture(self, name):
         """A screenshot of the window, drawn by the program itself."""
         PICTURES.mkdir(parents=True, exist_ok=True)
@@ -156,6 +215,13 @@ class Window:
         request.write_text(str(target))
         self._until(lambda: target.exists() and not request.exists(), 30, f"no screenshot {name}")
         return target
+
+    def screen(self):
+        """What is on the screen at this moment: (width, height, bytes of a row, pixels as 4 bytes each)."""
+        data = (self.folder / "Xvfb_screen0").read_bytes()   # in the format of xwd, kept up to date by the server
+        header, _, _, _, width, height = struct.unpack(">6I", data[:24])
+        row, colours = struct.unpack(">I", data[48:52])[0], struct.unpack(">I", data[76:80])[0]
+        return width, height, row, data[header + 12 * colours:]
 
     # Ending
     def close(self):

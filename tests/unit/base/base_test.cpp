@@ -59,7 +59,7 @@ DOCTEST_TEST_CASE("files are mapped, written whole, and kept when writing fails"
     const auto path = scratch.path() / "new/folder/a.txt";
     write_file(path, "first");
     DOCTEST_CHECK(read_file(path) == "first");
-    DOCTEST_CHECK(MappedFile(path).bytes().size() == 5);
+    DOCTEST_CHECK(FileBytes(path).bytes().size() == 5);
     DOCTEST_CHECK_THROWS_AS(write_atomically(path,
                                              [](const std::filesystem::path& temporary) {
                                                  write_file(temporary, "half");
@@ -68,20 +68,20 @@ DOCTEST_TEST_CASE("files are mapped, written whole, and kept when writing fails"
                             std::runtime_error);
     DOCTEST_CHECK(read_file(path) == "first");
     write_file(path, "");
-    DOCTEST_CHECK(MappedFile(path).bytes().empty());
+    DOCTEST_CHECK(FileBytes(path).bytes().empty());
     std::size_t entries = 0;
     for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(path.parent_path()))
         ++entries;
     DOCTEST_CHECK(entries == 1);
-    MappedFile moved_from(path);
-    const MappedFile moved(std::move(moved_from));
+    FileBytes moved_from(path);
+    const FileBytes moved(std::move(moved_from));
     DOCTEST_CHECK(moved.text().empty());
 }
 
 DOCTEST_TEST_CASE("missing files, folders and unwritable places are told apart") {
     ScratchFolder scratch;
-    DOCTEST_CHECK(throws_error([&] { MappedFile file(scratch.path() / "gone"); }, ErrorCode::NotFound));
-    DOCTEST_CHECK(throws_error([&] { MappedFile file(scratch.path()); }, ErrorCode::Unreadable));
+    DOCTEST_CHECK(throws_error([&] { FileBytes file(scratch.path() / "gone"); }, ErrorCode::NotFound));
+    DOCTEST_CHECK(throws_error([&] { FileBytes file(scratch.path()); }, ErrorCode::Unreadable));
     DOCTEST_CHECK(throws_error([&] { write_file(scratch.path(), "x"); }, ErrorCode::Unwritable));
     DOCTEST_CHECK(throws_error([&] { write_file("/proc/none/x", "x"); }, ErrorCode::Unwritable));
     write_file(scratch.path() / "file", "x");

@@ -165,3 +165,40 @@ DOCTEST_TEST_CASE("seeds lie in the region, are finite and repeatable") {
     DOCTEST_CHECK(edit::seed_splats(region, 350, 2, 10, 0.1).position != seeds.position);
     DOCTEST_CHECK(edit::seed_splats({}, 350, 0, 9).size() == 0);
 }
+
+DOCTEST_TEST_CASE("beside is the side with room, under is below what floats and at the foot of what stands") {
+    const Search setup({-0.55, -0.55, 0}, 0.2);   // the red ball; the green one lies at its right
+    auto search = setup.search();
+    const auto middle = [](const edit::AddRegion& region) {
+        Vec3 mean;
+        for (const auto& cell : region.centres) mean = mean + cell / static_cast<double>(region.centres.size());
+        return mean;
+    };
+    search.relation = edit::Relation::Beside;
+    const auto beside = edit::usual_region(search, "hat");   // what usually sits on top does not, where the sentence says so
+    DOCTEST_CHECK(beside.origin == "beside");
+    DOCTEST_CHECK(middle(beside).x < -0.95);
+    search.relation = edit::Relation::Right;
+    DOCTEST_CHECK(middle(edit::usual_region(search, "ball")).x > -0.15);
+    search.relation = edit::Relation::Under;
+    for (const auto& cell : edit::usual_region(search, "ball").centres) DOCTEST_CHECK(cell.y > 0.35);   // up is -y
+    search.relation = edit::Relation::Above;
+    DOCTEST_CHECK(edit::usual_region(search, "scarf").origin == "neck");
+    // On a floor of other splats nothing fits below: it lies at the foot.
+    GaussianData data = setup.scene.set.to_data();
+    std::vector<std::uint8_t> bits = setup.scene.first;
+    for (std::size_t row = 0; row < 25; ++row) {
+        data.append_row(setup.scene.set.to_data(), 0);
+        float* p = &data.position[(data.size() - 1) * 3];
+        p[0] = -0.85f + 0.15f * static_cast<float>(row % 5);
+        p[1] = 0.41f;
+        p[2] = -0.3f + 0.15f * static_cast<float>(row / 5);
+        bits.push_back(0);
+    }
+    const GaussianSet standing(std::move(data));
+    const edit::RegionSearch floor{standing,     bits, setup.views, setup.masks, setup.depths, {0, -1, 0}, {0, 0, -1},
+                                   edit::Relation::Under};
+    const auto rug = edit::usual_region(floor, "rug");
+    DOCTEST_REQUIRE_FALSE(rug.empty());
+    for (const auto& cell : rug.centres) DOCTEST_CHECK(std::abs(cell.y - 0.4) < 0.08);
+}

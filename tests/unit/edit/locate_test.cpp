@@ -4,6 +4,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/edit/cached_attention.h"
 #include "engine/edit/grabcut_segmenter.h"
 #include "tests/unit/edit/edit_scenes.h"
 
@@ -29,7 +30,7 @@ class ColourAttention : public edit::AttentionSource {
 public:
     std::vector<Image> locate(const edit::AttentionQuery& query) override {
         if (query.words.size() > most_words) throw Error(ErrorCode::NotFound, "a word stands beyond what the model reads");
-        queries.push_back({query.prompt, query.words.front(), query.absent, query.seed});
+        queries.push_back({query.prompt, query.words.front(), query.absent, query.seed, query.words});
         Image map(query.image.width, query.image.height, 1);
         const bool blind = calls++ % 12 < blind_views;
         for (int y = 0; y < map.height && !blind; ++y)
@@ -52,6 +53,7 @@ public:
         std::string prompt, word;
         bool absent;
         std::uint64_t seed;
+        std::vector<std::string> words;
     };
     std::vector<Query> queries;
     std::size_t most_words = 9;
@@ -187,7 +189,7 @@ DOCTEST_TEST_CASE("the same seed asks and answers the same; views get seeds of t
     }
 }
 
-DOCTEST_TEST_CASE("views in which nothing is found do not vote; too many of them are an error") {
+DOCTEST_TEST_CASE("views in which nothing is found do not vote; too many of them label nothing and show why") {
     const Quiet quiet;
     const auto request = request_for("a blue ball", "blue");
     Fixture some;
@@ -199,7 +201,85 @@ DOCTEST_TEST_CASE("views in which nothing is found do not vote; too many of them
         if (view.failed) DOCTEST_CHECK((view.branch == "none" && view.mask.count() == 0));
     Fixture most;
     most.attention.blind_views = 7;
-    DOCTEST_CHECK_THROWS_AS(edit::locate(most.input(request), most.tools()), Error);
+    const auto lost = edit::locate(most.input(request), most.tools());
+    DOCTEST_CHECK(lost.problem == edit::SearchProblem::FewViews);
+    DOCTEST_CHECK(lost.message.find("5 of 12") != std::string::npos);
+    DOCTEST_CHECK(lost.remedy.find("by hand") != std::string::npos);
+    DOCTEST_CHECK(lost.remedy.find("--") == std::string::npos);   // the window says it too
+    DOCTEST_CHECK(lost.failed_views == 7);
+    DOCTEST_REQUIRE(lost.views.size() == 12);
+    for (const auto& view : lost.views) {
+        DOCTEST_CHECK(view.render.width == Side);
+        DOCTEST_CHECK(view.failed == (view.step == edit::ViewStep::NoAttention));
+    }
+    DOCTEST_CHECK(std::count(lost.label.bits->begin(), lost.label.bits->end(), 1) == 0);
+    DOCTEST_CHECK_THROWS_AS(edit::require_found(lost), Error);
+}
+
+DOCTEST_TEST_CASE("a view says in which step it failed") {
+    const Quiet quiet;
+    Fixture fixture;
+    auto request = request_for("a blue ball", "blue");
+    request.dbscan_min_samples = 1000;   // no pixel has so many neighbours
+    const auto scattered = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(scattered.problem == edit::SearchProblem::FewViews);
+    for (const auto& view : scattered.views) DOCTEST_CHECK(view.step == edit::ViewStep::TooLittle);
+    DOCTEST_CHECK(scattered.remedy.find("lower the attention threshold") != std::string::npos);
+    for (const auto step : {edit::ViewStep::NoAttention, edit::ViewStep::TooLittle, edit::ViewStep::Everything})
+        DOCTEST_CHECK((!edit::step_text(step).empty() && !edit::step_remedy(step).empty()));
+}
+
+DOCTEST_TEST_CASE("a search that is less sure than asked for is marked, with what it found") {
+    const Quiet quiet;
+    Fixture fixture;
+    auto request = request_for("a blue ball", "blue");
+    request.least_confidence = 0;
+    const auto found = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(found.problem == edit::SearchProblem::None);
+    DOCTEST_CHECK(found.confidence.value > 0);
+    DOCTEST_CHECK(found.confidence.value <= 1);
+    for (const double part : {found.confidence.agreement, found.confidence.attention, found.confidence.share})
+        DOCTEST_CHECK((part > 0 && part <= 1));
+    edit::require_found(found);
+    request.least_confidence = 1;
+    const auto unsure = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(unsure.problem == edit::SearchProblem::Unsure);
+    DOCTEST_CHECK(*unsure.label.bits == *found.label.bits);
+    DOCTEST_CHECK(unsure.confidence.value == found.confidence.value);
+    DOCTEST_CHECK_THROWS_AS(edit::require_found(unsure), Error);
+    // What is added belongs to something that must be found, too.
+    request = request_for("a ball with a hat", "hat");
+    request.least_confidence = 1;
+    const auto nowhere = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(nowhere.mode == edit::EditMode::Add);
+    DOCTEST_CHECK(nowhere.problem == edit::SearchProblem::Unsure);
+    DOCTEST_CHECK(nowhere.word == "ball");
+    DOCTEST_CHECK(nowhere.seeds.size() == 0);
+}
+
+DOCTEST_TEST_CASE("a label made by hand is taken as it is, and nothing is looked for") {
+    const Quiet quiet;
+    Fixture fixture;
+    const auto request = request_for("a blue ball", "blue");
+    auto input = fixture.input(request);
+    input.label = &fixture.scene.first;
+    const auto found = edit::locate(input, fixture.tools());
+    DOCTEST_CHECK(fixture.attention.queries.empty());
+    DOCTEST_CHECK(found.problem == edit::SearchProblem::None);
+    DOCTEST_CHECK(found.confidence.value < 0);
+    DOCTEST_CHECK(*found.label.bits == fixture.scene.first);
+    for (const auto& view : found.views) {
+        DOCTEST_CHECK(view.branch == "label");
+        DOCTEST_CHECK(view.mask.count() > 0);
+    }
+    // Something new is put beside what is labelled.
+    const auto hat = request_for("a ball with a hat", "hat");
+    auto beside = fixture.input(hat);
+    beside.label = &fixture.scene.first;
+    const auto added = edit::locate(beside, fixture.tools());
+    DOCTEST_CHECK(*added.source_label.bits == fixture.scene.first);
+    DOCTEST_CHECK(added.seeds.size() == static_cast<std::size_t>(hat.seed_splats));
+    for (const auto& query : fixture.attention.queries) DOCTEST_CHECK(query.word == "hat");
 }
 
 DOCTEST_TEST_CASE("a rival word takes the pixels that attend more to it") {
@@ -342,4 +422,50 @@ DOCTEST_TEST_CASE("what the sentence replaces is looked for in the sentence as i
         DOCTEST_CHECK(query.word == "ball");
         DOCTEST_CHECK(query.prompt == "a red ball on the snow");
     }
+}
+
+DOCTEST_TEST_CASE("another threshold asks no network, and remembered views and threads change nothing") {
+    const Quiet quiet;
+    auto request = request_for("a blue ball", "blue");
+    Fixture fixture;
+    edit::CachedAttention cached(std::make_unique<ColourAttention>());
+    const auto segmenter = edit::make_default_segmenter();
+    edit::ViewMemory memory;
+    ThreadPool threads(2);
+    const auto find = [&](bool remembers) {
+        edit::LocateTools tools{*fixture.rasterizer, cached, segmenter.get(), nullptr, {}};
+        if (remembers) tools.memory = &memory, tools.threads = &threads;
+        return edit::locate(fixture.input(request), tools);
+    };
+    find(true);
+    const auto asked = cached.asked();
+    DOCTEST_CHECK(memory.renders.size() == fixture.views.size());
+    for (const double threshold : {0.35, 0.6}) {
+        request.attention_threshold = threshold;
+        const auto quick = find(true), plain = find(false);
+        DOCTEST_CHECK(*quick.label.bits == *plain.label.bits);
+        DOCTEST_CHECK(test::same_bytes(quick.weights.weight, plain.weights.weight));
+        for (std::size_t v = 0; v < quick.views.size(); ++v) {
+            DOCTEST_CHECK(quick.views[v].mask.data == plain.views[v].mask.data);
+            DOCTEST_CHECK(quick.views[v].points.size() == plain.views[v].points.size());
+        }
+    }
+    DOCTEST_CHECK(cached.asked() == asked);
+}
+
+DOCTEST_TEST_CASE("attention is asked about whole phrases, in the sentence as every part of the model is told it") {
+    const Quiet quiet;
+    auto request = request_for("A Blue, * beach ball on Grass!", "blue");
+    request.source = "beach ball";
+    Fixture fixture;
+    const auto found = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(found.word == "beach ball");
+    DOCTEST_REQUIRE(!fixture.attention.queries.empty());
+    const auto& query = fixture.attention.queries.front();
+    DOCTEST_CHECK(query.prompt == edit::as_told(request.prompt));
+    DOCTEST_CHECK(query.prompt == "a blue * beach ball on grass");
+    DOCTEST_CHECK(query.words == std::vector<std::string>{"beach ball", "grass"});   // its head is no rival of the phrase
+    request.rivals = "top hat, grass";
+    edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(fixture.attention.queries.back().words == std::vector<std::string>{"beach ball", "top hat", "grass"});
 }

@@ -2,11 +2,14 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <limits>
 #include <set>
 #include <string>
+#include <type_traits>
 
 #include "engine/edit/locate.h"
 #include "engine/edit/request.h"
+#include "engine/edit/vocabulary.h"
 
 namespace {
 
@@ -66,6 +69,19 @@ DOCTEST_TEST_CASE("JSON with an unknown name, a wrong type or a value out of ran
     DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"no_such_field", 1}}), Error);
     DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"iterations", "many"}}), Error);
     DOCTEST_CHECK_THROWS_AS(fields_from_json(request, {{"tau", 1.5}}), Error);
+    EditRequest hostile;
+    hostile.prompt = "a blue bear";
+    hostile.source = "bear";
+    DOCTEST_CHECK(validated(hostile).target == "blue");
+    hostile.rate_colour = std::numeric_limits<double>::quiet_NaN();
+    DOCTEST_CHECK_THROWS_AS(validated(hostile), Error);
+    // A number without limits would let anything pass.
+    EditRequest::visit_fields(request, [](const char* name, const auto& value, const char*, const auto&... range) {
+        using Value = std::remove_cvref_t<decltype(value)>;
+        const bool limited = sizeof...(range) == 1 || !std::is_arithmetic_v<Value> || std::is_same_v<Value, bool> ||
+                             std::string(name) == "seed";
+        DOCTEST_CHECK_MESSAGE(limited, name);
+    });
 }
 
 DOCTEST_TEST_CASE("a request is checked in one sentence") {
@@ -157,4 +173,48 @@ DOCTEST_TEST_CASE("the target is guessed from the sentence") {
     DOCTEST_CHECK(guessed_target("a photo of a bear", "bear") == "bear");
     DOCTEST_CHECK(guessed_target("bear", "bear") == "bear");
     DOCTEST_CHECK(guessed_target("a bear with", "bear") == "bear");
+}
+
+DOCTEST_TEST_CASE("what applied edits said already is no news") {
+    using edit::guessed_target;
+    const auto said = [](const std::vector<EditRequest>& applied) { return edit::words_said(applied); };
+    const auto blue = bear("bear", "a blue bear on the grass", "blue"), hat = bear("bear", "a blue bear wearing a hat", "hat");
+    DOCTEST_CHECK(guessed_target("a blue bear wearing a hat", "bear", said({blue})) == "hat");
+    DOCTEST_CHECK(guessed_target("a golden bear wearing a hat", "bear", said({blue, hat})) == "golden");
+    DOCTEST_CHECK(guessed_target("a blue bear wearing a hat and a scarf", "bear", said({blue, hat})) == "scarf");
+    DOCTEST_CHECK(guessed_target("a blue bear wearing a red hat", "bear", said({blue, hat})) == "hat");
+    // Nothing new: the sentence as it is, so that an edit can be repeated.
+    DOCTEST_CHECK(guessed_target("a blue bear on the grass", "bear", said({blue})) == "blue");
+    // What was replaced since can be asked for again.
+    const auto red = bear("bear", "a red bear", "red");
+    DOCTEST_CHECK(guessed_target("a blue bear wearing a hat", "bear", said({hat, red})) == "blue");
+    const auto snow = bear("grass", "a bear on the snow", "snow");
+    DOCTEST_CHECK(guessed_target("a bear on the grass", "snow", said({blue, snow})) == "grass");
+    DOCTEST_CHECK(said({}).empty());
+}
+
+DOCTEST_TEST_CASE("source and target must be known to a model with a fixed vocabulary, other words need not") {
+    const std::vector<std::string> known{"a", "in", "the", "on", "bear", "pear", "hat", "golden", "grass"};
+    const auto refused = [&](const EditRequest& request, bool by_hand) {
+        try {
+            edit::require_known_words(edit::validated(request), known, by_hand);
+            return std::string();
+        } catch (const Error& error) {
+            DOCTEST_CHECK(error.code() == ErrorCode::InvalidArgument);
+            return std::string(error.what());
+        }
+    };
+    DOCTEST_CHECK(refused(bear("bear", "a golden bear on the shiny grass", "golden"), false).empty());
+    const auto sign = refused(bear("sign", "a golden sign", "golden"), false);
+    for (const char* part : {"\"sign\"", "label it by hand instead", "bear", "grass"})
+        DOCTEST_CHECK_MESSAGE(sign.find(part) != std::string::npos, sign);
+    DOCTEST_CHECK(sign.find("\"in\"") == std::string::npos);   // no suggestion: it is no thing
+    DOCTEST_CHECK(refused(bear("sign", "a golden sign", "golden"), true).empty());
+    const auto hat = refused(bear("bear", "a bear wearing a sombrero", "sombrero"), true);
+    DOCTEST_CHECK_MESSAGE(hat.find("\"sombrero\"") != std::string::npos, hat);
+    DOCTEST_CHECK(edit::nearest_words("baer", known) == std::vector<std::string>{"bear"});
+    DOCTEST_CHECK(edit::nearest_words("bears", known) == std::vector<std::string>{"bear", "pear"});
+    DOCTEST_CHECK(edit::nearest_words("hta", known) == std::vector<std::string>{"hat"});
+    DOCTEST_CHECK(edit::nearest_words("sign", known).empty());
+    edit::require_known_words(edit::validated(bear("sign", "a jade sign", "jade")), {}, false);   // an open vocabulary
 }

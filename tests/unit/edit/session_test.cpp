@@ -118,12 +118,12 @@ DOCTEST_TEST_CASE("a stop in the middle returns the last state, equal to a short
         if (++calls == 25) stop.request_stop();
         return test::towards({0.1, 0.1, 0.9}).evaluate(input);
     });
-    std::shared_ptr<const GaussianSet> snapshot;
+    GaussianSet snapshot;
     Run how;
     how.snapshot = [&](const edit::EditSnapshot& taken) {
         DOCTEST_CHECK(taken.iteration % 10 == 0);
-        DOCTEST_CHECK(taken.base_to_new->size() == scene.set.size());
-        snapshot = taken.set;
+        DOCTEST_CHECK(taken.base_to_new().size() == scene.set.size());
+        snapshot = taken.materialise();
     };
     how.job.stop = stop.get_token();
     const auto result = run(scene, short_request(), guidance, how);
@@ -131,20 +131,20 @@ DOCTEST_TEST_CASE("a stop in the middle returns the last state, equal to a short
     DOCTEST_CHECK(result.iterations == 25);
     DOCTEST_CHECK(result.changed_outside_label == 0);
     DOCTEST_CHECK(result.nonfinite == 0);
-    DOCTEST_REQUIRE(snapshot != nullptr);
-    DOCTEST_CHECK_FALSE(test::same_bytes(*snapshot, scene.set));
+    DOCTEST_REQUIRE(snapshot.size() > 0);
+    DOCTEST_CHECK_FALSE(test::same_bytes(snapshot, scene.set));
 }
 
 DOCTEST_TEST_CASE("snapshots are the states of the run and stay as they were") {
     const auto scene = test::ball_scene();
     auto guidance = test::towards({0.1, 0.1, 0.9});
-    std::vector<std::shared_ptr<const GaussianSet>> snapshots;
+    std::vector<edit::EditSnapshot> snapshots;
     Run how;
-    how.snapshot = [&](const edit::EditSnapshot& snapshot) { snapshots.push_back(snapshot.set); };
+    how.snapshot = [&](const edit::EditSnapshot& snapshot) { snapshots.push_back(snapshot); };
     const auto result = run(scene, short_request(), guidance, how);
     DOCTEST_REQUIRE(snapshots.size() == 4);
-    DOCTEST_CHECK(test::same_bytes(*snapshots.back(), result.set));
-    DOCTEST_CHECK_FALSE(test::same_bytes(*snapshots[0], *snapshots[1]));
+    DOCTEST_CHECK(test::same_bytes(snapshots.back().materialise(), result.set));
+    DOCTEST_CHECK_FALSE(test::same_bytes(snapshots[0].materialise(), snapshots[1].materialise()));
 }
 
 DOCTEST_TEST_CASE("guidance is shown the unedited view beside the changing one") {
@@ -347,4 +347,51 @@ DOCTEST_TEST_CASE("what was driven to black comes back") {
     }
     DOCTEST_CHECK(count > 0);
     DOCTEST_CHECK(sum / count < 0.12);   // left behind in the dark it would be 0.4
+}
+
+DOCTEST_TEST_CASE("a run goes on from a snapshot: its rows, its iteration, and nothing outside the label") {
+    const auto scene = test::ball_scene();
+    auto guidance = test::towards({0.1, 0.1, 0.9});
+    auto request = short_request();
+    std::vector<edit::EditSnapshot> snapshots;
+    run(scene, request, guidance, {1, [&](edit::EditSnapshot snapshot) { snapshots.push_back(std::move(snapshot)); }});
+    DOCTEST_REQUIRE(snapshots.size() == 4);
+    const auto& start = snapshots[1];
+    DOCTEST_REQUIRE(start.iteration == 20);
+    DOCTEST_CHECK(start.size() > scene.set.size());   // rows were born before it
+    ThreadPool pool(1);
+    const auto rasterizer = raster::make_fast_rasterizer(pool);
+    const auto plan = test::ball_plan(scene, *rasterizer);
+    const auto go_on = [&](const edit::EditSnapshot& from, edit::Guidance& pull) {
+        edit::EditTools tools{*rasterizer, pull, {}, {}};
+        tools.start = &from;
+        return edit::run_edit(scene.set, plan, request, tools);
+    };
+    request.iterations = 20;   // nothing is left: what comes out is what went in, with the rows in their order
+    const auto same = go_on(start, guidance);
+    DOCTEST_CHECK(same.iterations == 20);
+    DOCTEST_CHECK(same.history.empty());
+    DOCTEST_CHECK(test::same_bytes(same.set, start.materialise()));
+    DOCTEST_CHECK(same.base_to_new == start.base_to_new());
+    DOCTEST_CHECK(same.generation == start.generation());
+    // Settings as they are now: another colour pulls from there on.
+    request.iterations = 60;
+    auto other = test::towards({0.1, 0.9, 0.1});
+    const auto result = go_on(start, other);
+    DOCTEST_CHECK(result.iterations == 60);
+    DOCTEST_CHECK(result.history.front().iteration == 20);
+    DOCTEST_CHECK(result.history.size() == 40);
+    DOCTEST_CHECK(result.changed_outside_label == 0);
+    const auto label_of = [&](const edit::EditResult& of) { return mean_colour(of.set, of.label); };
+    DOCTEST_CHECK(label_of(same).z > mean_colour(scene.set, scene.first).z + 0.03);
+    DOCTEST_CHECK(label_of(result).y > label_of(same).y + 0.1);
+    // A smaller label: what the snapshot changed outside of it is the base's again.
+    auto half = plan;
+    std::size_t dropped = 0;
+    for (std::size_t row = 0; row < half.label.size(); row += 2) dropped += half.label[row], half.label[row] = 0;
+    DOCTEST_REQUIRE(dropped > 0);
+    edit::EditTools tools{*rasterizer, other, {}, {}};
+    tools.start = &start;
+    const auto smaller = edit::run_edit(scene.set, half, request, tools);
+    DOCTEST_CHECK(smaller.changed_outside_label == 0);
 }

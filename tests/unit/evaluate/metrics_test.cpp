@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "engine/base/random.h"
 #include "engine/evaluate/metrics.h"
@@ -105,6 +106,18 @@ DOCTEST_TEST_CASE("the outline tolerance grows with the picture and never vanish
     DOCTEST_CHECK(boundary_tolerance_px(64, 64) == 1);
     DOCTEST_CHECK(boundary_tolerance_px(512, 512) == doctest::Approx(BoundaryToleranceShare * 512 * std::sqrt(2.0)));
     DOCTEST_CHECK(boundary_tolerance_px(300, 400) == doctest::Approx(BoundaryToleranceShare * 500));
+}
+
+DOCTEST_TEST_CASE("a value that is no number counts as wholly different, never as equal") {
+    const Image clean(4, 4, 3, 0.5f);
+    Image broken = clean;
+    broken.data[0] = std::numeric_limits<float>::quiet_NaN();
+    broken.data[1] = std::numeric_limits<float>::infinity();
+    DOCTEST_CHECK(psnr_db(clean, broken) == doctest::Approx(-10 * std::log10(2.0 / 48)));
+    DOCTEST_CHECK(psnr_db(broken, broken) == doctest::Approx(-10 * std::log10(2.0 / 48)));
+    DOCTEST_CHECK(mean_absolute_error(clean, broken) == doctest::Approx(2.0 / 48));
+    DOCTEST_CHECK(leak_rate(clean, broken, {}, 0.1) == doctest::Approx(1.0 / 16));
+    DOCTEST_CHECK(std::isfinite(mean_colour_error(clean, broken, {})));
 }
 
 DOCTEST_TEST_CASE("drift follows the rows through an edit that removes and adds some") {

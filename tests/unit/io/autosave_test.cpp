@@ -71,6 +71,25 @@ DOCTEST_TEST_CASE("an autosave is offered once its process is gone, while it is 
     autosave.discard();
 }
 
+DOCTEST_TEST_CASE("an autosave that was left is offered while its process lives, and not written to again") {
+    const ScratchFolder folder;
+    const ProjectData project = random_project({{}, 0, 0, random_set(20, 0, 1)}, 1);
+    ProjectWriter writer;
+    Autosave autosave(folder.path());
+    autosave.leave();   // nothing was written: nothing happens
+    autosave.write(project, "", writer);
+    const auto left = autosave.path();
+    DOCTEST_CHECK(find_recoverable(folder.path()).empty());
+    autosave.leave();
+    DOCTEST_REQUIRE(find_recoverable(folder.path()).size() == 1);
+    DOCTEST_CHECK(find_recoverable(folder.path())[0].file == left);
+    autosave.write(project, "", writer);
+    DOCTEST_CHECK(autosave.path() != left);
+    autosave.discard();
+    DOCTEST_CHECK(find_recoverable(folder.path()).size() == 1);
+    DOCTEST_CHECK(fs::exists(left));
+}
+
 DOCTEST_TEST_CASE("discarding removes, damaged sidecars are passed over") {
     const Quiet quiet;
     const ScratchFolder folder;

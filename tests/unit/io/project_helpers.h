@@ -49,6 +49,7 @@ inline ProjectData random_project(const SceneSource& source, std::uint64_t seed)
     project.state.active_label = 1;
     auto stack = project.state.stack;
     stack[1].enabled = false;
+    stack[2].strength = 0.625;
     project.state = with_stack(project.state, std::move(stack));
     project.thumbnail = random_picture(16, 12, seed + 5);
     project.ui = {{"mode", 3}, {"panels", {1, 2, 3}}};
@@ -87,7 +88,7 @@ inline bool same_view(const View& a, const View& b) {
 }
 
 inline bool same_edit(const EditNode& a, const EditNode& b) {
-    return a.id == b.id && a.name == b.name && a.recipe == b.recipe && a.enabled == b.enabled &&
+    return a.id == b.id && a.name == b.name && a.recipe == b.recipe && a.enabled == b.enabled && a.strength == b.strength &&
            a.seconds == b.seconds && a.psnr_outside_db == b.psnr_outside_db &&
            a.changed_outside_label == b.changed_outside_label && same_delta(*a.delta, *b.delta) &&
            same_picture(a.thumbnail, b.thumbnail);

@@ -258,6 +258,13 @@ DOCTEST_TEST_CASE("members that lie about their size are refused before memory i
         std::memcpy(member.data() + 8, &size, sizeof size);
         DOCTEST_CHECK(error_of([&] { io::unpack_member(as_bytes(member), io::AnySize, budget, "it"); }));
     }
+    // Sizes that the file can justify, but only once.
+    io::UnpackBudget small(1000);
+    small.spend(200u << 20, "it");
+    DOCTEST_CHECK(error_of([&] { small.spend(200u << 20, "it"); }));
+    io::UnpackBudget labels(1000);
+    for (int i = 0; i < 4; ++i) labels.spend_known(100u << 20, "it");
+    DOCTEST_CHECK(error_of([&] { labels.spend_known(200u << 20, "it"); }));
     // Counts inside a delta.
     SceneDelta delta;
     delta.removed = {3, 9};

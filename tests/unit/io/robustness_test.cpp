@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "engine/base/memory.h"
+#include "engine/io/claims.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 #include "engine/io/inflate.h"
@@ -113,6 +115,44 @@ DOCTEST_TEST_CASE("huge counts are refused without allocating") {
     DOCTEST_CHECK(peak_kilobytes() - before < AllowedKilobytes);
 }
 
+DOCTEST_TEST_CASE("small files that ask for gigabytes are refused before anything is unpacked") {
+    const long before = peak_kilobytes();
+    // 400 million splats as zstd frames of zeros would be read in full, were it not for the file's size.
+    io::check_claim({io::splat_bytes(1000000, 3), 1000}, "it");                          // a little may come from nothing
+    DOCTEST_CHECK(error_of([] { io::check_claim({std::uint64_t{60} << 30, 820}, "it"); }));
+    DOCTEST_CHECK_THROWS_AS(io::check_claim({std::uint64_t{1} << 60, std::uint64_t{1} << 59}, "it"), OutOfMemory);
+    const auto folder = data_folder() / "hostile";
+    if (!available(folder)) return;
+    for (const char* name : {"sog_bomb268M.sog", "spz4_bomb400M.spz"}) {
+        const auto error = error_of([&] { load_scene(folder / name); });
+        DOCTEST_REQUIRE_MESSAGE(error.has_value(), name);
+        DOCTEST_CHECK(error->code() == ErrorCode::Malformed);
+        DOCTEST_CHECK(std::string(error->what()).find("cannot hold so much") != std::string::npos);
+    }
+    const auto deep = error_of([&] { load_scene(folder / "lod_deep"); });
+    DOCTEST_REQUIRE(deep.has_value());
+    DOCTEST_CHECK(std::string(deep->what()).find("levels deep") != std::string::npos);
+    constexpr long AllowedKilobytes = 64 * 1024;
+    DOCTEST_CHECK(peak_kilobytes() - before < AllowedKilobytes);
+}
+
+DOCTEST_TEST_CASE("a tree of levels names each part once, and none outside of its folder") {
+    const auto source = data_folder() / "scenes/playbot_lod_sog/6_0";
+    if (!available(source)) return;
+    ScratchFolder scratch;
+    std::filesystem::copy(source, scratch.path() / "part", std::filesystem::copy_options::recursive);
+    const auto load = [&](const std::string& names) {
+        std::filesystem::remove(scratch.path() / "lod-meta.json");
+        write_file(scratch.path() / "lod-meta.json",
+                   "{\"filenames\": [" + names + "], \"tree\": {\"children\": [{\"lods\": {\"0\": {\"file\": 0}}}, "
+                   "{\"lods\": {\"0\": {\"file\": 1}}}, {\"lods\": {\"0\": {\"file\": 0}}}]}}");
+        return load_scene(scratch.path()).gaussians.size();
+    };
+    DOCTEST_CHECK(load("\"part/meta.json\", \"./part/meta.json\"") == 1873);
+    DOCTEST_CHECK(error_of([&] { load("\"part/meta.json\", \"../x/meta.json\""); }));
+    DOCTEST_CHECK(error_of([&] { load("\"part/meta.json\", \"/etc/meta.json\""); }));
+}
+
 DOCTEST_TEST_CASE("a list that claims billions of items ends with the file") {
     const std::string text =
         "ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list uint double a\n"
@@ -178,7 +218,7 @@ DOCTEST_TEST_CASE("SOG: missing parts, wrong counts and bad descriptions are tol
     DOCTEST_CHECK(changed("means_l.webp", "../../x.webp").find("outside") != std::string::npos);
     DOCTEST_CHECK(changed("means_l.webp", "gone.webp").find("does not exist") != std::string::npos);
     DOCTEST_CHECK(changed("\"codebook\"", "\"cookbook\"").find("cannot be understood") != std::string::npos);
-    DOCTEST_CHECK(with_meta("{").find("cannot be understood") != std::string::npos);
+    DOCTEST_CHECK(with_meta("{").find("not valid JSON") != std::string::npos);
     DOCTEST_CHECK(with_meta("[]") != "");
 }
 
@@ -191,4 +231,26 @@ DOCTEST_TEST_CASE("an Inria output folder gives its highest iteration") {
     DOCTEST_CHECK(load_scene(scratch.path()).gaussians.size() == 300);
     DOCTEST_CHECK(load_scene(scratch.path() / "point_cloud").gaussians.size() == 300);
     DOCTEST_CHECK(load_scene(scratch.path() / "point_cloud/iteration_700").gaussians.size() == 7);
+}
+
+DOCTEST_TEST_CASE("a folder with one scene file is that scene, with several it is asked which") {
+    ScratchFolder scratch;
+    const auto folder = scratch.path();
+    DOCTEST_CHECK(error_of([&] { load_scene(folder); })->message().find("holds no scene") != std::string::npos);
+    save_scene(folder / "scene.ply", random_scene(11, 0, 1));
+    write_file(folder / "cameras.json", "[]");
+    write_file(folder / "points3D.ply",
+               "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+               "property float z\nend_header\n0 0 0\n");
+    DOCTEST_CHECK(load_scene(folder).gaussians.size() == 11);
+    DOCTEST_CHECK(scenes_in_folder(folder) == std::vector<std::filesystem::path>{folder / "scene.ply"});
+    save_scene(folder / "edited.spz", random_scene(12, 0, 2));
+    DOCTEST_CHECK(scenes_in_folder(folder).size() == 2);
+    const auto several = error_of([&] { load_scene(folder); });
+    DOCTEST_REQUIRE(several.has_value());
+    DOCTEST_CHECK(several->message() == "the folder holds 2 scenes (edited.spz, scene.ply)");
+    // A folder that is a scene by itself is not asked about.
+    save_scene(folder / "point_cloud/iteration_7/point_cloud.ply", random_scene(13, 0, 3));
+    DOCTEST_CHECK(load_scene(folder).gaussians.size() == 13);
+    DOCTEST_CHECK(scenes_in_folder(folder).empty());
 }

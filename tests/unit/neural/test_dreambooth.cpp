@@ -48,7 +48,7 @@ TuningResult tuned(const ModelBundle& bundle, const DreamBoothParameters& parame
     return run_dreambooth(bundle, parameters, {pictures, InstancePrompt, ClassPrompt}, {});
 }
 
-Image sample_of(TextToImage& model) {
+Image sample_of(const TextToImage& model) {
     SampleRequest request;
     request.prompt = ClassPrompt;
     request.steps = 2;
@@ -122,7 +122,7 @@ DOCTEST_TEST_CASE("dreambooth: one seed, one result, with one thread or two; the
         DOCTEST_CHECK_MESSAGE(torch::equal(copies[i], before[i].second), before[i].first);
 }
 
-DOCTEST_TEST_CASE("dreambooth: a stop leaves the model as it was; untune gives the loaded weights back") {
+DOCTEST_TEST_CASE("dreambooth: tuning gives another model; the one it was asked of stays as it was, also on a stop") {
     const TinyModel model;
     const auto loaded = load_model(model.path(), "cpu");
     const auto pictures = scene_pictures();
@@ -138,7 +138,6 @@ DOCTEST_TEST_CASE("dreambooth: a stop leaves the model as it was; untune gives t
         };
         DOCTEST_CHECK(contains(
             message_of([&] { loaded->tune(parameters, pictures, InstancePrompt, ClassPrompt, job); }), "stopped"));
-        DOCTEST_CHECK(!loaded->tuned());
         DOCTEST_CHECK(sample_of(*loaded).data == original);
     }
     const auto old_guidance = loaded->guidance(ClassPrompt, SdsParameters{});
@@ -149,13 +148,22 @@ DOCTEST_TEST_CASE("dreambooth: a stop leaves the model as it was; untune gives t
         return guidance.evaluate(input).gradient.data;
     };
     const auto before = pulled(*old_guidance);
-    loaded->tune(parameters, pictures, InstancePrompt, ClassPrompt, {});
-    DOCTEST_CHECK(loaded->tuned());
-    DOCTEST_CHECK(sample_of(*loaded).data != original);
-    DOCTEST_CHECK(pulled(*loaded->guidance(ClassPrompt, SdsParameters{})) != before);
-    DOCTEST_CHECK(pulled(*old_guidance) == before);  // what was made before keeps its weights
-    loaded->untune();
-    DOCTEST_CHECK(!loaded->tuned());
+    auto first = loaded->tune(parameters, pictures, InstancePrompt, ClassPrompt, {});
+    DOCTEST_CHECK(first.report.steps == parameters.steps);
+    const auto learned = sample_of(*first.model).data;
+    DOCTEST_CHECK(learned != original);
+    DOCTEST_CHECK(pulled(*first.model->guidance(ClassPrompt, SdsParameters{})) != before);
+    DOCTEST_CHECK(pulled(*old_guidance) == before);
+    DOCTEST_CHECK(pulled(*loaded->guidance(ClassPrompt, SdsParameters{})) == before);
+    DOCTEST_CHECK(sample_of(*loaded).data == original);
+    // A tuned model's tuning begins at the loaded weights; the two share nothing that changes.
+    const auto again = first.model->tune(parameters, pictures, InstancePrompt, ClassPrompt, {});
+    DOCTEST_CHECK(sample_of(*again.model).data == learned);
+    parameters.seed = 1;
+    const auto other = loaded->tune(parameters, pictures, InstancePrompt, ClassPrompt, {});
+    DOCTEST_CHECK(sample_of(*other.model).data != learned);
+    DOCTEST_CHECK(sample_of(*first.model).data == learned);
+    first.model.reset();
     DOCTEST_CHECK(sample_of(*loaded).data == original);
 }
 
@@ -182,6 +190,54 @@ DOCTEST_TEST_CASE("dreambooth: a step that is not finite is left out and counted
     pictures[1].at(3, 3, 1) = std::numeric_limits<float>::quiet_NaN();
     DOCTEST_CHECK(contains(
         message_of([&] { run_dreambooth(bundle, parameters, {pictures, InstancePrompt, ClassPrompt}, {}); }), "finite"));
+}
+
+DOCTEST_TEST_CASE("dreambooth: one gradient value that is not finite costs one step, which is counted") {
+    const TinyModel model;
+    const auto bundle = load_bundle(model.path());
+    TuningBatch batch{bundle.token_ids({InstancePrompt}), seeded_noise({1, 4, 8, 8}, 1), seeded_noise({1, 4, 8, 8}, 2),
+                      torch::tensor({std::int64_t{300}})};
+    for (const int rank : {0, 2}) {
+        auto parameters = small_parameters();
+        parameters.rank = rank;
+        DreamBoothTrainer trainer(bundle, parameters);
+        TuneReport report;
+        const double loss = trainer.loss_of(batch);
+        auto step = trainer.accumulate(batch, nullptr);
+        const auto weights = trainer.trained();
+        const auto moved = std::find_if(weights.begin(), weights.end(),
+                                        [](const auto& named) { return named.second.grad().defined(); });
+        DOCTEST_REQUIRE(moved != weights.end());
+        moved->second.grad().view({-1})[0] = std::numeric_limits<float>::quiet_NaN();
+        trainer.apply(step);
+        DOCTEST_CHECK(std::isfinite(step.loss));
+        DOCTEST_CHECK(step.skipped);
+        DOCTEST_CHECK(trainer.loss_of(batch) == loss);
+        count_step(report, step, 3);
+        const auto next = trainer.step(batch, nullptr);
+        DOCTEST_CHECK(!next.skipped);
+        DOCTEST_CHECK(std::isfinite(trainer.loss_of(batch)));
+        count_step(report, next, 3);
+        DOCTEST_CHECK(report.steps == 2);
+        DOCTEST_CHECK(report.skipped == 1);
+        DOCTEST_CHECK(contains(message_of([&] { count_step(report, step, 3); }), "2 of the first 3"));
+    }
+}
+
+DOCTEST_TEST_CASE("dreambooth: a tuning most of whose steps are not finite ends in an error that says so, and early") {
+    const TinyModel model;
+    const auto bundle = load_bundle(model.path());
+    auto parameters = small_parameters();
+    parameters.class_images = 0;
+    parameters.learning_rate = 1e30;
+    int last = 0;
+    JobControl job;
+    job.progress = [&](std::string_view, int step, int) { last = step; };
+    const auto pictures = scene_pictures();
+    const auto message =
+        message_of([&] { run_dreambooth(bundle, parameters, {pictures, InstancePrompt, ClassPrompt}, job); });
+    DOCTEST_CHECK_MESSAGE(contains(message, "21 of the first 22 tuning steps were not finite"), message);
+    DOCTEST_CHECK(last == 21);
 }
 
 DOCTEST_TEST_CASE("lora: learns, changes the attention projections only, and W + alpha/r up down is what comes out") {
@@ -227,20 +283,17 @@ DOCTEST_TEST_CASE("lora: kohya's file there and back") {
     parameters.steps = 10;
     parameters.rank = 3;
     const auto original = sample_of(*loaded).data;
-    loaded->tune(parameters, pictures, InstancePrompt, ClassPrompt, {});
-    const auto tuned_sample = sample_of(*loaded).data;
-    loaded->save_lora(path);
+    const auto tuned_model = loaded->tune(parameters, pictures, InstancePrompt, ClassPrompt, {}).model;
+    const auto tuned_sample = sample_of(*tuned_model).data;
+    tuned_model->save_lora(path);
     const SafetensorsFile file(path);
     const std::string stem = "lora_unet_down_blocks_0_attentions_0_transformer_blocks_0_attn1_to_out_0";
     DOCTEST_CHECK(file.contains(stem + ".lora_down.weight"));
     DOCTEST_CHECK(file.contains("lora_te_text_model_encoder_layers_0_self_attn_q_proj.lora_up.weight"));
     DOCTEST_CHECK(file.tensor(stem + ".alpha").item<float>() == 3.0f);
     DOCTEST_CHECK(file.tensor(stem + ".lora_down.weight").sizes() == torch::IntArrayRef({3, 16}));
-    loaded->untune();
-    loaded->load_lora(path, 0.0);
-    DOCTEST_CHECK(sample_of(*loaded).data == original);
-    loaded->load_lora(path);
-    DOCTEST_CHECK(sample_of(*loaded).data == tuned_sample);
+    DOCTEST_CHECK(sample_of(*loaded->load_lora(path, 0.0)).data == original);
+    DOCTEST_CHECK(sample_of(*loaded->load_lora(path)).data == tuned_sample);
 
     auto weights = read_lora(path);
     weights.unet.front().layer = "no_such_layer";
@@ -249,7 +302,7 @@ DOCTEST_TEST_CASE("lora: kohya's file there and back") {
     weights = {{LoraFactor{"conv_in", torch::ones({1, 5, 3, 3}), torch::ones({16, 1, 1, 1}), 1}}, {}};
     write_lora(path, weights);
     DOCTEST_CHECK(contains(message_of([&] { loaded->load_lora(path); }), "shape"));
-    DOCTEST_CHECK(sample_of(*loaded).data == tuned_sample);  // a refused file changes nothing
+    DOCTEST_CHECK(sample_of(*loaded).data == original);  // whatever was read, merged or refused
     write_safetensors(path, {{"lora_unet_x.hada_w1_a", torch::ones({1})}});
     DOCTEST_CHECK(contains(message_of([&] { loaded->load_lora(path); }), "hada"));
 }

@@ -1,6 +1,7 @@
 // Attention maps, score distillation and sampling on a tiny random model: properties that hold for any
 // weights.
 #include <cmath>
+#include <limits>
 
 #include "engine/neural/attention_source.h"
 #include "engine/neural/images.h"
@@ -103,6 +104,24 @@ DOCTEST_TEST_CASE("sds guidance: repeatable gradient at the render's size, silen
                           .evaluate(input_at(image, view, 3))
                           .scalars.at("gradient_norm") == 0);
     }
+}
+
+DOCTEST_TEST_CASE("sds guidance: a picture that makes the model overflow gives a gradient that says so, and no error") {
+    const TinyModel model;
+    const auto bundle = load_shared(model);
+    Image image = gradient_image(48, 40);
+    image.data[100] = std::numeric_limits<float>::quiet_NaN();
+    const View view;
+    SdsGuidance guidance(bundle, "a red bear", SdsParameters{});
+    const auto output = guidance.evaluate(input_at(image, view, 3));
+    DOCTEST_CHECK(output.gradient.width == 48);
+    DOCTEST_CHECK(output.gradient.height == 40);
+    DOCTEST_CHECK(std::none_of(output.gradient.data.begin(), output.gradient.data.end(),
+                               [](float v) { return std::isfinite(v); }));
+    DOCTEST_CHECK(output.scalars.count("loss") == 0);
+    const Image sound = gradient_image(48, 40);   // the next step is as if nothing had been
+    DOCTEST_CHECK(guidance.evaluate(input_at(sound, view, 4)).gradient.data ==
+                  SdsGuidance(bundle, "a red bear", SdsParameters{}).evaluate(input_at(sound, view, 4)).gradient.data);
 }
 
 DOCTEST_TEST_CASE("sds guidance: the pull on the unedited picture is taken off") {

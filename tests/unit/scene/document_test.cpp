@@ -69,6 +69,37 @@ DOCTEST_TEST_CASE("bits follow weight, threshold and corrections") {
     DOCTEST_CHECK(*with_bits(label).bits == std::vector<std::uint8_t>{0, 1, 0, 1});
 }
 
+DOCTEST_TEST_CASE("the strength of an edit of the stack can be changed, undone and brought back") {
+    for (std::uint64_t seed = 0; seed < 6; ++seed) {
+        DocumentState state = fresh_state(120, seed);
+        for (std::uint64_t i = 0; i < 3; ++i) state = with_edit(state, random_node(state, seed * 10 + i));
+        state.labels = {random_label(state, seed)};
+        const Picture whole = picture_of(state);
+        Document document(state);
+        const auto set_strength = [&](std::size_t which, double strength) {
+            auto stack = document.state().stack;
+            stack[which].strength = strength;
+            document.apply("Strength", with_stack(document.state(), std::move(stack)));
+        };
+        for (std::size_t which = 0; which < 3; ++which) {
+            set_strength(which, 0.5);
+            DOCTEST_CHECK(!same(picture_of(document.state()), whole));
+            document.undo();
+            DOCTEST_CHECK(same(picture_of(document.state()), whole));
+            set_strength(which, 0.5);
+            set_strength(which, 1);
+            DOCTEST_CHECK(same(picture_of(document.state()), whole));
+            // None of an edit is the same as the edit switched off.
+            auto stack = state.stack;
+            stack[which].enabled = false;
+            const Picture off = picture_of(with_stack(state, std::move(stack)));
+            set_strength(which, 0);
+            DOCTEST_CHECK(same(picture_of(document.state()), off));
+            set_strength(which, 1);
+        }
+    }
+}
+
 DOCTEST_TEST_CASE("edits switched off and on again give the same scene and the same labels") {
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
         DocumentState state = fresh_state(120, seed);

@@ -66,6 +66,32 @@ DOCTEST_TEST_CASE("statistics count each oddity once per row") {
     DOCTEST_CHECK(drop_unusable(GaussianSet(data)).size() == 195);
 }
 
+DOCTEST_TEST_CASE("what cannot be drawn is hidden, and everything else stays as it is") {
+    GaussianData data = box_of_splats(100, {5, 6, 7}, 3);
+    data.position[3 * 0] = Nan;
+    data.position[3 * 1] = 1e30f;
+    data.rotation[4 * 2 + 1] = -1e30f;
+    data.sh[data.sh_stride() * 3] = 1e10f;
+    data.log_scale[3 * 4] = 1e30f;
+    data.opacity_logit[5] = Nan;
+    data.log_scale[3 * 6] = -1e30f;   // flat: legal
+    data.opacity_logit[7] = 1e30f;    // opaque: legal
+    const GaussianSet set(data);
+    const SceneStatistics statistics = compute_statistics(set);
+    DOCTEST_CHECK(statistics.nan_rows == 2);
+    DOCTEST_CHECK(statistics.infinite_rows == 4);
+    DOCTEST_CHECK(statistics.visible_rows == 94);
+    DOCTEST_CHECK(statistics.bounds_high.x < 10);
+    const GaussianSet drawn = drawable(set);
+    DOCTEST_REQUIRE(drawn.size() == set.size());
+    DOCTEST_CHECK(compute_statistics(drawn).nan_rows + compute_statistics(drawn).infinite_rows == 0);
+    for (std::size_t row = 0; row < 6; ++row) DOCTEST_CHECK(drawn.opacity_logit()[row] < -50);
+    for (std::size_t i = 3 * 6; i < 300; ++i) DOCTEST_CHECK(drawn.position()[i] == set.position()[i]);
+    for (std::size_t row = 6; row < 100; ++row) DOCTEST_CHECK(drawn.opacity_logit()[row] == set.opacity_logit()[row]);
+    const GaussianSet clean(box_of_splats(100, {5, 6, 7}, 3));
+    DOCTEST_CHECK(drawable(clean).shares_all_with(clean));
+}
+
 DOCTEST_TEST_CASE("robust bounds ignore a few floaters, plain bounds do not") {
     GaussianData data = box_of_splats(1000, {5, 6, 7}, 2);
     for (std::size_t row = 0; row < 5; ++row) data.position[row * 3] = 1e6f;

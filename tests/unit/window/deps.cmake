@@ -1,4 +1,4 @@
 if(TARGET gse_window)
-  target_link_libraries(${test_target} PRIVATE gse_window gse_preview glfw)
+  target_link_libraries(${test_target} PRIVATE gse_app glfw)
   target_compile_definitions(${test_target} PRIVATE GSE_WINDOW=1)
 endif()

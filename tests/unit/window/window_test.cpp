@@ -13,10 +13,10 @@
 #include <optional>
 #include <thread>
 
-#include "app/window.h"
 #include "app/window_textures.h"
 #include "engine/preview/splat_renderer.h"
 #include "engine/vulkan/device.h"
+#include "engine/window/window.h"
 
 using namespace gse;
 
@@ -37,10 +37,8 @@ app::WindowOptions small_window() {
     return options;
 }
 
-/// A frame with one borderless picture at the top left, 64 px wide.
-void frame(app::Window& window, ui::TextureId id) {
-    window.poll();
-    if (!window.begin_frame()) return;
+/// A borderless picture at the top left, 64 px wide.
+void panel(ui::TextureId id) {
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize({320, 200});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
@@ -49,6 +47,13 @@ void frame(app::Window& window, ui::TextureId id) {
     ImGui::TextUnformatted("text");
     ImGui::End();
     ImGui::PopStyleVar();
+}
+
+/// A frame with nothing but that.
+void frame(app::Window& window, ui::TextureId id) {
+    window.poll();
+    if (!window.begin_frame()) return;
+    panel(id);
     window.end_frame();
 }
 
@@ -215,6 +220,24 @@ DOCTEST_TEST_CASE("window shows pictures, survives resizing and a lost device") 
         // alpha 200/255 over what is behind
         const Image seen = captured(window, stream.id());
         DOCTEST_CHECK(seen.at(30, 30, 0) > 0.5f);
+    }
+    DOCTEST_SUBCASE("a picture that changes its size is seen in every frame, also by who asked for its handle before") {
+        app::StreamedPicture stream(window);
+        ui::TextureId known = 0;
+        for (int size = 4; size < 40; size += 5) {
+            const std::vector<std::uint8_t> pixels(4 * static_cast<std::size_t>(size * size), 255);
+            window.poll();
+            window.request_capture();
+            DOCTEST_REQUIRE(window.begin_frame());
+            stream.update(pixels, size, size);
+            if (known == 0) known = stream.id();
+            panel(known);
+            window.end_frame();
+            known = stream.id();
+            const auto seen = window.take_capture();
+            DOCTEST_REQUIRE(seen.has_value());
+            DOCTEST_CHECK(shows(*seen, 30, 30, {1, 1, 1}));
+        }
     }
     DOCTEST_SUBCASE("splats in the window, before and after the device is lost") { check_preview(window); }
     DOCTEST_SUBCASE("waking from another thread") {

@@ -3,16 +3,17 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "app/clip_bench.h"
-#include "app/edit_job.h"
-#include "app/neural_loader.h"
 #include "engine/base/error.h"
+#include "engine/bench/clip_bench.h"
+#include "engine/pipeline/edit_job.h"
+#include "engine/pipeline/neural_loader.h"
 #include "tests/test_paths.h"
 
 namespace {
 
 using namespace gse;
-using namespace gse::app;
+using namespace gse::bench;
+using namespace gse::pipeline;
 
 // The clear majority; what was measured on more scenes stands in the model's README. Guessing would be right
 // in 1 of 11 and 1 of 12 cases, and changes would point the right way in half of them.

@@ -6,15 +6,17 @@
 #include <map>
 #include <set>
 
-#include "app/eval_scenes.h"
-#include "app/eval_suite.h"
-#include "app/eval_summary.h"
 #include "engine/base/error.h"
+#include "engine/bench/eval_scenes.h"
+#include "engine/bench/eval_suite.h"
+#include "engine/bench/eval_summary.h"
+#include "tests/test_paths.h"
 
 namespace {
 
 using namespace gse;
-using namespace gse::app;
+using namespace gse::bench;
+using namespace gse::pipeline;
 using Json = nlohmann::ordered_json;
 
 Json changed_edit(int index, double iou, double reduction, double psnr) {
@@ -131,7 +133,7 @@ DOCTEST_TEST_CASE("the ablations' order is judged against the whole method on th
 }
 
 DOCTEST_TEST_CASE("a real scene names its edit, or gets one") {
-    const std::string path = std::string(GSE_SOURCE_DIR) + "/assets/scenes/bear";
+    const std::string path = (gse::test::source_folder() / "assets/scenes/bear").string();
     const std::vector<std::string> known{"bear", "statue", "hat"};
     const auto guessed = parse_real_edit(path, known);
     DOCTEST_CHECK(guessed.source == "bear");

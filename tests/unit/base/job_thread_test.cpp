@@ -1,12 +1,15 @@
 // Background jobs: one at a time, pause stops progress, cancel ends them, failures become one sentence.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
 #include <thread>
 
-#include "app/job_thread.h"
+#include "engine/base/job_thread.h"
 #include "engine/base/log.h"
 
 namespace {
@@ -16,7 +19,7 @@ using namespace std::chrono_literals;
 
 /// Runs the main queue until `condition` holds; gives up after ten seconds.
 template <class F>
-bool wait_for(app::MainQueue& queue, F condition) {
+bool wait_for(MainQueue& queue, F condition) {
     for (int i = 0; i < 2000; ++i) {
         queue.run();
         if (condition()) return true;
@@ -33,8 +36,8 @@ struct Quiet {
 }  // namespace
 
 DOCTEST_TEST_CASE("a job reports, ends and tells the main thread") {
-    app::MainQueue queue;
-    app::JobThread jobs(queue);
+    MainQueue queue;
+    JobThread jobs(queue);
     bool done = false;
     DOCTEST_REQUIRE(jobs.start({"count", [](const JobControl& job) {
                                     for (int i = 1; i <= 10; ++i) job.report("counting", i, 10);
@@ -47,9 +50,33 @@ DOCTEST_TEST_CASE("a job reports, ends and tells the main thread") {
     DOCTEST_CHECK(status.outcome.substr(0, 4) == "done");
 }
 
+DOCTEST_TEST_CASE("no job begins before the main thread has what the last one left") {
+    MainQueue queue;
+    JobThread jobs(queue);
+    std::atomic<bool> posted{false};
+    queue.set_wake([&] { posted = true; });
+    int left = 0;
+    DOCTEST_REQUIRE(jobs.start({"first", [](const JobControl&) {}, [&](const Error*) { left = 1; }}));
+    for (int i = 0; i < 2000 && !posted; ++i) std::this_thread::sleep_for(5ms);
+    DOCTEST_REQUIRE(posted);
+    DOCTEST_CHECK(jobs.running());
+    DOCTEST_CHECK(jobs.status().running);
+    DOCTEST_CHECK_FALSE(jobs.start({"too early", [](const JobControl&) {}, {}}));
+    queue.run();
+    DOCTEST_CHECK(left == 1);
+    DOCTEST_CHECK_FALSE(jobs.running());
+    // What a job leaves may begin the next one.
+    bool chained = false;
+    DOCTEST_REQUIRE(jobs.start({"second", [](const JobControl&) {}, [&](const Error*) {
+                                    chained = jobs.start({"third", [](const JobControl&) {}, {}});
+                                }}));
+    DOCTEST_REQUIRE(wait_for(queue, [&] { return !jobs.running(); }));
+    DOCTEST_CHECK(chained);
+}
+
 DOCTEST_TEST_CASE("one job at a time; cancel ends it and says stopped") {
-    app::MainQueue queue;
-    app::JobThread jobs(queue);
+    MainQueue queue;
+    JobThread jobs(queue);
     bool ended = false;
     const auto endless = [](const JobControl& job) {
         for (int i = 0; !job.stop_requested(); ++i) {
@@ -67,8 +94,8 @@ DOCTEST_TEST_CASE("one job at a time; cancel ends it and says stopped") {
 }
 
 DOCTEST_TEST_CASE("a paused job stands still, goes on, and can be cancelled while paused") {
-    app::MainQueue queue;
-    app::JobThread jobs(queue);
+    MainQueue queue;
+    JobThread jobs(queue);
     std::atomic<int> steps{0};
     bool ended = false;
     DOCTEST_REQUIRE(jobs.start({"steps",
@@ -94,8 +121,8 @@ DOCTEST_TEST_CASE("a paused job stands still, goes on, and can be cancelled whil
 
 DOCTEST_TEST_CASE("failures arrive as one error, foreign ones too") {
     const Quiet quiet;
-    app::MainQueue queue;
-    app::JobThread jobs(queue);
+    MainQueue queue;
+    JobThread jobs(queue);
     std::string message;
     const auto keep = [&](const Error* error) { message = error != nullptr ? error->message() : "none"; };
     DOCTEST_REQUIRE(jobs.start({"bad", [](const JobControl&) { throw Error(ErrorCode::NotFound, "no such file"); }, keep}));
@@ -107,4 +134,25 @@ DOCTEST_TEST_CASE("failures arrive as one error, foreign ones too") {
     DOCTEST_REQUIRE(wait_for(queue, [&] { return !message.empty(); }));
     DOCTEST_CHECK(message.find("boom") != std::string::npos);
     DOCTEST_CHECK(jobs.status().error.find("boom") != std::string::npos);
+}
+
+DOCTEST_TEST_CASE("patient jobs and the threads they start leave the processor to the others") {
+    MainQueue queue;
+    const auto nice_of = [&](JobThread::Priority priority) {
+        JobThread jobs(queue, priority);
+        int own = -1, child = -1;
+        bool done = false;
+        const auto read = [](int& to) { to = getpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid))); };
+        jobs.start({"nice", [&](const JobControl&) {
+                        read(own);
+                        std::thread([&] { read(child); }).join();
+                    },
+                    [&](const Error*) { done = true; }});
+        DOCTEST_REQUIRE(wait_for(queue, [&] { return done; }));
+        DOCTEST_CHECK(own == child);
+        return own;
+    };
+    const int normal = nice_of(JobThread::Priority::Normal);
+    DOCTEST_CHECK(normal == getpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid))));
+    DOCTEST_CHECK((nice_of(JobThread::Priority::Patient) > normal || normal >= 10));
 }

@@ -1,0 +1,125 @@
+"""Searches with the bundled model: words nobody knows, words the scene does not show, labels made by hand, sentences too long
+to be read."""
+import json
+import pathlib
+import struct
+import unittest
+
+from program import ProgramTest, run
+
+ASSETS = pathlib.Path(__file__).resolve().parents[2] / "assets"
+MODEL = ASSETS / "models/starter"
+BEAR = ASSETS / "scenes/bear/scene.ply"
+LOOK = ["--views", 6, "--image-size", 64, "--attention-repeats", 1]
+QUICK = [*LOOK, "--iterations", 60, "--turntable-frames", 2, "--turntable-size", 64, "--no-gate"]
+
+
+def columns(path, *wanted):
+    """Values of some columns of a binary PLY whose properties are all floats."""
+    header, body = path.read_bytes().split(b"end_header\n", 1)
+    names = [line.split()[2].decode() for line in header.splitlines() if line.startswith(b"property float ")]
+    stride = 4 * len(names)
+    return {name: [struct.unpack_from("<f", body, row * stride + 4 * names.index(name))[0]
+                   for row in range(len(body) // stride)] for name in wanted}
+
+
+@unittest.skipUnless((MODEL / "model_index.json").exists(), "[skip] the starter model is not there")
+class Searches(ProgramTest):
+    def edit(self, *arguments, scene=BEAR):
+        return run("edit", scene, "--out", self.folder / "out", *QUICK, *arguments)
+
+    def test_an_unknown_source_is_refused_before_work(self):
+        process = self.edit("--source", "sign", "--prompt", "a golden sign on the grass", "--target", "golden")
+        line = self.assert_one_sentence(process, '"sign"', "label it by hand instead", "bear", "grass")
+        self.assertNotIn('"in"', line)
+        self.assertEqual(self.folder_listing(), [])
+        # Before the scene is read: what is wrong with it is not even noticed.
+        nothing = self.write("empty.ply", b"")
+        process = self.edit("--source", "baer", "--prompt", "a golden baer", "--target", "golden", scene=nothing)
+        self.assert_one_sentence(process, '"baer"', 'use "bear"')
+
+    def test_an_unknown_target_is_refused_before_work(self):
+        process = self.edit("--source", "bear", "--prompt", "a bear wearing a sombrero")
+        self.assert_one_sentence(process, '"sombrero"', "cannot make it")
+
+    def test_another_unknown_word_only_warns(self):
+        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "bear", "--prompt",
+                      "a blue bear beside a lantern")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn('"lantern"', process.stderr)
+
+    def test_a_label_by_hand_needs_no_known_word(self):
+        found = self.folder / "found"
+        process = run("-q", "locate", BEAR, "--out", found, *LOOK, "--source", "bear", "--prompt", "a golden bear")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        process = run("-q", "edit", found / "source.ply", "--use-label", "--out", self.folder / "out", *QUICK, "--source",
+                      "thingummy", "--prompt", "a golden thingummy on the grass", "--target", "golden")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        report = json.loads((self.folder / "out/report.json").read_text())
+        before = columns(found / "source.ply", "label", "f_dc_2")
+        self.assertEqual(report["labelled"], sum(before["label"]))
+        self.assertEqual(report["changed_outside_label"], 0)
+        self.assertIsNone(report["confidence"])   # nothing was looked for
+        after = columns(self.folder / "out/source.ply", "label")
+        self.assertEqual(after["label"], before["label"])
+        # The same edit by its known word: the label turns as golden, as far as its blue goes.
+        edited = columns(self.folder / "out/scene.ply", "f_dc_2")["f_dc_2"]
+        rows = [row for row, bit in enumerate(before["label"]) if bit]
+        blue = [sum(values[row] for row in rows) / len(rows) for values in (before["f_dc_2"], edited)]
+        self.assertLess(blue[1], blue[0] - 0.05)
+
+    def test_use_label_needs_a_label(self):
+        process = self.edit("--use-label", "--source", "sign", "--prompt", "a golden sign", "--target", "golden")
+        self.assert_one_sentence(process, "labelled", "label")
+
+    def test_every_search_has_its_confidence(self):
+        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "bear", "--prompt", "a golden bear")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertGreater(report["confidence"], json.loads((self.folder / "out/recipe.json").read_text())["request"]["least_confidence"])
+        for part in ("agreement", "attention_inside", "labelled_share"):
+            self.assertTrue(0 < report["confidence_of"][part] <= 1, part)
+        self.assertIn(f"confidence {report['confidence']:.2f}", process.stdout)
+
+    def test_a_word_the_scene_does_not_show_labels_nothing_and_leaves_its_evidence(self):
+        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "car", "--prompt", "a golden car",
+                      "--least-confidence", 0.99)
+        self.assert_one_sentence(process, '"car"', "confidence", "0.99")
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertEqual(report["labelled"], 0)
+        self.assertIn("car", report["problem"])
+        self.assertEqual(sum(columns(self.folder / "out/source.ply", "label")["label"]), 0)
+        index = json.loads((self.folder / "out/evidence/index.json").read_text())
+        self.assertEqual(len(index), 6)
+        self.assertTrue(all((self.folder / f"out/evidence/view_{view:03}_attention.png").is_file() for view in range(6)))
+
+    def test_an_edit_that_finds_nothing_keeps_earlier_results_and_shows_what_it_saw(self):
+        out = self.folder / "out"
+        out.mkdir()
+        (out / "notes.txt").write_bytes(b"earlier")
+        process = self.edit("--source", "car", "--prompt", "a golden car", "--target", "golden", "--least-confidence", 0.99)
+        self.assert_one_sentence(process, '"car"', "out.search")
+        self.assertEqual((out / "notes.txt").read_bytes(), b"earlier")
+        self.assertEqual([path.name for path in out.iterdir()], ["notes.txt"])
+        index = json.loads((self.folder / "out.search/evidence/index.json").read_text())
+        self.assertEqual(len(index), 6)
+
+    def test_the_view_says_where_its_search_failed(self):
+        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "bear", "--prompt", "a golden bear",
+                      "--attention-threshold", 0.999, "--dbscan-min-samples", 100)
+        line = self.assert_one_sentence(process, '"bear" was found in only', "lower the attention threshold")
+        self.assertNotIn("--", line.split("gseditpro: ")[1])
+        index = json.loads((self.folder / "out/evidence/index.json").read_text())
+        self.assertTrue(any("threshold" in view.get("step", "") for view in index))
+
+    def test_a_sentence_too_long_is_said_where_it_is_cut(self):
+        long = "a bear on the grass " + "with a tree and a house " * 5
+        process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "bear", "--target", "bear", "--prompt", long)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn("reads 30 words", process.stderr)
+        process = self.edit("--source", "bear", "--prompt", long + "wearing a crown", "--target", "crown")
+        self.assert_one_sentence(process, "30 words", '"crown"', "shorten the sentence")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,96 @@
+// What a chosen model brings with it, and what it learns of a scene, in the artist's window.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "engine/base/file.h"
+#include "tests/ui/app/session.h"
+
+using namespace gse;
+using namespace gse::test;
+
+namespace {
+
+/// A copy of the starter that states settings of its own.
+fs::path model_that_states(const Place& place, const std::string& name, const nlohmann::json& profile) {
+    const auto model = place.folder / name;
+    fs::copy(app::starter_model_path(), model, fs::copy_options::recursive);
+    fs::permissions(model / "gseditpro.json", fs::perms::owner_all);
+    auto facts = nlohmann::json::parse(read_file(model / "gseditpro.json"));
+    facts["profile"] = profile;
+    write_file(model / "gseditpro.json", facts.dump());
+    return model;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a model's settings are taken where the artist changed nothing, and given up with it") {
+    if (!networks()) return;
+    const Place place;
+    const auto stating = model_that_states(place, "stating", {{"request", {{"tau", 0.6}, {"views", 5}}}, {"dreambooth", {{"steps", 333}}}});
+    const auto wrong = model_that_states(place, "wrong", {{"request", {{"tao", 0.6}}}});
+    const edit::EditRequest usual;
+    {
+        Session session;
+        session.open_bear();   // with 8 views
+        auto& app = session.app;
+        const auto steps = app.model().model_settings.learn_steps;
+        app.choose_model(stating.string());
+        DOCTEST_REQUIRE(session.settled());
+        DOCTEST_CHECK(app.model().request.tau == 0.6);
+        DOCTEST_CHECK(app.model().request_defaults.views == 5);
+        DOCTEST_CHECK(app.model().model_settings_defaults.learn_steps == 333);
+        DOCTEST_CHECK(app.model().request.views == 8);
+        DOCTEST_CHECK(app.model().request.prompt == "a blue bear on the grass");
+        DOCTEST_CHECK(app.model().model_settings.learn_steps == 333);
+        app.choose_model(app::starter_model_path().string());
+        DOCTEST_REQUIRE(session.settled());
+        DOCTEST_CHECK(app.model().request.tau == usual.tau);
+        DOCTEST_CHECK(app.model().request_defaults.views == usual.views);
+        DOCTEST_CHECK(app.model().request.views == 8);
+        DOCTEST_CHECK(app.model().model_settings.learn_steps == steps);
+        app.choose_model(wrong.string());
+        DOCTEST_REQUIRE(session.settled());
+        DOCTEST_CHECK(app.model().toasts.back().text.find("\"tao\"") != std::string::npos);
+        DOCTEST_CHECK(app.model().request.tau == usual.tau);
+        app.choose_model(stating.string());
+        DOCTEST_REQUIRE(session.settled());
+        app.shut_down();
+    }
+    Session again;
+    DOCTEST_CHECK(again.app.model().request.tau == 0.6);
+    DOCTEST_CHECK(again.app.model().request.views == 5);
+}
+
+DOCTEST_TEST_CASE("a scene is learned once for the same words and settings, and only where it was asked for") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    const auto tunings = [&] {
+        return std::count_if(app.model().log.begin(), app.model().log.end(),
+                             [](const auto& line) { return line.text.starts_with("tuned in"); });
+    };
+    const auto search = [&](bool learns, auto change) {
+        auto settings = app.model().model_settings;
+        settings.learn_scene = learns;
+        settings.learn_steps = 1;
+        app.set_model_settings(settings);
+        auto request = app.model().request;
+        change(request);
+        app.set_request(request);
+        app.locate();
+        DOCTEST_REQUIRE(session.settled());
+        DOCTEST_CHECK(app.model().job.error.empty());
+    };
+    search(false, [](auto& request) { request.attention_repeats = 1; });
+    DOCTEST_CHECK(tunings() == 0);
+    search(true, [](auto&) {});
+    DOCTEST_CHECK(tunings() == 1);
+    search(true, [](auto& request) { request.positive_points = 4; });   // another search, the same scene and words
+    DOCTEST_CHECK(tunings() == 1);
+    search(true, [](auto& request) { request.views = 6; });
+    DOCTEST_CHECK(tunings() == 2);
+}

@@ -1,0 +1,98 @@
+// An application without its window, in folders of its own, and frames until something holds.
+#pragma once
+
+#include <doctest/doctest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "app/application.h"
+
+namespace gse::test {
+
+namespace fs = std::filesystem;
+
+/// A viewport that paints nothing and remembers what was wanted.
+class NoPreview : public app::PreviewHost {
+public:
+    void want(const app::PictureRequest& request) override { last = request; }
+    app::PictureState state() override { return {}; }
+    app::PictureRequest last;
+};
+
+/// A folder of its own for settings, autosaves and results.
+struct Place {
+    fs::path folder;
+    Place() {
+        folder = fs::temp_directory_path() / ("gse_session_" + std::to_string(getpid()));
+        fs::remove_all(folder);
+        fs::create_directories(folder);
+        setenv("GSE_CONFIG_DIR", (folder / "config").c_str(), 1);
+        setenv("GSE_STATE_DIR", (folder / "state").c_str(), 1);
+    }
+    ~Place() {
+        std::error_code ignored;
+        fs::remove_all(folder, ignored);
+    }
+};
+
+struct Session {
+    NoPreview preview;
+    app::Application app;
+    explicit Session(bool autosave = true) : app({.autosave = autosave, .autosave_seconds = 0.2}) {
+        app.set_viewport_size(320, 240);
+    }
+    /// Frames until the condition holds; false after `seconds`.
+    template <class F>
+    bool until(F condition, double seconds = 600) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+        while (std::chrono::steady_clock::now() < end) {
+            app.update(preview);
+            if (condition()) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        return false;
+    }
+    bool idle() {
+        return until([&] { return !app.model().job.running && !app.model().file_job.running; });
+    }
+    /// Until no job has run for a while: one may follow another.
+    bool settled() {
+        int still = 0;
+        return until([&] {
+            still = app.model().job.running || app.model().file_job.running ? 0 : still + 1;
+            return still > 20;
+        }, 600);
+    }
+    void open_bear() {
+        app.open_sample();
+        DOCTEST_REQUIRE(until([&] { return app.model().document != nullptr; }));
+        ask_for_blue();
+    }
+    void ask_for_blue() {
+        auto request = app.model().request;
+        request.source = "bear";
+        request.prompt = "a blue bear on the grass";
+        request.target = "blue";
+        request.views = 8;
+        request.image_size = 64;
+        request.iterations = 30;
+        app.set_request(request);
+    }
+};
+
+inline bool networks() {
+#ifdef GSE_WINDOW
+    const bool there = fs::exists(fs::read_symlink("/proc/self/exe").parent_path() / "../libgse_neural.so");
+#else
+    const bool there = false;
+#endif
+    if (!there) DOCTEST_MESSAGE("[skip] this build has no networks");
+    return there;
+}
+
+}  // namespace gse::test

@@ -1,0 +1,281 @@
+// Work that is not saved: kept when the program ends in the middle of an edit, offered again, gone when it was saved or given
+// up; folders that hold scenes; exports that write over nothing.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <limits>
+
+#include "engine/base/file.h"
+#include "engine/io/cameras.h"
+#include "engine/io/scene_io.h"
+#include "engine/pipeline/scene_tools.h"
+#include "tests/ui/app/session.h"
+
+using namespace gse;
+using namespace gse::test;
+
+namespace {
+
+std::vector<float> colours(const GaussianSet& set) { return {set.sh().begin(), set.sh().end()}; }
+
+/// The bundled scene in a folder of its own, as a file that an artist could have.
+fs::path own_scene(const Place& place) {
+    const auto file = place.folder / "bear/scene.ply";
+    fs::create_directories(file.parent_path());
+    fs::copy_file(app::assets_path() / "scenes/bear/scene.ply", file);
+    return file;
+}
+
+void start_edit(Session& session, int iterations) {
+    session.ask_for_blue();
+    auto request = session.app.model().request;
+    request.iterations = iterations;
+    session.app.set_request(request);
+    session.app.edit();
+    session.app.update(session.preview);
+}
+
+void open_and_save(Session& session, const fs::path& scene) {
+    session.app.open(scene);
+    DOCTEST_REQUIRE(session.until([&] { return session.app.model().document != nullptr; }));
+    session.app.save_project(fs::path(scene).replace_extension(".gsep"));
+    DOCTEST_REQUIRE(session.until([&] { return !session.app.model().project_path.empty(); }));
+    session.app.update(session.preview);
+    DOCTEST_REQUIRE_FALSE(session.app.model().unsaved);
+}
+
+std::size_t count_offered(const app::Application& app) {
+    std::size_t count = 0;
+    for (const auto& found : app.model().recoverable) count += found.offered ? 1u : 0u;
+    return count;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a finished edit that was not applied is unsaved work: kept, offered by name, had back whole") {
+    if (!networks()) return;
+    const Place place;
+    const auto scene = own_scene(place);
+    std::vector<float> base, edited;
+    {
+        Session session;
+        open_and_save(session, scene);   // all is saved but the edit
+        base = colours(session.app.document().state().current);
+        start_edit(session, 30);
+        DOCTEST_CHECK(session.app.model().edit_running);
+        DOCTEST_CHECK(session.app.model().unsaved);
+        DOCTEST_REQUIRE(session.idle());
+        DOCTEST_REQUIRE(session.app.model().result_waiting);
+        DOCTEST_CHECK(session.app.model().unsaved);
+        edited = colours(session.preview.last.set);
+        bool left = false;
+        session.app.leave_edit(true, [&] { left = true; });
+        DOCTEST_REQUIRE(session.until([&] { return left; }));
+        session.app.quit();
+        session.app.shut_down();
+    }
+    Session again;
+    DOCTEST_REQUIRE(again.app.model().recoverable.size() == 1);
+    const auto found = again.app.model().recoverable[0];
+    DOCTEST_CHECK(found.name == "scene.gsep");
+    DOCTEST_CHECK(found.facts.starts_with("today "));
+    DOCTEST_CHECK(found.running.find("a blue bear on the grass") != std::string::npos);
+    DOCTEST_CHECK(found.running.find("not applied") != std::string::npos);
+    DOCTEST_REQUIRE(found.thumbnail != nullptr);
+    DOCTEST_CHECK(found.thumbnail->width > 100);
+    again.app.open(scene);   // the same scene: the offer comes along
+    DOCTEST_REQUIRE(again.until([&] { return again.app.model().document != nullptr; }));
+    DOCTEST_CHECK(count_offered(again.app) == 1);
+    again.app.recover(found.file);
+    DOCTEST_REQUIRE(again.until([&] { return again.app.model().result_waiting; }));
+    DOCTEST_CHECK(again.app.model().recoverable.empty());
+    DOCTEST_CHECK(again.app.model().unsaved);
+    DOCTEST_CHECK(colours(again.app.document().state().current) == base);
+    again.app.apply_result();
+    DOCTEST_CHECK(colours(again.app.document().state().current) == edited);
+    DOCTEST_REQUIRE(again.app.document().state().stack.size() == 1);
+    DOCTEST_CHECK(again.app.document().state().stack[0].name == "a blue bear on the grass");
+    DOCTEST_CHECK_FALSE(again.app.document().state().stack[0].recipe.empty());
+    again.app.save_project({});
+    DOCTEST_REQUIRE(again.until([&] { return !again.app.model().unsaved; }));
+    again.until([&] { return find_recoverable().empty() && fs::is_empty(autosave_folder()); }, 10);
+    DOCTEST_CHECK(fs::is_empty(autosave_folder()));   // recovered and saved: nothing is offered any more
+}
+
+DOCTEST_TEST_CASE("a program that is ended in the middle of an edit loses none of it") {
+    if (!networks()) return;
+    const Place place;
+    const auto scene = own_scene(place);
+    int reached = 0;
+    {
+        Session session;
+        open_and_save(session, scene);
+        start_edit(session, 5000);
+        DOCTEST_REQUIRE(session.until([&] { return session.app.model().snapshots.size() >= 2; }));
+        reached = session.app.model().snapshots.back().iteration;
+        session.app.shut_down();   // as SIGTERM does: nobody can be asked
+    }
+    Session again;
+    again.app.open(scene);   // named on the command line: no start page was seen
+    DOCTEST_REQUIRE(again.until([&] { return again.app.model().document != nullptr; }));
+    DOCTEST_REQUIRE(count_offered(again.app) == 1);
+    DOCTEST_CHECK(again.app.model().recoverable[0].running.find("of 5000") != std::string::npos);
+    again.app.postpone_recovery(again.app.model().recoverable[0].file);
+    DOCTEST_CHECK(count_offered(again.app) == 0);
+    again.app.open(scene);   // opened again, offered again
+    DOCTEST_REQUIRE(again.until([&] { return count_offered(again.app) == 1; }));
+    again.app.recover(again.app.model().recoverable[0].file);
+    DOCTEST_REQUIRE(again.until([&] { return again.app.model().result_waiting; }));
+    again.app.apply_result();
+    const auto& name = again.app.document().state().stack.at(0).name;
+    DOCTEST_CHECK(name.find("interrupted at iteration") != std::string::npos);
+    DOCTEST_CHECK(std::stoi(name.substr(name.find("iteration") + 9)) >= reached);
+}
+
+DOCTEST_TEST_CASE("a discarded edit is gone, the scene stays; another scene is opened with the edit kept") {
+    if (!networks()) return;
+    const Place place;
+    const auto scene = own_scene(place);
+    const auto other = place.folder / "other.ply";
+    fs::copy_file(scene, other);
+    Session session;
+    open_and_save(session, scene);
+    start_edit(session, 5000);
+    DOCTEST_REQUIRE(session.until([&] { return session.app.model().snapshots.size() >= 2; }));
+    bool left = false;
+    session.app.leave_edit(false, [&] { left = true; });
+    DOCTEST_REQUIRE(session.until([&] { return left; }));
+    session.app.update(session.preview);
+    DOCTEST_CHECK_FALSE(session.app.model().result_waiting);
+    // What its search labelled is a step of its own, which stays until it is saved or undone.
+    session.app.save_project(fs::path(scene).replace_extension(".gsep"));
+    DOCTEST_REQUIRE(session.until([&] { return !session.app.model().unsaved; }, 60));
+    DOCTEST_REQUIRE(session.until([&] { return fs::is_empty(autosave_folder()); }, 60));
+    // Kept, and another scene opened: it is offered when the first scene is opened again, also in this session.
+    start_edit(session, 5000);
+    DOCTEST_REQUIRE(session.until([&] { return session.app.model().snapshots.size() >= 2; }));
+    session.app.leave_edit(true, [&] { session.app.open(other); });
+    DOCTEST_REQUIRE(session.until([&] { return session.app.model().scene_path == other.string(); }));
+    DOCTEST_CHECK(session.app.model().recoverable.size() == 1);
+    DOCTEST_CHECK(count_offered(session.app) == 0);
+    DOCTEST_CHECK_FALSE(session.app.model().result_waiting);
+    session.app.open(scene);
+    DOCTEST_REQUIRE(session.until([&] { return count_offered(session.app) == 1; }));
+    session.app.discard_recovery(session.app.model().recoverable[0].file);
+    DOCTEST_CHECK(session.app.model().recoverable.empty());
+    DOCTEST_CHECK(fs::is_empty(autosave_folder()));
+}
+
+DOCTEST_TEST_CASE("what was given up on purpose is not offered again") {
+    const Place place;
+    const auto scene = own_scene(place);
+    {
+        Session session;
+        open_and_save(session, scene);
+        session.app.add_label("unsaved");
+        DOCTEST_REQUIRE(session.until([&] { return fs::exists(autosave_folder()) && !fs::is_empty(autosave_folder()); }, 20));
+        session.app.quit();   // the window asked before
+        session.app.shut_down();
+    }
+    const Session again;
+    DOCTEST_CHECK(again.app.model().recoverable.empty());
+}
+
+DOCTEST_TEST_CASE("a folder with a scene and its cameras opens; several scenes are asked about") {
+    const Place place;
+    const auto scene = own_scene(place);
+    const auto folder = scene.parent_path();
+    Session session;
+    session.app.open_sample();
+    DOCTEST_REQUIRE(session.until([&] { return session.app.model().document != nullptr; }));
+    save_cameras_json(folder / "cameras.json", orbit_views(session.app.model().orbit, 7, 64, 64));
+    session.app.open(folder);
+    DOCTEST_REQUIRE(session.until([&] { return session.app.model().scene_path == scene.string(); }));
+    DOCTEST_CHECK(session.app.document().state().views.size() == 7);
+    fs::copy_file(scene, folder / "another.ply");
+    session.app.open(folder);
+    DOCTEST_REQUIRE(session.until([&] { return session.app.model().question.number == 1; }));
+    const auto& asked = session.app.model().question;
+    DOCTEST_REQUIRE(asked.answers.size() == 3);
+    DOCTEST_CHECK(asked.answers[0].text == "another.ply");
+    DOCTEST_CHECK(asked.answers[0].listed);
+    DOCTEST_CHECK(session.app.model().scene_path == scene.string());
+    session.app.answer(0);
+    session.app.answer(0);   // a question is answered once
+    DOCTEST_REQUIRE(
+        session.until([&] { return session.app.model().scene_path == (folder / "another.ply").string(); }));
+    DOCTEST_CHECK(session.app.model().toasts.empty());
+}
+
+DOCTEST_TEST_CASE("every export numbers its files, a scene is replaced only when that is said") {
+    const Place place;
+    Session session;
+    session.app.open(own_scene(place));
+    DOCTEST_REQUIRE(session.until([&] { return session.app.model().document != nullptr; }));
+    auto exports = session.app.model().exports;
+    exports.width = 64;
+    exports.height = 48;
+    exports.frames = 2;
+    exports.picture_path = (place.folder / "shot.png").string();
+    exports.film_path = (place.folder / "turn").string();
+    exports.scene_path = (place.folder / "out.compressed.ply").string();
+    exports.camera_path_path = (place.folder / "path-9.json").string();
+    session.app.set_exports(exports);
+    session.app.update(session.preview);
+    session.app.add_camera_key();
+    for (int time = 0; time < 3; ++time)
+        for (const auto act : {&app::Application::export_picture, &app::Application::export_turntable}) {
+            (session.app.*act)();
+            DOCTEST_REQUIRE(session.idle());
+        }
+    for (const char* name : {"shot.png", "shot-2.png", "shot-3.png", "turn/frame_0001.png", "turn-3/frame_0001.png"})
+        DOCTEST_CHECK_MESSAGE(fs::exists(place.folder / name), name);
+    for (int time = 0; time < 2; ++time) {
+        session.app.export_camera_path(false);
+        DOCTEST_REQUIRE(session.idle());
+    }
+    DOCTEST_CHECK(fs::exists(place.folder / "path-10.json"));
+    session.app.export_scene();
+    DOCTEST_REQUIRE(session.idle());
+    const auto first = read_file(place.folder / "out.compressed.ply");
+    session.app.export_scene();
+    session.app.update(session.preview);
+    DOCTEST_REQUIRE(session.app.model().question.answers.size() == 3);
+    DOCTEST_CHECK(session.app.model().question.answers[0].text == "Write out-2.compressed.ply");
+    session.app.answer(0);
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(fs::exists(place.folder / "out-2.compressed.ply"));
+    DOCTEST_CHECK(read_file(place.folder / "out.compressed.ply") == first);
+    // The scene that is open is never replaced.
+    exports.scene_path = session.app.model().scene_path;
+    session.app.set_exports(exports);
+    session.app.export_scene();
+    for (const auto& answer : session.app.model().question.answers) DOCTEST_CHECK_FALSE(answer.dangerous);
+}
+
+DOCTEST_TEST_CASE("one piece of news makes one toast") {
+    const Place place;
+    write_file(place.folder / "scene.ply", "ply\nno scene at all\n");
+    Session session;
+    for (int time = 0; time < 3; ++time) {
+        session.app.open(place.folder / "scene.ply");
+        DOCTEST_REQUIRE(session.idle());
+        session.app.update(session.preview);
+    }
+    DOCTEST_CHECK(session.app.model().toasts.size() == 1);
+    // A warning of the reader reaches the artist once, not from the log and from the notes.
+    const auto scene = own_scene(place);
+    Scene broken = load_scene(scene);
+    GaussianData data = broken.gaussians.to_data();
+    data.position[0] = std::numeric_limits<float>::quiet_NaN();
+    broken.gaussians = GaussianSet(std::move(data));
+    save_scene(place.folder / "broken.ply", broken);
+    session.app.dismiss_toast(0);
+    session.app.open(place.folder / "broken.ply");
+    DOCTEST_REQUIRE(session.until([&] { return session.app.model().document != nullptr; }));
+    session.until([] { return false; }, 0.3);
+    const auto& toasts = session.app.model().toasts;
+    for (std::size_t a = 0; a < toasts.size(); ++a)
+        for (std::size_t b = 0; b < toasts.size(); ++b)
+            if (a != b) DOCTEST_CHECK(toasts[a].text.find(toasts[b].text) == std::string::npos);
+}

@@ -1,0 +1,129 @@
+"""Words in the real window: a clicked target does not outlive its sentence, an unknown thing is labelled by hand, a search that
+finds nothing shows its evidence."""
+import time
+import unittest
+
+from window import WindowTest
+
+
+class Words(WindowTest):
+    def start(self):
+        window = self.open()
+        window.click("start.sample")
+        window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
+        self.type_number(window, "prompt.iterations", "20")
+        return window
+
+    def chip(self, window, name):
+        """Clicks a word of the sentence by its place in it."""
+        window.wait_widget(name)
+        window.click(name)
+
+    def type_number(self, window, name, text):
+        """Ctrl + click turns a number that is dragged into one that is typed."""
+        window.xdotool("keydown", "ctrl")
+        window.click(name)
+        window.xdotool("keyup", "ctrl")
+        window.key("ctrl+a")
+        window.xdotool("type", "--delay", "40", text)
+        window.key("Return")
+
+    def scroll_to(self, window, name):
+        """Turns the wheel over the prompt until the control is in sight."""
+        px, py = window.place("panel.Prompt", 0.5, 0.4)
+        window.xdotool("mousemove", px, py)
+        for _ in range(40):
+            if window.widgets().get(name, {}).get("visible"):
+                return
+            window.xdotool("click", 5)
+            time.sleep(0.3)
+        self.fail(f"{name} does not come into sight")
+
+    def test_a_target_goes_with_its_sentence(self):
+        window = self.start()
+        window.write("prompt.source", "bear")
+        window.write("prompt.sentence", "a blue bear on the grass")
+        self.chip(window, "prompt.chip.1")
+        window.wait(lambda s: s["target"] == "blue", "the click did not make it the target", 10)
+        window.click("prompt.edit")
+        window.wait(lambda s: s["job"]["running"], "the edit did not start", 20)
+        window.idle(300)
+        window.click("result.apply")
+        window.wait(lambda s: s["stack"] == 1, "the edit was not applied", 10)
+        window.click("tab.Prompt")
+        window.write("prompt.sentence", "a blue bear wearing a hat")
+        window.wait(lambda s: s["target"] == "hat", "it is still about the old word", 10)
+        window.write("prompt.sentence", "a blue golden bear")
+        window.wait(lambda s: s["target"] == "golden", "what is blue already is no news", 10)
+        window.picture("words_01_news")
+        # A click counts for this sentence, and a project opens without it when it says nothing any more.
+        self.chip(window, "prompt.chip.1")
+        window.wait(lambda s: s["target"] == "blue", "the click did not count", 10)
+        window.key("ctrl+s")
+        time.sleep(1)
+        if "files.confirm" in window.widgets():
+            window.click("files.confirm")
+        window.wait(lambda s: s["project"] != "" and not s["unsaved"], "it was not saved", 30)
+        project = window.state()["project"]
+        self.assertEqual(window.close(), 0)
+        again = self.open(project)
+        again.wait(lambda s: s["stack"] == 1, "the project did not open", 30)
+        again.wait(lambda s: s["target"] == "golden", "the old word is still the target", 10)
+        again.wait_widget("prompt.edit", enabled=True)
+        again.close()
+
+    def test_an_unknown_thing_is_labelled_by_hand_and_edited(self):
+        window = self.start()
+        window.write("prompt.source", "sign")
+        window.write("prompt.sentence", "a golden sign on the grass")
+        time.sleep(0.5)
+        widgets = window.widgets()
+        self.assertFalse(widgets["prompt.locate"]["enabled"])
+        self.assertFalse(widgets["prompt.edit"]["enabled"])
+        window.picture("words_02_unknown")
+        window.click("prompt.source.by_hand")
+        window.drag("viewport", [(0.45, 0.45), (0.5, 0.5), (0.55, 0.5)])
+        window.wait(lambda s: s["labelled"] > 20, "the brush labelled nothing", 10)
+        labelled = window.steady("labelled")
+        window.click("tab.Prompt")
+        window.wait_widget("prompt.edit", enabled=True)
+        window.click("prompt.edit")
+        window.wait(lambda s: s["job"]["running"], "the edit did not start", 20)
+        window.idle(300)
+        state = window.state()
+        self.assertEqual(state["job"]["error"], "")
+        self.assertTrue(state["result_waiting"])
+        self.assertEqual(state["labelled"], labelled)
+        window.picture("words_03_by_hand")
+        window.close()
+
+    def test_a_search_that_finds_nothing_shows_its_evidence(self):
+        window = self.start()
+        window.write("prompt.source", "bear")
+        window.write("prompt.sentence", "a golden bear")
+        self.scroll_to(window, "prompt.advanced")
+        window.click("prompt.advanced")
+        self.scroll_to(window, "prompt.group.Localization")
+        window.click("prompt.group.Localization")
+        self.scroll_to(window, "request.least_confidence")
+        self.type_number(window, "request.least_confidence", "0.999")
+        window.click("prompt.locate")
+        window.wait(lambda s: s["job"]["running"], "the search did not start", 20)
+        window.idle(300)
+        state = window.state()
+        self.assertEqual(state["labelled"], 0)
+        self.assertEqual(state["views_attended"], 24)
+        self.assertIn("bear", state["search"]["message"])
+        self.assertTrue(0 < state["search"]["confidence"] < 1)
+        for text in [*state["toasts"], state["search"]["remedy"], state["job"]["error"]]:
+            self.assertNotIn("--", text)
+        window.wait_widget("attention.view.0")
+        window.picture("words_04_evidence")
+        window.click("attention.anyway")
+        window.wait(lambda s: s["labelled"] > 100, "it was not labelled", 60)
+        window.picture("words_05_anyway")
+        window.close()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,82 @@
+// What sentences say of where the target is.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "engine/edit/locate.h"
+#include "engine/edit/relation.h"
+#include "engine/edit/request.h"
+
+namespace {
+
+using namespace gse;
+using edit::Relation;
+
+struct Said {
+    std::string sentence, target;
+    Relation relation;
+    std::string before;   // the sentence before the edit, of a bear
+};
+
+const std::vector<Said>& table() {
+    static const std::vector<Said> all{
+        {"a ball beside a bear", "ball", Relation::Beside, "a bear"},
+        {"a bear beside a ball", "ball", Relation::Beside, "a bear"},
+        {"a bear with a ball beside it", "ball", Relation::Beside, "a bear"},
+        {"a bear next to a red ball on the grass", "ball", Relation::Beside, "a bear on the grass"},
+        {"a beach ball near a brown bear", "beach ball", Relation::Beside, "a brown bear"},
+        {"a ball bouncing beside a bear", "ball", Relation::Beside, "a bear"},
+        {"a ball behind the bear", "ball", Relation::Behind, "the bear"},
+        {"a bear behind a ball", "ball", Relation::Before, "a bear"},
+        {"a bear with flames behind it on the grass", "flames", Relation::Behind, "a bear on the grass"},
+        {"a bear in front of a tree", "tree", Relation::Behind, "a bear"},
+        {"a ball in front of a bear", "ball", Relation::Before, "a bear"},
+        {"a ball to the left of the bear", "ball", Relation::Left, "the bear"},
+        {"a bear left of a ball", "ball", Relation::Right, "a bear"},
+        {"a ball right of a bear", "ball", Relation::Right, "a bear"},
+        {"a bear under a hat", "hat", Relation::Above, "a bear"},
+        {"a rug under a bear", "rug", Relation::Under, "a bear"},
+        {"a bear on a car", "car", Relation::Under, "a bear"},
+        {"a hat on the bear", "hat", Relation::Above, "the bear"},
+        {"a hat on top of a bear", "hat", Relation::Above, "a bear"},
+        {"a bear wearing a hat", "hat", Relation::None, "a bear"},
+        {"a bear on grass wearing a hat", "hat", Relation::None, "a bear on grass"},
+        {"a bear with a hat beside a tree", "hat", Relation::None, "a bear beside a tree"},
+        {"a blue bear on the grass", "blue", Relation::None, "a bear on the grass"},
+        {"a bear made of stone", "stone", Relation::None, "a bear"},
+        {"a panda beside a tree", "panda", Relation::None, "a bear beside a tree"},
+        {"a bear", "bear", Relation::None, "a bear"}};
+    return all;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("the sentence says where the target is, seen from the source") {
+    for (const auto& said : table()) {
+        DOCTEST_INFO(said.sentence);
+        DOCTEST_CHECK(edit::relation_of(said.sentence, "bear", said.target) == said.relation);
+    }
+    DOCTEST_CHECK(edit::relation_of("a blue bear on the grass", "grass", "blue") == Relation::None);
+    DOCTEST_CHECK(edit::relation_of("a bear beside a ball", "ball", "bear") == Relation::Beside);
+}
+
+DOCTEST_TEST_CASE("what stands somewhere is added, and the sentence before has neither it nor its place") {
+    for (const auto& said : table()) {
+        DOCTEST_INFO(said.sentence);
+        edit::EditRequest request;
+        request.source = "bear";
+        request.prompt = said.sentence;
+        request.target = said.target;
+        request = edit::validated(request);
+        DOCTEST_CHECK(edit::sentence_before(request) == said.before);
+        if (said.relation != Relation::None)
+            DOCTEST_CHECK(edit::decide_mode(request, std::nullopt).first == edit::EditMode::Add);
+    }
+}
+
+DOCTEST_TEST_CASE("compound prepositions name no things") {
+    using Things = std::vector<std::string>;
+    DOCTEST_CHECK(edit::things_named("a bear next to a ball") == Things{"bear", "ball"});
+    DOCTEST_CHECK(edit::things_named("a bear in front of a tree to the left of a ball") == Things{"bear", "tree", "ball"});
+}

@@ -1,0 +1,97 @@
+// Which of a model's, a file's and a user's value counts in a recipe, and what the report says of it.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "engine/pipeline/model_settings.h"
+#include "engine/base/file.h"
+#include "tests/test_paths.h"
+
+namespace {
+
+using namespace gse;
+using namespace gse::pipeline;
+
+neural::ModelProfile wide_profile() {
+    return {neural::ModelKind::Sd1,
+            {{"request", "image_size", 512, "model"},
+             {"request", "iterations", 4000, "model"},
+             {"guidance", "guidance_scale", 7.5, "model"},
+             {"attention", "steps", 20, "file gseditpro.json"},
+             {"dreambooth", "steps", 400, "file gseditpro.json"},
+             {"job", "threads", 8, "model"}}};
+}
+
+/// "value from source", or "" of a field that is not listed.
+std::string listed(const EditRecipe& recipe, const std::string& field) {
+    for (const auto& entry : settings_from(recipe))
+        if (entry["field"] == field) return entry["value"].dump() + " from " + entry["source"].get<std::string>();
+    return {};
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("model settings: a model's values replace the program's, and what the user set replaces both") {
+    EditRecipe recipe;
+    recipe.request.iterations = 30;
+    recipe.guidance.clamp = 2;
+    apply_profile(wide_profile(), recipe, {"request.iterations", "guidance.clamp"});
+    DOCTEST_CHECK(recipe.request.image_size == 512);
+    DOCTEST_CHECK(recipe.request.iterations == 30);
+    DOCTEST_CHECK(recipe.request.views == EditRecipe{}.request.views);
+    DOCTEST_CHECK(recipe.guidance.guidance_scale == 7.5);
+    DOCTEST_CHECK(recipe.guidance.clamp == 2);
+    DOCTEST_CHECK(recipe.attention.steps == 20);
+    DOCTEST_CHECK(recipe.dreambooth.steps == 400);
+    DOCTEST_CHECK(recipe.job.threads == 8);
+    DOCTEST_CHECK(listed(recipe, "request.image_size") == "512 from model");
+    DOCTEST_CHECK(listed(recipe, "request.iterations") == "30 from user");
+    DOCTEST_CHECK(listed(recipe, "guidance.clamp") == "2.0 from user");
+    DOCTEST_CHECK(listed(recipe, "attention.steps") == "20 from file gseditpro.json");
+    DOCTEST_CHECK(listed(recipe, "job.threads") == "8 from model");
+    DOCTEST_CHECK(listed(recipe, "request.views").empty());
+    DOCTEST_CHECK(listed(recipe, "dreambooth.steps").empty());   // nothing is learned
+    recipe.use_dreambooth = true;
+    DOCTEST_CHECK(listed(recipe, "dreambooth.steps") == "400 from file gseditpro.json");
+}
+
+DOCTEST_TEST_CASE("model settings: a small model changes no recipe") {
+    EditRecipe recipe;
+    const auto before = recipe_to_json(recipe);
+    apply_profile({}, recipe, {});
+    DOCTEST_CHECK(recipe_to_json(recipe) == before);
+    DOCTEST_CHECK(settings_from(recipe).empty());
+    DOCTEST_CHECK(!before.contains("attention"));
+    apply_profile(profile_of(recipe.job), recipe, {});   // the starter's
+    DOCTEST_CHECK(recipe_to_json(recipe) == before);
+}
+
+DOCTEST_TEST_CASE("model settings: what a recipe's file names was given, also where it is as usual") {
+    const test::ScratchFolder scratch;
+    const auto path = scratch.path() / "recipe.json";
+    write_file(path, R"({"version": 1, "request": {"image_size": 96}, "attention": {"steps": 7}})");
+    auto recipe = read_recipe(path);
+    DOCTEST_CHECK(recipe.given == std::set<std::string>{"request.image_size", "attention.steps"});
+    apply_profile(wide_profile(), recipe, recipe.given);
+    DOCTEST_CHECK(recipe.request.image_size == 96);
+    DOCTEST_CHECK(recipe.attention.steps == 7);
+    DOCTEST_CHECK(recipe.request.iterations == 4000);
+    write_file(path, recipe_to_json(recipe).dump());
+    DOCTEST_CHECK(read_recipe(path).attention.steps == 7);
+}
+
+DOCTEST_TEST_CASE("model settings: with another model, only what nobody changed moves on") {
+    EditRecipe small, wide;
+    apply_profile(wide_profile(), wide, {});
+    auto request = small.request;
+    request.iterations = 30;
+    request.prompt = "a red bear";
+    move_defaults(request, small.request, wide.request);
+    DOCTEST_CHECK(request.image_size == 512);
+    DOCTEST_CHECK(request.iterations == 30);
+    DOCTEST_CHECK(request.prompt == "a red bear");
+    DOCTEST_CHECK(changed_fields("request", request, wide.request) ==
+                  std::set<std::string>{"request.iterations", "request.prompt"});
+    move_defaults(request, wide.request, small.request);
+    DOCTEST_CHECK(request.image_size == small.request.image_size);
+    DOCTEST_CHECK(request.iterations == 30);
+}

@@ -1,0 +1,87 @@
+// What has to be looked for again when a recipe changes, and what not.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <set>
+
+#include "engine/pipeline/recipe.h"
+
+namespace {
+
+using namespace gse;
+
+pipeline::EditRecipe plain() {
+    pipeline::EditRecipe recipe;
+    recipe.request.source = "bear";
+    recipe.request.prompt = "a blue bear on the grass";
+    recipe.request = edit::validated(recipe.request);
+    return recipe;
+}
+
+/// Another value of the same type.
+void change(bool& value) { value = !value; }
+void change(std::string& value) { value += "x"; }
+template <class Number>
+void change(Number& value) {
+    value = value == 0 ? Number{1} : value / 2;
+}
+
+template <class Part>
+std::set<std::string> names() {
+    std::set<std::string> found;
+    const Part part{};
+    Part::visit_fields(part, [&](const char* name, const auto&, const char*, const auto&...) { found.insert(name); });
+    return found;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("the words and the settings of the search decide what is found, those of the loop and the thresholds do not") {
+    auto searched = names<edit::EditWords>();
+    searched.merge(names<edit::SearchSettings>());
+    const auto before = pipeline::search_key(plain());
+    std::size_t checked = 0;
+    for (const auto& name : names<edit::EditRequest>()) {
+        auto recipe = plain();
+        edit::EditRequest::visit_fields(recipe.request, [&](const char* field, auto& value, const char*, const auto&...) {
+            if (field == name) change(value);
+        });
+        DOCTEST_CAPTURE(name);
+        DOCTEST_CHECK((pipeline::search_key(recipe) != before) == searched.contains(name));
+        ++checked;
+    }
+    DOCTEST_CHECK(checked > 60);
+    auto recipe = plain();
+    recipe.guidance.guidance_scale += 1;
+    DOCTEST_CHECK(pipeline::search_key(recipe) == before);
+}
+
+DOCTEST_TEST_CASE("every field of a request belongs to one part of it") {
+    const auto all = names<edit::EditRequest>();
+    const std::size_t parts = names<edit::EditWords>().size() + names<edit::SearchSettings>().size() +
+                              names<edit::LabelThresholds>().size() + names<edit::LoopSettings>().size();
+    DOCTEST_CHECK(parts == all.size());
+}
+
+DOCTEST_TEST_CASE("another model, up axis, front or set of cameras looks again; the film's size does not") {
+    const auto before = pipeline::search_key(plain());
+    for (const auto field : {&pipeline::JobParameters::model, &pipeline::JobParameters::up, &pipeline::JobParameters::front,
+                             &pipeline::JobParameters::cameras}) {
+        auto recipe = plain();
+        recipe.job.*field = "other";
+        DOCTEST_CHECK(pipeline::search_key(recipe) != before);
+    }
+    auto recipe = plain();
+    recipe.job.turntable_frames = 7;
+    DOCTEST_CHECK(pipeline::search_key(recipe) == before);
+    recipe.use_dreambooth = true;
+    DOCTEST_CHECK(pipeline::search_key(recipe) != before);
+}
+
+DOCTEST_TEST_CASE("a target that is left to be guessed is the one that was guessed") {
+    auto recipe = plain();
+    const auto guessed = pipeline::search_key(recipe);
+    recipe.request.target.clear();
+    recipe.request = edit::validated(recipe.request);
+    DOCTEST_CHECK(pipeline::search_key(recipe) == guessed);
+}
