@@ -42,6 +42,7 @@ double seconds_since(Clock::time_point then) { return std::chrono::duration<doub
 constexpr double IdleWait = 0.5;      // nothing happens: the window only wakes for input
 constexpr double WorkingWait = 0.1;   // a job runs: its numbers move, the processor belongs to it
 constexpr double MovingFrame = 0.05;  // the camera moves: the panels are drawn anew with every picture, or after this time
+constexpr double WorkingFrame = 0.04; // the same while a job runs that needs the processor too
 constexpr double ActiveSeconds = 0.6; // after input every frame is drawn
 
 /// The window and everything in it.
@@ -110,8 +111,8 @@ private:
     }
 
     void wait() {
-        while (viewport_.waits_for_picture() && seconds_since(frame_began_) < MovingFrame)
-            window_.wait(MovingFrame - seconds_since(frame_began_));
+        const double frame = viewport_.waits_for_picture() ? MovingFrame : app_.busy() ? WorkingFrame : 0;
+        while (seconds_since(frame_began_) < frame) window_.wait(frame - seconds_since(frame_began_));
         const bool moving = viewport_.busy() || textures_.uploads_waiting() || shell_.animating() ||
                             seconds_since(last_input_) < ActiveSeconds;
         const auto before = Clock::now();
@@ -190,6 +191,7 @@ private:
                         {"error", model.job.error}};
         state["file_job"] = {{"running", model.file_job.running}, {"title", model.file_job.title},
                              {"outcome", model.file_job.outcome}, {"error", model.file_job.error}};
+        state["estimate"] = model.estimate.seconds;
         state["losses"] = model.losses.size();
         state["snapshots"] = model.snapshots.size();
         state["result_waiting"] = model.result_waiting;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/base/hash.h"
 #include "engine/edit/request.h"
 
 namespace gse::edit {
@@ -36,11 +37,19 @@ const std::vector<float>& Recognition::vector_of(const std::string& sentence) {
     return found->second;
 }
 
+const std::vector<float>& Recognition::vector_of(const Image& picture) {
+    Hash hash;
+    hash.image(picture);
+    auto found = seen_.find(hash.value());
+    if (found == seen_.end()) found = seen_.emplace(hash.value(), score_->image(picture)).first;
+    return found->second;
+}
+
 double Recognition::of(const std::string& sentence, const std::string& word, const std::vector<const Image*>& pictures) {
     if (!available() || pictures.empty()) return -1;
     double below = 0, all = 0;
     for (const Image* picture : pictures) {
-        const auto seen = score_->image(*picture);
+        const auto& seen = vector_of(*picture);
         const double own = cosine(seen, vector_of(as_told(sentence)));
         for (const auto& other : known_) {
             if (has_word(word, other)) continue;   // the word, or a part of the phrase

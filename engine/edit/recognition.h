@@ -1,16 +1,19 @@
 // Whether pictures show what a word means, by the model's own picture encoder.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "engine/edit/text_image_score.h"
 
 namespace gse::edit {
 
-/// Compares a word with all others that a model with a fixed vocabulary knows. Sentences are encoded once.
+/// Compares a word with all others that a model with a fixed vocabulary knows. Sentences and pictures are encoded
+/// once.
 class Recognition {
 public:
     /// `score` null or an empty list of words: nobody can tell.
@@ -22,10 +25,12 @@ public:
 
 private:
     const std::vector<float>& vector_of(const std::string& sentence);
+    const std::vector<float>& vector_of(const Image& picture);
 
     std::unique_ptr<TextImageScore> score_;
     std::vector<std::string> known_;
     std::map<std::string, std::vector<float>> vectors_;   // of sentences
+    std::unordered_map<std::uint64_t, std::vector<float>> seen_;   // of pictures, by their hash
 };
 
 }  // namespace gse::edit
