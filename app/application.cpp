@@ -117,6 +117,7 @@ void Application::refresh_jobs(const JobStatus& work, const JobStatus& files) {
     model_.job = job_view(work);
     model_.file_job = job_view(files);
     model_.edit_running = edit_running();
+    model_.read_target = read_target();
     model_.result_waiting = pending_.has_value() && !work_.running();
     relabel_if_wanted();
 }
@@ -129,7 +130,9 @@ void Application::take_found() {
     const bool relabel = live_->relabel;
     lock.unlock();
     job_ = job;
-    job_key_ = live_key_;
+    live_recipe_.request.target = job->recipe().request.target;
+    describe(*live_, live_recipe_);
+    job_key_ = search_key(live_recipe_);
     job_set_ = job->scene().gaussians;
     take_located(job, std::move(attention));
     const auto& located = job->located();

@@ -74,6 +74,9 @@ struct LiveEdit {
     std::optional<edit::EditSnapshot> start;   // of an earlier run, to go on from
 };
 
+/// Says what is running: name, target and recipe.
+void describe(LiveEdit& live, const EditRecipe& recipe);
+
 class Application : public ui::Actions {
 public:
     explicit Application(ApplicationOptions options);
@@ -217,6 +220,8 @@ private:
     bool job_fits() const;
     std::optional<neural::TunedModel> known_tuning(const EditRecipe& recipe) const;
     EditRecipe current_recipe() const;
+    EditRecipe open_recipe(EditRecipe recipe) const;
+    std::string read_target() const;
     Scene working_scene() const;
     void take_located(std::shared_ptr<EditJob> job, std::vector<float> attention);
     void show_located(const EditJob& job);
@@ -302,7 +307,8 @@ private:
     EditRecipe defaults_;            // what settings are that nobody chose
     std::map<std::string, std::string> model_problems_;   // by path, of models that were tried; empty = none yet
     std::shared_ptr<EditJob> job_;
-    std::string job_key_, live_key_;
+    std::string job_key_;
+    EditRecipe live_recipe_;   // of the edit that runs
     GaussianSet job_set_;
     std::shared_ptr<const std::vector<float>> attention_values_;
     GaussianSet attention_set_;

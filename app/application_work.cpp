@@ -44,8 +44,25 @@ EditRecipe Application::current_recipe() const {
     apply_profile(profile_, recipe, set_by_user);
     auto& request = recipe.request;
     const auto source = edit::as_told(request.source);
-    if (request.target.empty() && !source.empty())
-        request.target = edit::guessed_target(request.prompt, source, model_.said_words);
+    if (request.target.empty() && !source.empty()) {
+        const auto read = read_target();
+        request.target = read.empty() ? edit::guessed_target(request.prompt, source, model_.said_words) : read;
+    }
+    return recipe;
+}
+
+/// What the last search saw to be new, where it was of this sentence and of the scene as it is now.
+std::string Application::read_target() const {
+    if (job_ == nullptr || !job_->target_read() || !job_set_.shares_all_with(document_.state().current)) return {};
+    const auto& searched = job_->recipe().request;
+    const bool same = edit::as_told(searched.source) == edit::as_told(model_.request.source) &&
+                      edit::as_told(searched.prompt) == edit::as_told(model_.request.prompt);
+    return same ? searched.target : std::string();
+}
+
+/// The recipe for a job: a target that nobody has chosen is left to the pictures.
+EditRecipe Application::open_recipe(EditRecipe recipe) const {
+    if (model_.request.target.empty() && !recipe.request.source.empty()) recipe.request.target.clear();
     return recipe;
 }
 
@@ -125,21 +142,22 @@ void Application::locate() {
     } catch (const Error& error) {
         return report_error(error);
     }
-    const auto key = search_key(recipe);
     const bool measured = measured_now().guidance >= 0;
-    auto work = [search, recipe, measured, tuned = known_tuning(recipe), scene = working_scene(),
+    auto work = [search, recipe = open_recipe(recipe), said = model_.said_words, measured, tuned = known_tuning(recipe), scene = working_scene(),
                  views = document_.state().views](const JobControl& control) {
         load(*search, recipe.job, control);
-        search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned}, control);
+        search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned, said}, control);
         look(*search);
         if (!measured && search->job->found()) measure_steps(search->measured, *search->job);
     };
-    auto done = [this, search, key, recipe_key = measured_key(), model = model_path_](const Error* error) {
+    auto done = [this, search, recipe, recipe_key = measured_key(), model = model_path_](const Error* error) {
         if (search->model) text_model_ = search->model, text_model_path_ = model;
         else if (error != nullptr && error->code() != ErrorCode::Cancelled) drop_model(model, *error);
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
         job_ = search->job;
-        job_key_ = key;
+        EditRecipe searched = recipe;
+        searched.request.target = job_->recipe().request.target;
+        job_key_ = search_key(searched);
         job_set_ = search->job->scene().gaussians;
         remember_measured(recipe_key, search->measured);
         take_located(search->job, std::move(search->attention));
@@ -171,8 +189,6 @@ void show_gate(EditJob& job, LiveEdit& live) {
 
 }  // namespace
 
-namespace {
-
 /// What is running, for whoever has to tell about it.
 void describe(LiveEdit& live, const EditRecipe& recipe) {
     live.name = recipe.request.prompt;
@@ -180,8 +196,6 @@ void describe(LiveEdit& live, const EditRecipe& recipe) {
     live.recipe = json_text(recipe_to_json(recipe));
     live.iterations = recipe.request.iterations;
 }
-
-}  // namespace
 
 void Application::edit() {
     if (!require_scene() || work_.running()) return;
@@ -200,7 +214,7 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     }
     auto search = std::make_shared<Search>();
     if (job_fits()) search->job = job_;
-    live_key_ = search_key(recipe);
+    live_recipe_ = recipe;
     search->model = text_model_path_ == model_path_ ? text_model_ : nullptr;
     std::vector<std::uint8_t> label;
     if (label_drives_edit()) label = *document_.state().labels[static_cast<std::size_t>(document_.state().active_label)].bits;
@@ -216,7 +230,8 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     model_.shown_snapshot = -1;
     snapshot_base_ = document_.state().current;
     auto pending = std::make_shared<PendingResult>();
-    auto work = [search, recipe, label, pending, live = live_, tuned = known_tuning(recipe), scene = working_scene(),
+    auto work = [search, recipe, label, pending, live = live_, open = open_recipe(recipe), said = model_.said_words,
+                 tuned = known_tuning(recipe), scene = working_scene(),
                  views = document_.state().views](const JobControl& control) {
         load(*search, recipe.job, control);
         if (search->job) {
@@ -224,7 +239,7 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
             search->job->take_settings(recipe, label.empty());
             if (!search->job->found() && !label.empty()) search->job->use_label(label);
         } else {
-            search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, label, {}, tuned}, control);
+            search->job = std::make_shared<EditJob>(open, EditJobInput{scene, views, search->model, label, {}, tuned, said}, control);
             look(*search);
         }
         const double idea = search->job->times().seconds("gate");
@@ -399,7 +414,6 @@ void Application::refresh_estimate() {
     PlannedWork work;
     work.loaded = text_model_ != nullptr && text_model_path_ == model_path_;
     work.located = job_fits();
-    work.automatic_views = document_.state().views.empty();
     work.shows_idea = model_.model_settings.gate;
     const bool learns = model_.model_settings.learn_scene && !work.located && !known_tuning(current_recipe());
     work.tune_steps = learns ? model_.model_settings.learn_steps : 0;

@@ -22,7 +22,7 @@ std::string first_letter_up(std::string text) {
 edit::EditRequest with_target(edit::EditRequest request, const SentenceGround& ground) {
     const auto source = edit::as_told(request.source);
     if (request.target.empty() && !source.empty())
-        request.target = edit::guessed_target(request.prompt, source, ground.said);
+        request.target = ground.read_target.empty() ? edit::guessed_target(request.prompt, source, ground.said) : ground.read_target;
     return request;
 }
 

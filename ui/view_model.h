@@ -274,6 +274,7 @@ struct ViewModel {
     std::vector<std::string> known_words;        // of the chosen model; empty = open vocabulary
     bool words_known = false;                    // known_words has been read
     std::vector<std::string> said_words;         // what the applied edits say of the scene: no news any more
+    std::string read_target;                     // what a search of this very sentence saw to be new; empty = none has looked
     bool labelled_by_hand = false;               // the active label says what may change, whatever the words find
     std::size_t words_read = 0;                  // of the sentence, by the text encoder; 0 = all, or not known
     ModelSettings model_settings, model_settings_defaults;

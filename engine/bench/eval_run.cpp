@@ -172,10 +172,10 @@ private:
         const auto recipe = this->recipe(edit);
         EvalSetting setting = make_setting(edit, recipe.request, run_.parameters.held_out_views);
         pipeline::EditJob job(recipe, input(setting), quiet());
-        setting.request = job.recipe().request;
-        entry["guessed"] = {{"target", setting.request.target}, {"right", setting.request.target == edit.target_word}};
         try {
             job.locate();
+            setting.request = job.recipe().request;
+            entry["guessed"] = {{"target", setting.request.target}, {"right", setting.request.target == edit.target_word}};
             setting.seen = {job.views(), job.view_words()};
             entry["confidence"] = job.located().confidence.value;
             edit::require_found(job.located());

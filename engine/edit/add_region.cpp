@@ -233,16 +233,22 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
         best = std::max(best, agreement[cell]);
     }
     if (best < parameters.least_agreement) return {};
-    AddRegion region;
-    double best_match = 0;
-    for (double level = best; level >= parameters.lowest_agreement; level -= parameters.level_step) {
-        AddRegion candidate = region_at(grid, frame, agreement, level, parameters);
-        const double match = candidate.empty() ? 0 : silhouette_match(search, candidate);
-        if (match <= best_match) continue;
-        best_match = match;
-        region = std::move(candidate);
-    }
-    return region;
+    std::vector<double> levels;
+    for (double level = best; level >= parameters.lowest_agreement; level -= parameters.level_step) levels.push_back(level);
+    std::vector<AddRegion> candidates(levels.size());
+    std::vector<double> matches(levels.size(), 0);
+    const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i) {
+            candidates[i] = region_at(grid, frame, agreement, levels[i], parameters);
+            matches[i] = candidates[i].empty() ? 0 : silhouette_match(search, candidates[i]);
+        }
+    };
+    if (search.threads != nullptr)
+        search.threads->parallel_for(levels.size(), 1, some);
+    else
+        some(0, levels.size(), 0);
+    const auto chosen = std::max_element(matches.begin(), matches.end());   // of equal ones the smallest region
+    return chosen == matches.end() || *chosen <= 0 ? AddRegion{} : candidates[static_cast<std::size_t>(chosen - matches.begin())];
 }
 
 AddRegion anchor_region(const RegionSearch& search, const std::string& place, int cells) {

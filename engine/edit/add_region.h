@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/image.h"
+#include "engine/base/thread_pool.h"
 #include "engine/edit/relation.h"
 #include "engine/scene/scene.h"
 
@@ -31,6 +32,7 @@ struct RegionSearch {
     Vec3 up{0, -1, 0};
     Vec3 front{0, 0, -1};  // where the thing looks
     Relation relation = Relation::None;   // what the sentence says of the new thing's place: cells elsewhere do not count
+    ThreadPool* threads = nullptr;        // may be null
 };
 
 struct RegionParameters {

@@ -26,6 +26,7 @@ constexpr std::size_t LeastRegionCells = 4;  // smaller regions of a 64-cell map
 constexpr std::size_t RecognisedViews = 6;   // pictures that are compared with words
 constexpr int LeastViews = 3;                // fewer voting views cannot tell front from back
 constexpr double LargestMaskShare = 0.9;     // of the picture: such a mask has found nothing
+constexpr double LargestLabelShare = 0.97;   // of what the views see, where the sentence names other things too
 constexpr double LargestMaskGrowth = 4;      // of the attention region's area: the segmenter ran away
 constexpr double LeastOverlapIou = 0.1;      // of a text segmenter's mask and the attention region (A8)
 constexpr double LeastTextScore = 0.3;
@@ -405,6 +406,8 @@ private:
                            fmt::format("the views agree on no splat for \"{}\"", search.word),
                            "name something the scene shows and the model knows, or lower tau");
         found.confidence = confidence_of(views, weights, found.label, recognised(search.word));
+        // The sentence names other things, and nothing is left of the scene for them: it is only the word that is found everywhere.
+        if (!search.rivals.empty() && found.confidence.share > LargestLabelShare) found.confidence.value = 0;
         if (found.confidence.value < request().least_confidence) {
             found.problem = SearchProblem::Unsure;
             found.message = fmt::format("it is not sure that \"{}\" was found (confidence {:.2f}, at least {:.2f} is needed)",
@@ -531,7 +534,8 @@ private:
         const bool of_source = request().source != request().target;
         const RegionSearch space{
             input_.gaussians, *result.source_label.bits, input_.views, masks, depths_, input_.up, input_.front,
-            of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None};
+            of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None,
+            tools_.threads};
         result.region = vote_region(space);
         const bool attended = !result.region.empty();
         if (!attended) {

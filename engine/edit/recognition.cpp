@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/base/check.h"
 #include "engine/base/hash.h"
 #include "engine/edit/request.h"
 
@@ -43,6 +44,13 @@ const std::vector<float>& Recognition::vector_of(const Image& picture) {
     auto found = seen_.find(hash.value());
     if (found == seen_.end()) found = seen_.emplace(hash.value(), score_->image(picture)).first;
     return found->second;
+}
+
+double Recognition::fit(const std::string& sentence, const std::vector<const Image*>& pictures) {
+    GSE_CHECK(compares() && !pictures.empty());
+    double sum = 0;
+    for (const Image* picture : pictures) sum += cosine(vector_of(*picture), vector_of(as_told(sentence)));
+    return sum / static_cast<double>(pictures.size());
 }
 
 double Recognition::of(const std::string& sentence, const std::string& word, const std::vector<const Image*>& pictures) {

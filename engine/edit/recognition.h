@@ -18,7 +18,11 @@ class Recognition {
 public:
     /// `score` null or an empty list of words: nobody can tell.
     Recognition(std::unique_ptr<TextImageScore> score, std::vector<std::string> known);
-    bool available() const { return score_ != nullptr && !known_.empty(); }
+    bool available() const { return compares() && !known_.empty(); }
+    /// Whether the model can compare pictures with sentences at all.
+    bool compares() const { return score_ != nullptr; }
+    /// Mean cosine of the sentence with the pictures, in [-1,1]; needs compares() and a picture.
+    double fit(const std::string& sentence, const std::vector<const Image*>& pictures);
     /// Share of the other words that fit the pictures less in the place that the word (or phrase) has in the sentence, in
     /// [0,1]; negative when nobody can tell.
     double of(const std::string& sentence, const std::string& word, const std::vector<const Image*>& pictures);

@@ -134,6 +134,18 @@ std::string guessed_target(const std::string& prompt, const std::string& source,
     return !words.empty() && !has_word(prompt, source) ? words.back() : source;
 }
 
+std::vector<std::string> possible_targets(const std::string& prompt, const std::string& source, const Words& said) {
+    const auto words = noun_terms(prompt, {source});
+    Words targets{guessed_target(prompt, source, said)};
+    const auto add = [&](const std::string& word) {
+        if (word != source && says_something(word) && !contains(targets, word) && !contains(said, word)) targets.push_back(word);
+    };
+    for (const auto& candidate : candidates_of(words, source)) add(candidate.head);
+    for (std::size_t i = 0; i < words.size(); ++i)
+        if (i == 0 || ends_phrase(words[i - 1])) add(head_of_phrase(words, i));
+    return targets;
+}
+
 std::vector<std::string> words_said(const std::vector<EditRequest>& applied) {
     std::vector<std::string> said;
     const auto forget = [&](const std::string& word) { std::erase(said, word); };

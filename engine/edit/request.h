@@ -21,7 +21,7 @@ struct EditWords {
     static void visit_fields(Self& self, F&& f) {
         f("source", self.source, "What in the scene the edit is about (\"bear\", \"teddy bear\"); empty = the target word.");
         f("prompt", self.prompt, "A sentence that describes the scene after the edit (\"a golden statue\").");
-        f("target", self.target, "What in the prompt is new (\"golden\", \"top hat\"); empty = found by comparing.");
+        f("target", self.target, "What in the prompt is new (\"golden\", \"top hat\"); empty = what the pictures show least, where the model compares pictures with words, else what the sentence says of the source.");
         f("mode", self.mode, "modify (change what is there), add (put something new there) or auto.");
     }
 };
@@ -257,6 +257,11 @@ bool says_worn(const std::vector<std::string>& words, std::size_t i);
 /// else the word before it ("golden" statue), else, where the prompt does not name the source, the first thing it names.
 /// Words that the scene shows already (`said`) are no news: where the sentence has other ones, it is about those.
 std::string guessed_target(const std::string& prompt, const std::string& source, const std::vector<std::string>& said = {});
+
+/// All that may be the news of the sentence: what describes the source, and the things it names, guessed_target() first; not
+/// what was `said` already, where there is something else.
+std::vector<std::string> possible_targets(const std::string& prompt, const std::string& source,
+                                          const std::vector<std::string>& said = {});
 
 /// Words that hold for a scene after these edits, in the order in which they were applied: what their sentences say, less
 /// what a later one replaced ("blue" of a bear that was made red since).

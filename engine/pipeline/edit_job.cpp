@@ -19,6 +19,7 @@
 #include "engine/base/spelling.h"
 #include "engine/edit/grabcut_segmenter.h"
 #include "engine/edit/relation.h"
+#include "engine/edit/scene_reading.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/io/scene_io.h"
 #include "engine/localize/focus.h"
@@ -27,6 +28,8 @@
 namespace gse::pipeline {
 namespace {
 
+constexpr std::array<double, 5> ScanDistances{1.0, 0.7, 0.45, 0.3, 0.22};   // of the fitted orbit's radius
+constexpr int ScanViews = 6;                // per distance
 constexpr std::size_t InstanceViews = 12;   // renders a tuning learns from (method 2.6: 8 to 16)
 constexpr double NearInstance = 0.6;        // share of the fitted distance of every other one, where views are automatic
 
@@ -156,6 +159,7 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
       control_(std::move(control)),
       scene_(std::move(input.scene)),
       model_(std::move(input.model)),
+      said_(std::move(input.said)),
       label_(std::move(input.label)) {
     if (recipe_.use_dreambooth && input.tuned) {
         model_ = std::move(input.tuned->model);
@@ -168,6 +172,7 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
 }
 
 void EditJob::check_recipe() {
+    target_open_ = recipe_.request.target.empty() && !recipe_.request.source.empty();
     recipe_.request = edit::validated(recipe_.request);
     check_fields(recipe_.job);
     check_fields(recipe_.guidance);
@@ -264,7 +269,6 @@ neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const
 std::string EditJob::model_prompt() const { return edit::as_told(recipe_.request.prompt); }
 
 std::vector<Image> EditJob::instance_pictures() {
-    const raster::Settings settings = render_settings();
     std::vector<View> views = spread_views(views_, InstanceViews);
     if (automatic_views_) {
         OrbitParameters near = orbit_;
@@ -275,7 +279,7 @@ std::vector<Image> EditJob::instance_pictures() {
     }
     std::vector<Image> pictures;
     for (const auto& view : views)
-        pictures.push_back(painter_.paint(drawn_.spans(), view.camera, settings).colour);
+        pictures.push_back(painter_.paint(drawn_.spans(), view.camera, render_settings()).colour);
     return pictures;
 }
 
@@ -302,34 +306,60 @@ edit::LocateInput EditJob::locate_input() const {
             settings,         scene_.info.up, direction_at(orbit_, front), by_label_ ? &label_ : nullptr, model_->known_words()};
 }
 
-/// How decided the views are: 1 when every splat is either always or never inside the masks.
-static double decidedness(const localize::LabelWeights& weights) {
-    double decided = 0, all = 0;
-    for (std::size_t row = 0; row < weights.weight.size(); ++row) {
-        decided += weights.evidence[row] * std::abs(2.0 * weights.weight[row] - 1);
-        all += weights.evidence[row];
+std::vector<Image> EditJob::pictures_of(const std::vector<View>& views) {
+    std::vector<Image> pictures;
+    for (const auto& view : views) {
+        pictures.push_back(painter_.paint(drawn_.spans(), view.camera, render_settings()).colour);
+        for (auto& value : pictures.back().data) value = std::clamp(value, 0.0f, 1.0f);
     }
-    return all > 0 ? decided / all : 0;
+    return pictures;
+}
+
+/// Asks the model's encoders, where it has them, which word is new and which distances are worth a search.
+void EditJob::read_scene() {
+    const bool moves = automatic_views_ && recipe_.request.focus && !by_label_;
+    distances_ = moves ? std::vector<double>(ScanDistances.begin(), ScanDistances.end()) : std::vector<double>{1.0};
+    if (!recognition_->compares() || !(moves || target_open_)) return;
+    const int side = recipe_.request.image_size;
+    std::vector<std::vector<Image>> pictures;
+    for (const double distance : distances_) {
+        OrbitParameters orbit = orbit_;
+        orbit.radius *= distance;
+        pictures.push_back(pictures_of(moves ? orbit_views(orbit, ScanViews, side, side) : spread_views(views_, std::size_t{ScanViews})));
+        control_.report("comparing the sentence with the scene", static_cast<int>(pictures.size()), static_cast<int>(distances_.size()));
+    }
+    std::vector<std::string> targets{recipe_.request.target};
+    if (target_open_) targets = edit::possible_targets(recipe_.request.prompt, recipe_.request.source, said_);
+    std::erase_if(targets, [&](const auto& word) { return !edit::knows(model_->known_words(), word); });
+    const auto reading = edit::read_scene(*recognition_, recipe_.request, targets, pictures);
+    if (target_open_) log::info("new in the sentence: \"{}\" (what it says without fits the scene to {:.2f})", reading.target, reading.fit);
+    recipe_.request.target = reading.target;
+    target_read_ = target_open_;
+    std::vector<double> worth;
+    for (const auto index : reading.distances) worth.push_back(distances_[index]);
+    distances_ = std::move(worth);
 }
 
 void EditJob::choose_distance(const edit::LocateTools& tools) {
-    // The fitted orbit shows the whole scene; what the words mean may be a small part of it. The distance at which the
-    // views agree best on what is meant wins; a few views tell.
-    constexpr std::array<double, 4> distances{1.0, 0.7, 0.45, 0.3};
-    constexpr int scan_views = 6;
+    // The fitted orbit shows the whole scene; what the words mean may be a small part of it. The distance from which it is
+    // found most surely wins; a few views tell.
     const OrbitParameters fitted = orbit_;
     const int views = recipe_.request.views;
-    recipe_.request.views = std::min(views, scan_views);
+    recipe_.request.views = std::min(views, ScanViews);
     double best = -1;
     OrbitParameters chosen = fitted;
-    for (const double distance : distances) {
+    for (const double distance : distances_) {
         orbit_ = fitted;
         orbit_.radius *= distance;
+        if (distances_.size() == 1) {
+            chosen = orbit_;
+            break;
+        }
         set_orbit_views();
         const auto found = edit::locate(locate_input(), tools);
         if (found.problem != edit::SearchProblem::None && found.problem != edit::SearchProblem::Unsure) continue;   // try nearer
-        const double score = decidedness(found.weights);
-        log::debug("orbit at {:.2f} of the fitted distance: views agree {:.3f}", distance, score);
+        const double score = found.confidence.value;
+        log::debug("orbit at {:.2f} of the fitted distance: confidence {:.3f}", distance, score);
         if (score > best) {
             best = score;
             chosen = orbit_;
@@ -363,6 +393,7 @@ void EditJob::locate() {
     const edit::LocateTools tools = locate_tools(*segmenter);
     by_label_ = !label_.empty() &&
                 (recipe_.job.use_label || !edit::knows(model_->known_words(), recipe_.request.source));
+    read_scene();
     search(tools);
     if (!found() && !label_.empty() && !by_label_) {
         log::info("{}; the label alone says what may change", located_.message);

@@ -30,6 +30,7 @@ struct EditJobInput {
     std::vector<std::uint8_t> label = {};          // [N] made by hand: says where when the words do not; empty = none
     std::vector<std::string> view_words = {};      // one for each of `cameras` where it is known; else from the recipe's front
     std::optional<neural::TunedModel> tuned = {};  // what another job learned of this scene for these words and settings
+    std::vector<std::string> said = {};            // words that the scene is known to show: no news
 };
 
 /// The guidance's settings with the sentence before the edit, worked out from the request where none is given.
@@ -58,7 +59,7 @@ public:
     /// DreamBooth: from here on this job works with a model of its own, which learned the scene from renders of its views.
     /// locate() begins with it when the recipe asks for it.
     void tune();
-    /// Looks from all views, moves in on what was found, looks again. With a label made by hand, a word that the model does
+    /// Works out which word is new where the recipe does not say, looks from all views, moves in on what was found, looks again. With a label made by hand, a word that the model does
     /// not know is not looked for, and one that is not found does no harm. A search that comes to nothing is a result too:
     /// see found().
     void locate();
@@ -107,6 +108,8 @@ public:
     std::string model_prompt() const;
     /// Pictures that the search has asked the networks about so far.
     std::size_t questions() const { return attention_ ? attention_->asked() : 0; }
+    /// Whether the pictures said which word is new, and not the recipe.
+    bool target_read() const { return target_read_; }
     bool automatic_views() const { return automatic_views_; }
     /// Orbit around what was edited, for films.
     OrbitParameters film_orbit() const;
@@ -122,6 +125,8 @@ private:
     void choose_views(std::vector<View> cameras);
     void set_orbit_views();
     void name_views();
+    void read_scene();
+    std::vector<Image> pictures_of(const std::vector<View>& views);
     void choose_distance(const edit::LocateTools& tools);
     void search(const edit::LocateTools& tools);
     void look_again();
@@ -145,6 +150,10 @@ private:
     edit::ViewMemory memory_;
     ThreadPool threads_;
     std::unique_ptr<edit::Recognition> recognition_;
+    bool target_open_ = false;          // the recipe leaves it to the pictures which word is new
+    bool target_read_ = false;          // they have said it
+    std::vector<double> distances_;     // shares of the fitted orbit's radius that the search tries
+    std::vector<std::string> said_;     // words the scene is known to show
     std::vector<std::uint8_t> label_;   // made by hand, or empty
     bool by_label_ = false;             // it was used
     std::vector<View> views_;

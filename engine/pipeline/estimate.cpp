@@ -9,14 +9,9 @@
 namespace gse::pipeline {
 namespace {
 
-constexpr int ScanDistances = 4, ScanViews = 6;   // of the search's choice of a distance
 constexpr double LookAgainRounds = 2;             // over all views, when something is added
 constexpr double UsualFollow = 0.6;
 constexpr int ProbeSteps = 5;
-
-double scan_questions(const edit::EditRequest& request, const PlannedWork& work) {
-    return work.automatic_views && request.focus ? ScanDistances * std::min(request.views, ScanViews) : 0;
-}
 
 double words_of_search(bool adds) { return adds ? 2 : 1; }
 
@@ -47,7 +42,7 @@ double estimated_seconds(const Measured& measured, const edit::EditRequest& requ
     add(work.loaded ? 0 : 1, measured.load);
     add(work.tune_steps, measured.tune_step);
     const double rounds = measured.rounds > 0 ? measured.rounds : 1;
-    const double search = (scan_questions(request, work) + rounds * request.views) * words_of_search(work.adds);
+    const double search = rounds * request.views * words_of_search(work.adds);
     add(work.located ? 0 : search, measured.question);
     add(work.shows_idea ? 1 : 0, measured.idea >= 0 ? measured.idea : 0);
     const int steps = std::max(0, request.iterations - work.first_iteration);
@@ -63,12 +58,9 @@ double estimated_seconds(const Measured& measured, const edit::EditRequest& requ
 void measure_search(Measured& measured, const EditJob& job, double seconds) {
     const auto asked = static_cast<double>(job.questions());
     if (asked <= 0) return;
-    const auto& request = job.recipe().request;
-    PlannedWork work;
-    work.automatic_views = job.automatic_views();
     const double words = words_of_search(job.located().mode == edit::EditMode::Add);
     measured.question = seconds / asked;
-    measured.rounds = std::max(1.0, asked / words - scan_questions(request, work)) / request.views;
+    measured.rounds = asked / words / job.recipe().request.views;
 }
 
 void measure_loop(Measured& measured, const EditJob& job, int least_steps) {

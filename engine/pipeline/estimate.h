@@ -42,7 +42,6 @@ struct Measured {
 struct PlannedWork {
     bool loaded = false;           // the model is in memory
     bool located = false;          // the search is done
-    bool automatic_views = true;   // the search chooses its distance first
     bool adds = false;
     bool shows_idea = true;
     int tune_steps = 0;

@@ -90,6 +90,8 @@ class ManyScenes(ProgramTest):
 
     def test_a_scene_larger_than_the_memory(self):
         """The sentence says what is needed and what is free."""
+        if os.environ.get("GSE_SANITIZED") == "1":
+            self.skipTest("[skip] shadow memory does not fit any limit")
         path = self.folder / "large.splat"
         with open(path, "wb") as file:
             file.truncate(32 * 100_000_000)   # takes no room on the disk

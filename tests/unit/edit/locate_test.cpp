@@ -257,6 +257,25 @@ DOCTEST_TEST_CASE("a search that is less sure than asked for is marked, with wha
     DOCTEST_CHECK(nowhere.seeds.size() == 0);
 }
 
+DOCTEST_TEST_CASE("a word that is found in everything is not found where the sentence names other things too") {
+    const Quiet quiet;
+    Fixture fixture;
+    fixture.scene.set = fixture.scene.set.filtered(fixture.scene.first);   // the red ball alone
+    auto request = request_for("a blue ball", "blue");
+    request.least_confidence = 0.05;
+    const auto alone = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(alone.problem == edit::SearchProblem::None);
+    DOCTEST_CHECK(alone.confidence.share > 0.99);
+    request = request_for("a blue ball on the grass", "blue");
+    request.least_confidence = 0.05;
+    const auto all = edit::locate(fixture.input(request), fixture.tools());
+    DOCTEST_CHECK(all.confidence.share > 0.97);
+    DOCTEST_CHECK(all.confidence.value == 0);
+    DOCTEST_CHECK(all.problem == edit::SearchProblem::Unsure);
+    request.rivals = "none";   // whoever knows better may say so
+    DOCTEST_CHECK(edit::locate(fixture.input(request), fixture.tools()).problem == edit::SearchProblem::None);
+}
+
 DOCTEST_TEST_CASE("a label made by hand is taken as it is, and nothing is looked for") {
     const Quiet quiet;
     Fixture fixture;

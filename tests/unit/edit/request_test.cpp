@@ -175,6 +175,19 @@ DOCTEST_TEST_CASE("the target is guessed from the sentence") {
     DOCTEST_CHECK(guessed_target("a bear with", "bear") == "bear");
 }
 
+DOCTEST_TEST_CASE("all that a sentence says of the source or names may be its news") {
+    using Words = std::vector<std::string>;
+    const auto possible = [](const char* sentence, const char* source, const Words& said = {}) {
+        return edit::possible_targets(sentence, source, said);
+    };
+    DOCTEST_CHECK(possible("a golden bear wearing a red hat on the snow", "bear") == Words{"hat", "golden", "snow"});
+    DOCTEST_CHECK(possible("a golden bear wearing a red hat on the snow", "bear", {"a", "bear", "hat", "red"}) == Words{"golden", "snow"});
+    DOCTEST_CHECK(possible("a golden bear on the snow", "grass") == Words{"bear", "snow"});
+    DOCTEST_CHECK(possible("a red ball beside a bear", "bear") == Words{"bear", "ball"});   // the sentence alone does not tell
+    DOCTEST_CHECK(possible("a blue bear", "bear", {"a", "blue", "bear"}) == Words{"blue"});
+    DOCTEST_CHECK(possible("bear", "bear") == Words{"bear"});
+}
+
 DOCTEST_TEST_CASE("what applied edits said already is no news") {
     using edit::guessed_target;
     const auto said = [](const std::vector<EditRequest>& applied) { return edit::words_said(applied); };

@@ -7,6 +7,7 @@
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/edit_job.h"
 #include "engine/pipeline/installed.h"
+#include "engine/synth/synth.h"
 
 #ifdef GSE_NEURAL
 namespace {
@@ -68,5 +69,33 @@ DOCTEST_TEST_CASE("edit job: a scene that one job learned is unknown to the next
     learned.reset();   // the end of one tuning takes nothing from another
     DOCTEST_CHECK(picture_of(other->model()) == second);
     DOCTEST_CHECK(picture_of(plain->model()) == untouched);
+}
+
+DOCTEST_TEST_CASE("edit job: the word that is new is read off the scene, which is looked at from where the model knows it") {
+    const auto model = load_recipe_model({});
+    synth::SceneSpec spec;
+    spec.object = "bear";
+    spec.material = "red";
+    spec.accessory = "hat";
+    spec.ground = "snow";
+    spec.seed = 5;
+    const auto scene = synth::generate(spec);
+    const auto read = [&](const char* source, const char* sentence, const std::vector<std::string>& said = {}) {
+        EditRecipe recipe;
+        recipe.request.source = source;
+        recipe.request.prompt = sentence;
+        recipe.request.views = 6;
+        EditJob job(recipe, EditJobInput{scene.scene, {}, model, {}, {}, {}, said}, JobControl{});
+        const double fitted = length(job.views()[0].camera.centre());
+        job.locate();
+        DOCTEST_CHECK(job.target_read());
+        DOCTEST_CHECK(job.found());
+        DOCTEST_CHECK(length(job.views()[0].camera.centre()) < 0.6 * fitted);   // most of the fitted picture is ground
+        return job.recipe().request.target;
+    };
+    DOCTEST_CHECK(read("bear", "a golden bear wearing a hat on the snow") == "golden");
+    DOCTEST_CHECK(read("bear", "a red bear wearing a hat and a scarf on the snow") == "scarf");
+    DOCTEST_CHECK(read("snow", "a red bear wearing a hat on the sand") == "sand");
+    DOCTEST_CHECK(read("bear", "a red bear wearing a hat on the snow", {"a", "bear", "hat"}) == "red");
 }
 #endif

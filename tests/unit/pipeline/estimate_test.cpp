@@ -48,9 +48,9 @@ DOCTEST_TEST_CASE("an estimate is the sum of what is to be done") {
     work = located();
     work.loaded = work.located = false;
     work.tune_steps = 10;
-    // Four distances of six views, then ten views twice.
+    // Ten views twice.
     DOCTEST_CHECK(pipeline::estimated_seconds(measured(), request, work) ==
-                  doctest::Approx(3 + 3 + (24 + 20) * 0.1 + 4 + 100 * 0.06 + 1));
+                  doctest::Approx(3 + 3 + 20 * 0.1 + 4 + 100 * 0.06 + 1));
     request.dynamic_mask = true;   // half of the steps, each view once an eighth
     auto known = measured();
     known.follow = 0.5;
