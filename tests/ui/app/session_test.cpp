@@ -134,6 +134,45 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
     DOCTEST_CHECK(again.app.model().request.prompt == sentence);   // as it was typed
 }
 
+DOCTEST_TEST_CASE("the word that is new is read off the scene when it is searched, and the edit takes that search") {
+    if (!networks()) return;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto typed = app.model().request;
+    typed.source = "grass";
+    typed.prompt = "a bear on the snow";
+    typed.target.clear();
+    typed.iterations = 2;
+    app.set_request(typed);
+    DOCTEST_CHECK(app.target() == "bear");   // all that the sentence alone can say
+    app.locate();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(app.model().read_target == "snow");
+    DOCTEST_CHECK(app.target() == "snow");
+    DOCTEST_CHECK(app.model().request.target.empty());   // still for the pictures to say
+    const auto searches = app.model().search.number;
+    app.edit();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(app.model().search.number == searches);
+    DOCTEST_REQUIRE(app.model().result_waiting);
+    app.apply_result();
+    const auto recipe = nlohmann::ordered_json::parse(app.document().state().stack[0].recipe);
+    DOCTEST_CHECK(recipe["request"]["target"] == "snow");
+    typed.prompt = "a bear on the sand";   // another sentence: what was read of the last one says nothing of it
+    app.set_request(typed);
+    session.until([&] { return app.model().read_target.empty(); }, 5);
+    DOCTEST_CHECK(app.model().read_target.empty());
+    DOCTEST_CHECK(app.target() == "sand");   // the bear was said already
+    typed.prompt = "a blue bear on the snow";
+    typed.source = "bear";
+    app.set_request(typed);
+    app.edit();   // without a search before: it reads the word too, and says so
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(app.model().read_target == "blue");
+    app.shut_down();
+}
+
 DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keeps what it reached") {
     if (!networks()) return;
     const Place place;
