@@ -222,6 +222,7 @@ private:
     EditRecipe current_recipe() const;
     EditRecipe open_recipe(EditRecipe recipe) const;
     std::string read_target() const;
+    std::string model_key() const;
     Scene working_scene() const;
     void take_located(std::shared_ptr<EditJob> job, std::vector<float> attention);
     void show_located(const EditJob& job);
@@ -302,7 +303,7 @@ private:
 
     // Work
     std::shared_ptr<neural::TextToImage> text_model_;
-    std::string text_model_path_, model_path_, model_tried_;
+    std::string text_model_key_, model_path_, model_tried_;
     neural::ModelProfile profile_;   // of the model in use
     EditRecipe defaults_;            // what settings are that nobody chose
     std::map<std::string, std::string> model_problems_;   // by path, of models that were tried; empty = none yet

@@ -202,7 +202,7 @@ nlohmann::json Application::ui_json() const {
     json["view"] = fields_to_json(model_.view);
     json["exports"] = fields_to_json(model_.exports);
     json["request"] = fields_to_json(model_.request);
-    json["model_settings"] = fields_to_json(model_.model_settings);
+    json["model_settings"] = ui::model_settings_to_json(model_.model_settings);
     json["model"] = model_path_;
     if (!layout_.empty()) json["layout"] = layout_;
     const auto rotation = camera_.rotation;
@@ -225,7 +225,7 @@ void Application::ui_from_json(const nlohmann::json& json) {
             // What an applied edit said already is no news, even if it was clicked once.
             if (contains_word(model_.said_words, model_.request.target)) model_.request.target.clear();
         }
-        if (json.contains("model_settings")) fields_from_json(model_.model_settings, json["model_settings"]);
+        if (json.contains("model_settings")) model_.model_settings = ui::model_settings_from_json(json["model_settings"], model_.model_settings);
         if (json.contains("model")) try_model(json["model"].get<std::string>(), !json.contains("request"));
         if (json.contains("layout")) {
             layout_ = json["layout"].get<std::string>();

@@ -61,14 +61,19 @@ void Application::use_profile(const neural::ModelProfile& profile, bool takes_se
     EditRecipe next;
     apply_profile(profile, next, {});
     if (takes_settings) {
-        auto& learning = model_.model_settings;
-        if (learning.learn_steps == defaults_.dreambooth.steps) learning.learn_steps = next.dreambooth.steps;
-        if (learning.learn_rank == defaults_.dreambooth.rank) learning.learn_rank = next.dreambooth.rank;
+        auto& settings = model_.model_settings;
+        move_defaults(settings.learning, defaults_.dreambooth, next.dreambooth);
+        move_defaults(settings.guidance, defaults_.guidance, next.guidance);
+        move_defaults(settings.attention, defaults_.attention, next.attention);
+        if (settings.threads == defaults_.job.threads) settings.threads = next.job.threads;
         move_defaults(model_.request, defaults_.request, next.request);
     }
     model_.request_defaults = next.request;
-    model_.model_settings_defaults.learn_steps = next.dreambooth.steps;
-    model_.model_settings_defaults.learn_rank = next.dreambooth.rank;
+    auto& standard = model_.model_settings_defaults;
+    standard.learning = next.dreambooth;
+    standard.guidance = next.guidance;
+    standard.attention = next.attention;
+    standard.threads = next.job.threads;
     profile_ = profile;
     defaults_ = std::move(next);
 }
@@ -96,6 +101,7 @@ void Application::try_model(const std::string& path, bool takes_settings) {
     // Headers can be right where weights are not: only what has been loaded is in use.
     JobParameters job;
     job.model = wanted;
+    job.device = model_.model_settings.device;
     neural::ModelProfile profile;
     try {
         profile = profile_of(job);
@@ -115,7 +121,7 @@ void Application::try_model(const std::string& path, bool takes_settings) {
                      if (error != nullptr) return refuse_model(wanted, reason_of(*error));
                      use_model(wanted, profile, takes_settings);
                      text_model_ = *model;
-                     text_model_path_ = model_path_;
+                     text_model_key_ = model_key();
                  }});
     list_models();
 }

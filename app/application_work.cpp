@@ -37,10 +37,17 @@ EditRecipe Application::current_recipe() const {
     recipe.job.model = model_path_;
     recipe.request = model_.request;
     recipe.use_dreambooth = model_.model_settings.learn_scene;
-    recipe.dreambooth.steps = model_.model_settings.learn_steps;
-    recipe.dreambooth.rank = model_.model_settings.learn_rank;
+    recipe.dreambooth = model_.model_settings.learning;
+    recipe.guidance = model_.model_settings.guidance;
+    recipe.attention = model_.model_settings.attention;
+    recipe.job.device = model_.model_settings.device;
+    recipe.job.threads = model_.model_settings.threads;
+    recipe.job.front = model_.model_settings.front;
     auto set_by_user = changed_fields("request", recipe.request, defaults_.request);
     set_by_user.merge(changed_fields("dreambooth", recipe.dreambooth, defaults_.dreambooth));
+    set_by_user.merge(changed_fields("guidance", recipe.guidance, defaults_.guidance));
+    set_by_user.merge(changed_fields("attention", recipe.attention, defaults_.attention));
+    if (recipe.job.threads != defaults_.job.threads) set_by_user.insert("job.threads");
     apply_profile(profile_, recipe, set_by_user);
     auto& request = recipe.request;
     const auto source = edit::as_told(request.source);
@@ -65,6 +72,9 @@ EditRecipe Application::open_recipe(EditRecipe recipe) const {
     if (model_.request.target.empty() && !recipe.request.source.empty()) recipe.request.target.clear();
     return recipe;
 }
+
+/// What the loaded model depends on.
+std::string Application::model_key() const { return model_path_ + '\n' + model_.model_settings.device; }
 
 Scene Application::working_scene() const {
     Scene scene;
@@ -114,7 +124,7 @@ double seconds_since(std::chrono::steady_clock::time_point then) {
 
 void load(Search& search, const JobParameters& job, const JobControl& control) {
     control.report("loading the model", 0, 0);
-    if (search.model) return;
+    if (search.model) return use_threads(job);
     const auto start = std::chrono::steady_clock::now();
     search.model = load_recipe_model(job);
     search.measured.load = seconds_since(start);
@@ -134,7 +144,7 @@ void Application::locate() {
     if (!require_scene() || work_.running()) return;
     if (pending_) return toast("Apply or discard the edit first.");
     auto search = std::make_shared<Search>();
-    search->model = text_model_path_ == model_path_ ? text_model_ : nullptr;
+    search->model = text_model_key_ == model_key() ? text_model_ : nullptr;
     EditRecipe recipe = current_recipe();
     if (recipe.request.prompt.empty() && !recipe.request.source.empty()) recipe.request.prompt = "a " + recipe.request.source;
     try {
@@ -150,9 +160,10 @@ void Application::locate() {
         look(*search);
         if (!measured && search->job->found()) measure_steps(search->measured, *search->job);
     };
-    auto done = [this, search, recipe, recipe_key = measured_key(), model = model_path_](const Error* error) {
-        if (search->model) text_model_ = search->model, text_model_path_ = model;
-        else if (error != nullptr && error->code() != ErrorCode::Cancelled) drop_model(model, *error);
+    auto done = [this, search, recipe, recipe_key = measured_key(), key = model_key(), model = model_path_,
+                 on_cpu = model_.model_settings.device == "cpu"](const Error* error) {
+        if (search->model) text_model_ = search->model, text_model_key_ = key;
+        else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu) drop_model(model, *error);
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
         job_ = search->job;
         EditRecipe searched = recipe;
@@ -197,6 +208,17 @@ void describe(LiveEdit& live, const EditRecipe& recipe) {
     live.iterations = recipe.request.iterations;
 }
 
+namespace {
+
+/// Why an edit ended before its last step, if something went wrong.
+void throw_what_ended(const edit::EditResult& result) {
+    const char* kept = "; what the edit had reached can be applied";
+    if (const auto& shortage = result.shortage) throw Error(ErrorCode::Foreign, shortage->message() + kept, shortage->hint());
+    if (const auto& failure = result.failure) throw Error(failure->code(), failure->message() + kept, failure->hint());
+}
+
+}  // namespace
+
 void Application::edit() {
     if (!require_scene() || work_.running()) return;
     if (pending_) return toast("Apply or discard the last edit first.");
@@ -215,7 +237,7 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     auto search = std::make_shared<Search>();
     if (job_fits()) search->job = job_;
     live_recipe_ = recipe;
-    search->model = text_model_path_ == model_path_ ? text_model_ : nullptr;
+    search->model = text_model_key_ == model_key() ? text_model_ : nullptr;
     std::vector<std::uint8_t> label;
     if (label_drives_edit()) label = *document_.state().labels[static_cast<std::size_t>(document_.state().active_label)].bits;
     live_ = std::make_shared<LiveEdit>();
@@ -249,15 +271,12 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
         const auto finishing = std::chrono::steady_clock::now();
         fill_pending(*search->job, *pending);
         search->measured.finish = seconds_since(finishing);
-        if (const auto& shortage = search->job->result().shortage)
-            throw Error(ErrorCode::Foreign, shortage->message() + "; what the edit had reached can be applied",
-                        shortage->hint());
-        if (const auto& failure = search->job->result().failure)
-            throw Error(failure->code(), failure->message() + "; what the edit had reached can be applied", failure->hint());
+        throw_what_ended(search->job->result());
     };
-    auto done = [this, search, pending, recipe_key = measured_key(), model = model_path_](const Error* error) {
-        if (search->model) text_model_ = search->model, text_model_path_ = model;
-        else if (error != nullptr && error->code() != ErrorCode::Cancelled) drop_model(model, *error);
+    auto done = [this, search, pending, recipe_key = measured_key(), key = model_key(), model = model_path_,
+                 on_cpu = model_.model_settings.device == "cpu"](const Error* error) {
+        if (search->model) text_model_ = search->model, text_model_key_ = key;
+        else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu) drop_model(model, *error);
         remember_measured(recipe_key, search->measured);
         refresh_live();   // what was found last, and the last steps
         if (branch_) return go_on_from_branch();
@@ -412,11 +431,11 @@ void Application::remember_measured(const std::string& key, const Measured& meas
 
 void Application::refresh_estimate() {
     PlannedWork work;
-    work.loaded = text_model_ != nullptr && text_model_path_ == model_path_;
+    work.loaded = text_model_ != nullptr && text_model_key_ == model_key();
     work.located = job_fits();
     work.shows_idea = model_.model_settings.gate;
     const bool learns = model_.model_settings.learn_scene && !work.located && !known_tuning(current_recipe());
-    work.tune_steps = learns ? model_.model_settings.learn_steps : 0;
+    work.tune_steps = learns ? model_.model_settings.learning.steps : 0;
     work.rows = document_.state().current.size();
     try {
         work.adds = edit::decide_mode(edit::validated(model_.request), std::nullopt).first == edit::EditMode::Add;

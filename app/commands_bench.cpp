@@ -16,6 +16,7 @@
 #include "engine/base/file.h"
 #include "engine/base/print.h"
 #include "engine/bench/clip_bench.h"
+#include "engine/bench/raster_report.h"
 #include "engine/bench/search_bench.h"
 #include "engine/io/cameras.h"
 #include "engine/io/scene_io.h"
@@ -26,8 +27,6 @@
 namespace gse::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 struct RasterBenchOptions {
     std::filesystem::path scene;
     std::string cameras;
@@ -35,37 +34,6 @@ struct RasterBenchOptions {
     int views = 4;
     raster::BenchSettings settings;
 };
-
-Json times_json(const raster::BenchTimes& times) {
-    return {{"wall_median_ms", times.wall_median_ms},
-            {"wall_min_ms", times.wall_min_ms},
-            {"cpu_median_ms", times.cpu_median_ms},
-            {"cpu_min_ms", times.cpu_min_ms}};
-}
-
-Json bench_json(const raster::RasterBench& bench) {
-    Json json;
-    json["kernels"] = bench.kernels;
-    json["threads"] = bench.threads;
-    json["splats"] = bench.splats;
-    json["width"] = bench.width;
-    json["height"] = bench.height;
-    json["views"] = bench.views;
-    json["forward_ms"] = bench.forward_ms;
-    json["backward_ms"] = bench.backward_ms;
-    json["forward"] = times_json(bench.forward);
-    json["backward"] = times_json(bench.backward);
-    json["tile_pairs"] = bench.pairs;
-    json["blended_pairs"] = bench.blended_pairs;
-    json["ns_per_pair"] = bench.forward_ns_per_pair + bench.backward_ns_per_pair;
-    json["forward_ns_per_pair"] = bench.forward_ns_per_pair;
-    json["backward_ns_per_pair"] = bench.backward_ns_per_pair;
-    json["peak_rss_mb"] = bench.peak_rss_mb;
-    json["error"] = {{"max_abs", bench.max_abs_error},
-                     {"psnr_db", bench.psnr_db},
-                     {"gradient_relative_l2", bench.gradient_error}};
-    return json;
-}
 
 /// Up to `count` cameras, evenly spread over those named; an orbit when there are none.
 std::vector<Camera> bench_cameras(const Scene& scene, const RasterBenchOptions& options) {
@@ -97,7 +65,7 @@ void add_raster_bench(CLI::App& bench) {
     command->add_option("--out", options->output, "Also write the JSON to this file");
     command->callback([options] {
         const Scene scene = load_scene(options->scene);
-        const auto json = bench_json(
+        const auto json = raster_report(
             raster::bench_raster(scene.gaussians.spans(), bench_cameras(scene, *options), options->settings));
         if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
         print_json(json, 2);

@@ -65,6 +65,7 @@ struct PromptState {
     std::vector<std::string> source_suggestions;
     std::string source_help;
     bool source_known = true;
+    std::string settings_filter;   // what "All settings" is searched for
     std::string guessed_target;
     std::string cut_at;  // first word that the text encoder does not read
     bool seed_locked = true;  // open: every edit gets another seed

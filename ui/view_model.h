@@ -17,6 +17,7 @@
 #include "engine/math/framing.h"
 #include "engine/scene/camera_key.h"
 #include "engine/scene/document.h"
+#include "ui/model_settings.h"
 
 namespace gse::ui {
 
@@ -218,22 +219,6 @@ struct ExportSettings {
         f("scene_path", self.scene_path, "File of the scene: .ply, .compressed.ply, .splat, .spz.");
         f("with_labels", self.with_labels, "Write the label as a float column (PLY).");
         f("camera_path_path", self.camera_path_path, "File of the camera path.");
-    }
-};
-
-/// What the model does before an edit's loop. One list of fields.
-struct ModelSettings {
-    bool gate = true;
-    bool learn_scene = false;
-    int learn_steps = 200;
-    int learn_rank = 0;
-
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
-        f("gate", self.gate, "Before the edit, show what the model itself makes of four views, and warn when that is not what was asked.");
-        f("learn_scene", self.learn_scene, "DreamBooth: the model learns this scene from renders of it first.");
-        f("learn_steps", self.learn_steps, "Steps of learning the scene.", Range{1, 10000});
-        f("learn_rank", self.learn_rank, "0 = all weights learn; above: a LoRA of this rank, lighter and weaker.", Range{0, 256});
     }
 };
 

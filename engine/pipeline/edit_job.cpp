@@ -134,8 +134,10 @@ std::filesystem::path model_path(const JobParameters& job) {
 
 }  // namespace
 
+void use_threads(const JobParameters& job) { neural_api().set_threads(job.threads); }
+
 std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job) {
-    neural_api().set_threads(job.threads);
+    use_threads(job);
     return neural_api().load_model(model_path(job), job.device);
 }
 

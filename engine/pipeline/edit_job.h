@@ -48,6 +48,9 @@ struct EditObserver {
 /// The model a recipe names (the starter when it names none). Throws Error (Model, NotFound).
 std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job);
 
+/// Sets how many threads the networks take, for a model that is loaded already.
+void use_threads(const JobParameters& job);
+
 /// A scene with its model and views, ready to be edited.
 class EditJob {
 public:

@@ -1,7 +1,6 @@
 // Benchmark of the rasterizer: wall and CPU time per view, work counts, error against the plain version.
 #include "engine/raster/bench.h"
 
-#include <sys/resource.h>
 #include <time.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/check.h"
+#include "engine/base/process_memory.h"
 #include "engine/base/random.h"
 #include "engine/raster/plain.h"
 #include "engine/raster/rasterizer.h"
@@ -149,9 +149,7 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     const double per_pair = 1e6 / std::max(1.0, static_cast<double>(result.blended_pairs));
     result.forward_ns_per_pair = result.forward.cpu_min_ms * per_pair;
     result.backward_ns_per_pair = result.backward.cpu_min_ms * per_pair;
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    result.peak_rss_mb = static_cast<double>(usage.ru_maxrss) / 1024.0;
+    result.peak_rss_mb = peak_rss_mb();
     if (settings.compare_plain)
         compare_with_plain({gaussians, views.front(), image_settings, d_colour}, *rasterizer, result);
     return result;

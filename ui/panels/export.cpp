@@ -152,7 +152,7 @@ std::string why_not_film(const Context& context) {
 
 void draw_turntable(Context& context) {
     heading(context, "Turntable");
-    const auto wanted = [](const char* name) {
+    const auto wanted = [](const char* name, const char*) {
         for (const char* field : {"frames", "fps", "degrees", "start_degrees", "ease", "radius_factor",
                                   "elevation_degrees", "around_label", "before_after"})
             if (std::string_view(field) == name) return true;

@@ -96,7 +96,7 @@ void draw_settings_panel(Context& context) {
     }
     draw_background(context);
     // The mode and the background have controls of their own; the wipe is dragged in the picture.
-    const auto wanted = [](const char* name) {
+    const auto wanted = [](const char* name, const char*) {
         const std::string_view field(name);
         return field != "mode" && field != "background" && field != "wipe";
     };

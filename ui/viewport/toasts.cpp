@@ -37,7 +37,7 @@ Space space_of(const Context& context, float top) {
 }
 
 /// One message laid out for a width.
-struct Plan {
+struct ToastPlan {
     std::string text;
     ImVec2 text_size;
     float buttons = 0;   // width of them
@@ -45,10 +45,10 @@ struct Plan {
     ImVec2 size;
 };
 
-Plan plan_of(const Context& context, const Toast& toast, float width, float height) {
+ToastPlan plan_of(const Context& context, const Toast& toast, float width, float height) {
     const ImGuiStyle& style = ImGui::GetStyle();
     const float inner = width - style.WindowPadding.x * 2;
-    Plan plan{toast.text, ImGui::CalcTextSize(toast.text.c_str(), nullptr, false, inner), 0, false, {}};
+    ToastPlan plan{toast.text, ImGui::CalcTextSize(toast.text.c_str(), nullptr, false, inner), 0, false, {}};
     plan.buttons = button_width("Close");
     if (!toast.button.empty()) plan.buttons += button_width(toast.button) + style.ItemSpacing.x;
     plan.size = {std::min(inner, std::max(plan.text_size.x + 1, plan.buttons)) + style.WindowPadding.x * 2,
@@ -60,7 +60,7 @@ Plan plan_of(const Context& context, const Toast& toast, float width, float heig
     return plan;
 }
 
-void draw_toast(Context& context, std::size_t index, const Plan& plan, ImVec2 low) {
+void draw_toast(Context& context, std::size_t index, const ToastPlan& plan, ImVec2 low) {
     const auto& toast = context.model.toasts[index];
     ImGui::SetCursorScreenPos(low);
     ImGui::PushStyleColor(ImGuiCol_Border, toast.is_error ? palette::Bad : palette::Border);
@@ -95,7 +95,7 @@ float draw_toasts(Context& context, float top) {
     if (width < context.em * NarrowestEm) return 0;
     float bottom = space.bottom;
     for (std::size_t index = context.model.toasts.size(); index-- > 0;) {
-        const Plan plan = plan_of(context, context.model.toasts[index], width, bottom - space.top);
+        const ToastPlan plan = plan_of(context, context.model.toasts[index], width, bottom - space.top);
         if (bottom - plan.size.y < space.top) break;   // older ones wait for room
         draw_toast(context, index, plan, {space.right - plan.size.x, bottom - plan.size.y});
         bottom -= plan.size.y + context.em * 0.4f;

@@ -48,7 +48,7 @@ Value value_named(const P& parameters, const char* name) {
     return found;
 }
 
-/// Rows for the fields that `wanted(name)` lets through; `before(name)` may put a header first and say
+/// Rows for the fields that `wanted(name, help)` lets through; `before(name)` may put a header first and say
 /// whether the rows that follow are shown (a folded group). `standard` has the values to go back to.
 template <class P, class Wanted, class Before>
 bool field_rows(Context& context, const char* prefix, P& parameters, Wanted&& wanted, Before&& before,
@@ -57,7 +57,7 @@ bool field_rows(Context& context, const char* prefix, P& parameters, Wanted&& wa
     P::visit_fields(parameters, [&](const char* name, auto& value, const char* help, auto... range) {
         using Value = std::remove_reference_t<decltype(value)>;
         before(name, shown);
-        if (!shown || !wanted(name)) return;
+        if (!shown || !wanted(name, help)) return;
         const auto fallback = value_named<Value>(standard, name);
         FieldRow row{prefix, name, help, std::nullopt};
         row.stated = fallback != value_named<Value>(program_defaults<P>(), name);

@@ -6,6 +6,7 @@
 
 #include "engine/base/file.h"
 #include "tests/ui/app/session.h"
+#include "ui/model_settings.h"
 
 using namespace gse;
 using namespace gse::test;
@@ -35,21 +36,21 @@ DOCTEST_TEST_CASE("a model's settings are taken where the artist changed nothing
         Session session;
         session.open_bear();   // with 8 views
         auto& app = session.app;
-        const auto steps = app.model().model_settings.learn_steps;
+        const auto steps = app.model().model_settings.learning.steps;
         app.choose_model(stating.string());
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().request.tau == 0.6);
         DOCTEST_CHECK(app.model().request_defaults.views == 5);
-        DOCTEST_CHECK(app.model().model_settings_defaults.learn_steps == 333);
+        DOCTEST_CHECK(app.model().model_settings_defaults.learning.steps == 333);
         DOCTEST_CHECK(app.model().request.views == 8);
         DOCTEST_CHECK(app.model().request.prompt == "a blue bear on the grass");
-        DOCTEST_CHECK(app.model().model_settings.learn_steps == 333);
+        DOCTEST_CHECK(app.model().model_settings.learning.steps == 333);
         app.choose_model(app::starter_model_path().string());
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().request.tau == usual.tau);
         DOCTEST_CHECK(app.model().request_defaults.views == usual.views);
         DOCTEST_CHECK(app.model().request.views == 8);
-        DOCTEST_CHECK(app.model().model_settings.learn_steps == steps);
+        DOCTEST_CHECK(app.model().model_settings.learning.steps == steps);
         app.choose_model(wrong.string());
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().toasts.back().text.find("\"tao\"") != std::string::npos);
@@ -61,6 +62,59 @@ DOCTEST_TEST_CASE("a model's settings are taken where the artist changed nothing
     Session again;
     DOCTEST_CHECK(again.app.model().request.tau == 0.6);
     DOCTEST_CHECK(again.app.model().request.views == 5);
+}
+
+DOCTEST_TEST_CASE("what the window says of guidance, attention, learning and front is in the recipe and in the project") {
+    if (!networks()) return;
+    const Place place;
+    {
+        Session session;
+        session.open_bear();
+        auto& app = session.app;
+        auto settings = app.model().model_settings;
+        settings.front = "45";
+        settings.threads = 2;
+        settings.guidance.guidance_scale = 6;
+        settings.attention.strength = 0.5;
+        settings.learning.batch = 1;
+        app.set_model_settings(settings);
+        auto request = app.model().request;
+        request.iterations = 2;
+        app.set_request(request);
+        app.edit();
+        DOCTEST_REQUIRE(session.idle());
+        DOCTEST_CHECK(app.model().job.error.empty());
+        app.apply_result();
+        const auto recipe = nlohmann::ordered_json::parse(app.document().state().stack[0].recipe);
+        DOCTEST_CHECK(recipe["job"]["front"] == "45");
+        DOCTEST_CHECK(recipe["job"]["threads"] == 2);
+        DOCTEST_CHECK(recipe["guidance"]["guidance_scale"] == 6);
+        DOCTEST_CHECK(recipe["attention"]["strength"] == 0.5);
+        app.save_project(place.folder / "bear.gsep");
+        DOCTEST_REQUIRE(session.idle());
+        app.shut_down();
+    }
+    Session again;
+    again.app.open(place.folder / "bear.gsep");
+    DOCTEST_REQUIRE(again.until([&] { return again.app.model().document != nullptr; }));
+    const auto& settings = again.app.model().model_settings;
+    DOCTEST_CHECK(settings.front == "45");
+    DOCTEST_CHECK(settings.guidance.guidance_scale == 6);
+    DOCTEST_CHECK(settings.attention.strength == 0.5);
+    DOCTEST_CHECK(settings.learning.batch == 1);
+    again.app.shut_down();
+}
+
+DOCTEST_TEST_CASE("settings of the first projects are read, wrong ones are refused by name") {
+    const auto old = ui::model_settings_from_json({{"learn_steps", 31}, {"learn_rank", 4}, {"gate", false}}, {});
+    DOCTEST_CHECK(old.learning.steps == 31);
+    DOCTEST_CHECK(old.learning.rank == 4);
+    DOCTEST_CHECK(!old.gate);
+    const auto round = ui::model_settings_from_json(ui::model_settings_to_json(old), {});
+    DOCTEST_CHECK(ui::model_settings_to_json(round) == ui::model_settings_to_json(old));
+    for (const auto& wrong : {nlohmann::ordered_json{{"guidance", {{"clamp", -1}}}}, nlohmann::ordered_json{{"device", 7}},
+                              nlohmann::ordered_json{{"learn", true}}})
+        DOCTEST_CHECK_THROWS_AS(ui::model_settings_from_json(wrong, {}), Error);
 }
 
 DOCTEST_TEST_CASE("a scene is learned once for the same words and settings, and only where it was asked for") {
@@ -76,7 +130,7 @@ DOCTEST_TEST_CASE("a scene is learned once for the same words and settings, and 
     const auto search = [&](bool learns, auto change) {
         auto settings = app.model().model_settings;
         settings.learn_scene = learns;
-        settings.learn_steps = 1;
+        settings.learning.steps = 1;
         app.set_model_settings(settings);
         auto request = app.model().request;
         change(request);

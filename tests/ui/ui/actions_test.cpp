@@ -40,15 +40,43 @@ DOCTEST_TEST_CASE("prompt: back to the defaults is back to what suits the model;
     Harness harness({Wide, High, 1, Situation::Scene, false});
     auto& model = harness.application.model();
     model.request_defaults.image_size = 512;
-    model.model_settings_defaults.learn_steps = 400;
+    model.model_settings_defaults.learning.steps = 400;
+    model.model_settings_defaults.guidance.guidance_scale = 9;
     model.request.views = 9;
     const auto prompt = model.request.prompt;
     harness.click("prompt.advanced");
     harness.click("prompt.defaults");
     DOCTEST_CHECK(model.request.image_size == 512);
     DOCTEST_CHECK(model.request.views == edit::EditRequest{}.views);
-    DOCTEST_CHECK(model.model_settings.learn_steps == 400);
+    DOCTEST_CHECK(model.model_settings.learning.steps == 400);
+    DOCTEST_CHECK(model.model_settings.guidance.guidance_scale == 9);
     DOCTEST_CHECK(model.request.prompt == prompt);
+}
+
+DOCTEST_TEST_CASE("prompt: every setting of a recipe is found by a word of its name or explanation") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& model = harness.application.model();
+    harness.click("prompt.advanced");
+    DOCTEST_CHECK(harness.find("guidance.guidance_scale") == nullptr);   // in its group
+    const auto search = [&](const char* text) {
+        harness.click("prompt.filter");
+        for (int letter = 0; letter < 40; ++letter) harness.key(key::Backspace);
+        harness.type(text);
+        harness.frame();
+    };
+    for (const auto& [text, field] : {std::pair{"GUIDANCE SC", "guidance.guidance_scale"}, std::pair{"img2img", "attention.method"},
+                                      std::pair{"prior", "learning.prior_weight"}, std::pair{"shows its front", "model_settings.front"},
+                                      std::pair{"where the networks", "model_settings.device"}, std::pair{"dbscan", "request.dbscan_eps"}}) {
+        search(text);
+        DOCTEST_CHECK_MESSAGE(harness.find(field) != nullptr, text);
+        DOCTEST_CHECK_MESSAGE(harness.find("request.tau") == nullptr, text);
+    }
+    search("front");
+    harness.click("model_settings.front");
+    harness.type("90");
+    DOCTEST_CHECK(model.model_settings.front == "90");
+    search("no such thing");
+    DOCTEST_CHECK(harness.find("model_settings.front") == nullptr);
 }
 
 DOCTEST_TEST_CASE("prompt: words, chips, suggestion, mode, seed") {

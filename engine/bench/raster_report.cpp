@@ -1,0 +1,42 @@
+// A measurement of the rasterizer as JSON.
+#include "engine/bench/raster_report.h"
+
+namespace gse::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json times_json(const raster::BenchTimes& times) {
+    return {{"wall_median_ms", times.wall_median_ms},
+            {"wall_min_ms", times.wall_min_ms},
+            {"cpu_median_ms", times.cpu_median_ms},
+            {"cpu_min_ms", times.cpu_min_ms}};
+}
+
+}  // namespace
+
+Json raster_report(const raster::RasterBench& bench) {
+    Json json;
+    json["kernels"] = bench.kernels;
+    json["threads"] = bench.threads;
+    json["splats"] = bench.splats;
+    json["width"] = bench.width;
+    json["height"] = bench.height;
+    json["views"] = bench.views;
+    json["forward_ms"] = bench.forward_ms;
+    json["backward_ms"] = bench.backward_ms;
+    json["forward"] = times_json(bench.forward);
+    json["backward"] = times_json(bench.backward);
+    json["tile_pairs"] = bench.pairs;
+    json["blended_pairs"] = bench.blended_pairs;
+    json["ns_per_pair"] = bench.forward_ns_per_pair + bench.backward_ns_per_pair;
+    json["forward_ns_per_pair"] = bench.forward_ns_per_pair;
+    json["backward_ns_per_pair"] = bench.backward_ns_per_pair;
+    json["peak_rss_mb"] = bench.peak_rss_mb;
+    json["error"] = {{"max_abs", bench.max_abs_error},
+                     {"psnr_db", bench.psnr_db},
+                     {"gradient_relative_l2", bench.gradient_error}};
+    return json;
+}
+
+}  // namespace gse::bench

@@ -1,0 +1,47 @@
+// What a recipe has beside the request, as panels show and projects keep it.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "engine/base/fields.h"
+#include "engine/neural/attention_parameters.h"
+#include "engine/neural/dreambooth_parameters.h"
+#include "engine/neural/sds_parameters.h"
+
+namespace gse::ui {
+
+/// How the model is run, asked and taught: what a recipe has beside the request. One list of fields for each part.
+struct ModelSettings {
+    bool gate = true;
+    bool learn_scene = false;
+    std::string device = "cpu";
+    int threads = 1;
+    std::string front;
+    neural::SdsParameters guidance;
+    neural::AttentionParameters attention;
+    neural::DreamBoothParameters learning;
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("gate", self.gate, "Before the edit, show what the model itself makes of four views, and warn when that is not what was asked.");
+        f("learn_scene", self.learn_scene, "DreamBooth: the model learns this scene from renders of it first.");
+        f("device", self.device, "Where the networks run: cpu, or cuda where there is one.");
+        f("threads", self.threads, "Threads of the networks; small ones gain nothing from more. Another number may round differently.", Range{1, 256});
+        f("front", self.front, "Direction in degrees from which the scene shows its front (0, 90, -45.5); the model is then told which view is the front. Empty = not known.");
+    }
+    /// Calls f(name, part) for the parts with fields of their own.
+    template <class Self, class F>
+    static void visit_parts(Self& self, F&& f) {
+        f("guidance", self.guidance);
+        f("attention", self.attention);
+        f("learning", self.learning);
+    }
+};
+
+/// An object of the fields, with one more object for each part.
+nlohmann::ordered_json model_settings_to_json(const ModelSettings& settings);
+/// Reads what is there over `settings`, older projects too. Throws Error for what is no setting or out of its range.
+ModelSettings model_settings_from_json(nlohmann::ordered_json json, ModelSettings settings);
+
+}  // namespace gse::ui
