@@ -45,7 +45,7 @@ struct SearchSettings {
     double fallback_mass = 0.5;
     double label_smoothness = 1.5;
     double evidence_px = 0.5;
-    double least_confidence = 0.25;   // measured: `gseditpro bench search`
+    double least_confidence = 0.2;   // measured: `gseditpro bench search`
     // Adding
     int seed_splats = 400;
 

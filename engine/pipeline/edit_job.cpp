@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "engine/base/check.h"
@@ -342,39 +343,37 @@ void EditJob::read_scene() {
     distances_ = std::move(worth);
 }
 
-void EditJob::choose_distance(const edit::LocateTools& tools) {
+void EditJob::choose_distance(const OrbitParameters& fitted, const std::vector<double>& distances, const edit::LocateTools& tools) {
     // The fitted orbit shows the whole scene; what the words mean may be a small part of it. The distance from which it is
-    // found most surely wins; a few views tell.
-    const OrbitParameters fitted = orbit_;
-    const int views = recipe_.request.views;
-    recipe_.request.views = std::min(views, ScanViews);
+    // found most surely wins; a few views tell, and what something is added to is enough.
+    const auto asked = std::pair{recipe_.request.views, recipe_.request.mode};
+    recipe_.request.views = std::min(asked.first, ScanViews);
+    recipe_.request.mode = "modify";
     double best = -1;
     OrbitParameters chosen = fitted;
-    for (const double distance : distances_) {
+    for (const double distance : distances) {
         orbit_ = fitted;
         orbit_.radius *= distance;
-        if (distances_.size() == 1) {
+        if (distances.size() == 1) {
             chosen = orbit_;
             break;
         }
         set_orbit_views();
         const auto found = edit::locate(locate_input(), tools);
         if (found.problem != edit::SearchProblem::None && found.problem != edit::SearchProblem::Unsure) continue;   // try nearer
-        const double score = found.confidence.value;
-        log::debug("orbit at {:.2f} of the fitted distance: confidence {:.3f}", distance, score);
-        if (score > best) {
-            best = score;
+        log::debug("orbit at {:.2f} of the fitted distance: confidence {:.3f}", distance, found.confidence.value);
+        if (found.confidence.value > best) {
+            best = found.confidence.value;
             chosen = orbit_;
         }
     }
-    recipe_.request.views = views;
+    std::tie(recipe_.request.views, recipe_.request.mode) = asked;
     orbit_ = chosen;
     set_orbit_views();
 }
 
-void EditJob::search(const edit::LocateTools& tools) {
-    const bool moves = automatic_views_ && recipe_.request.focus;
-    if (moves && !by_label_) choose_distance(tools);
+/// Looks from the views as they are, and once more from nearer where what was found is small.
+void EditJob::look_and_move_in(bool moves, const edit::LocateTools& tools) {
     located_ = edit::locate(locate_input(), tools);
     const auto& label = located_.mode == edit::EditMode::Add ? located_.source_label : located_.label;
     if (!moves || std::find(label.bits->begin(), label.bits->end(), std::uint8_t{1}) == label.bits->end()) return;
@@ -384,6 +383,27 @@ void EditJob::search(const edit::LocateTools& tools) {
     orbit_ = focused;
     set_orbit_views();
     located_ = edit::locate(locate_input(), tools);
+}
+
+void EditJob::search(const edit::LocateTools& tools) {
+    const bool moves = automatic_views_ && recipe_.request.focus;
+    if (!moves || by_label_) return look_and_move_in(moves, tools);
+    const OrbitParameters fitted = orbit_;
+    choose_distance(fitted, distances_, tools);
+    look_and_move_in(moves, tools);
+    std::vector<double> others;
+    for (const double distance : ScanDistances)
+        if (std::find(distances_.begin(), distances_.end(), distance) == distances_.end()) others.push_back(distance);
+    if (found() || others.empty()) return;
+    // The pictures as a whole fitted best where the word was not found.
+    const auto orbit = orbit_;
+    const auto located = located_;
+    choose_distance(fitted, others, tools);
+    look_and_move_in(moves, tools);
+    if (found() || located_.confidence.value > located.confidence.value) return;
+    orbit_ = orbit;
+    set_orbit_views();
+    located_ = located;
 }
 
 void EditJob::locate() {

@@ -130,7 +130,8 @@ private:
     void name_views();
     void read_scene();
     std::vector<Image> pictures_of(const std::vector<View>& views);
-    void choose_distance(const edit::LocateTools& tools);
+    void choose_distance(const OrbitParameters& fitted, const std::vector<double>& distances, const edit::LocateTools& tools);
+    void look_and_move_in(bool moves, const edit::LocateTools& tools);
     void search(const edit::LocateTools& tools);
     void look_again();
     void label_only_what_was_found();
