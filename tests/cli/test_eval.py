@@ -56,20 +56,6 @@ class Evaluations(ProgramTest):
         self.assertGreater(report["peak_rss_mb"], 0)
         self.assertTrue((out / report["sheets"][0]).read_bytes().startswith(b"\x89PNG"))
 
-    def test_the_starter_reaches_its_figures(self):
-        """Acceptance on held-out scenes, at the size of a quick run, with cameras that know where the thing is."""
-        out = self.folder / "out"
-        process = run("-q", "eval", "--out", out, "--oracle-views", "--seed", 5, "--edits", 4, "--kinds", "recolour add",
-                      "--views", 12, "--image-size", 64, "--iterations", 150, timeout=1500)
-        self.assertEqual(process.returncode, 0, process.stderr)
-        summary = json.loads((out / "eval.json").read_text())["summary"]
-        figures = {name: summary[name]["value"] for name in summary if isinstance(summary[name], dict)}
-        self.assertEqual(figures["failed"], 0)
-        self.assertGreaterEqual(figures["existing_weighted_iou"], 0.7)
-        self.assertGreaterEqual(figures["change_colour_error_reduction"], 0.5)
-        self.assertGreaterEqual(figures["added_place_recall"], 0.5)
-        self.assertEqual(figures["drift"], 0)
-
     def test_the_same_seed_gives_the_same_figures(self):
         _, first = self.evaluate(self.folder / "first", "--seed", 9)
         _, second = self.evaluate(self.folder / "second", "--seed", 9)
