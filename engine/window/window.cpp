@@ -15,6 +15,7 @@
 #include "engine/vulkan/resources.h"
 #include "engine/window/window_fonts.h"
 #include "engine/window/window_imgui.h"
+#include "engine/window/input_queue.h"
 #include "engine/window/window_swapchain.h"
 
 namespace gse::window {
@@ -74,13 +75,8 @@ struct Window::State {
 
     WindowOptions options;
     Glfw glfw;
-    struct KeyEvent {
-        int key = 0, code = 0, action = 0, modifiers = 0;
-    };
-    void on_key(const KeyEvent& event);
-    void release_keys();
-    bool key_pressed = false;  // since the last frame began
-    std::vector<KeyEvent> late_releases, due_releases;  // not seen pressed yet; to be handed on before the next frame
+    void hand_on_input();
+    InputQueue input;
     GLFWwindow* window = nullptr;
     std::optional<vulkan::Instance> instance;
     std::optional<vk::raii::SurfaceKHR> surface;
@@ -115,7 +111,10 @@ Window::State::State(const WindowOptions& wanted) : options(wanted), wanted_scal
     io.IniFilename = options.layout_file.empty() ? nullptr : options.layout_file.c_str();
     ImGui_ImplGlfw_InitForVulkan(window, true);
     glfwSetKeyCallback(window, [](GLFWwindow* target, int key, int code, int action, int modifiers) {
-        static_cast<State*>(glfwGetWindowUserPointer(target))->on_key({key, code, action, modifiers});
+        static_cast<State*>(glfwGetWindowUserPointer(target))->input.push({false, key, code, action, modifiers, 0});
+    });
+    glfwSetCharCallback(window, [](GLFWwindow* target, unsigned character) {
+        static_cast<State*>(glfwGetWindowUserPointer(target))->input.push({true, 0, 0, 0, 0, character});
     });
     translate_texts();
     make_device();
@@ -124,10 +123,6 @@ Window::State::State(const WindowOptions& wanted) : options(wanted), wanted_scal
 /// ImGui has 16 bits for a character; the table of the panels (ui/glyphs.h) has codes for larger ones.
 void Window::State::translate_texts() {
     if (!options.take_character || !options.take_text || !options.give_text) return;
-    glfwSetCharCallback(window, [](GLFWwindow* target, unsigned character) {
-        const auto& self = *static_cast<State*>(glfwGetWindowUserPointer(target));
-        ImGui_ImplGlfw_CharCallback(target, self.options.take_character(character));
-    });
     auto& io = ImGui::GetIO();
     read_clipboard = io.GetClipboardTextFn;
     write_clipboard = io.SetClipboardTextFn;
@@ -146,24 +141,14 @@ void Window::State::translate_texts() {
     };
 }
 
-void Window::State::on_key(const KeyEvent& event) {
-    // ImGui 1.86 only sees which keys are down when a frame begins: a key that is pressed and released between two frames, or
-    // whose modifier is, would be lost. Releases wait until a frame has seen the press.
-    if (event.action == GLFW_PRESS) {
-        key_pressed = true;
-        release_keys();
+void Window::State::hand_on_input() {
+    for (const auto& event : input.next_frame()) {
+        if (event.character)
+            ImGui_ImplGlfw_CharCallback(window, options.take_character ? options.take_character(event.codepoint) : event.codepoint);
+        else
+            ImGui_ImplGlfw_KeyCallback(window, event.key, event.code, event.action, event.modifiers);
     }
-    if (event.action == GLFW_RELEASE && key_pressed) {
-        late_releases.push_back(event);
-        return;
-    }
-    ImGui_ImplGlfw_KeyCallback(window, event.key, event.code, event.action, event.modifiers);
-}
-
-void Window::State::release_keys() {
-    for (const KeyEvent& event : due_releases)
-        ImGui_ImplGlfw_KeyCallback(window, event.key, event.code, event.action, event.modifiers);
-    due_releases.clear();
+    if (input.waiting()) glfwPostEmptyEvent();   // the next frame is wanted at once
 }
 
 Window::State::~State() {
@@ -292,12 +277,9 @@ bool Window::State::start_frame() {
     device->wait(slot().serial);
     if (!commands) commands.emplace(device->begin_commands());  // else those of an abandoned frame go on
     update_scale();
-    release_keys();
+    hand_on_input();
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
-    key_pressed = false;
-    due_releases.swap(late_releases);
-    if (!due_releases.empty()) glfwPostEmptyEvent();  // the next frame shows them released
     frame_open = true;
     return true;
 }

@@ -167,15 +167,13 @@ class Window:
         time.sleep(0.3)
 
     def type(self, field, text):
-        """Replaces the text of the field of the prompt ("source", "sentence") that the keys are in, until it has arrived whole:
-        the X server may lose a key of a program that is busy."""
+        """Replaces the text of the field of the prompt ("source", "sentence") that the keys are in."""
         self.wait(lambda s: s["focus"] == "prompt." + field, f"the keys do not go to the {field}", 10)
-        for _ in range(4):
-            self.key("ctrl+a")
-            self.xdotool("type", "--delay", "40", text)
-            if self.steady(field) == text:
-                return
-        raise AssertionError(f"\"{text}\" arrived as \"{self.state()[field]}\"")
+        self.key("ctrl+a")
+        self.xdotool("type", "--delay", "40", text)
+        arrived = self.steady(field)
+        if arrived != text:
+            raise AssertionError(f"\"{text}\" arrived as \"{arrived}\"")
 
     def press_close(self):
         """What the close button of a desktop's title bar sends: WM_DELETE_WINDOW."""
