@@ -45,6 +45,11 @@ class Viewport(WindowTest):
                   for y in range(GRID) for x in range(GRID)]
         return [pixels[y * row + 4 * x:y * row + 4 * x + 3] for x, y in places]
 
+    def wait_for_scene(self, window):
+        """Until the screen shows the scene: the picture that the program has finished comes there a little later."""
+        window.wait(lambda s: s["splats"] > 0 and not s["busy"] and len(set(self.colours(window))) >= LEAST_COLOURS,
+                    "the sample did not open", 90)
+
     def circling(self, window):
         """The mouse goes round in the viewport with the left button down until the process is killed."""
         steps = [(0.5 + 0.12 * (abs((k % 80) - 40) / 20 - 1), 0.5 + 0.05 * (abs((k % 48) - 24) / 12 - 1)) for k in range(240)]
@@ -80,7 +85,7 @@ class Viewport(WindowTest):
 
     def test_no_frame_without_the_scene_while_orbiting(self):
         window = self.open("--sample", "--preview", "native", width=1600, height=900)
-        window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open", 90)
+        self.wait_for_scene(window)
         with Busy():
             frames = self.frames_while_orbiting(window, FRAMES)
         self.assert_all_show_the_scene(frames)
@@ -90,7 +95,7 @@ class Viewport(WindowTest):
 
     def test_no_frame_without_the_scene_between_the_ways_of_showing_it(self):
         window = self.open("--sample", width=1000, height=640)
-        window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open", 90)
+        self.wait_for_scene(window)
         for mode, name in [(2, "Rings"), (0, "Beauty"), (4, "Depth"), (3, "Ellipsoids"), (0, "Beauty")]:
             window.click("viewport.mode")
             window.wait_widget(f"viewport.mode.{name}")
