@@ -175,7 +175,9 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
 }
 
 void EditJob::check_recipe() {
-    target_open_ = recipe_.request.target.empty() && !recipe_.request.source.empty();
+    auto& request = recipe_.request;
+    target_open_ = request.target.empty() && !request.source.empty();
+    if (target_open_) request.target = edit::guessed_target(request.prompt, edit::as_told(request.source), said_);
     recipe_.request = edit::validated(recipe_.request);
     check_fields(recipe_.job);
     check_fields(recipe_.guidance);
