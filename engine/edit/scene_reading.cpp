@@ -8,8 +8,8 @@
 namespace gse::edit {
 namespace {
 
-/// Distances whose pictures fit the sentence less by no more than this (a cosine) are told apart by attention. On the synthetic
-/// world half the best distance fits less by 0.1; with pictures a model does not know the fit hardly follows the distance.
+/// Distances whose pictures fit the sentence less by no more than this (a cosine) are told apart by attention: with pictures
+/// that a model does not know, the fit hardly follows the distance. By judgement.
 constexpr double FitSlack = 0.05;
 
 /// How well a sentence fits the pictures of each distance.

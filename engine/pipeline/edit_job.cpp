@@ -314,6 +314,7 @@ edit::LocateInput EditJob::locate_input() const {
 std::vector<Image> EditJob::pictures_of(const std::vector<View>& views) {
     std::vector<Image> pictures;
     for (const auto& view : views) {
+        if (control_.stop_requested()) throw Error(ErrorCode::Cancelled, "the search was stopped");
         pictures.push_back(painter_.paint(drawn_.spans(), view.camera, render_settings()).colour);
         for (auto& value : pictures.back().data) value = std::clamp(value, 0.0f, 1.0f);
     }
@@ -348,6 +349,11 @@ void EditJob::read_scene() {
 void EditJob::choose_distance(const OrbitParameters& fitted, const std::vector<double>& distances, const edit::LocateTools& tools) {
     // The fitted orbit shows the whole scene; what the words mean may be a small part of it. The distance from which it is
     // found most surely wins; a few views tell, and what something is added to is enough.
+    if (distances.size() == 1) {
+        orbit_ = fitted;
+        orbit_.radius *= distances.front();
+        return set_orbit_views();
+    }
     const auto asked = std::pair{recipe_.request.views, recipe_.request.mode};
     recipe_.request.views = std::min(asked.first, ScanViews);
     recipe_.request.mode = "modify";
@@ -356,10 +362,6 @@ void EditJob::choose_distance(const OrbitParameters& fitted, const std::vector<d
     for (const double distance : distances) {
         orbit_ = fitted;
         orbit_.radius *= distance;
-        if (distances.size() == 1) {
-            chosen = orbit_;
-            break;
-        }
         set_orbit_views();
         const auto found = edit::locate(locate_input(), tools);
         if (found.problem != edit::SearchProblem::None && found.problem != edit::SearchProblem::Unsure) continue;   // try nearer
