@@ -13,6 +13,8 @@
 namespace gse::ui {
 namespace {
 
+constexpr float AnswersEm = 30;   // a line of a question
+
 void centre_next(ImVec2 size) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({screen.x * 0.5f, screen.y * 0.5f}, ImGuiCond_Always, {0.5f, 0.5f});
@@ -107,7 +109,8 @@ int draw_answers(Context& context, const std::vector<Question::Answer>& answers)
     for (std::size_t index = 0; index < answers.size(); ++index) {
         const auto& answer = answers[index];
         if (answer.listed) continue;
-        if (!first) flow(button_width(answer.text));
+        // Not by the room there is: a dialog takes its size from what is in it, one frame later.
+        if (!first) flow(button_width(answer.text), context.em * AnswersEm);
         if (button(context, {.name = fmt::format("question.{}", index),
                              .text = answer.text,
                              .look = answer.dangerous          ? Look::Danger
@@ -130,7 +133,7 @@ void draw_question(Context& context) {
     if (!ImGui::BeginPopupModal((question.title + "###question").c_str(), nullptr,
                                 ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove))
         return;
-    ImGui::PushTextWrapPos(context.em * 30);
+    ImGui::PushTextWrapPos(context.em * AnswersEm);
     plain_text(question.text);
     ImGui::PopTextWrapPos();
     ImGui::Spacing();

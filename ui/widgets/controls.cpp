@@ -62,9 +62,11 @@ std::string identified(std::string_view text, std::string_view name) {
 }  // namespace
 
 void note_rect(Context& context, std::string_view name, ImVec2 low, ImVec2 high) {
-    const ImRect clip = ImGui::GetCurrentWindow()->ClipRect;
+    const ImGuiWindow& window = *ImGui::GetCurrentWindow();
     const ImVec2 middle((low.x + high.x) * 0.5f, (low.y + high.y) * 0.5f);
-    Rect rect{low.x, low.y, high.x - low.x, high.y - low.y, clip.Contains(middle), true, 0};
+    // A dialog is measured before it is shown; it is not in its place yet.
+    const bool visible = !window.Hidden && window.ClipRect.Contains(middle);
+    Rect rect{low.x, low.y, high.x - low.x, high.y - low.y, visible, true, 0};
     const auto found = context.widgets.find(name);
     if (found != context.widgets.end()) {
         found->second = rect;
@@ -97,8 +99,9 @@ bool button(Context& context, const ButtonOptions& options) {
 
 float button_width(std::string_view text) { return text_size(text).x + ImGui::GetStyle().FramePadding.x * 2; }
 
-void flow(float width) {
-    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+void flow(float width, float row_width) {
+    const float room = row_width > 0 ? ImGui::GetWindowContentRegionMin().x + row_width : ImGui::GetWindowContentRegionMax().x;
+    const float right = ImGui::GetWindowPos().x + room;
     const float next = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width;
     if (next <= right) ImGui::SameLine();
 }

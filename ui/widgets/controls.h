@@ -24,8 +24,9 @@ struct ButtonOptions {
 
 bool button(Context& context, const ButtonOptions& options);
 
-/// Keeps the next item on this line when `width` pixels are left, else starts a new one.
-void flow(float width);
+/// Keeps the next item on this line when `width` pixels are left of it, else starts a new one. `row_width`: pixels of a whole
+/// line where the window's own width follows from what is in it; 0 = what the window has.
+void flow(float width, float row_width = 0);
 /// Width a button with this text takes.
 float button_width(std::string_view text);
 

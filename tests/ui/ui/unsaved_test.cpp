@@ -45,6 +45,34 @@ DOCTEST_TEST_CASE("quitting in the middle of an edit asks: keep, wait or discard
     DOCTEST_CHECK(harness.application.calls[1] == "quit");
 }
 
+DOCTEST_TEST_CASE("an answer can be seen only where it stays: a click at its place hits it") {
+    Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
+    harness.shell.request_quit();
+    const auto places = [&](const std::string& name) {
+        std::vector<ui::Rect> seen;
+        for (int frame = 0; frame < 6; ++frame) {
+            harness.frame();
+            if (const auto* answer = harness.find(name); answer != nullptr && answer->visible) seen.push_back(*answer);
+        }
+        return seen;
+    };
+    const auto check = [](const std::vector<ui::Rect>& seen) {
+        DOCTEST_REQUIRE(seen.size() >= 2);
+        for (const auto& place : seen) {
+            DOCTEST_CHECK(place.x == seen.back().x);
+            DOCTEST_CHECK(place.y == seen.back().y);
+        }
+    };
+    check(places("question.2"));
+    // The next question takes the place of a larger one.
+    const auto* discard = harness.find("question.2");
+    DOCTEST_REQUIRE(discard != nullptr);
+    harness.move(discard->x + discard->width / 2, discard->y + discard->height / 2);
+    harness.press();
+    harness.release();
+    check(places("question.1"));
+}
+
 DOCTEST_TEST_CASE("a discarded edit does not take other unsaved work along") {
     Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
     ask_to_quit(harness);
