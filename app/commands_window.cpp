@@ -42,7 +42,8 @@ double seconds_since(Clock::time_point then) { return std::chrono::duration<doub
 constexpr double IdleWait = 0.5;      // nothing happens: the window only wakes for input
 constexpr double WorkingWait = 0.1;   // a job runs: its numbers move, the processor belongs to it
 constexpr double MovingFrame = 0.05;  // the camera moves: the panels are drawn anew with every picture, or after this time
-constexpr double WorkingFrame = 0.04; // the same while a job runs that needs the processor too
+constexpr double WorkingFrame = 0.04; // the same while a job runs that needs the processor too,
+constexpr double SoftwareFrame = 0.08; // and where the processor draws the window as well
 constexpr double ActiveSeconds = 0.6; // after input every frame is drawn
 
 /// The window and everything in it.
@@ -111,7 +112,7 @@ private:
     }
 
     void wait() {
-        const double frame = viewport_.waits_for_picture() ? MovingFrame : app_.busy() ? WorkingFrame : 0;
+        const double frame = viewport_.waits_for_picture() ? MovingFrame : app_.busy() ? working_frame() : 0;
         while (seconds_since(frame_began_) < frame) window_.wait(frame - seconds_since(frame_began_));
         const bool moving = viewport_.busy() || textures_.uploads_waiting() || shell_.animating() ||
                             seconds_since(last_input_) < ActiveSeconds;
@@ -124,6 +125,8 @@ private:
         window_.wait(patience);
         if (seconds_since(before) < patience * 0.9) last_input_ = Clock::now();   // something came in
     }
+
+    double working_frame() { return window_.device().info().is_cpu ? SoftwareFrame : WorkingFrame; }
 
     void frame() {
         frame_began_ = Clock::now();

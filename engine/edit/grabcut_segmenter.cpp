@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <mutex>
+#include <unordered_map>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
+#include "engine/base/hash.h"
 
 #ifdef GSE_HAVE_OPENCV
 #include <opencv2/core.hpp>
@@ -54,6 +58,8 @@ private:
 
 #ifdef GSE_HAVE_OPENCV
 
+constexpr std::size_t MostAnswers = 512;   // 5 MB at 96 x 96
+
 class GrabCutSegmenter : public Segmenter {
 public:
     explicit GrabCutSegmenter(const GrabCutParameters& parameters) : parameters_(parameters) {}
@@ -63,7 +69,7 @@ public:
         GSE_CHECK_EQ(image.channels, 3);
         cv::Mat marks = trimap(image, points, box, hint);
         Mask result(image.width, image.height);
-        if (both_present(marks)) cut(image, marks);
+        if (both_present(marks)) cut_once(image, marks);
         for (int y = 0; y < image.height; ++y)
             for (int x = 0; x < image.width; ++x) {
                 const auto mark = marks.at<std::uint8_t>(y, x);
@@ -103,6 +109,22 @@ private:
         return inside > 0 && inside < marks.rows * marks.cols;
     }
 
+    /// A threshold that is dragged leaves the marks of many views as they are: those are not cut again.
+    void cut_once(const Image& image, cv::Mat& marks) {
+        Hash question;
+        question.image(image);
+        question.bytes(marks.data, marks.total());
+        {
+            const std::lock_guard lock(mutex_);
+            const auto known = answers_.find(question.value());
+            if (known != answers_.end()) return known->second.copyTo(marks);
+        }
+        cut(image, marks);
+        const std::lock_guard lock(mutex_);
+        if (answers_.size() >= MostAnswers) answers_.clear();
+        answers_.emplace(question.value(), marks.clone());
+    }
+
     void cut(const Image& image, cv::Mat& marks) const {
         cv::Mat bytes(image.height, image.width, CV_8UC3);
         for (int y = 0; y < image.height; ++y)
@@ -121,6 +143,8 @@ private:
     }
 
     GrabCutParameters parameters_;
+    std::mutex mutex_;
+    std::unordered_map<std::uint64_t, cv::Mat> answers_;   // marks before and after, [H,W] bytes each
 };
 
 #endif

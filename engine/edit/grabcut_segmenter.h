@@ -20,7 +20,7 @@ struct GrabCutParameters {
 bool grabcut_available();
 
 /// GrabCut (Rother et al. 2004) from clicks, box and hint; throws Error (Unsupported) without OpenCV.
-/// Deterministic.
+/// Deterministic; the same marks on the same picture are answered from memory.
 std::unique_ptr<Segmenter> make_grabcut_segmenter(const GrabCutParameters& parameters = {});
 
 /// Inside where the hint is at least `level`, joined to the positive clicks.

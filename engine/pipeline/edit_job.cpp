@@ -414,9 +414,8 @@ void EditJob::locate() {
     if (recipe_.use_dreambooth && !tuning_) tune();
     times_.begin("locate");
     attention_ = std::make_unique<edit::CachedAttention>(model_->attention(recipe_.attention));
-    const auto segmenter = edit::make_default_segmenter();
     recognition_ = std::make_unique<edit::Recognition>(model_->text_image_score(), model_->known_words());
-    const edit::LocateTools tools = locate_tools(*segmenter);
+    const edit::LocateTools tools = locate_tools();
     by_label_ = !label_.empty() &&
                 (recipe_.job.use_label || !edit::knows(model_->known_words(), recipe_.request.source));
     read_scene();
@@ -433,8 +432,7 @@ void EditJob::locate() {
 void EditJob::look_again() {
     times_.begin("locate");
     if (attention_ == nullptr) attention_ = std::make_unique<edit::CachedAttention>(model_->attention(recipe_.attention));
-    const auto segmenter = edit::make_default_segmenter();
-    located_ = edit::locate(locate_input(), locate_tools(*segmenter));
+    located_ = edit::locate(locate_input(), locate_tools());
     label_only_what_was_found();
     plan_stale_ = true;
     times_.end();
@@ -445,8 +443,9 @@ double EditJob::attention_threshold() const {
     return asked > 0 || attention_ == nullptr ? asked : attention_->threshold();
 }
 
-edit::LocateTools EditJob::locate_tools(edit::Segmenter& segmenter) {
-    edit::LocateTools tools{painter_.rasterizer(), *attention_, &segmenter, nullptr, control_};
+edit::LocateTools EditJob::locate_tools() {
+    if (segmenter_ == nullptr) segmenter_ = edit::make_default_segmenter();
+    edit::LocateTools tools{painter_.rasterizer(), *attention_, segmenter_.get(), nullptr, control_};
     tools.memory = &memory_;
     tools.threads = &threads_;
     tools.recognition = recognition_.get();

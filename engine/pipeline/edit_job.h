@@ -136,7 +136,7 @@ private:
     void look_again();
     void label_only_what_was_found();
     void finish_locate();
-    edit::LocateTools locate_tools(edit::Segmenter& segmenter);
+    edit::LocateTools locate_tools();
     void run_loop(const edit::EditRequest& request, const EditObserver& observer, const JobControl& control);
     std::string dynamic_word() const;
     edit::LocateInput locate_input() const;
@@ -152,6 +152,7 @@ private:
     std::shared_ptr<neural::TextToImage> model_;
     std::unique_ptr<edit::CachedAttention> attention_;
     edit::ViewMemory memory_;
+    std::unique_ptr<edit::Segmenter> segmenter_;
     ThreadPool threads_;
     std::unique_ptr<edit::Recognition> recognition_;
     bool target_open_ = false;          // the recipe leaves it to the pictures which word is new
