@@ -8,8 +8,8 @@
 #include "engine/base/error.h"
 #include "engine/base/random.h"
 #include "engine/edit/scales.h"
+#include "engine/edit/word_mask.h"
 #include "engine/localize/clusters.h"
-#include "engine/localize/points.h"
 
 namespace gse::edit {
 namespace {
@@ -21,12 +21,6 @@ constexpr float TurnsOn = 0.6f, TurnsOff = 0.4f;   // F24: hysteresis
 constexpr double LargestGrowth = 3;        // A13: times the static area; beyond, the mask has run away
 constexpr double RestMemory = 0.98;        // X8
 
-std::size_t overlap(const Mask& a, const Mask& b) {
-    std::size_t both = 0;
-    for (std::size_t i = 0; i < a.data.size(); ++i) both += a.data[i] != 0 && b.data[i] != 0 ? 1 : 0;
-    return both;
-}
-
 /// What replaces the word ("on the snow" that was "on the grass") is looked for once the edit shows it.
 std::string word_after(const EditRequest& request, std::string word) {
     if (has_word(request.prompt, word)) return word;
@@ -34,14 +28,6 @@ std::string word_after(const EditRequest& request, std::string word) {
 }
 
 }  // namespace
-
-Mask attention_region(const Image& map, double threshold, const EditRequest& request) {
-    const int height = std::max(1, ClusterGrid * map.height / map.width);
-    const Image small = localize::resize_image(map, ClusterGrid, height);
-    const Mask region = localize::clean_clusters(localize::threshold_map(small, threshold), small,
-                                                 {request.dbscan_eps, request.dbscan_min_samples}, request.keep_mass);
-    return localize::resize_mask(region, map.width, map.height);
-}
 
 DynamicMasks::DynamicMasks(const EditPlan& plan, const EditRequest& request, std::string word, AttentionSource* attention,
                            Segmenter* segmenter)
@@ -82,17 +68,8 @@ Mask DynamicMasks::found_in(const Image& shown, std::size_t view, int iteration)
     auto maps = attention_->locate(query);
     GSE_CHECK_EQ(maps.size(), std::size_t{1});
     const double level = request_.attention_threshold > 0 ? request_.attention_threshold : attention_->threshold();
-    const Mask region = attention_region(maps.front(), level, request_);
-    if (segmenter_ == nullptr || region.count() == 0) return region;
-    std::vector<PointPrompt> points;
-    localize::PointParameters wanted;
-    wanted.positive = request_.positive_points;
-    wanted.negative = request_.negative_points;
-    for (const auto& point : localize::choose_points(maps.front(), region, wanted))
-        points.push_back({point.x, point.y, point.positive});
-    const Mask mask = segmenter_->segment(shown, points, std::nullopt, maps.front());
-    const bool sane = mask.count() > 0 && 2 * overlap(mask, region) >= region.count();
-    return sane ? mask : region;
+    normalise_maximum(maps.front());
+    return find_word_mask(shown, maps.front(), level, word_, request_, {segmenter_, nullptr}).mask;
 }
 
 void DynamicMasks::refresh(std::size_t view, int iteration, const Image& shown, const Image& label_seen) {

@@ -64,7 +64,4 @@ private:
     double least_change_;
 };
 
-/// Attention map -> clean region at the map's size: threshold, DBSCAN on a 64-cell grid, small clusters dropped (method S4a).
-Mask attention_region(const Image& map, double threshold, const EditRequest& request);
-
 }  // namespace gse::edit

@@ -12,24 +12,18 @@
 #include "engine/base/log.h"
 #include "engine/base/random.h"
 #include "engine/edit/confidence.h"
-#include "engine/edit/scales.h"
 #include "engine/edit/vocabulary.h"
+#include "engine/edit/word_mask.h"
 #include "engine/localize/clusters.h"
 #include "engine/localize/graph_cut.h"
-#include "engine/localize/points.h"
 #include "engine/localize/spread.h"
 
 namespace gse::edit {
 namespace {
 
-constexpr std::size_t LeastRegionCells = 4;  // smaller regions of a 64-cell map count as nothing found
 constexpr std::size_t RecognisedViews = 6;   // pictures that are compared with words
 constexpr int LeastViews = 3;                // fewer voting views cannot tell front from back
-constexpr double LargestMaskShare = 0.9;     // of the picture: such a mask has found nothing
 constexpr double LargestLabelShare = 0.97;   // of what the views see, where the sentence names other things too
-constexpr double LargestMaskGrowth = 4;      // of the attention region's area: the segmenter ran away
-constexpr double LeastOverlapIou = 0.1;      // of a text segmenter's mask and the attention region (A8)
-constexpr double LeastTextScore = 0.3;
 constexpr double LeastEvidenceShare = 0.2;  // of the mean evidence of the rows that are seen at all
 constexpr double AttentionShare = 0.5;      // of a vote: the attention itself, beside the mask cut out of it
 constexpr double AttentionLevel = 0.85;     // of the threshold: attention that counts half
@@ -37,30 +31,6 @@ constexpr double AttentionSoftness = 0.05;  // how far from there it counts a qu
 constexpr float LabelSeen = 0.5f;           // share of a pixel from which it shows the artist's label
 constexpr std::uint64_t SearchSeed = 0;      // one for all: what is found does not follow the loop's dice
 constexpr double RivalLead = 0.5;           // another thing that has so much more takes the pixel from the mask
-
-int grid_height(const Image& map) { return std::max(1, ClusterGrid * map.height / map.width); }
-
-void normalise_maximum(Image& map) {
-    const float largest = map.data.empty() ? 0 : *std::max_element(map.data.begin(), map.data.end());
-    if (!(largest > 0) || !std::isfinite(largest)) {
-        std::fill(map.data.begin(), map.data.end(), 0.0f);
-        return;
-    }
-    for (auto& value : map.data) value = std::isfinite(value) ? std::max(0.0f, value / largest) : 0.0f;
-}
-
-BoxPrompt bounds(const Mask& mask) {
-    BoxPrompt box{static_cast<double>(mask.width), static_cast<double>(mask.height), 0, 0};
-    for (int y = 0; y < mask.height; ++y)
-        for (int x = 0; x < mask.width; ++x) {
-            if (mask.at(x, y) == 0) continue;
-            box.x0 = std::min(box.x0, static_cast<double>(x));
-            box.y0 = std::min(box.y0, static_cast<double>(y));
-            box.x1 = std::max(box.x1, x + 1.0);
-            box.y1 = std::max(box.y1, y + 1.0);
-        }
-    return box;
-}
 
 Image mask_image(const Mask& mask) {
     Image image(mask.width, mask.height, 1);
@@ -96,12 +66,6 @@ struct Search {
     std::vector<std::string> rivals;
     bool rivals_given = false;   // by the user, not read off the sentence
     bool absent = false;
-};
-
-/// The attention of a view on the grid where clusters and clicks are found.
-struct SmallMap {
-    Image map;
-    Mask region;
 };
 
 /// Steps of locate() over all views.
@@ -212,8 +176,8 @@ private:
         const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
             for (std::size_t v = begin; v < end; ++v) {
                 check_stop();
-                const SmallMap small = find_region(views[v], level);
-                if (!search.absent && !views[v].failed) segment(search, views[v], small);
+                take_mask(views[v], find_word_mask(views[v].render, views[v].map, level, search.word, request(),
+                                                   {tools_.segmenter, tools_.text_segmenter}, !search.absent));
             }
         };
         if (tools_.threads != nullptr)
@@ -246,23 +210,14 @@ private:
         return view;
     }
 
-    /// The map's clean region (threshold, DBSCAN; GSEditPro 3.2) is the view's mask until a segmenter knows better.
-    SmallMap find_region(ViewEvidence& view, double level) const {
-        Image small = localize::resize_image(view.map, ClusterGrid, grid_height(view.map));
-        Mask small_region = localize::clean_clusters(localize::threshold_map(small, level), small,
-                                                     {request().dbscan_eps, request().dbscan_min_samples},
-                                                     request().keep_mass);
-        view.region = localize::resize_mask(small_region, view.map.width, view.map.height);
-        view.mask = view.region;
-        view.branch = "attention";
-        view.captured = 1;
-        const bool everything = static_cast<double>(view.region.count()) >
-                                LargestMaskShare * static_cast<double>(view.region.data.size());
-        if (everything)
-            fail(view, ViewStep::Everything);
-        else if (small_region.count() < LeastRegionCells)
-            fail(view, has_attention(view.map) ? ViewStep::TooLittle : ViewStep::NoAttention);
-        return {std::move(small), std::move(small_region)};
+    static void take_mask(ViewEvidence& view, WordMask found) {
+        view.region = std::move(found.region);
+        view.mask = std::move(found.mask);
+        view.points = std::move(found.points);
+        view.captured = found.captured;
+        view.branch = std::move(found.branch);
+        view.step = found.step;
+        view.failed = !found.found();
     }
 
     /// A rival nobody asked for must not end the search: what the model cannot read of a long sentence is left out.
@@ -287,70 +242,6 @@ private:
                 view.lead.data[i] = std::max(view.lead.data[i], maps[rival].data[i] - view.map.data[i]);
             if (strict && view.lead.data[i] > 0) view.map.data[i] = 0;
         }
-    }
-
-    static bool has_attention(const Image& map) {
-        return std::any_of(map.data.begin(), map.data.end(), [](float value) { return value > 0; });
-    }
-
-    static void fail(ViewEvidence& view, ViewStep step) {
-        view.failed = true;
-        view.step = step;
-        view.branch = "none";
-        view.captured = 0;
-        std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{0});
-    }
-
-    /// Refines the region that was found: text segmenter, clicks, or the region itself (A8).
-    void segment(const Search& search, ViewEvidence& view, const SmallMap& small) const {
-        choose_clicks(view, small);
-        std::optional<Mask> from_text;
-        double text_mass = 0;
-        if (tools_.text_segmenter != nullptr) {
-            auto [mask, score] = tools_.text_segmenter->segment(view.render, search.word);
-            if (score >= LeastTextScore && mask.data.size() == view.region.data.size() && mask.count() > 0) {
-                text_mass = localize::captured_mass(view.map, view.region, mask);
-                from_text = std::move(mask);
-            }
-        }
-        if (from_text && text_mass >= request().fallback_mass &&
-            localize::mask_iou(*from_text, view.region) >= LeastOverlapIou) {
-            accept(view, std::move(*from_text), text_mass, "text");
-            return;
-        }
-        if (tools_.segmenter != nullptr) {
-            Mask mask = tools_.segmenter->segment(view.render, view.points, bounds(view.region), view.map);
-            mask = localize::clean_clusters(mask, view.map, {1.5, 1}, request().keep_mass);
-            const double mass = localize::captured_mass(view.map, view.region, mask);
-            if (sane(mask, view.region) && mass >= std::max(request().fallback_mass, text_mass)) {
-                accept(view, std::move(mask), mass, "points");
-                return;
-            }
-        }
-        if (from_text && text_mass >= request().fallback_mass)
-            accept(view, std::move(*from_text), text_mass, "text");
-    }
-
-    static void accept(ViewEvidence& view, Mask mask, double mass, const char* branch) {
-        view.mask = std::move(mask);
-        view.captured = mass;
-        view.branch = branch;
-    }
-
-    static bool sane(const Mask& mask, const Mask& region) {
-        const auto area = static_cast<double>(mask.count());
-        return area > 0 && area <= LargestMaskShare * static_cast<double>(mask.data.size()) &&
-               area <= LargestMaskGrowth * static_cast<double>(region.count());
-    }
-
-    void choose_clicks(ViewEvidence& view, const SmallMap& small) const {
-        localize::PointParameters parameters;
-        parameters.positive = request().positive_points;
-        parameters.negative = request().negative_points;
-        const double scale_x = static_cast<double>(view.map.width) / small.map.width;
-        const double scale_y = static_cast<double>(view.map.height) / small.map.height;
-        for (const auto& point : localize::choose_points(small.map, small.region, parameters))
-            view.points.push_back({point.x * scale_x, point.y * scale_y, point.positive});
     }
 
     /// What the views of one word came to.
