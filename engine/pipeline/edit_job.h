@@ -1,23 +1,18 @@
 // One run of locate or edit from files to files: what the commands and the window both call.
 #pragma once
 
-#include <array>
 #include <filesystem>
-#include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/edit/cached_attention.h"
-#include "engine/edit/locate.h"
-#include "engine/edit/session.h"
 #include "engine/neural/api.h"
 #include "engine/pipeline/installed.h"
+#include "engine/pipeline/loop.h"
 #include "engine/pipeline/model_words.h"
 #include "engine/pipeline/recipe.h"
-#include "engine/pipeline/scene_tools.h"
+#include "engine/pipeline/search.h"
 #include "engine/pipeline/stage_times.h"
 
 namespace gse::pipeline {
@@ -33,25 +28,13 @@ struct EditJobInput {
     std::vector<std::string> said = {};            // words that the scene is known to show: no news
 };
 
-/// The guidance's settings with the sentence before the edit, worked out from the request where none is given.
-neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request);
-
-/// Callbacks of a running edit; all may be empty.
-struct EditObserver {
-    edit::SnapshotCallback snapshot;
-    double snapshot_seconds = 0;   // above 0: time between snapshots, instead of the request's iterations
-    edit::IterationCallback iteration;
-    std::optional<edit::EditSnapshot> start = {};   // goes on from there
-    std::function<std::optional<std::vector<std::uint8_t>>()> new_label;   // see edit::EditTools
-};
-
 /// The model a recipe names (the starter when it names none). Throws Error (Model, NotFound).
 std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job);
 
 /// Sets how many threads the networks take, for a model that is loaded already.
 void use_threads(const JobParameters& job);
 
-/// A scene with its model and views, ready to be edited.
+/// A run from stage to stage (views.h, search.h, loop.h): keeps what each came to and how long it took.
 class EditJob {
 public:
     /// Checks the request, reads the scene, loads the model, chooses the views. Throws Error before anything is written.
@@ -67,7 +50,7 @@ public:
     /// see found().
     void locate();
     /// Whether something may change: located().problem says why not.
-    bool found() const { return located_.problem == edit::SearchProblem::None; }
+    bool found() const { return located_->found(); }
     /// Labels what an unsure search found all the same.
     void locate_anyway();
     /// The same from the views chosen already, with another attention threshold: no network is asked anything.
@@ -89,87 +72,57 @@ public:
     void take_settings(const EditRecipe& recipe, bool relabels = true);
 
     const EditRecipe& recipe() const { return recipe_; }
-    const Scene& scene() const { return scene_; }
+    const Scene& scene() const { return workplace_->scene(); }
     /// The scene and the result as pictures and figures are made from them: without what cannot be drawn.
-    const GaussianSet& drawn() const { return drawn_; }
-    const GaussianSet& drawn_result() const { return drawn_result_; }
+    const GaussianSet& drawn() const { return workplace_->drawn(); }
+    const GaussianSet& drawn_result() const { return edited_->drawn; }
     /// Splats of the scene that cannot be drawn; the edit leaves them as they are.
-    std::size_t unusable() const { return unusable_; }
-    const std::vector<View>& views() const { return views_; }
-    const edit::LocateResult& located() const { return located_; }
-    const edit::EditPlan& plan() const { return plan_; }
-    const edit::EditResult& result() const { return result_; }
+    std::size_t unusable() const { return workplace_->unusable(); }
+    const std::vector<View>& views() const { return views_->views; }
+    const edit::LocateResult& located() const { return located_->result; }
+    /// What the loop is told: made anew when label or settings have changed.
+    const edit::EditPlan& plan();
+    const edit::EditResult& result() const { return edited_->result; }
     /// What was learned of the scene, if anything was.
     const std::optional<neural::TuneReport>& tuning() const { return tuning_; }
     /// The same with the model that learned it, for another job.
     std::optional<neural::TunedModel> tuned() const;
     /// "front view" and so on per view, or empty.
-    const std::vector<std::string>& view_words() const { return view_words_; }
+    const std::vector<std::string>& view_words() const { return views_->words; }
     /// How views are rendered.
-    raster::Settings render_settings() const;
+    raster::Settings render_settings() const { return pipeline::render_settings(scene(), recipe_.request); }
     /// The recipe's prompt as the model is told it.
     std::string model_prompt() const;
     /// Pictures that the search has asked the networks about so far.
-    std::size_t questions() const { return attention_ ? attention_->asked() : 0; }
+    std::size_t questions() const { return workplace_->questions(); }
     /// Whether the pictures said which word is new, and not the recipe.
-    bool target_read() const { return target_read_; }
-    bool automatic_views() const { return automatic_views_; }
+    bool target_read() const { return located_->target_read; }
+    bool automatic_views() const { return views_->automatic; }
     /// Orbit around what was edited, for films.
     OrbitParameters film_orbit() const;
-    neural::TextToImage& model() { return *model_; }
-    Painter& painter() { return painter_; }
+    neural::TextToImage& model() { return workplace_->model(); }
+    Painter& painter() { return workplace_->painter(); }
     StageTimes& times() { return times_; }
     const JobControl& control() const { return control_; }
 
 private:
-    void check_recipe();
+    void check_recipe(const neural::TextToImage* model);
     void check_length() const;
-    void begin(std::vector<View> cameras);
-    void choose_views(std::vector<View> cameras);
-    void set_orbit_views();
-    void name_views();
-    void read_scene();
-    std::vector<Image> pictures_of(const std::vector<View>& views);
-    void choose_distance(const OrbitParameters& fitted, const std::vector<double>& distances, const edit::LocateTools& tools);
-    void look_and_move_in(bool moves, const edit::LocateTools& tools);
-    void search(const edit::LocateTools& tools);
-    void look_again();
-    void label_only_what_was_found();
-    void finish_locate();
-    edit::LocateTools locate_tools();
-    void run_loop(const edit::EditRequest& request, const EditObserver& observer, const JobControl& control);
-    std::string dynamic_word() const;
-    edit::LocateInput locate_input() const;
+    void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, const GivenCameras& given);
+    void take(Located located);
+    void look_again(const EditRecipe& recipe);
     std::vector<Image> instance_pictures();
 
     EditRecipe recipe_;
     JobControl control_;
+    Hints hints_;
     StageTimes times_;
-    Painter painter_;
-    Scene scene_;
-    GaussianSet drawn_, drawn_result_;
-    std::size_t unusable_ = 0;
-    std::shared_ptr<neural::TextToImage> model_;
-    std::unique_ptr<edit::CachedAttention> attention_;
-    edit::ViewMemory memory_;
-    std::unique_ptr<edit::Segmenter> segmenter_;
-    ThreadPool threads_;
-    std::unique_ptr<edit::Recognition> recognition_;
-    bool target_open_ = false;          // the recipe leaves it to the pictures which word is new
-    bool target_read_ = false;          // they have said it
-    std::vector<double> distances_;     // shares of the fitted orbit's radius that the search tries
-    std::vector<std::string> said_;     // words the scene is known to show
-    std::vector<std::uint8_t> label_;   // made by hand, or empty
-    bool by_label_ = false;             // it was used
-    std::vector<View> views_;
-    std::vector<std::string> view_words_;
-    std::map<std::string, std::string> given_words_;   // of cameras, by name
-    bool automatic_views_ = false;
-    OrbitParameters orbit_;
-    edit::LocateResult located_;
-    edit::EditPlan plan_;
-    bool plan_stale_ = false;        // the label moved on; made anew when the loop needs it
-    edit::EditResult result_;
+    std::unique_ptr<Workplace> workplace_;
+    // What the stages came to; replaced, never changed.
+    std::shared_ptr<const Views> views_;
+    std::shared_ptr<const Located> located_;
+    std::shared_ptr<const Edited> edited_;
+    std::optional<edit::EditPlan> plan_;   // follows from what was located
     std::optional<neural::TuneReport> tuning_;
 };
 

@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "engine/io/scene_io.h"
@@ -99,5 +100,44 @@ DOCTEST_TEST_CASE("edit job: the word that is new is read off the scene, which i
     DOCTEST_CHECK(read("bear", "a red bear wearing a hat on the snow", {"a", "bear", "hat"}) == "red");
     // A word that an earlier edit brought along is no news, whether the model knows it or not.
     DOCTEST_CHECK(read("bear", "a golden shiny bear", {"a", "shiny", "red", "bear"}) == "golden");
+}
+
+DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and only that") {
+    EditRecipe recipe = bear_recipe(false);
+    recipe.request.prompt = "a blue bear on the grass";
+    recipe.request.target = "blue";
+    recipe.request.views = 6;
+    recipe.request.iterations = 3;
+    recipe.request = edit::validated(recipe.request);
+    Workplace workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}), recipe.job);
+    const Views views = choose_views(workplace.scene(), recipe, {});
+    DOCTEST_CHECK(choose_views(workplace.scene(), recipe, {}).key == views.key);
+    EditRecipe turned = recipe;
+    turned.job.front = "90";
+    DOCTEST_CHECK(choose_views(workplace.scene(), turned, {}).key != views.key);   // the views have words now
+    DOCTEST_CHECK(views_on(nearer(views.orbit, 0.7), recipe).key != views.key);
+
+    const Located located = locate(workplace, recipe, views, {}, {});
+    const auto bits = *located.result.label.bits;
+    DOCTEST_REQUIRE_MESSAGE(located.found(), located.result.message);
+    const auto asked = workplace.questions();
+    EditRecipe stricter = located.recipe;
+    stricter.request.attention_threshold = workplace.stated_threshold() + 0.2;
+    const Located again = locate_again(workplace, located, stricter, {});
+    DOCTEST_CHECK(workplace.questions() == asked);   // no network is asked for a threshold
+    DOCTEST_CHECK(again.key != located.key);
+    DOCTEST_CHECK(*again.result.label.bits != bits);
+    DOCTEST_CHECK(*located.result.label.bits == bits);   // a value stays what it is
+    DOCTEST_CHECK(locate_again(workplace, again, located.recipe, {}).key == located.key);
+    DOCTEST_CHECK(with_label(located, std::vector<std::uint8_t>(bits.size(), 1)).key != located.key);
+
+    const auto plan = plan_of(workplace, located, recipe);
+    const Edited edited = edit_scene(workplace, located, plan, recipe, {}, {});
+    DOCTEST_CHECK(edit_scene(workplace, located, plan, recipe, {}, {}).key == edited.key);
+    EditRecipe slower = recipe;
+    slower.request.rate_colour *= 0.5;
+    const Edited other = edit_scene(workplace, located, plan, slower, {}, {});
+    DOCTEST_CHECK(other.key != edited.key);
+    DOCTEST_CHECK(!std::equal(other.result.set.sh().begin(), other.result.set.sh().end(), edited.result.set.sh().begin()));
 }
 #endif

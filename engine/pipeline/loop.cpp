@@ -1,0 +1,52 @@
+// Puts guidance, masks and loop together.
+#include "engine/pipeline/loop.h"
+
+#include "engine/edit/grabcut_segmenter.h"
+
+namespace gse::pipeline {
+namespace {
+
+/// What the dynamic mask looks for in the changing pictures: the new thing, or the thing that changes by its new name.
+std::string dynamic_word(const Located& located, const edit::EditRequest& request) {
+    const auto& result = located.result;
+    const bool named = edit::has_word(request.prompt, result.word);
+    return result.mode == edit::EditMode::Modify && named ? result.word : request.target;
+}
+
+}  // namespace
+
+neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request) {
+    if (guidance.before_prompt.empty()) guidance.before_prompt = edit::sentence_before(request);
+    return guidance;
+}
+
+edit::EditPlan plan_of(Workplace& workplace, const Located& located, const EditRecipe& recipe) {
+    const auto* label = located.by_label() ? &located.label : nullptr;
+    return edit::make_plan(question(workplace, recipe, located.views, label), located.result, workplace.painter().rasterizer());
+}
+
+Edited edit_scene(Workplace& workplace, const Located& located, const edit::EditPlan& plan, const EditRecipe& recipe,
+                  const EditObserver& observer, const JobControl& control) {
+    const auto& model = workplace.model();
+    const auto& request = recipe.request;
+    const auto guidance = model.guidance(edit::as_told(request.prompt), with_sentence_before(recipe.guidance, request));
+    edit::EditTools tools{workplace.painter().rasterizer(), *guidance, observer.snapshot, control, observer.iteration};
+    tools.snapshot_seconds = observer.snapshot_seconds;
+    tools.new_label = observer.new_label;
+    tools.start = observer.start ? &*observer.start : nullptr;
+    const auto attention = model.attention(recipe.attention);   // not the one that remembers: every render is another question
+    const auto segmenter = edit::make_default_segmenter();
+    // What the words did not find, their attention does not follow either.
+    const bool lost = located.by_label() && located.result.mode == edit::EditMode::Modify;
+    tools.attention = lost ? nullptr : attention.get();
+    tools.segmenter = segmenter.get();
+    tools.word = dynamic_word(located, request);
+    Edited edited;
+    edited.result = edit::run_edit(workplace.scene().gaussians, plan, request, tools);
+    edited.drawn = drawable(edited.result.set);
+    edited.key = located.key + fields_to_json(static_cast<const edit::LoopSettings&>(request)).dump() +
+                 fields_to_json(recipe.guidance).dump();
+    return edited;
+}
+
+}  // namespace gse::pipeline

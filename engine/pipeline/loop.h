@@ -1,0 +1,41 @@
+// Located -> Edited: the edit loop with a run's model.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/edit/session.h"
+#include "engine/pipeline/search.h"
+
+namespace gse::pipeline {
+
+/// Callbacks of a running edit; all may be empty.
+struct EditObserver {
+    edit::SnapshotCallback snapshot;
+    double snapshot_seconds = 0;   // above 0: time between snapshots, instead of the request's iterations
+    edit::IterationCallback iteration;
+    std::optional<edit::EditSnapshot> start = {};   // goes on from there
+    std::function<std::optional<std::vector<std::uint8_t>>()> new_label = {};   // see edit::EditTools
+};
+
+/// What became of the scene. A value.
+struct Edited {
+    edit::EditResult result;
+    GaussianSet drawn;         // the result without what cannot be drawn
+    std::string key;           // of all that it follows from, beside scene, model and what the artist did meanwhile
+};
+
+/// The guidance's settings with the sentence before the edit, worked out from the request where none is given.
+neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request);
+
+/// Masks, label and seeds for the loop. Of the recipe, how far masks are grown counts.
+edit::EditPlan plan_of(Workplace& workplace, const Located& located, const EditRecipe& recipe);
+
+/// Runs the edit loop with the settings of `recipe`, which agrees with `located.recipe` in what search_key() is of. Throws as
+/// edit::run_edit does.
+Edited edit_scene(Workplace& workplace, const Located& located, const edit::EditPlan& plan, const EditRecipe& recipe,
+                  const EditObserver& observer, const JobControl& control);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,194 @@
+// Reads the scene, looks, moves in, looks again.
+#include "engine/pipeline/search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/base/check.h"
+#include "engine/base/hash.h"
+#include "engine/base/log.h"
+#include "engine/edit/relation.h"
+#include "engine/edit/scene_reading.h"
+#include "engine/edit/vocabulary.h"
+#include "engine/localize/focus.h"
+
+namespace gse::pipeline {
+namespace {
+
+constexpr std::array<double, 5> ScanDistances{1.0, 0.7, 0.45, 0.3, 0.22};   // of the fitted orbit's radius
+constexpr int ScanViews = 6;                // per distance
+
+/// What is added needs room around what is there; beside it more than on it.
+double room_around(const edit::EditRequest& request) {
+    constexpr double OnIt = 1.35, BesideIt = 1.75;
+    const auto relation = edit::relation_of(request.prompt, request.source, request.target);
+    return edit::place_name(relation).empty() ? OnIt : BesideIt;
+}
+
+std::string key_of(const Located& located) {
+    Hash label;
+    label.bytes(located.label.data(), located.label.size());
+    label.bytes(located.result.label.bits->data(), located.result.label.bits->size());
+    const auto& thresholds = static_cast<const edit::LabelThresholds&>(located.recipe.request);
+    return fmt::format("{} {} {} {}", search_key(located.recipe), fields_to_json(thresholds).dump(), located.views.key, label.value());
+}
+
+/// What an unsure search found is seen in its views only.
+Located finished(Located located) {
+    auto& result = located.result;
+    if (!located.found())
+        for (auto* label : {&result.label, &result.source_label})
+            *label = make_label(label->name, std::vector<float>(label->bits->size(), 0.0f), 0.5f);
+    located.key = key_of(located);
+    return located;
+}
+
+/// One search; every step of it gives a new value.
+class Search {
+public:
+    Search(Workplace& workplace, EditRecipe recipe, const Views& views, const Hints& hints, const JobControl& control)
+        : workplace_(workplace), recipe_(std::move(recipe)), views_(views), hints_(hints), control_(control) {}
+
+    Located run() {
+        const bool by_label = !hints_.label.empty() && (recipe_.job.use_label || !edit::knows(workplace_.model().known_words(),
+                                                                                                recipe_.request.source));
+        read_scene(moves() && !by_label);
+        if (by_label) return from_label();
+        Located located = moves() ? from_all_distances() : moved_in(views_, {});
+        if (located.found() || hints_.label.empty()) return located;
+        log::info("{}; the label alone says what may change", located.result.message);
+        return from_label();
+    }
+
+private:
+    bool moves() const { return views_.automatic && recipe_.request.focus; }
+
+    Located from_label() { return moved_in(views_, hints_.label); }
+
+    /// Asks the model's encoders, where it has them, which word is new and which distances are worth a search.
+    void read_scene(bool scans) {
+        distances_ = scans ? std::vector<double>(ScanDistances.begin(), ScanDistances.end()) : std::vector<double>{1.0};
+        auto& recognition = workplace_.recognition();
+        if (!recognition.compares() || !(scans || hints_.target_open)) return;
+        auto& request = recipe_.request;
+        const int side = request.image_size;
+        std::vector<std::vector<Image>> pictures;
+        for (const double distance : distances_) {
+            const auto some = scans ? orbit_views(nearer(views_.orbit, distance), ScanViews, side, side)
+                                    : farthest_views(views_.views, std::size_t{ScanViews});
+            pictures.push_back(workplace_.pictures(some, render_settings(workplace_.scene(), request), control_));
+            control_.report("comparing the sentence with the scene", static_cast<int>(pictures.size()), static_cast<int>(distances_.size()));
+        }
+        std::vector<std::string> targets{request.target};
+        if (hints_.target_open) targets = edit::possible_targets(request.prompt, request.source, hints_.said);
+        std::erase_if(targets, [&](const auto& word) { return !edit::knows(workplace_.model().known_words(), word); });
+        const auto reading = edit::read_scene(recognition, request, targets, pictures);
+        if (hints_.target_open)
+            log::info("new in the sentence: \"{}\" (what it says without fits the scene to {:.2f})", reading.target, reading.fit);
+        request.target = reading.target;
+        target_read_ = hints_.target_open;
+        std::vector<double> worth;
+        for (const auto index : reading.distances) worth.push_back(distances_[index]);
+        distances_ = std::move(worth);
+    }
+
+    edit::LocateResult look(const EditRecipe& recipe, const Views& views, const std::vector<std::uint8_t>& label) {
+        return edit::locate(question(workplace_, recipe, views, label.empty() ? nullptr : &label), workplace_.tools(views, control_));
+    }
+
+    /// The fitted orbit shows the whole scene; what the words mean may be a small part of it. The distance from which it is
+    /// found most surely wins; a few views tell, and what something is added to is enough.
+    Views best_distance(const std::vector<double>& distances) {
+        if (distances.size() == 1) return views_on(nearer(views_.orbit, distances.front()), recipe_);
+        EditRecipe scan = recipe_;
+        scan.request.views = std::min(scan.request.views, ScanViews);
+        scan.request.mode = "modify";
+        double best = -1;
+        OrbitParameters chosen = views_.orbit;
+        for (const double distance : distances) {
+            const Views views = views_on(nearer(views_.orbit, distance), scan);
+            const auto found = look(scan, views, {});
+            if (found.problem != edit::SearchProblem::None && found.problem != edit::SearchProblem::Unsure) continue;   // try nearer
+            log::debug("orbit at {:.2f} of the fitted distance: confidence {:.3f}", distance, found.confidence.value);
+            if (found.confidence.value > best) {
+                best = found.confidence.value;
+                chosen = views.orbit;
+            }
+        }
+        return views_on(chosen, recipe_);
+    }
+
+    /// Looks from the views as they are, and once more from nearer where what was found is small.
+    Located moved_in(const Views& views, const std::vector<std::uint8_t>& by_hand) {
+        Located located{views, recipe_, by_hand, look(recipe_, views, by_hand), target_read_, {}};
+        const auto& result = located.result;
+        const auto& label = result.mode == edit::EditMode::Add ? result.source_label : result.label;
+        if (!moves() || std::find(label.bits->begin(), label.bits->end(), std::uint8_t{1}) == label.bits->end()) return located;
+        auto focused = localize::focus_orbit(workplace_.drawn(), *label.bits, views.orbit);
+        if (result.mode == edit::EditMode::Add) focused.radius *= room_around(recipe_.request);
+        if (!localize::worth_refocusing(views.orbit, focused)) return located;
+        located.views = views_on(focused, recipe_);
+        located.result = look(recipe_, located.views, by_hand);
+        return located;
+    }
+
+    Located from_all_distances() {
+        Located located = moved_in(best_distance(distances_), {});
+        std::vector<double> others;
+        for (const double distance : ScanDistances)
+            if (std::find(distances_.begin(), distances_.end(), distance) == distances_.end()) others.push_back(distance);
+        if (located.found() || others.empty()) return located;
+        // The pictures as a whole fitted best where the word was not found.
+        Located other = moved_in(best_distance(others), {});
+        const bool better = other.found() || other.result.confidence.value > located.result.confidence.value;
+        return better ? other : located;
+    }
+
+    Workplace& workplace_;
+    EditRecipe recipe_;
+    const Views& views_;
+    const Hints& hints_;
+    const JobControl& control_;
+    std::vector<double> distances_;   // shares of the fitted orbit's radius that are tried
+    bool target_read_ = false;
+};
+
+}  // namespace
+
+edit::LocateInput question(const Workplace& workplace, const EditRecipe& recipe, const Views& views,
+                           const std::vector<std::uint8_t>* label) {
+    const auto& scene = workplace.scene();
+    return {workplace.drawn(), views.views,   views.words, recipe.request,
+            render_settings(scene, recipe.request), scene.info.up, views.front, label, workplace.model().known_words()};
+}
+
+Located locate(Workplace& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints, const JobControl& control) {
+    workplace.ask_anew(recipe.attention);
+    return finished(Search(workplace, recipe, views, hints, control).run());
+}
+
+Located locate_again(Workplace& workplace, const Located& located, const EditRecipe& recipe, const JobControl& control) {
+    workplace.ask(recipe.attention);
+    Located again{located.views, recipe, located.label, {}, located.target_read, {}};
+    const auto* label = again.by_label() ? &again.label : nullptr;
+    again.result = edit::locate(question(workplace, recipe, again.views, label), workplace.tools(again.views, control));
+    return finished(std::move(again));
+}
+
+Located locate_by_label(Workplace& workplace, const Located& located, std::vector<std::uint8_t> label, const JobControl& control) {
+    Located labelled = located;
+    labelled.label = std::move(label);
+    return locate_again(workplace, labelled, labelled.recipe, control);
+}
+
+Located with_label(const Located& located, const std::vector<std::uint8_t>& bits) {
+    Located corrected = located;
+    corrected.result.label.bits = std::make_shared<const std::vector<std::uint8_t>>(bits);
+    corrected.key = key_of(corrected);
+    return corrected;
+}
+
+}  // namespace gse::pipeline

@@ -1,0 +1,147 @@
+// Cameras of a run and the words for what they see.
+#include "engine/pipeline/views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "engine/base/error.h"
+#include "engine/base/hash.h"
+
+namespace gse::pipeline {
+namespace {
+
+/// The same camera, cropped to a centred square of `side` pixels.
+Camera square_camera(const Camera& camera, int side) {
+    const double shorter = std::min(camera.width, camera.height);
+    const double scale = side / shorter;
+    Camera result = camera;
+    result.width = result.height = side;
+    result.fx *= scale;
+    result.fy *= scale;
+    result.cx = (camera.cx - 0.5 * (camera.width - shorter)) * scale;
+    result.cy = (camera.cy - 0.5 * (camera.height - shorter)) * scale;
+    return result;
+}
+
+std::string words_for_azimuth(double azimuth) {
+    const double turned = std::abs(std::remainder(azimuth, 2 * std::numbers::pi));
+    return turned < 50 * Degree ? "front view" : turned > 130 * Degree ? "back view" : "side view";
+}
+
+/// Level unit direction from the orbit's centre to its camera at `azimuth`.
+Vec3 direction_at(const OrbitParameters& orbit, double azimuth) {
+    OrbitParameters level = orbit;
+    level.elevation = 0;
+    return normalized(orbit_camera(level, azimuth, 8, 8).centre() - orbit.centre);
+}
+
+/// Azimuth from which a camera sees the orbit's centre, in the convention of orbit_camera.
+double azimuth_of(const Camera& camera, const OrbitParameters& orbit) {
+    const Vec3 front = direction_at(orbit, 0);
+    const Vec3 side = cross(normalized(orbit.up), front);
+    const Vec3 direction = camera.centre() - orbit.centre;
+    return std::atan2(dot(direction, side), dot(direction, front));
+}
+
+/// What the renders of the views follow from, beside the scene.
+std::string key_of(const Views& views, const EditRecipe& recipe) {
+    Hash key;
+    for (const auto& view : views.views) {
+        const Camera& camera = view.camera;
+        const Vec3 centre = camera.centre();
+        for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy, centre.x, centre.y, centre.z}) key.bytes(&value, sizeof value);
+        for (int i = 0; i < 9; ++i) {
+            const double value = camera.rotation(i / 3, i % 3);
+            key.bytes(&value, sizeof value);
+        }
+        key.add(static_cast<std::uint64_t>(camera.width));
+        key.add(static_cast<std::uint64_t>(camera.height));
+    }
+    for (const auto& words : views.words) key.text(words);
+    key.text(recipe.request.background);
+    return std::to_string(key.value());
+}
+
+/// Fills in what follows from cameras and orbit.
+Views finished(Views views, const EditRecipe& recipe, const std::map<std::string, std::string>& words) {
+    const double front = recipe.job.front.empty() ? 0 : parse_front(recipe.job.front);
+    views.front = direction_at(views.orbit, front);
+    for (const auto& view : views.views) {
+        if (!words.empty())
+            views.words.push_back(words.at(view.name));
+        else if (!recipe.job.front.empty())
+            views.words.push_back(words_for_azimuth(azimuth_of(view.camera, views.orbit) - front));
+    }
+    views.key = key_of(views, recipe);
+    return views;
+}
+
+}  // namespace
+
+std::vector<View> farthest_views(const std::vector<View>& views, std::size_t count) {
+    if (views.size() <= count) return views;
+    std::vector<double> distance(views.size(), std::numeric_limits<double>::infinity());
+    std::vector<std::size_t> chosen{0};
+    while (chosen.size() < count) {
+        const Vec3 last = views[chosen.back()].camera.centre();
+        for (std::size_t i = 0; i < views.size(); ++i)
+            distance[i] = std::min(distance[i], length(views[i].camera.centre() - last));
+        chosen.push_back(
+            static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin()));
+    }
+    std::sort(chosen.begin(), chosen.end());
+    std::vector<View> result;
+    for (const auto index : chosen) result.push_back(views[index]);
+    return result;
+}
+
+double parse_front(const std::string& text) {
+    std::size_t used = 0;
+    double value = 0;
+    try {
+        value = std::stod(text, &used);
+    } catch (const std::exception&) {
+        used = 0;
+    }
+    if (used == 0 || used != text.size() || !std::isfinite(value))
+        throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not an angle", "give --front in degrees, for example 0");
+    return value * Degree;
+}
+
+OrbitParameters nearer(OrbitParameters orbit, double share) {
+    orbit.radius *= share;
+    return orbit;
+}
+
+raster::Settings render_settings(const Scene& scene, const edit::EditRequest& request) {
+    raster::Settings settings;
+    settings.background = parse_colour(request.background);
+    settings.antialiased = scene.info.antialiased;
+    return settings;
+}
+
+Views choose_views(const Scene& scene, const EditRecipe& recipe, const GivenCameras& given) {
+    RenderParameters render;
+    render.up = recipe.job.up;
+    render.elevation = recipe.request.elevation;
+    const OrbitParameters orbit = scene_orbit(scene, render);
+    if (given.cameras.empty()) return views_on(orbit, recipe);
+    Views views;
+    views.orbit = orbit;
+    views.views = farthest_views(given.cameras, static_cast<std::size_t>(recipe.request.views));
+    for (auto& view : views.views) view.camera = square_camera(view.camera, recipe.request.image_size);
+    return finished(std::move(views), recipe, given.words);
+}
+
+Views views_on(const OrbitParameters& orbit, const EditRecipe& recipe) {
+    const int side = recipe.request.image_size;
+    Views views;
+    views.orbit = orbit;
+    views.automatic = true;
+    views.views = orbit_views(orbit, recipe.request.views, side, side);
+    return finished(std::move(views), recipe, {});
+}
+
+}  // namespace gse::pipeline

@@ -1,0 +1,48 @@
+// Recipe -> Views: from where a run looks at its scene.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/pipeline/recipe.h"
+#include "engine/pipeline/scene_tools.h"
+#include "engine/scene/scene.h"
+
+namespace gse::pipeline {
+
+/// From where a scene is looked at. A value: nothing changes it, other views are other values.
+struct Views {
+    std::vector<View> views;          // squares of the request's image_size
+    std::vector<std::string> words;   // "front view" and so on per view, or empty
+    OrbitParameters orbit;            // that they lie on; for given cameras, the one fitted to the scene
+    Vec3 front;                       // where the scene's front looks, world, unit length
+    bool automatic = false;           // on an orbit of the program's own choice: a search may move it
+    std::string key;                  // of cameras, words, background and size: views with the same key show the same of a scene
+};
+
+/// Cameras that the artist or the scene brings along.
+struct GivenCameras {
+    std::vector<View> cameras;                    // empty = an orbit is fitted
+    std::map<std::string, std::string> words;     // what they see, by the camera's name; empty = from the recipe's front
+};
+
+/// The first views of a run: the given cameras, of many those farthest apart (method X9), or an orbit fitted to the scene.
+Views choose_views(const Scene& scene, const EditRecipe& recipe, const GivenCameras& given);
+
+/// As many views as the request asks for on another orbit.
+Views views_on(const OrbitParameters& orbit, const EditRecipe& recipe);
+
+/// The same orbit at a share of its radius.
+OrbitParameters nearer(OrbitParameters orbit, double share);
+
+/// Farthest-point sample of the cameras (method X9), first camera first, in the order of the file.
+std::vector<View> farthest_views(const std::vector<View>& views, std::size_t count);
+
+/// --front in radians. Throws Error (InvalidArgument).
+double parse_front(const std::string& text);
+
+/// How views of a scene are rendered for a run.
+raster::Settings render_settings(const Scene& scene, const edit::EditRequest& request);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,62 @@
+// What every stage of a run works with: the scene, the model, and what both have answered so far.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/base/thread_pool.h"
+#include "engine/edit/cached_attention.h"
+#include "engine/edit/locate.h"
+#include "engine/neural/api.h"
+#include "engine/pipeline/scene_tools.h"
+#include "engine/pipeline/views.h"
+
+namespace gse::pipeline {
+
+/// Scene and model of a run. What they have answered is remembered: that changes how long a stage takes, never what comes of it.
+class Workplace {
+public:
+    /// Of the job, the up axis counts. Throws Error (InvalidArgument) for a scene of which nothing can be seen.
+    Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job);
+
+    const Scene& scene() const { return scene_; }
+    /// The scene without what cannot be drawn; such splats stay as they are and count nowhere.
+    const GaussianSet& drawn() const { return drawn_; }
+    std::size_t unusable() const { return unusable_; }
+    neural::TextToImage& model() const { return *model_; }
+    const std::shared_ptr<neural::TextToImage>& shared_model() const { return model_; }
+    Painter& painter() { return painter_; }
+
+    /// From here on another model of the same kind answers; what the one before answered is forgotten.
+    void take_model(std::shared_ptr<neural::TextToImage> model);
+    /// Forgets what networks answered and asks with these settings from here on.
+    void ask_anew(const neural::AttentionParameters& attention);
+    /// The same, where nothing was asked yet.
+    void ask(const neural::AttentionParameters& attention);
+    /// What locate() calls, for these views; needs ask() or ask_anew().
+    edit::LocateTools tools(const Views& views, const JobControl& control);
+    edit::Recognition& recognition() { return *recognition_; }
+    /// Renders in [0,1]. Throws Error (Cancelled) on a stop request.
+    std::vector<Image> pictures(const std::vector<View>& views, const raster::Settings& settings, const JobControl& control);
+    /// Pictures that the networks were asked about so far.
+    std::size_t questions() const { return attention_ ? attention_->asked() : 0; }
+    /// The threshold the model states for its attention; 0 before it was asked anything.
+    double stated_threshold() const { return attention_ ? attention_->threshold() : 0; }
+
+private:
+    Scene scene_;
+    GaussianSet drawn_;
+    std::size_t unusable_ = 0;
+    std::shared_ptr<neural::TextToImage> model_;
+    Painter painter_;
+    ThreadPool threads_;
+    std::unique_ptr<edit::CachedAttention> attention_;
+    std::unique_ptr<edit::Recognition> recognition_;
+    std::unique_ptr<edit::Segmenter> segmenter_;
+    edit::ViewMemory renders_;   // of the views with this key
+    std::string renders_key_;
+};
+
+}  // namespace gse::pipeline
