@@ -82,6 +82,8 @@ public:
     /// `hint` (may be empty) is a coarse map in [0,1] of where the object probably is, at the image's size.
     virtual Mask segment(const Image& image, const std::vector<PointPrompt>& points, const std::optional<BoxPrompt>& box,
                          const Image& hint) = 0;
+    /// Whether its masks are better than the attention they come from: then attention outside of them does not count.
+    virtual bool trusted() const { return false; }
     virtual std::string name() const = 0;
 };
 

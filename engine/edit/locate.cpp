@@ -46,10 +46,10 @@ double above(double attention, double level) {
 /// What a view says about its pixels, [H,W,1] in [0,1]. A mask cut out by colours has sharp edges but leaves out what has
 /// another colour (a mushroom's stem, a car's windows); the attention is blurred but knows that they belong. Where the
 /// two disagree, the other views and the cut between neighbours decide; what another named thing has for sure (the white
-/// legs of a dog on snow) the mask does not take from it. A text segmenter is believed as it is.
+/// legs of a dog on snow) the mask does not take from it. The mask of a segmenter that is trusted is believed as it is.
 Image vote_of(const ViewEvidence& view, double threshold) {
     Image vote = mask_image(view.mask);
-    if (view.failed || view.branch == "text") return vote;
+    if (view.failed || view.trusted) return vote;
     for (std::size_t i = 0; i < vote.data.size(); ++i) {
         const double attention = above(view.map.data[i], AttentionLevel * threshold);
         const double lost = view.lead.data.empty() ? 0 : above(view.lead.data[i], RivalLead);
@@ -216,6 +216,7 @@ private:
         view.points = std::move(found.points);
         view.captured = found.captured;
         view.branch = std::move(found.branch);
+        view.trusted = found.trusted;
         view.step = found.step;
         view.failed = !found.found();
     }

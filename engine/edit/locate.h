@@ -62,6 +62,7 @@ struct ViewEvidence {
     Mask mask;                        // the view's vote, not dilated
     std::string branch;               // what made the mask: "text", "points", "attention", "anchor", "label" or "none"
     double captured = 0;              // share of the region's attention inside the mask
+    bool trusted = false;             // the mask trims the attention: a segmenter made it that is trusted
     bool failed = false;              // nothing was found: the view does not vote
     ViewStep step = ViewStep::Found;  // where it failed
 };

@@ -94,17 +94,23 @@ void refine(WordMask& found, const Image& picture, const Image& map, const std::
             from_text = std::move(mask);
         }
     }
+    const auto accept_text = [&] {
+        accept(found, std::move(*from_text), text_mass, "text");
+        found.trusted = true;
+    };
     const bool text_fits = from_text && text_mass >= settings.fallback_mass;
     if (text_fits && localize::mask_iou(*from_text, found.region) >= LeastOverlapIou)
-        return accept(found, std::move(*from_text), text_mass, "text");
+        return accept_text();
     if (tools.segmenter != nullptr) {
         Mask mask = tools.segmenter->segment(picture, found.points, bounds(found.region), map);
         mask = localize::clean_clusters(mask, map, {1.5, 1}, settings.keep_mass);
         const double mass = localize::captured_mass(map, found.region, mask);
-        if (sane(mask, found.region) && mass >= std::max(settings.fallback_mass, text_mass))
+        if (sane(mask, found.region) && mass >= std::max(settings.fallback_mass, text_mass)) {
+            found.trusted = tools.segmenter->trusted();
             return accept(found, std::move(mask), mass, "points");
+        }
     }
-    if (text_fits) accept(found, std::move(*from_text), text_mass, "text");
+    if (text_fits) accept_text();
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct WordMask {
     std::vector<PointPrompt> points;  // clicks for the segmenter
     double captured = 0;              // share of the region's attention inside the mask
     std::string branch = "none";      // what the mask is from: "text", "points" or "attention"
+    bool trusted = false;             // the mask is from a segmenter that is trusted: it trims the attention
     ViewStep step = ViewStep::Found;  // in which step it ended
     bool found() const { return step == ViewStep::Found; }
 };

@@ -91,7 +91,9 @@ public:
                 mask.at(x, y) = image.at(x, y, 0) - image.at(x, y, 1) > 0.2f ? 1 : 0;
         return mask;
     }
+    bool trusted() const override { return trusted_; }
     std::string name() const override { return "top"; }
+    bool trusted_ = false;
 };
 
 /// Takes whatever is not black.
@@ -359,6 +361,20 @@ DOCTEST_TEST_CASE("what the attention covers belongs to the thing, even where th
     const auto strict = edit::locate(fixture.input(request), fixture.tools(&segmenter));
     constexpr double least_gain = 0.1;   // the part left out is a third of the ball
     DOCTEST_CHECK(covered > iou(*strict.label.bits, fixture.scene.first) + least_gain);
+}
+
+DOCTEST_TEST_CASE("a segmenter that is trusted trims the attention") {
+    const Quiet quiet;
+    Fixture fixture;
+    TopSegmenter segmenter;
+    auto request = request_for("a blue ball", "blue");
+    request.label_smoothness = 0;
+    const auto joined = edit::locate(fixture.input(request), fixture.tools(&segmenter));
+    segmenter.trusted_ = true;
+    const auto trimmed = edit::locate(fixture.input(request), fixture.tools(&segmenter));
+    const auto labelled = [](const auto& found) { return std::count(found.label.bits->begin(), found.label.bits->end(), 1); };
+    DOCTEST_CHECK(labelled(trimmed) > 0);
+    DOCTEST_CHECK(labelled(trimmed) < 0.9 * static_cast<double>(labelled(joined)));   // it leaves a third of the ball out
 }
 
 DOCTEST_TEST_CASE("a text segmenter that agrees with the attention is believed") {
