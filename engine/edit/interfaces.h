@@ -42,6 +42,38 @@ public:
     virtual GuidanceOutput evaluate(const GuidanceInput& input) = 0;
 };
 
+/// One view of a round of view guidance. Pictures have one size; `rendered` and `original` are in [0,1].
+struct RoundView {
+    Image rendered;                // [H,W,3] the scene as it is now
+    Image original;                // [H,W,3] the unedited scene
+    Image depth;                   // [H,W,1] of the surface along the camera's z, world units; 0 = nothing there
+    Mask mask;                     // where the picture may change
+    View view;
+    std::string view_words = {};   // as in GuidanceInput
+};
+
+/// What a round is asked to be.
+struct RoundInput {
+    int round = 0, rounds = 1;
+    int steps = 4;                 // of the sampler
+    double strength = 0.7;         // where it begins: 0 = the picture itself, 1 = pure noise
+    std::uint64_t seed = 0;        // already mixed with the round: the only source of randomness
+};
+
+/// The pictures as the model would have them, and numbers for the log.
+struct RoundTargets {
+    std::vector<Image> images;                // per view, [H,W,3] in [0,1], of the size that came in
+    std::map<std::string, double> scalars;
+};
+
+/// Edits all views of a round in the picture; the scene is fitted to what comes back.
+class ViewGuidance {
+public:
+    virtual ~ViewGuidance() = default;
+    /// Throws Error (Cancelled) on a stop request.
+    virtual RoundTargets edit(const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) = 0;
+};
+
 /// One attention query: where in the image does each of these words of the prompt land?
 struct AttentionQuery {
     const Image& image;               // [H,W,3] in [0,1]

@@ -221,6 +221,8 @@ EditRequest validated(EditRequest request) {
         throw Error(ErrorCode::InvalidArgument, "the edit has no prompt", "describe the scene after the edit in one sentence");
     if (request.mode != "auto" && request.mode != "modify" && request.mode != "add")
         throw Error(ErrorCode::InvalidArgument, "\"" + request.mode + "\" is not an edit mode", "use auto, modify or add");
+    if (request.method != "auto" && request.method != "views" && request.method != "sds")
+        throw Error(ErrorCode::InvalidArgument, "\"" + request.method + "\" is not a method", "use auto, views or sds");
     if (!request.source.empty()) request.source = phrase_of(request.source, "source");
     if (request.target.empty()) {
         if (request.source.empty())
@@ -235,6 +237,14 @@ EditRequest validated(EditRequest request) {
                     "use it in the sentence, or choose another target");
     if (request.source.empty()) request.source = request.target;
     return request;
+}
+
+bool edits_by_views(const LoopSettings& settings, EditMode mode) {
+    return settings.method == "views" || (settings.method == "auto" && mode == EditMode::Modify);
+}
+
+int loop_steps(const LoopSettings& settings, bool by_views) {
+    return by_views ? settings.rounds * settings.fit_steps : settings.iterations;
 }
 
 EditMode chosen_mode(const EditRequest& request, bool target_exists) {

@@ -94,7 +94,14 @@ struct LabelThresholds {
 struct LoopSettings {
     std::uint64_t seed = 0;
     bool localize = true;
+    std::string method = "auto";
     int iterations = 200;
+    // View guidance
+    int edited_views = 8;
+    int rounds = 1;
+    int view_steps = 4;
+    int fit_steps = 60;
+    double view_strength = 0.7;
     double guidance_weight = 1;
     double strength = 1;
     bool gate_guidance = true;
@@ -156,7 +163,15 @@ private:
         f("seed", self.seed, "Seed of everything random.");
         f("localize", self.localize,
           "Let only the splats that were found change; off = every splat may (an ablation of the paper).");
-        f("iterations", self.iterations, "Optimisation steps.", Range{0, 1e6});
+        f("method", self.method,
+          "How the model leads the edit: views (it redraws some views, the scene is fitted to them), sds (it pulls at every step, the "
+          "paper's way) or auto (views where something changes, sds where something is added).");
+        f("iterations", self.iterations, "Optimisation steps of method sds.", Range{0, 1e6});
+        f("edited_views", self.edited_views, "Views that the model redraws in a round.", Range{1, 64});
+        f("rounds", self.rounds, "How often they are redrawn, each time from what the scene has become.", Range{1, 20});
+        f("view_steps", self.view_steps, "Denoising steps of a redrawn view.", Range{1, 100});
+        f("fit_steps", self.fit_steps, "Optimisation steps after each round.", Range{1, 1e5});
+        f("view_strength", self.view_strength, "How far from the render a view is redrawn: 0 = not at all, 1 = from nothing.", Range{0.02, 1});
         f("guidance_weight", self.guidance_weight, "How hard the model pulls, against keeping the rest.", Range{0, 1e6});
         f("strength", self.strength,
           "How much of the result is kept: 0 = none, below 1 = between before and after, above 1 = colours go beyond it.",
@@ -237,6 +252,11 @@ struct EditRequest : EditWords, SearchSettings, LabelThresholds, LoopSettings {
 };
 
 enum class EditMode { Modify, Add };
+
+/// Whether the views method is what `method` means for an edit of that mode.
+bool edits_by_views(const LoopSettings& settings, EditMode mode);
+/// Optimisation steps of an edit.
+int loop_steps(const LoopSettings& settings, bool by_views);
 
 /// The sentence's terms, with compound prepositions ("next to") as one: what a reader of noun phrases goes through.
 std::vector<std::string> noun_terms(const std::string& sentence, const std::vector<std::string>& phrases);

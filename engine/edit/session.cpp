@@ -21,6 +21,7 @@
 #include "engine/edit/edit_strength.h"
 #include "engine/edit/preservation.h"
 #include "engine/edit/scales.h"
+#include "engine/edit/view_round.h"
 #include "engine/edit/working_set.h"
 #include "engine/localize/back_projection.h"
 #include "engine/localize/clusters.h"
@@ -112,6 +113,17 @@ struct EditBase {
     }
 };
 
+/// The request as the loop goes by it: with view guidance the steps are those of the fits, what is fitted has no mask to follow,
+/// and growth comes once in the middle of each round (views.md 8).
+EditRequest loop_request(EditRequest request, bool by_views) {
+    if (!by_views) return request;
+    request.iterations = loop_steps(request, true);
+    request.dynamic_mask = request.look_again = false;
+    if (request.densify_every > 0) request.densify_every = request.densify_from = std::max(1, request.fit_steps / 2);
+    request.densify_until = 1 - 0.5 / request.rounds;
+    return request;
+}
+
 /// Everything one run keeps between iterations.
 class Loop {
 public:
@@ -119,11 +131,11 @@ public:
         : base_(base),
           plan_(plan),
           label_(base.editable(plan.label)),
-          request_(request),
+          request_(loop_request(request, tools.views != nullptr)),
           tools_(tools),
-          set_(base.drawn, label_, plan.seeds, request, camera_extent(plan.views)),
+          set_(base.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
           preservation_({request.l1, request.ssim, request.preserve}),
-          masks_(plan, request, tools.word, tools.attention, tools.segmenter),
+          masks_(plan, request_, tools.word, tools.attention, tools.segmenter),
           cycle_(request.seed),
           rest_(plan.views.size(), request.early_stop_change),
           random_(Random::stream(request.seed, 17)) {
@@ -131,6 +143,7 @@ public:
         if (tools.start != nullptr) set_.resume(base.drawn, *tools.start);
         render_originals();
         settings_.negative_colour_slope = TrainingColourSlope;
+        if (tools.views != nullptr) rounds_.emplace(plan_, request_, *tools.views);
     }
 
     const std::vector<std::uint8_t>& label() const { return label_; }
@@ -143,7 +156,7 @@ public:
             if (views.empty())
                 throw Error(ErrorCode::InvalidArgument, "no labelled splat is visible in any view",
                             "correct the label, or choose views that show it");
-            draw_only(views);
+            begin_with(views);
             while (result.iterations < request_.iterations && advance(result)) {
             }
         } catch (const std::bad_alloc&) {
@@ -231,6 +244,32 @@ private:
         return views;
     }
 
+    /// The views the edit is seen in: all are drawn, or those that are redrawn.
+    void begin_with(const std::vector<std::size_t>& visible) {
+        if (!rounds_) return draw_only(visible);
+        std::vector<Mask> masks;
+        for (std::size_t v = 0; v < plan_.views.size(); ++v) masks.push_back(masks_.mask(v));
+        rounds_->choose(visible, masks);
+        draw_only(rounds_->views());
+    }
+
+    /// Has the model redraw its views of the rows as they are now.
+    void redraw_views(int iteration, IterationRecord& record) {
+        std::vector<RoundView> views;
+        for (const auto v : rounds_->views()) {
+            tools_.rasterizer.forward(spans(set_.rows()), plan_.views[v].camera, settings_, output_);
+            RoundView view{{}, originals_[v], output_.depth, masks_.mask(v), plan_.views[v],
+                           plan_.view_words.empty() ? std::string() : plan_.view_words[v]};
+            show(view.rendered);
+            for (auto& value : view.original.data) value = std::clamp(value, 0.0f, 1.0f);
+            for (std::size_t i = 0; i < view.depth.data.size(); ++i)
+                view.depth.data[i] = output_.alpha.data[i] > 0.5f ? view.depth.data[i] / output_.alpha.data[i] : 0.0f;
+            views.push_back(std::move(view));
+        }
+        record.guidance = rounds_->redraw(iteration, std::move(views), originals_, tools_.job);
+        std::erase_if(record.guidance, [](const auto& scalar) { return !std::isfinite(scalar.second); });
+    }
+
     /// From here on only these views are drawn, and have to come to rest.
     void draw_only(const std::vector<std::size_t>& views) {
         rest_ = RestDetector(plan_.views.size(), request_.early_stop_change);
@@ -247,26 +286,36 @@ private:
 
     /// One step, left out when the guidance is not finite; false when the guidance was stopped, with everything as before.
     bool iterate(int iteration, std::size_t view, EditResult& result) {
+        IterationRecord record;
+        record.iteration = iteration;
+        record.view = view;
+        try {
+            const StageTimer timer(seconds_.guidance);
+            if (rounds_ && rounds_->begins(iteration)) redraw_views(iteration, record);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::Cancelled) throw;
+            return false;
+        }
         {
             const StageTimer timer(seconds_.render);
             tools_.rasterizer.forward(spans(set_.rows()), plan_.views[view].camera, settings_, output_);
         }
         show(shown_);
         if (masks_.due(view, iteration)) refresh_mask(view, iteration);
-        IterationRecord record;
-        record.iteration = iteration;
-        record.view = view;
         {
             const StageTimer timer(seconds_.preserve);
             gradient_.resize(output_.colour.width, output_.colour.height, 3);
             std::fill(gradient_.data.begin(), gradient_.data.end(), 0.0f);
-            record.preservation =
-                preservation_.add_gradient(output_.colour, originals_[view], masks_.mask(view), gradient_);
+            if (rounds_)   // redrawn inside the mask, the original outside: one loss for both
+                record.preservation = preservation_.add_gradient(output_.colour, rounds_->target(view), no_mask(), gradient_);
+            else
+                record.preservation =
+                    preservation_.add_gradient(output_.colour, originals_[view], masks_.mask(view), gradient_);
             record.preservation_norm = norm(gradient_);
         }
         try {
             const StageTimer timer(seconds_.guidance);
-            record.skipped = !add_guidance(iteration, view, record);
+            record.skipped = !rounds_ && !add_guidance(iteration, view, record);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Cancelled) throw;
             return false;
@@ -277,6 +326,11 @@ private:
         densify(iteration, result);
         result.history.push_back(std::move(record));
         return true;
+    }
+
+    const Mask& no_mask() {
+        if (no_mask_.data.size() != output_.colour.pixel_count()) no_mask_ = Mask(output_.colour.width, output_.colour.height);
+        return no_mask_;
     }
 
     /// From the gradient on the picture to new rows; returns the anchors' loss.
@@ -304,9 +358,13 @@ private:
         label_ = std::move(*label);
         set_.relabel(base_.drawn, label_, request_);
         for (std::size_t v = 0; v < masks.size(); ++v) masks_.set_static(v, std::move(masks[v]));
+        ++result.label_changes;
+        if (rounds_) {
+            for (const auto v : rounds_->views()) rounds_->blend(v, originals_[v], masks_.mask(v));
+            return;
+        }
         const auto now = visible_views();
         if (!now.empty() || !seen_in.empty()) draw_only(now.empty() ? seen_in : now);
-        ++result.label_changes;
     }
 
     /// Views in which the rows of a label are seen in the base, and where; per view.
@@ -441,11 +499,13 @@ private:
     const EditBase& base_;
     const EditPlan& plan_;
     std::vector<std::uint8_t> label_;   // what may change now
-    const EditRequest& request_;
+    const EditRequest request_;
     const EditTools& tools_;
     WorkingSet set_;
     Preservation preservation_;
     DynamicMasks masks_;
+    std::optional<ViewRounds> rounds_;   // of view guidance
+    Mask no_mask_;
     ViewCycle cycle_;
     RestDetector rest_;
     Random random_;

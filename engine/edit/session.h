@@ -81,6 +81,7 @@ struct EditTools {
     /// Goes on from this state of an earlier run over the same base, at its iteration; what it says of rows outside the
     /// label does not count. Null = from the base.
     const EditSnapshot* start = nullptr;
+    ViewGuidance* views = nullptr;      // leads the edit in place of `guidance`: it redraws views, the rows are fitted to them
     double snapshot_seconds = 0;        // above 0: a snapshot whenever this much time has passed, instead of by iterations
 };
 

@@ -14,6 +14,7 @@
 #include "engine/edit/text_image_score.h"
 #include "engine/neural/attention_parameters.h"
 #include "engine/neural/dreambooth_parameters.h"
+#include "engine/neural/network_use.h"
 #include "engine/neural/sds_parameters.h"
 #include "engine/neural/starter_trainer.h"
 
@@ -39,6 +40,8 @@ public:
     virtual std::unique_ptr<edit::AttentionSource> attention(const AttentionParameters& parameters) const = 0;
     std::unique_ptr<edit::AttentionSource> attention() const { return attention(AttentionParameters{}); }
     virtual std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const SdsParameters& parameters) const = 0;
+    /// Redraws views of a scene under the prompt; guidance scale, negative prompt and view words are those of `parameters`.
+    virtual std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const SdsParameters& parameters) const = 0;
     /// Words the model was trained on; empty = an open vocabulary.
     virtual std::vector<std::string> known_words() const = 0;
     /// Side of the square images the model works at.
@@ -79,6 +82,8 @@ public:
                                const JobControl& job) = 0;
     /// Threads inside one network operation; 0 = one per core.
     virtual void set_threads(int count) = 0;
+    /// What the calling thread has asked of the networks since it began.
+    virtual NetworkUse use() const = 0;
 };
 
 }  // namespace gse::neural

@@ -4,7 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/neural/network_use.h"
+
 namespace gse::neural {
+
+NetworkUse& thread_use() {
+    thread_local NetworkUse use;
+    return use;
+}
+
 namespace {
 
 // Scores above this many numbers are computed in pieces (64 MB in fp32).
@@ -31,6 +39,8 @@ void fill_affine(torch::Tensor weight, torch::Tensor bias) {
     bias.zero_();
 }
 
+void count_products(std::int64_t products) { thread_use().flop += 2.0 * static_cast<double>(products); }
+
 bool is_reduced(const torch::Tensor& x) {
     return x.scalar_type() == torch::kHalf || x.scalar_type() == torch::kBFloat16;
 }
@@ -47,6 +57,7 @@ LinearImpl::LinearImpl(const Shape& shape, const WeightOptions& options) {
 void LinearImpl::reset() { draw_uniform(weight, bias); }
 
 torch::Tensor LinearImpl::forward(const torch::Tensor& x) const {
+    count_products(x.numel() * weight.size(0));
     return torch::linear(x, weight.dim() == 4 ? weight.flatten(1) : weight, bias);
 }
 
@@ -59,7 +70,9 @@ Conv2dImpl::Conv2dImpl(const Shape& shape, const WeightOptions& options) : shape
 void Conv2dImpl::reset() { draw_uniform(weight, bias); }
 
 torch::Tensor Conv2dImpl::forward(const torch::Tensor& x) const {
-    return torch::conv2d(x, weight, bias, shape_.stride, shape_.padding);
+    auto result = torch::conv2d(x, weight, bias, shape_.stride, shape_.padding);
+    count_products(result.numel() * shape_.in * shape_.kernel * shape_.kernel);
+    return result;
 }
 
 GroupNormImpl::GroupNormImpl(std::int64_t channels, std::int64_t groups, double eps,
@@ -160,6 +173,7 @@ torch::Tensor attend_in_pieces(const torch::Tensor& q, const torch::Tensor& k, c
 AttentionResult attend(const torch::Tensor& q_in, const torch::Tensor& k_in, const torch::Tensor& v_in,
                        const AttentionRequest& request) {
     const auto batch = q_in.size(0);
+    count_products(q_in.numel() * k_in.size(1) + q_in.size(1) * v_in.numel());
     const double scale = 1.0 / std::sqrt(static_cast<double>(q_in.size(2) / request.heads));
     auto q = split_heads(q_in * scale, request.heads);
     auto k = split_heads(k_in, request.heads);

@@ -13,6 +13,7 @@
 #include "engine/neural/images.h"
 #include "engine/neural/sds_guidance.h"
 #include "engine/neural/torch_errors.h"
+#include "engine/neural/view_guidance.h"
 
 // OpenBLAS has this, other libraries behind torch do not.
 extern "C" void openblas_set_num_threads(int count) __attribute__((weak));
@@ -37,6 +38,9 @@ public:
     }
     std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const SdsParameters& parameters) const override {
         return std::make_unique<SdsGuidance>(bundle_, prompt, parameters);
+    }
+    std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const SdsParameters& parameters) const override {
+        return std::make_unique<DiffusionViews>(bundle_, prompt, parameters);
     }
     std::vector<std::string> known_words() const override { return bundle_->facts.vocabulary; }
     int image_size() const override { return static_cast<int>(bundle_->image_size()); }

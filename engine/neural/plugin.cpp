@@ -25,6 +25,7 @@ public:
                     [&] { neural::train_starter(parameters, source, work, output, job); });
     }
     void set_threads(int count) override { neural::set_threads(count); }
+    NetworkUse use() const override { return thread_use(); }
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "engine/base/check.h"
 #include "engine/neural/transformer.h"
+#include "engine/neural/network_use.h"
 
 namespace gse::neural {
 
@@ -150,6 +151,7 @@ torch::Tensor UNetImpl::time_embedding(const torch::Tensor& projection) const {
 torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
                                 const torch::Tensor& context, AttentionCapture* capture) const {
     GSE_CHECK_EQ(sample.dim(), std::int64_t{4});
+    thread_use().unet += static_cast<std::uint64_t>(sample.size(0));
     const auto time =
         apply_silu(time_embedding(time_projection(timesteps, sample.size(0)).to(sample.scalar_type())));
     auto x = conv_in->forward(sample.contiguous(torch::MemoryFormat::ChannelsLast));

@@ -1,5 +1,6 @@
 // KL autoencoder.
 #include "engine/neural/vae.h"
+#include "engine/neural/network_use.h"
 
 namespace gse::neural {
 namespace {
@@ -139,11 +140,13 @@ AutoencoderKlImpl::AutoencoderKlImpl(const VaeConfig& config, const WeightOption
 }
 
 VaeMoments AutoencoderKlImpl::encode_moments(const torch::Tensor& image) const {
+    thread_use().encoder += static_cast<std::uint64_t>(image.size(0));
     const auto halves = pointwise(quant_conv, encoder->forward(image)).chunk(2, 1);
     return {halves[0], halves[1].clamp(LogvarLow, LogvarHigh)};
 }
 
 torch::Tensor AutoencoderKlImpl::decode(const torch::Tensor& z) const {
+    thread_use().decoder += static_cast<std::uint64_t>(z.size(0));
     return decoder->forward(pointwise(post_quant_conv, z));
 }
 

@@ -41,6 +41,10 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
     tools.attention = lost ? nullptr : attention.get();
     tools.segmenter = segmenter.get();
     tools.word = dynamic_word(located, request);
+    const auto views = edit::edits_by_views(request, located.result.mode)
+                           ? model.views(edit::as_told(request.prompt), recipe.guidance)
+                           : nullptr;
+    tools.views = views.get();
     Edited edited;
     edited.result = edit::run_edit(workplace.scene().gaussians, plan, request, tools);
     edited.drawn = drawable(edited.result.set);

@@ -1,0 +1,108 @@
+// Farthest views and feathered masks.
+#include "engine/edit/view_round.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/check.h"
+#include "engine/base/random.h"
+#include "engine/edit/scales.h"
+#include "engine/localize/clusters.h"
+
+namespace gse::edit {
+namespace {
+
+Mask eroded(Mask mask, double radius_px) {
+    for (auto& bit : mask.data) bit = bit != 0 ? 0 : 1;
+    mask = localize::dilate(mask, radius_px);
+    for (auto& bit : mask.data) bit = bit != 0 ? 0 : 1;
+    return mask;
+}
+
+constexpr double FeatherPx = 3;       // of a picture of ReferenceSide (views.md 8.6)
+constexpr double LeastCover = 0.01;   // of the picture: smaller things are not worth a redrawn view (views.md 8)
+
+}  // namespace
+
+std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const std::vector<double>& covered, std::size_t count) {
+    GSE_CHECK_EQ(views.size(), covered.size());
+    const double most = covered.empty() ? 0 : *std::max_element(covered.begin(), covered.end());
+    if (!(most > 0)) return {};
+    const double least = std::min(LeastCover, most);
+    std::vector<std::size_t> chosen{
+        static_cast<std::size_t>(std::max_element(covered.begin(), covered.end()) - covered.begin())};
+    std::vector<double> distance(views.size(), std::numeric_limits<double>::infinity());
+    while (chosen.size() < count) {
+        const Vec3 last = views[chosen.back()].camera.centre();
+        distance[chosen.back()] = -1;
+        std::size_t farthest = views.size();
+        for (std::size_t v = 0; v < views.size(); ++v) {
+            distance[v] = std::min(distance[v], length(views[v].camera.centre() - last));
+            const bool counts = covered[v] >= least && distance[v] >= 0;
+            if (counts && (farthest == views.size() || distance[v] > distance[farthest])) farthest = v;
+        }
+        if (farthest == views.size()) break;
+        chosen.push_back(farthest);
+    }
+    std::sort(chosen.begin(), chosen.end());
+    return chosen;
+}
+
+Image blend_inside(const Image& edited, const Image& original, const Mask& mask, double feather_px) {
+    GSE_CHECK_EQ(edited.data.size(), original.data.size());
+    GSE_CHECK_EQ(mask.data.size(), original.pixel_count());
+    Image result = original;
+    const int rings = static_cast<int>(std::ceil(feather_px));
+    Mask inside = mask;
+    std::vector<float> share(mask.data.size(), 0.0f);
+    for (int ring = 0; ring <= rings; ++ring) {   // one step of the ramp for every pixel from the rim
+        for (std::size_t i = 0; i < share.size(); ++i)
+            if (inside.data[i] != 0) share[i] += 1.0f / static_cast<float>(rings + 1);
+        if (ring < rings) inside = eroded(inside, 1);
+    }
+    for (std::size_t i = 0; i < share.size(); ++i) {
+        if (mask.data[i] == 0) continue;
+        for (std::size_t c = 0; c < 3; ++c)
+            result.data[i * 3 + c] = share[i] * edited.data[i * 3 + c] + (1 - share[i]) * original.data[i * 3 + c];
+    }
+    return result;
+}
+
+ViewRounds::ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance)
+    : plan_(plan), request_(request), guidance_(guidance), targets_(plan.views.size()), edited_(plan.views.size()) {}
+
+void ViewRounds::choose(const std::vector<std::size_t>& visible, const std::vector<Mask>& masks) {
+    std::vector<View> views;
+    std::vector<double> covered;
+    for (const auto v : visible) {
+        views.push_back(plan_.views[v]);
+        covered.push_back(static_cast<double>(masks[v].count()) / static_cast<double>(masks[v].data.size()));
+    }
+    views_.clear();
+    for (const auto index : views_to_redraw(views, covered, static_cast<std::size_t>(request_.edited_views)))
+        views_.push_back(visible[index]);
+}
+
+bool ViewRounds::begins(int iteration) const { return round_ < 0 || iteration / request_.fit_steps > round_; }
+
+std::map<std::string, double> ViewRounds::redraw(int iteration, std::vector<RoundView> views, const std::vector<Image>& originals,
+                                                 const JobControl& job) {
+    GSE_CHECK_EQ(views.size(), views_.size());
+    round_ = iteration / request_.fit_steps;
+    const auto seed = Random::stream(request_.seed, 40000 + static_cast<std::uint64_t>(round_)).next();
+    auto drawn = guidance_.edit(views, {round_, request_.rounds, request_.view_steps, request_.view_strength, seed}, job);
+    GSE_CHECK_EQ(drawn.images.size(), views.size());
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        edited_[views_[i]] = std::move(drawn.images[i]);
+        blend(views_[i], originals[views_[i]], views[i].mask);
+    }
+    return std::move(drawn.scalars);
+}
+
+void ViewRounds::blend(std::size_t view, const Image& original, const Mask& mask) {
+    if (edited_[view].data.empty()) return;
+    targets_[view] = blend_inside(edited_[view], original, mask, FeatherPx * original.width / ReferenceSide);
+}
+
+}  // namespace gse::edit

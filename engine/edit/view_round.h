@@ -1,0 +1,49 @@
+// A round of view guidance around the model's part: which views are redrawn, and what the scene is fitted to (views.md 8).
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/edit/interfaces.h"
+#include "engine/edit/session.h"
+
+namespace gse::edit {
+
+/// Indices of the views to redraw, ascending: farthest-point sample of the cameras among those of which what may change covers
+/// a share of the picture, starting with the view that shows most of it. `covered`: share of each view's picture.
+std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const std::vector<double>& covered, std::size_t count);
+
+/// F edited + (1 - F) original, where F is the mask, feathered inwards by `feather_px`: outside the mask the original stays bit
+/// by bit.
+Image blend_inside(const Image& edited, const Image& original, const Mask& mask, double feather_px);
+
+/// The rounds of an edit: which views are redrawn, and what the scene is fitted to meanwhile.
+class ViewRounds {
+public:
+    ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance);
+
+    /// Picks the views to redraw from those in which the edit is seen.
+    void choose(const std::vector<std::size_t>& visible, const std::vector<Mask>& masks);
+    const std::vector<std::size_t>& views() const { return views_; }
+    /// Whether a round begins with this iteration.
+    bool begins(int iteration) const;
+    /// Has the views redrawn, in the order of views(); `originals` of all views of the plan. Returns what the model tells.
+    std::map<std::string, double> redraw(int iteration, std::vector<RoundView> views, const std::vector<Image>& originals,
+                                         const JobControl& job);
+    /// Another mask: what was redrawn counts inside it.
+    void blend(std::size_t view, const Image& original, const Mask& mask);
+    /// What the scene is fitted to: redrawn inside the mask, the original outside.
+    const Image& target(std::size_t view) const { return targets_[view]; }
+
+private:
+    const EditPlan& plan_;
+    const EditRequest& request_;
+    ViewGuidance& guidance_;
+    std::vector<std::size_t> views_;
+    std::vector<Image> targets_, edited_;   // of the plan's views; empty for those that are not redrawn
+    int round_ = -1;
+};
+
+}  // namespace gse::edit

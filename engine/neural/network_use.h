@@ -1,0 +1,31 @@
+// What a run asks of the networks, counted in one place.
+#pragma once
+
+#include <cstdint>
+
+namespace gse::neural {
+
+/// Passes of each network over one picture, and the arithmetic of all of them.
+struct NetworkUse {
+    std::uint64_t unet = 0;
+    std::uint64_t encoder = 0;   // of the VAE
+    std::uint64_t decoder = 0;
+    double flop = 0;             // 2 per multiply-add of convolutions, linear layers and attention
+
+    NetworkUse& operator+=(const NetworkUse& other) {
+        unet += other.unet;
+        encoder += other.encoder;
+        decoder += other.decoder;
+        flop += other.flop;
+        return *this;
+    }
+    friend NetworkUse operator-(const NetworkUse& a, const NetworkUse& b) {
+        return {a.unet - b.unet, a.encoder - b.encoder, a.decoder - b.decoder, a.flop - b.flop};
+    }
+};
+
+/// What the calling thread has asked for since it began: a run works on one thread, so that the difference of two readings is
+/// its own.
+NetworkUse& thread_use();
+
+}  // namespace gse::neural

@@ -1,0 +1,39 @@
+// View guidance by a diffusion model: all views of a round go from a noised render to the prompt in a few DDIM steps, with noise
+// that lies on the scene's surface (views.md 8 and 9.1; DDIM: Song et al. 2021, eq. 12).
+#pragma once
+
+#include <map>
+#include <memory>
+
+#include "engine/edit/interfaces.h"
+#include "engine/neural/pipelines.h"
+#include "engine/neural/sds_parameters.h"
+
+namespace gse::neural {
+
+/// Timesteps of an img2img run of `steps` steps from `strength` of a schedule of `total` steps: strength (S - i) / S, i = 0..S-1,
+/// rounded to the schedule, descending, none twice.
+std::vector<std::int64_t> redraw_timesteps(double strength, int steps, std::int64_t total);
+
+class DiffusionViews final : public edit::ViewGuidance {
+public:
+    DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters);
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
+                            const JobControl& job) override;
+
+private:
+    struct Batch;
+    Batch prepare(const std::vector<edit::RoundView>& views, const edit::RoundInput& input);
+    void denoise(Batch& batch, const edit::RoundInput& input, const JobControl& job) const;
+    edit::RoundTargets finish(const Batch& batch, const std::vector<edit::RoundView>& views) const;
+    torch::Tensor contexts(const std::vector<edit::RoundView>& views);
+    /// Guided output of the UNet for latents [K,C,h,w], in pieces that fit into memory.
+    torch::Tensor output(const torch::Tensor& x, std::int64_t timestep, const torch::Tensor& contexts) const;
+
+    std::shared_ptr<const ModelBundle> bundle_;
+    std::string prompt_;
+    SdsParameters parameters_;
+    std::map<std::string, torch::Tensor> encoded_;   // [1,T,D], one per sentence
+};
+
+}  // namespace gse::neural
