@@ -205,7 +205,7 @@ void describe(LiveEdit& live, const EditRecipe& recipe) {
     live.name = recipe.request.prompt;
     live.target = recipe.request.target;
     live.recipe = json_text(recipe_to_json(recipe));
-    live.iterations = recipe.request.iterations;
+    live.iterations = edit::planned_steps(recipe.request);
 }
 
 namespace {

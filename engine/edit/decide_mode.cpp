@@ -51,4 +51,8 @@ std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
     return {EditMode::Modify, "\"" + request.target + "\" describes \"" + request.source + "\""};
 }
 
+int planned_steps(const EditRequest& request) {
+    return loop_steps(request, edits_by_views(request, decide_mode(request, std::nullopt).first));
+}
+
 }  // namespace gse::edit

@@ -55,8 +55,8 @@ struct RoundView {
 /// What a round is asked to be.
 struct RoundInput {
     int round = 0, rounds = 1;
-    int steps = 4;                 // of the sampler
-    double strength = 0.7;         // where it begins: 0 = the picture itself, 1 = pure noise
+    int steps = 6;                 // of the sampler
+    double strength = 0.75;        // where it begins: 0 = the picture itself, 1 = pure noise
     std::uint64_t seed = 0;        // already mixed with the round: the only source of randomness
 };
 

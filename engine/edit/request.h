@@ -94,14 +94,14 @@ struct LabelThresholds {
 struct LoopSettings {
     std::uint64_t seed = 0;
     bool localize = true;
-    std::string method = "auto";
+    std::string method = "sds";
     int iterations = 200;
     // View guidance
     int edited_views = 8;
     int rounds = 1;
-    int view_steps = 4;
-    int fit_steps = 60;
-    double view_strength = 0.7;
+    int view_steps = 6;
+    int fit_steps = 40;
+    double view_strength = 0.75;
     double guidance_weight = 1;
     double strength = 1;
     bool gate_guidance = true;
@@ -257,6 +257,8 @@ enum class EditMode { Modify, Add };
 bool edits_by_views(const LoopSettings& settings, EditMode mode);
 /// Optimisation steps of an edit.
 int loop_steps(const LoopSettings& settings, bool by_views);
+/// The same as the words and the mode of the request say, before anything was looked for.
+int planned_steps(const EditRequest& request);
 
 /// The sentence's terms, with compound prepositions ("next to") as one: what a reader of noun phrases goes through.
 std::vector<std::string> noun_terms(const std::string& sentence, const std::vector<std::string>& phrases);

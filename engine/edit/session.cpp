@@ -113,17 +113,6 @@ struct EditBase {
     }
 };
 
-/// The request as the loop goes by it: with view guidance the steps are those of the fits, what is fitted has no mask to follow,
-/// and growth comes once in the middle of each round (views.md 8).
-EditRequest loop_request(EditRequest request, bool by_views) {
-    if (!by_views) return request;
-    request.iterations = loop_steps(request, true);
-    request.dynamic_mask = request.look_again = false;
-    if (request.densify_every > 0) request.densify_every = request.densify_from = std::max(1, request.fit_steps / 2);
-    request.densify_until = 1 - 0.5 / request.rounds;
-    return request;
-}
-
 /// Everything one run keeps between iterations.
 class Loop {
 public:
@@ -134,7 +123,7 @@ public:
           request_(loop_request(request, tools.views != nullptr)),
           tools_(tools),
           set_(base.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
-          preservation_({request.l1, request.ssim, request.preserve}),
+          preservation_(tools.views != nullptr ? FitWeights : PreservationWeights{request.l1, request.ssim, request.preserve}),
           masks_(plan, request_, tools.word, tools.attention, tools.segmenter),
           cycle_(request.seed),
           rest_(plan.views.size(), request.early_stop_change),

@@ -25,6 +25,15 @@ constexpr double LeastCover = 0.01;   // of the picture: smaller things are not 
 
 }  // namespace
 
+EditRequest loop_request(EditRequest request, bool by_views) {
+    if (!by_views) return request;
+    request.iterations = loop_steps(request, true);
+    request.dynamic_mask = request.look_again = false;
+    if (request.densify_every > 0) request.densify_every = request.densify_from = std::max(1, request.fit_steps / 2);
+    request.densify_until = 1 - 0.5 / request.rounds;
+    return request;
+}
+
 std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const std::vector<double>& covered, std::size_t count) {
     GSE_CHECK_EQ(views.size(), covered.size());
     const double most = covered.empty() ? 0 : *std::max_element(covered.begin(), covered.end());

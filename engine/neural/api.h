@@ -40,7 +40,7 @@ public:
     virtual std::unique_ptr<edit::AttentionSource> attention(const AttentionParameters& parameters) const = 0;
     std::unique_ptr<edit::AttentionSource> attention() const { return attention(AttentionParameters{}); }
     virtual std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const SdsParameters& parameters) const = 0;
-    /// Redraws views of a scene under the prompt; guidance scale, negative prompt and view words are those of `parameters`.
+    /// Redraws views of a scene under the prompt; scale, negative prompt, view words and what is taken off are as `parameters` say.
     virtual std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const SdsParameters& parameters) const = 0;
     /// Words the model was trained on; empty = an open vocabulary.
     virtual std::vector<std::string> known_words() const = 0;

@@ -79,7 +79,7 @@ Json stated_by(ModelKind kind) {
                        {"tau", 0.5},           {"evidence_px", 1.0},
                        {"iterations", 4000},   {"geometry_share", 1.0},
                        {"colour_coupling", 0.0}};
-    json["guidance"] = {{"guidance_scale", 7.5}, {"t_max_end", 0.5}};
+    json["guidance"] = {{"guidance_scale", 7.5}, {"view_guidance_scale", 7.5}, {"t_max_end", 0.5}};
     json["dreambooth"] = {{"steps", 400},           {"batch", 4},
                           {"class_images", 200},    {"class_steps", 50},
                           {"class_guidance", 7.5},  {"learning_rate", 5e-6},

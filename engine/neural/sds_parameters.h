@@ -13,6 +13,7 @@ struct SdsParameters {
     double t_max_start = 0.98;
     double t_max_end = 0.8;
     double guidance_scale = 4;
+    double view_guidance_scale = 3;
     double clamp = 1.0;
     double weight = 1.0;
     bool sample_posterior = true;
@@ -30,6 +31,8 @@ struct SdsParameters {
           "Classifier-free guidance: 1 = none, higher follows the prompt harder. Stable Diffusion works best from "
           "7.5 on.",
           Range{0, 200});
+        f("view_guidance_scale", self.view_guidance_scale,
+          "The same where views are redrawn (method views).", Range{0, 200});
         f("clamp", self.clamp, "Largest absolute gradient per latent value; 0 = no limit.", Range{0, 1e6});
         f("weight", self.weight, "Factor of the whole guidance gradient.", Range{0, 1e6});
         f("sample_posterior", self.sample_posterior,

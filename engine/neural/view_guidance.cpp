@@ -45,13 +45,14 @@ struct DiffusionViews::Batch {
     torch::Tensor noise;
     torch::Tensor mask;       // [K,1,h,w]
     torch::Tensor contexts;   // [K,2,T,D] negative, positive
+    torch::Tensor before;     // the same with the sentence before the edit; undefined where nothing is taken off
     torch::Tensor x;          // what the steps have made of it
 };
 
 DiffusionViews::DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters)
     : bundle_(std::move(bundle)), prompt_(std::move(prompt)), parameters_(std::move(parameters)) {}
 
-torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views) {
+torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views, const std::string& prompt) {
     const auto encoded = [&](const std::string& sentence) {
         auto& known = encoded_[sentence];
         if (!known.defined()) known = bundle_->encode_prompts({sentence});
@@ -59,7 +60,7 @@ torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views
     };
     std::vector<torch::Tensor> rows;
     for (const auto& view : views) {
-        const auto sentence = parameters_.view_words ? with_view_words(prompt_, view.view_words) : prompt_;
+        const auto sentence = parameters_.view_words ? with_view_words(prompt, view.view_words) : prompt;
         rows.push_back(torch::cat({encoded(parameters_.negative_prompt), encoded(sentence)}));
     }
     return torch::stack(rows);
@@ -87,14 +88,17 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
     batch.original = torch::cat(original);
     batch.noise = torch::cat(noise);
     batch.mask = torch::cat(masks);
-    batch.contexts = contexts(views);
+    batch.contexts = contexts(views, prompt_);
+    const auto& before = parameters_.before_prompt;
+    if (parameters_.delta > 0 && !before.empty() && before != prompt_) batch.before = contexts(views, before);
     return batch;
 }
 
-torch::Tensor DiffusionViews::output(const torch::Tensor& x, std::int64_t timestep, const torch::Tensor& contexts) const {
+torch::Tensor DiffusionViews::output(const torch::Tensor& x, std::int64_t timestep, const torch::Tensor& contexts,
+                                      double guidance_scale) const {
     const auto side = bundle_->image_size();
     const auto at_once = std::max<std::int64_t>(1, PixelsAtOnce / (side * side));
-    const bool guided_by_two = parameters_.guidance_scale != 1.0;
+    const bool guided_by_two = guidance_scale != 1.0;
     std::vector<torch::Tensor> parts;
     for (std::int64_t first = 0; first < x.size(0); first += at_once) {
         const auto count = std::min(at_once, x.size(0) - first);
@@ -104,7 +108,7 @@ torch::Tensor DiffusionViews::output(const torch::Tensor& x, std::int64_t timest
         const auto t = torch::full({1}, timestep, torch::kFloat32);
         parts.push_back(guided_by_two ? guided(bundle_->unet->forward(torch::cat({some, some}), t,
                                                                       torch::cat({words.select(1, 0), positive})),
-                                               parameters_.guidance_scale)
+                                               guidance_scale)
                                       : bundle_->unet->forward(some, t, positive));
     }
     return torch::cat(parts);
@@ -122,7 +126,13 @@ void DiffusionViews::denoise(Batch& batch, const edit::RoundInput& input, const 
     for (std::size_t i = 0; i < timesteps.size(); ++i) {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "redrawing the views was stopped");
         const auto t = torch::full({1}, timesteps[i], torch::kInt64);
-        auto x0 = schedule.to_x0(output(batch.x, timesteps[i], batch.contexts), batch.x, t);
+        auto x0 = schedule.to_x0(output(batch.x, timesteps[i], batch.contexts, parameters_.view_guidance_scale), batch.x, t);
+        if (batch.before.defined()) {   // what it would change on the unedited view anyway is taken off
+            const auto [a, b] = roots(timesteps[i]);
+            const auto unedited = a * batch.original + b * batch.noise;
+            x0 = x0 + parameters_.delta *
+                          (batch.original - schedule.to_x0(output(unedited, timesteps[i], batch.before, 1.0), unedited, t));
+        }
         x0 = batch.mask * x0 + (1 - batch.mask) * batch.original;   // the surroundings stay, and keep the steps in place
         const auto [now, spread] = roots(timesteps[i]);
         if (i + 1 == timesteps.size()) {

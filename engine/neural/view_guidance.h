@@ -26,9 +26,9 @@ private:
     Batch prepare(const std::vector<edit::RoundView>& views, const edit::RoundInput& input);
     void denoise(Batch& batch, const edit::RoundInput& input, const JobControl& job) const;
     edit::RoundTargets finish(const Batch& batch, const std::vector<edit::RoundView>& views) const;
-    torch::Tensor contexts(const std::vector<edit::RoundView>& views);
+    torch::Tensor contexts(const std::vector<edit::RoundView>& views, const std::string& prompt);
     /// Guided output of the UNet for latents [K,C,h,w], in pieces that fit into memory.
-    torch::Tensor output(const torch::Tensor& x, std::int64_t timestep, const torch::Tensor& contexts) const;
+    torch::Tensor output(const torch::Tensor& x, std::int64_t timestep, const torch::Tensor& contexts, double guidance_scale) const;
 
     std::shared_ptr<const ModelBundle> bundle_;
     std::string prompt_;

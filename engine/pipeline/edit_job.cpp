@@ -260,6 +260,8 @@ void EditJob::probe(int steps) {
     plain.request.iterations = steps;
     plain.request.dynamic_mask = plain.request.look_again = plain.request.early_stop = false;
     plain.request.densify_every = 0;
+    plain.request.rounds = 1;
+    plain.request.fit_steps = steps;
     JobControl quiet;
     quiet.stop = control_.stop;
     edited_ = std::make_shared<const Edited>(edit_scene(*workplace_, *located_, plan(), plain, {}, quiet));

@@ -17,7 +17,7 @@ double words_of_search(bool adds) { return adds ? 2 : 1; }
 
 /// Masks that could follow the edit while the loop runs.
 double refreshes(const edit::EditRequest& request, int first_iteration) {
-    if (!request.dynamic_mask) return 0;
+    if (!request.dynamic_mask || request.iterations <= 0) return 0;
     const double span = std::max(0.0, 1 - request.dynamic_from) * request.iterations;
     const double visits = std::min(span, static_cast<double>(request.iterations - first_iteration));
     const double every = std::max(1.0, request.dynamic_every * request.iterations);
@@ -27,6 +27,11 @@ double refreshes(const edit::EditRequest& request, int first_iteration) {
 /// Pictures searched to see where something added is.
 double looks_again(const edit::EditRequest& request, bool adds) {
     return adds && request.look_again ? LookAgainRounds * request.views : 0;
+}
+
+/// Denoising steps of single views in the last `steps` of the loop.
+double redrawn_steps(const edit::EditRequest& request, int steps) {
+    return std::ceil(static_cast<double>(steps) / request.fit_steps) * request.edited_views * request.view_steps;
 }
 
 }  // namespace
@@ -45,11 +50,13 @@ double estimated_seconds(const Measured& measured, const edit::EditRequest& requ
     const double search = rounds * request.views * words_of_search(work.adds);
     add(work.located ? 0 : search, measured.question);
     add(work.shows_idea ? 1 : 0, measured.idea >= 0 ? measured.idea : 0);
-    const int steps = std::max(0, request.iterations - work.first_iteration);
-    add(steps, measured.guidance);
+    const bool by_views = edit::edits_by_views(request, work.adds ? edit::EditMode::Add : edit::EditMode::Modify);
+    const int steps = std::max(0, edit::loop_steps(request, by_views) - work.first_iteration);
+    if (by_views) add(redrawn_steps(request, steps), measured.redraw);
+    else add(steps, measured.guidance);
     add(steps * static_cast<double>(work.rows) / measured.rows, measured.raster);
     const double follow = measured.follow >= 0 ? measured.follow : UsualFollow;
-    add(follow * refreshes(request, work.first_iteration) + looks_again(request, work.adds),
+    add(by_views ? 0 : follow * refreshes(request, work.first_iteration) + looks_again(request, work.adds),
         measured.refresh >= 0 ? measured.refresh : measured.question);
     add(1, measured.finish >= 0 ? measured.finish : 0);
     return known ? seconds : -1;
@@ -71,11 +78,14 @@ void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
         const auto found = result.seconds.find(stage);
         return found == result.seconds.end() ? 0 : found->second;
     };
-    measured.guidance = seconds("guidance") / steps;
+    const auto& request = job.recipe().request;
+    const bool by_views = edit::edits_by_views(request, job.located().mode);
+    if (by_views) measured.redraw = seconds("guidance") / redrawn_steps(request, steps);
+    else measured.guidance = seconds("guidance") / steps;
     measured.raster = (seconds("render") + seconds("preserve") + seconds("backward") + seconds("optimise") +
                        seconds("densify") + seconds("snapshot")) / steps;
     measured.rows = static_cast<double>(std::max<std::size_t>(1, job.scene().gaussians.size()));
-    const auto& request = job.recipe().request;
+    if (by_views) return;
     const double could = refreshes(request, request.iterations - steps);
     if (result.masks_refreshed == 0 || could <= 0 || result.stopped) return;
     const auto refreshed = static_cast<double>(result.masks_refreshed);

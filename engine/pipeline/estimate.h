@@ -15,6 +15,7 @@ struct Measured {
     double rounds = -1;      // how often all views were searched: moving in on what was found means once more
     double idea = -1;        // the pictures before the edit
     double guidance = -1;    // the model's part of a step
+    double redraw = -1;      // one denoising step of one redrawn view, with its share of encoding and decoding
     double raster = -1;      // the rest of a step, for `rows` splats
     double rows = 1;
     double refresh = -1;     // one mask that follows the edit
@@ -29,6 +30,7 @@ struct Measured {
         f("rounds", self.rounds, "How often all views were searched.", Range{-1, 100});
         f("idea", self.idea, "The pictures before the edit.", Range{-1, 1e6});
         f("guidance", self.guidance, "The model's part of a step.", Range{-1, 1e6});
+        f("redraw", self.redraw, "One denoising step of one redrawn view.", Range{-1, 1e6});
         f("raster", self.raster, "The rest of a step.", Range{-1, 1e6});
         f("rows", self.rows, "Splats of the scene that was measured.", Range{1, 1e12});
         f("refresh", self.refresh, "One mask that follows the edit.", Range{-1, 1e6});

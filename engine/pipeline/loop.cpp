@@ -42,7 +42,7 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
     tools.segmenter = segmenter.get();
     tools.word = dynamic_word(located, request);
     const auto views = edit::edits_by_views(request, located.result.mode)
-                           ? model.views(edit::as_told(request.prompt), recipe.guidance)
+                           ? model.views(edit::as_told(request.prompt), with_sentence_before(recipe.guidance, request))
                            : nullptr;
     tools.views = views.get();
     Edited edited;

@@ -28,7 +28,7 @@ struct Group {
 };
 constexpr std::array<Group, 8> Groups{{{"views", "Views"},
                                        {"rivals", "Localization"},
-                                       {"iterations", "Optimisation"},
+                                       {"method", "Optimisation"},
                                        {"anchor_first", "Anchors"},
                                        {"rate_position", "Learning rates"},
                                        {"densify_from", "Growth"},

@@ -1,0 +1,230 @@
+// View guidance without networks: which views are redrawn, noise on the surface, what is blended, and the loop that fits to it.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/edit/surface_noise.h"
+#include "engine/edit/view_round.h"
+#include "tests/unit/edit/edit_scenes.h"
+
+namespace {
+
+using namespace gse;
+
+/// Knows the answer: the render of another scene from every view.
+class OracleViews : public edit::ViewGuidance {
+public:
+    OracleViews(const GaussianSet& target, raster::Rasterizer& rasterizer) : target_(target), rasterizer_(rasterizer) {}
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) override {
+        if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "stopped");
+        inputs.push_back(input);
+        edit::RoundTargets targets;
+        for (const auto& view : views) {
+            raster::ForwardOutput output;
+            rasterizer_.forward(target_.spans(), view.view.camera, {}, output);
+            targets.images.push_back(output.colour);
+        }
+        targets.scalars["broken"] = std::nan("");
+        targets.scalars["views"] = static_cast<double>(views.size());
+        return targets;
+    }
+    std::vector<edit::RoundInput> inputs;
+
+private:
+    const GaussianSet& target_;
+    raster::Rasterizer& rasterizer_;
+};
+
+/// The red ball in blue.
+GaussianSet blue_ball(const test::BallScene& scene) {
+    GaussianData data = scene.set.to_data();
+    for (std::size_t row = 0; row < scene.first.size(); ++row)
+        if (scene.first[row] != 0) std::swap(data.sh[row * data.sh_stride()], data.sh[row * data.sh_stride() + 2]);
+    return GaussianSet(std::move(data));
+}
+
+edit::EditRequest view_request(int rounds, int fit_steps) {
+    edit::EditRequest request;
+    request.prompt = "a blue ball";
+    request.method = "views";
+    request.rounds = rounds;
+    request.fit_steps = fit_steps;
+    request.edited_views = 4;
+    return request;
+}
+
+double difference(const GaussianSet& a, const GaussianSet& b, const std::vector<View>& views, raster::Rasterizer& rasterizer) {
+    double sum = 0;
+    for (const auto& view : views) {
+        raster::ForwardOutput of_a, of_b;
+        rasterizer.forward(a.spans(), view.camera, {}, of_a);
+        rasterizer.forward(b.spans(), view.camera, {}, of_b);
+        for (std::size_t i = 0; i < of_a.colour.data.size(); ++i) sum += std::abs(of_a.colour.data[i] - of_b.colour.data[i]);
+    }
+    return sum;
+}
+
+double correlation(const Image& a, const Image& b) {
+    double ab = 0, aa = 0, bb = 0;
+    for (std::size_t i = 0; i < a.data.size(); ++i) {
+        ab += static_cast<double>(a.data[i]) * b.data[i];
+        aa += static_cast<double>(a.data[i]) * a.data[i];
+        bb += static_cast<double>(b.data[i]) * b.data[i];
+    }
+    return ab / std::sqrt(aa * bb);
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("view guidance: the rows are fitted to what was redrawn, all others keep every bit") {
+    const auto scene = test::ball_scene();
+    ThreadPool threads(1);
+    const auto rasterizer = raster::make_fast_rasterizer(threads);
+    const auto plan = test::ball_plan(scene, *rasterizer);
+    const auto target = blue_ball(scene);
+    OracleViews oracle(target, *rasterizer);
+    auto never = test::FunctionGuidance([](const edit::GuidanceInput&) -> edit::GuidanceOutput { throw Error(ErrorCode::Model, "asked"); });
+    std::vector<int> snapshots;
+    edit::EditTools tools{*rasterizer, never, [&](edit::EditSnapshot snapshot) { snapshots.push_back(snapshot.iteration); }, {}};
+    tools.views = &oracle;
+    auto request = view_request(2, 40);
+    request.snapshot_every = 20;
+    const auto result = edit::run_edit(scene.set, plan, request, tools);
+    DOCTEST_CHECK(result.iterations == 80);
+    DOCTEST_CHECK(snapshots == std::vector{20, 40, 60, 80});
+    DOCTEST_CHECK(result.changed_outside_label == 0);
+    constexpr double most_left = 0.35;   // of the error: noise-free targets, but only eighty steps
+    DOCTEST_CHECK(difference(result.set, target, plan.views, *rasterizer) <
+                  most_left * difference(scene.set, target, plan.views, *rasterizer));
+    DOCTEST_REQUIRE(oracle.inputs.size() == 2);
+    DOCTEST_CHECK(oracle.inputs[1].round == 1);
+    DOCTEST_CHECK(oracle.inputs[0].seed != oracle.inputs[1].seed);
+    DOCTEST_CHECK(result.history[0].guidance.count("views") == 1);
+    DOCTEST_CHECK(result.history[0].guidance.count("broken") == 0);
+    std::size_t drawn_from = 0;
+    for (std::size_t view = 0; view < plan.views.size(); ++view)
+        drawn_from += std::any_of(result.history.begin(), result.history.end(), [&](const auto& line) { return line.view == view; });
+    DOCTEST_CHECK(drawn_from == 4);
+    OracleViews again(target, *rasterizer);
+    tools.views = &again;
+    tools.snapshot = {};
+    const auto same = edit::run_edit(scene.set, plan, request, tools);
+    DOCTEST_CHECK(test::same_bytes(same.set.sh(), result.set.sh()));
+}
+
+DOCTEST_TEST_CASE("view guidance: a stop while views are redrawn, and one between steps, keep what was reached") {
+    const auto scene = test::ball_scene();
+    ThreadPool threads(1);
+    const auto rasterizer = raster::make_fast_rasterizer(threads);
+    const auto plan = test::ball_plan(scene, *rasterizer);
+    const auto target = blue_ball(scene);
+    OracleViews oracle(target, *rasterizer);
+    auto still = test::still();
+    std::stop_source stop;
+    edit::EditTools tools{*rasterizer, still, {}, {}};
+    tools.job.stop = stop.get_token();
+    tools.views = &oracle;
+    tools.iteration = [&](const edit::IterationRecord& record) {
+        if (record.iteration == 9) stop.request_stop();   // the next round would begin now
+    };
+    const auto result = edit::run_edit(scene.set, plan, view_request(3, 10), tools);
+    DOCTEST_CHECK(result.stopped);
+    DOCTEST_CHECK(result.iterations == 10);
+    DOCTEST_CHECK(oracle.inputs.size() == 1);
+    DOCTEST_CHECK(difference(result.set, target, plan.views, *rasterizer) < difference(scene.set, target, plan.views, *rasterizer));
+}
+
+DOCTEST_TEST_CASE("view guidance: a label corrected in the middle is fitted to what was redrawn already") {
+    const auto scene = test::ball_scene();
+    ThreadPool threads(1);
+    const auto rasterizer = raster::make_fast_rasterizer(threads);
+    const auto plan = test::ball_plan(scene, *rasterizer);
+    const auto target = blue_ball(scene);
+    OracleViews oracle(target, *rasterizer);
+    auto still = test::still();
+    edit::EditTools tools{*rasterizer, still, {}, {}};
+    tools.views = &oracle;
+    std::vector<std::uint8_t> half = scene.first;
+    for (std::size_t row = 0; row < half.size(); row += 2) half[row] = 0;
+    int asked = 0;
+    tools.new_label = [&]() -> std::optional<std::vector<std::uint8_t>> { return asked++ == 5 ? std::optional(half) : std::nullopt; };
+    const auto result = edit::run_edit(scene.set, plan, view_request(1, 20), tools);
+    DOCTEST_CHECK(result.label_changes == 1);
+    DOCTEST_CHECK(result.iterations == 20);
+    DOCTEST_CHECK(oracle.inputs.size() == 1);
+    DOCTEST_CHECK(result.changed_outside_label == 0);
+}
+
+DOCTEST_TEST_CASE("redrawn views lie far apart and show what changes") {
+    const auto views = test::ball_views(12, 16);
+    std::vector<double> covered(12, 0.2);
+    covered[5] = 0.5;
+    covered[6] = 0.001;   // hardly seen
+    const auto chosen = edit::views_to_redraw(views, covered, 4);
+    DOCTEST_REQUIRE(chosen.size() == 4);
+    DOCTEST_CHECK(std::is_sorted(chosen.begin(), chosen.end()));
+    DOCTEST_CHECK(std::find(chosen.begin(), chosen.end(), 5) != chosen.end());
+    DOCTEST_CHECK(std::find(chosen.begin(), chosen.end(), 6) == chosen.end());
+    const double step = length(views[0].camera.centre() - views[1].camera.centre());
+    for (std::size_t i = 0; i < 4; ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            DOCTEST_CHECK(length(views[chosen[i]].camera.centre() - views[chosen[j]].camera.centre()) > 1.5 * step);
+    DOCTEST_CHECK(edit::views_to_redraw(views, covered, 50).size() == 11);
+    DOCTEST_CHECK(edit::views_to_redraw(views, std::vector<double>(12, 0.0), 4).empty());
+    DOCTEST_CHECK(edit::views_to_redraw(views, std::vector<double>(12, 0.001), 4).size() == 4);   // all are small
+}
+
+DOCTEST_TEST_CASE("what is blended stays the original outside the mask, bit by bit, and goes over inside it") {
+    Image original(16, 16, 3, 0.1f), edited(16, 16, 3, 0.9f);
+    Mask mask(16, 16);
+    for (int y = 0; y < 16; ++y)
+        for (int x = 4; x < 16; ++x) mask.at(x, y) = 1;
+    const Image result = edit::blend_inside(edited, original, mask, 2);
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) {
+            if (x < 4) DOCTEST_CHECK(result.at(x, y, 1) == 0.1f);
+            if (x >= 6) DOCTEST_CHECK(result.at(x, y, 1) == doctest::Approx(0.9));
+        }
+    DOCTEST_CHECK(result.at(4, 8, 0) > 0.1f);
+    DOCTEST_CHECK(result.at(4, 8, 0) < result.at(5, 8, 0));
+    DOCTEST_CHECK(result.at(5, 8, 0) < result.at(6, 8, 0));
+    DOCTEST_CHECK(edit::blend_inside(edited, original, mask, 0).at(4, 8, 0) == doctest::Approx(0.9));
+}
+
+DOCTEST_TEST_CASE("surface noise: unit variance, no blotches, the same place gets the same noise in every view") {
+    // A wall across the whole picture; the second camera is moved by a whole number of cells.
+    constexpr int side = 96, cells = 16;
+    const double wall = 3;
+    Camera camera = Camera::look_at({0, 0, wall}, {0, 0, 0}, {0, -1, 0}, 0.9, side, side);
+    const Image depth(side, side, 1, static_cast<float>(wall));
+    const double cell = wall / camera.fx * side / cells;
+    Camera moved = Camera::look_at({2 * cell, 0, wall}, {2 * cell, 0, 0}, {0, -1, 0}, 0.9, side, side);
+    const Image noise = edit::surface_noise(depth, camera, cells, 4, cell / 2, 7, 0);
+    const Image shifted = edit::surface_noise(depth, moved, cells, 4, cell / 2, 7, 1);
+    double squares = 0, neighbours = 0, pairs = 0;
+    for (const float value : noise.data) squares += static_cast<double>(value) * value;
+    for (int y = 0; y < cells; ++y)
+        for (int x = 0; x + 1 < cells; ++x)
+            for (int c = 0; c < 4; ++c, ++pairs) neighbours += static_cast<double>(noise.at(x, y, c)) * noise.at(x + 1, y, c);
+    constexpr double variance_tolerance = 0.15;   // 1,024 samples: three standard errors of a variance are 0.13
+    DOCTEST_CHECK(std::abs(squares / static_cast<double>(noise.data.size()) - 1) < variance_tolerance);
+    DOCTEST_CHECK(std::abs(neighbours / pairs) < 0.15);
+    const double shift = camera.to_camera({2 * cell, 0, 0}).x / cell;   // cells to the side: which way the picture moves
+    const int by = static_cast<int>(std::lround(shift));
+    Image here(cells - 2, cells, 4), there(cells - 2, cells, 4);
+    for (int y = 0; y < cells; ++y)
+        for (int x = 0; x < cells - 2; ++x)
+            for (int c = 0; c < 4; ++c) {
+                here.at(x, y, c) = noise.at(by > 0 ? x + 2 : x, y, c);
+                there.at(x, y, c) = shifted.at(by > 0 ? x : x + 2, y, c);
+            }
+    DOCTEST_CHECK(correlation(here, there) > 0.9);
+    DOCTEST_CHECK(std::abs(correlation(noise, edit::surface_noise(depth, camera, cells, 4, cell / 2, 8, 0))) < 0.15);
+    DOCTEST_CHECK(edit::surface_noise(depth, camera, cells, 4, cell / 2, 7, 5).data == noise.data);
+    // Where nothing is, every view has noise of its own.
+    const Image nothing(side, side, 1);
+    const Image empty = edit::surface_noise(nothing, camera, cells, 4, cell / 2, 7, 0);
+    DOCTEST_CHECK(std::abs(correlation(empty, edit::surface_noise(nothing, camera, cells, 4, cell / 2, 7, 1))) < 0.15);
+}

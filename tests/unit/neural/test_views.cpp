@@ -1,0 +1,117 @@
+// View guidance on a tiny random model: properties that hold for any weights, and what it asks of the networks.
+#include <cmath>
+
+#include "engine/neural/network_use.h"
+#include "engine/neural/view_guidance.h"
+#include "tests/unit/neural/tiny_model.h"
+
+using namespace gse;
+using namespace gse::neural;
+using namespace gse::test;
+
+namespace {
+
+/// Two views of one wall with something to see on it.
+std::vector<edit::RoundView> wall_views() {
+    std::vector<edit::RoundView> views;
+    for (const double x : {0.0, 0.3}) {
+        edit::RoundView view;
+        view.view.camera = Camera::look_at({x, 0, 3}, {x, 0, 0}, {0, -1, 0}, 0.9, 40, 40);
+        view.rendered = Image(40, 40, 3);
+        for (std::size_t i = 0; i < view.rendered.data.size(); ++i) view.rendered.data[i] = static_cast<float>(i % 37) / 37.0f;
+        view.original = view.rendered;
+        view.depth = Image(40, 40, 1, 3.0f);
+        view.mask = Mask(40, 40);
+        for (int y = 8; y < 24; ++y)
+            for (int at = 8; at < 24; ++at) view.mask.at(at, y) = 1;
+        view.view_words = x == 0 ? "front view" : "side view";
+        views.push_back(std::move(view));
+    }
+    return views;
+}
+
+double mean_change(const edit::RoundTargets& targets, const std::vector<edit::RoundView>& views) {
+    double sum = 0;
+    for (std::size_t v = 0; v < views.size(); ++v)
+        for (std::size_t i = 0; i < views[v].rendered.data.size(); ++i)
+            sum += std::abs(targets.images[v].data[i] - views[v].rendered.data[i]);
+    return sum / static_cast<double>(2 * views[0].rendered.data.size());
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("timesteps of a redrawn view go down from its strength, evenly, none twice") {
+    DOCTEST_CHECK(redraw_timesteps(0.75, 3, 1000) == std::vector<std::int64_t>{749, 499, 249});
+    DOCTEST_CHECK(redraw_timesteps(1, 4, 1000) == std::vector<std::int64_t>{999, 749, 499, 249});
+    DOCTEST_CHECK(redraw_timesteps(0.02, 100, 10).size() <= 1);
+    DOCTEST_CHECK(!redraw_timesteps(0.02, 100, 10).empty());
+}
+
+DOCTEST_TEST_CASE("redrawn views: repeatable, of the size that came in, and counted") {
+    const TinyModel model;
+    const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
+    const auto views = wall_views();
+    SdsParameters parameters;
+    parameters.before_prompt = "a bear";
+    DiffusionViews guidance(bundle, "a red bear", parameters);
+    edit::RoundInput input;
+    input.steps = 3;
+    input.seed = 5;
+    const auto before = thread_use();
+    const auto targets = guidance.edit(views, input, {});
+    const auto use = thread_use() - before;
+    DOCTEST_CHECK(use.unet == 2 * 3 * 3);   // views, steps, two halves and the unedited view
+    DOCTEST_CHECK(use.encoder == 2);        // the render is the original
+    DOCTEST_CHECK(use.decoder == 2 * 2);
+    DOCTEST_CHECK(use.flop > 0);
+    DOCTEST_REQUIRE(targets.images.size() == 2);
+    for (const auto& image : targets.images) {
+        DOCTEST_CHECK(image.width == 40);
+        DOCTEST_CHECK(std::all_of(image.data.begin(), image.data.end(), [](float value) { return value >= 0 && value <= 1; }));
+    }
+    DOCTEST_CHECK(guidance.edit(views, input, {}).images[0].data == targets.images[0].data);
+    auto other = input;
+    other.seed = 6;
+    DOCTEST_CHECK(guidance.edit(views, other, {}).images[0].data != targets.images[0].data);
+    // Less noise, less change; nothing changes where nothing may.
+    auto weak = input;
+    weak.strength = 0.05;
+    DOCTEST_CHECK(mean_change(guidance.edit(views, weak, {}), views) < mean_change(targets, views));
+    auto closed = views;
+    for (auto& view : closed) view.mask = Mask(40, 40);
+    constexpr double none = 1e-5;   // both pictures go through the decoder
+    DOCTEST_CHECK(mean_change(guidance.edit(closed, input, {}), closed) < none);
+    // A sentence that says what the scene shows already takes nothing off.
+    parameters.before_prompt = "a red bear";
+    DiffusionViews same(bundle, "a red bear", parameters);
+    const auto start = thread_use();
+    same.edit(views, input, {});
+    DOCTEST_CHECK((thread_use() - start).unet == 2 * 3 * 2);
+}
+
+DOCTEST_TEST_CASE("redrawing views can be stopped") {
+    const TinyModel model;
+    DiffusionViews guidance(std::make_shared<const ModelBundle>(load_bundle(model.path())), "a red bear", {});
+    std::stop_source stop;
+    stop.request_stop();
+    JobControl job;
+    job.stop = stop.get_token();
+    DOCTEST_CHECK_THROWS_AS(guidance.edit(wall_views(), {}, job), Error);
+}
+
+DOCTEST_TEST_CASE("the arithmetic of a UNet pass is counted as its layers do it") {
+    const TinyModel model;
+    const auto bundle = load_bundle(model.path());
+    const auto x = torch::zeros({1, 4, 8, 8});
+    const auto context = bundle.encode_prompts({"a bear"});
+    const auto pass = [&](std::int64_t batch) {
+        const auto before = thread_use();
+        bundle.unet->forward(x.expand({batch, 4, 8, 8}).contiguous(), torch::full({1}, 10.0), context.expand({batch, -1, -1}).contiguous());
+        return thread_use() - before;
+    };
+    const auto one = pass(1), two = pass(2);
+    DOCTEST_CHECK(one.unet == 1);
+    DOCTEST_CHECK(two.unet == 2);
+    DOCTEST_CHECK(two.flop == doctest::Approx(2 * one.flop).epsilon(0.02));   // the time embedding may be shared
+    DOCTEST_CHECK(one.encoder + one.decoder == 0);
+}
