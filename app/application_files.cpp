@@ -36,7 +36,7 @@ std::optional<Vec3> up_of_cameras(const std::vector<View>& views) {
     constexpr double least_agreement = 0.5;
     Vec3 sum;
     for (const auto& view : views)
-        sum = sum + Vec3{-view.camera.rotation(1, 0), -view.camera.rotation(1, 1), -view.camera.rotation(1, 2)};
+        sum = sum - view.camera.rotation.row(1);
     const double share = length(sum) / static_cast<double>(std::max<std::size_t>(views.size(), 1));
     if (views.empty() || share < least_agreement) return std::nullopt;
     return normalized(sum);

@@ -31,8 +31,9 @@ inline void check_pose(const Camera& camera, const std::string& which) {
     const Vec3& t = camera.translation;
     bool valid = std::isfinite(t.x) && std::isfinite(t.y) && std::isfinite(t.z);
     const Mat3 product = camera.rotation * camera.rotation.transposed();
-    for (int i = 0; i < 9; ++i)
-        valid = valid && std::abs(product.m[static_cast<std::size_t>(i)] - (i % 4 == 0 ? 1 : 0)) < 0.01;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            valid = valid && std::abs(product(row, column) - (row == column ? 1 : 0)) < 0.01;
     if (!valid)
         throw Error(ErrorCode::Malformed,
                     fmt::format("the camera \"{}\" has no valid rotation and position", which));

@@ -124,7 +124,7 @@ Json to_json(const View& view) {
             {"distorted", view.distorted},
             {"size", {camera.width, camera.height}},
             {"lens", {camera.fx, camera.fy, camera.cx, camera.cy}},
-            {"rotation", camera.rotation.m},
+            {"rotation", camera.rotation.rows()},
             {"translation", to_json(camera.translation)}};
 }
 
@@ -136,16 +136,18 @@ View read_view(const Json& json, const std::string& name) {
     std::array<double, 2> size{};
     std::array<double, 4> lens{};
     std::array<double, 3> translation{};
+    std::array<double, 9> rotation = Mat3::identity().rows();
     fields.numbers("size", size);
     fields.numbers("lens", lens);
     fields.numbers("translation", translation);
-    Camera& camera = view.camera;
-    fields.numbers("rotation", camera.rotation.m);
+    fields.numbers("rotation", rotation);
     for (const double side : size)
         if (side < 0 || side > LargestSide) throw_field(fields.full("size"), "is not a picture's size");
+    Camera& camera = view.camera;
     camera.width = static_cast<int>(size[0]);
     camera.height = static_cast<int>(size[1]);
     camera.fx = lens[0], camera.fy = lens[1], camera.cx = lens[2], camera.cy = lens[3];
+    camera.rotation = Mat3::from_rows(rotation);
     camera.translation = {translation[0], translation[1], translation[2]};
     return view;
 }

@@ -73,7 +73,7 @@ WorldChange world_change(const Json& json, const std::filesystem::path& folder) 
     if (json.contains("applied_transform"))
         applied = affine(json.at("applied_transform"));
     else  // what nerfstudio's converter did before it said so
-        applied.linear = {{0, 1, 0, 1, 0, 0, 0, 0, -1}};
+        applied.linear = Mat3::from_rows({0, 1, 0, 1, 0, 0, 0, 0, -1});
     change.transform = affine(parser.at("transform")) * inverse(applied);
     change.scale = parser.at("scale").get<double>() / json.value("applied_scale", 1.0);
     return change;
@@ -158,9 +158,8 @@ void set_pose(Camera& camera, const Json& frame, const WorldChange& change) {
     }
     // Some exporters leave a scale in the matrix; it has no meaning for a pinhole.
     for (int column = 0; column < 3; ++column) {
-        const double size = length({pose.linear(0, column), pose.linear(1, column), pose.linear(2, column)});
-        if (size > 0)
-            for (int row = 0; row < 3; ++row) pose.linear(row, column) /= size;
+        const double size = length(pose.linear.columns[column]);
+        if (size > 0) pose.linear.columns[column] /= size;
     }
     camera.rotation = pose.linear.transposed();
     camera.translation = -(camera.rotation * (pose.offset * change.scale));

@@ -40,7 +40,7 @@ Camera Camera::look_at(const Vec3& eye, const Vec3& target, const Vec3& up, doub
     camera.fx = camera.fy = 0.5 * width / std::tan(0.5 * fov_x);
     camera.cx = 0.5 * width;
     camera.cy = 0.5 * height;
-    camera.rotation = {{right.x, right.y, right.z, down.x, down.y, down.z, forward.x, forward.y, forward.z}};
+    camera.rotation = Mat3::from_columns(right, down, forward).transposed();
     camera.translation = -(camera.rotation * eye);
     return camera;
 }

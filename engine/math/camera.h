@@ -17,7 +17,7 @@ struct Camera {
     Vec3 centre() const;
     Vec3 to_camera(const Vec3& world) const { return rotation * world + translation; }
     /// Unit viewing direction in the world.
-    Vec3 forward() const { return {rotation(2, 0), rotation(2, 1), rotation(2, 2)}; }
+    Vec3 forward() const { return rotation.row(2); }
 
     /// Same view at another image size (field of view in x kept relative to the width).
     Camera resized(int new_width, int new_height) const;

@@ -41,7 +41,7 @@ SymmetricEigen symmetric_eigen(const Mat3& symmetric) {
     for (std::size_t k = 0; k < 3; ++k) {
         const int column = order[k];
         result.value[k] = a(column, column);
-        result.axis[k] = {vectors(0, column), vectors(1, column), vectors(2, column)};
+        result.axis[k] = vectors.columns[column];
     }
     return result;
 }

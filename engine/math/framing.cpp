@@ -29,7 +29,7 @@ double fitting_distance(const Bounds& bounds, const Mat3& rotation, double fov_x
 
 Camera home_camera(const OrbitParameters& orbit, const Bounds& bounds, double fov_x, int width, int height) {
     const Mat3 rotation = orbit_camera(orbit, HomeAzimuth, width, height).rotation;
-    const Vec3 forward{rotation(2, 0), rotation(2, 1), rotation(2, 2)};
+    const Vec3 forward = rotation.row(2);
     const double distance = fitting_distance(bounds, rotation, fov_x, width, height);
     Camera camera;
     camera.width = width;

@@ -1,70 +1,64 @@
-// Small double-precision vectors and row-major 3x3 matrices; glm stays inside the window code.
+// Vectors, matrices and quaternions of the host side: glm's, in double precision. The one file that includes glm
+// (tests/lint), so that its settings are the same everywhere.
 #pragma once
 
 #include <array>
-#include <cmath>
-#include <cstddef>
+
+#define GLM_FORCE_CTOR_INIT   // a vector without values is zero, a quaternion the identity
+#define GLM_FORCE_XYZW_ONLY   // plain members instead of unions with r, g, b
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+#include <glm/vec3.hpp>
 
 namespace gse {
 
-struct Vec3 {
-    double x = 0, y = 0, z = 0;
+using Vec3 = glm::dvec3;
+/// Rotation quaternion; the constructor takes w first as in 3DGS files, the product a * b turns first by b.
+using Quat = glm::dquat;
 
-    friend Vec3 operator+(const Vec3& a, const Vec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-    friend Vec3 operator-(const Vec3& a, const Vec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-    friend Vec3 operator*(const Vec3& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
-    friend Vec3 operator*(double s, const Vec3& a) { return a * s; }
-    friend Vec3 operator/(const Vec3& a, double s) { return {a.x / s, a.y / s, a.z / s}; }
-    Vec3 operator-() const { return {-x, -y, -z}; }
-    friend bool operator==(const Vec3&, const Vec3&) = default;
-    double& operator[](int axis) { return axis == 0 ? x : axis == 1 ? y : z; }
-    double operator[](int axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
-};
+using glm::cross;
+using glm::dot;
+using glm::length;
 
-inline double dot(const Vec3& a, const Vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
 /// Unit vector; the zero vector gives (0, 0, 0).
 inline Vec3 normalized(const Vec3& a) {
     const double size = length(a);
     return size > 0 ? a / size : Vec3{};
 }
 
-/// Row-major 3x3.
+/// 3x3 matrix indexed (row, column), as formulas and files are; glm's own index is the column. Zero without values.
 struct Mat3 {
-    std::array<double, 9> m{};
+    glm::dmat3 columns{0.0};
 
-    static Mat3 identity() { return {{1, 0, 0, 0, 1, 0, 0, 0, 1}}; }
-    double& operator()(int row, int column) { return m[static_cast<std::size_t>(row * 3 + column)]; }
-    double operator()(int row, int column) const { return m[static_cast<std::size_t>(row * 3 + column)]; }
-    friend Vec3 operator*(const Mat3& a, const Vec3& v) {
-        return {a.m[0] * v.x + a.m[1] * v.y + a.m[2] * v.z, a.m[3] * v.x + a.m[4] * v.y + a.m[5] * v.z,
-                a.m[6] * v.x + a.m[7] * v.y + a.m[8] * v.z};
+    Mat3() = default;
+    explicit Mat3(const glm::dmat3& matrix) : columns(matrix) {}
+    static Mat3 identity() { return Mat3(glm::dmat3(1.0)); }
+    static Mat3 from_columns(const Vec3& a, const Vec3& b, const Vec3& c) { return Mat3(glm::dmat3(a, b, c)); }
+    /// Nine numbers row by row, and back.
+    static Mat3 from_rows(const std::array<double, 9>& n) {
+        return from_columns({n[0], n[3], n[6]}, {n[1], n[4], n[7]}, {n[2], n[5], n[8]});
     }
-    friend Mat3 operator*(const Mat3& a, const Mat3& b) {
-        Mat3 result;
-        for (int row = 0; row < 3; ++row)
-            for (int column = 0; column < 3; ++column)
-                result(row, column) = a(row, 0) * b(0, column) + a(row, 1) * b(1, column) + a(row, 2) * b(2, column);
-        return result;
+    std::array<double, 9> rows() const {
+        const Vec3 &a = columns[0], &b = columns[1], &c = columns[2];
+        return {a.x, b.x, c.x, a.y, b.y, c.y, a.z, b.z, c.z};
     }
+    double& operator()(int row, int column) { return columns[column][row]; }
+    double operator()(int row, int column) const { return columns[column][row]; }
+    Vec3 row(int index) const { return {columns[0][index], columns[1][index], columns[2][index]}; }
+    Mat3 transposed() const { return Mat3(glm::transpose(columns)); }
+
+    friend Vec3 operator*(const Mat3& a, const Vec3& v) { return a.columns * v; }
+    /// Row vector times matrix.
+    friend Vec3 operator*(const Vec3& v, const Mat3& a) { return v * a.columns; }
+    friend Mat3 operator*(const Mat3& a, const Mat3& b) { return Mat3(a.columns * b.columns); }
     friend bool operator==(const Mat3&, const Mat3&) = default;
-    Mat3 transposed() const { return {{m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]}}; }
-};
-
-/// Rotation quaternion, w first as in 3DGS files.
-struct Quat {
-    double w = 1, x = 0, y = 0, z = 0;
-    friend bool operator==(const Quat&, const Quat&) = default;
 };
 
 /// Rotation matrix of q / |q|; the zero quaternion gives the identity.
 Mat3 rotation_matrix(const Quat& q);
 /// Unit quaternion with w >= 0 of a rotation matrix.
 Quat quaternion(const Mat3& rotation);
-/// Hamilton product a b (first b, then a).
-Quat operator*(const Quat& a, const Quat& b);
 
 }  // namespace gse

@@ -19,61 +19,16 @@ namespace gse::pipeline {
 namespace {
 
 constexpr double SensorMm = 36;
-using Quaternion = std::array<double, 4>;   // w, x, y, z
 
-/// Of a proper rotation matrix (Shepperd's choice of the largest component).
-Quaternion to_quaternion(const Mat3& m) {
-    const double w = 1 + m(0, 0) + m(1, 1) + m(2, 2), x = 1 + m(0, 0) - m(1, 1) - m(2, 2);
-    const double y = 1 - m(0, 0) + m(1, 1) - m(2, 2), z = 1 - m(0, 0) - m(1, 1) + m(2, 2);
-    const double largest = std::max({w, x, y, z}), s = 0.5 * std::sqrt(largest), f = 0.25 / s;
-    if (largest == w) return {s, (m(2, 1) - m(1, 2)) * f, (m(0, 2) - m(2, 0)) * f, (m(1, 0) - m(0, 1)) * f};
-    if (largest == x) return {(m(2, 1) - m(1, 2)) * f, s, (m(0, 1) + m(1, 0)) * f, (m(0, 2) + m(2, 0)) * f};
-    if (largest == y) return {(m(0, 2) - m(2, 0)) * f, (m(0, 1) + m(1, 0)) * f, s, (m(1, 2) + m(2, 1)) * f};
-    return {(m(1, 0) - m(0, 1)) * f, (m(0, 2) + m(2, 0)) * f, (m(1, 2) + m(2, 1)) * f, s};
-}
-
-Mat3 to_matrix(Quaternion q) {
-    const double n = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (auto& v : q) v /= n;
-    const auto [w, x, y, z] = q;
-    Mat3 m;
-    m(0, 0) = 1 - 2 * (y * y + z * z), m(0, 1) = 2 * (x * y - w * z), m(0, 2) = 2 * (x * z + w * y);
-    m(1, 0) = 2 * (x * y + w * z), m(1, 1) = 1 - 2 * (x * x + z * z), m(1, 2) = 2 * (y * z - w * x);
-    m(2, 0) = 2 * (x * z - w * y), m(2, 1) = 2 * (y * z + w * x), m(2, 2) = 1 - 2 * (x * x + y * y);
-    return m;
-}
-
-Mat3 transposed(const Mat3& m) {
-    Mat3 t;
-    for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) t(r, c) = m(c, r);
-    return t;
-}
-
-Quaternion slerp(const Quaternion& a, Quaternion b, double t) {
-    double dot = 0;
-    for (std::size_t i = 0; i < 4; ++i) dot += a[i] * b[i];
-    if (dot < 0)   // the short way
-        for (auto& v : b) v = -v;
-    dot = std::min(std::abs(dot), 1.0);
-    const double angle = std::acos(dot);
-    constexpr double nearly_equal = 1e-6;
-    const double wa = angle < nearly_equal ? 1 - t : std::sin((1 - t) * angle) / std::sin(angle);
-    const double wb = angle < nearly_equal ? t : std::sin(t * angle) / std::sin(angle);
-    Quaternion q{};
-    for (std::size_t i = 0; i < 4; ++i) q[i] = wa * a[i] + wb * b[i];
-    return q;
-}
-
-Camera camera_at(const Vec3& eye, const Quaternion& to_world, double focal_px, int width, int height) {
+Camera camera_at(const Vec3& eye, const Quat& to_world, double focal_px, int width, int height) {
     Camera camera;
     camera.width = width;
     camera.height = height;
     camera.fx = camera.fy = focal_px;
     camera.cx = width / 2.0;
     camera.cy = height / 2.0;
-    camera.rotation = transposed(to_matrix(to_world));
-    camera.translation = (camera.rotation * eye) * -1.0;
+    camera.rotation = rotation_matrix(to_world).transposed();
+    camera.translation = -(camera.rotation * eye);
     return camera;
 }
 
@@ -157,10 +112,10 @@ void save_camera_path(const std::filesystem::path& path, const std::vector<Camer
     json["keyframes"] = nlohmann::ordered_json::array();
     for (const auto& key : keys) {
         const Vec3 eye = key.camera.centre();
-        const auto q = to_quaternion(transposed(key.camera.rotation));
+        const Quat q = quaternion(key.camera.rotation.transposed());
         json["keyframes"].push_back({{"time", key.time},
                                      {"position", {eye.x, eye.y, eye.z}},
-                                     {"rotation", {q[0], q[1], q[2], q[3]}},
+                                     {"rotation", {q.w, q.x, q.y, q.z}},
                                      {"focal_length_mm", key.camera.fx / key.camera.width * SensorMm},
                                      {"easing", "linear"}});
     }
@@ -175,11 +130,9 @@ std::vector<CameraKey> load_camera_path(const std::filesystem::path& path, int w
             const auto& p = entry.at("position");
             const auto& q = entry.at("rotation");
             const Vec3 eye{p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>()};
-            const Quaternion rotation{q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(), q.at(3).get<double>()};
+            const Quat rotation{q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(), q.at(3).get<double>()};
             const double focal = entry.at("focal_length_mm").get<double>() / SensorMm * width;
-            double norm = 0;
-            for (const double v : rotation) norm += v * v;
-            if (!(focal > 0) || !(norm > 1e-12) || !std::isfinite(length(eye)))
+            if (!(focal > 0) || !(dot(rotation, rotation) > 1e-12) || !std::isfinite(length(eye)))
                 throw Error(ErrorCode::Malformed, "a camera of this path is not valid", "export the path again", path);
             keys.push_back({entry.at("time").get<double>(), camera_at(eye, rotation, focal, width, height)});
         }
@@ -206,7 +159,8 @@ std::vector<Camera> path_cameras(const std::vector<CameraKey>& keys, double fps,
         const auto& before = keys[segment > 0 ? segment - 1 : segment];
         const auto& after = keys[std::min(segment + 2, keys.size() - 1)];
         const Vec3 eye = catmull_rom({before.camera.centre(), a.camera.centre(), b.camera.centre(), after.camera.centre()}, t);
-        const auto rotation = slerp(to_quaternion(transposed(a.camera.rotation)), to_quaternion(transposed(b.camera.rotation)), t);
+        const Quat rotation =
+            glm::slerp(quaternion(a.camera.rotation.transposed()), quaternion(b.camera.rotation.transposed()), t);
         const double focal = (1 - t) * a.camera.fx / a.camera.width + t * b.camera.fx / b.camera.width;
         cameras.push_back(camera_at(eye, rotation, focal * width, width, height));
     }

@@ -33,7 +33,7 @@ void check_lengths(const GaussianSpans& g) {
 Frame::Frame(const Kernels& kernels, ThreadPool& pool) : kernels_(kernels), pool_(pool), sort_(pool) {}
 
 void Frame::set_view(const Camera& camera, const Settings& settings, int scene_degree) {
-    std::copy_n(camera.rotation.m.begin(), 9, view_.rotation);
+    std::ranges::copy(camera.rotation.rows(), view_.rotation);
     const Vec3 eye = camera.centre();
     for (int axis = 0; axis < 3; ++axis) {
         view_.translation[axis] = camera.translation[axis];

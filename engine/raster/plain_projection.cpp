@@ -65,12 +65,6 @@ Vec3 position_of(const Inputs& in, std::size_t row) {
     return {in.position[row * 3], in.position[row * 3 + 1], in.position[row * 3 + 2]};
 }
 
-/// Row vector times matrix.
-Vec3 row_times(const Vec3& v, const Mat3& m) {
-    return {v.x * m(0, 0) + v.y * m(1, 0) + v.z * m(2, 0), v.x * m(0, 1) + v.y * m(1, 1) + v.z * m(2, 1),
-            v.x * m(0, 2) + v.y * m(1, 2) + v.z * m(2, 2)};
-}
-
 void footprint(const View& view, Geometry& g) {
     const Camera& camera = view.camera;
     const double z = g.camera_point.z;
@@ -79,9 +73,9 @@ void footprint(const View& view, Geometry& g) {
     g.ratio_y = clamp_ratio(y, camera.height, camera.fy, camera.cy);
     g.inside_x = g.ratio_x == x;
     g.inside_y = g.ratio_y == y;
-    g.to_pixels[0] = row_times({camera.fx / z, 0, -camera.fx * g.ratio_x / z}, camera.rotation);
-    g.to_pixels[1] = row_times({0, camera.fy / z, -camera.fy * g.ratio_y / z}, camera.rotation);
-    g.footprint = {row_times(g.to_pixels[0], g.axes), row_times(g.to_pixels[1], g.axes)};
+    g.to_pixels[0] = Vec3{camera.fx / z, 0, -camera.fx * g.ratio_x / z} * camera.rotation;
+    g.to_pixels[1] = Vec3{0, camera.fy / z, -camera.fy * g.ratio_y / z} * camera.rotation;
+    g.footprint = {g.to_pixels[0] * g.axes, g.to_pixels[1] * g.axes};
     g.raw_xx = dot(g.footprint[0], g.footprint[0]);
     g.raw_xy = dot(g.footprint[0], g.footprint[1]);
     g.raw_yy = dot(g.footprint[1], g.footprint[1]);
@@ -188,7 +182,7 @@ Vec3 point_backward(const Geometry& g, const Camera& camera, const SplatGradient
                     const Mat23& d_to_pixels) {
     const double x = g.camera_point.x, y = g.camera_point.y, z = g.camera_point.z;
     const Mat3 transposed = camera.rotation.transposed();
-    const Vec3 jx = row_times(d_to_pixels[0], transposed), jy = row_times(d_to_pixels[1], transposed);
+    const Vec3 jx = d_to_pixels[0] * transposed, jy = d_to_pixels[1] * transposed;
     const double d_ratio_x = g.inside_x ? -camera.fx / z * jx.z : 0.0;
     const double d_ratio_y = g.inside_y ? -camera.fy / z * jy.z : 0.0;
     Vec3 point;
@@ -268,8 +262,7 @@ void project_backward(const Inputs& in, const View& view, std::size_t row, const
     }
     rotation_backward(in, row, g, d_rotation, result);
     const Mat3 axes_transposed = g.axes.transposed();
-    const Mat23 d_to_pixels = {row_times(d_footprint[0], axes_transposed),
-                               row_times(d_footprint[1], axes_transposed)};
+    const Mat23 d_to_pixels = {d_footprint[0] * axes_transposed, d_footprint[1] * axes_transposed};
     const Vec3 d_world = view.camera.rotation.transposed() * point_backward(g, view.camera, d, d_to_pixels);
     result.position = {d_world.x, d_world.y, d_world.z};
     colour_backward(in, row, view, d.colour, result);

@@ -190,12 +190,10 @@ ShapeList make_wings(const Anchor& anchor, Random& random) {
             const Vec3 direction = normalized({side * std::cos(angle), std::sin(angle), 0.25});
             Shape feather = ellipsoid(root + direction * (0.5 * reach), {0.1, 0.52 * reach, 0.028},
                                       i % 2 == 0 ? Main : Deep);
-            const Mat3 turn = rotation_to(direction);
             // Flat side towards the front: the local z axis is as near to -z as the direction allows.
             const Vec3 flat = normalized(Vec3{0, 0, -1} + direction * direction.z);
             const Vec3 across = cross(direction, flat);
-            feather.rotation = {
-                {across.x, turn(0, 1), flat.x, across.y, turn(1, 1), flat.y, across.z, turn(2, 1), flat.z}};
+            feather.rotation = Mat3::from_columns(across, direction, flat);
             shapes.push_back(feather);
         }
     }

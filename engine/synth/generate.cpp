@@ -171,7 +171,7 @@ SynthScene generate(const SceneSpec& spec) {
         writer.add(worn, colours_of(own_worn, worn, shapes, dye, light), Part::Accessory,
                    stream(OpacityStream + 2));
     }
-    const Vec3 face = (model.anchor.top * 2 + model.anchor.eyes) / 3;
+    const Vec3 face = (model.anchor.top * 2.0 + model.anchor.eyes) / 3.0;
     result.head = to_world(pose.turn * face * pose.size + pose.shift);
     result.scene.gaussians = GaussianSet(writer.take());
     result.scene.info.format = "synthetic";

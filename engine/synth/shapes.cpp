@@ -183,15 +183,15 @@ double Shape::bounding_radius() const {
     return largest;
 }
 
-Mat3 rotation_x(double a) { return {{1, 0, 0, 0, std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a)}}; }
-Mat3 rotation_y(double a) { return {{std::cos(a), 0, std::sin(a), 0, 1, 0, -std::sin(a), 0, std::cos(a)}}; }
-Mat3 rotation_z(double a) { return {{std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a), 0, 0, 0, 1}}; }
+Mat3 rotation_x(double a) { return Mat3::from_rows({1, 0, 0, 0, std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a)}); }
+Mat3 rotation_y(double a) { return Mat3::from_rows({std::cos(a), 0, std::sin(a), 0, 1, 0, -std::sin(a), 0, std::cos(a)}); }
+Mat3 rotation_z(double a) { return Mat3::from_rows({std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a), 0, 0, 0, 1}); }
 
 Mat3 rotation_to(const Vec3& axis) {
     const Vec3 helper = std::abs(axis.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
     const Vec3 z = normalized(cross(helper, axis));
     const Vec3 x = cross(axis, z);
-    return {{x.x, axis.x, z.x, x.y, axis.y, z.y, x.z, axis.z, z.z}};
+    return Mat3::from_columns(x, axis, z);
 }
 
 Shape ellipsoid(const Vec3& centre, const Vec3& radii, Paint paint) {

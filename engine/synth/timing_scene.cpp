@@ -95,7 +95,7 @@ Quat orientation(Random& random, const Vec3& normal) {
     const Vec3 t = normalized(cross(normal, other)), b = cross(normal, t);
     const double angle = random.uniform(0, Turn);
     const Vec3 x = std::cos(angle) * t + std::sin(angle) * b, y = cross(normal, x);
-    return quaternion({{x.x, y.x, normal.x, x.y, y.y, normal.y, x.z, y.z, normal.z}});
+    return quaternion(Mat3::from_columns(x, y, normal));
 }
 
 /// A checkered texture in the constant part, noise that falls with the degree in the rest.

@@ -43,6 +43,7 @@ find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(glm REQUIRED)
 find_package(PkgConfig REQUIRED)
 if(GSE_OPENCV)
   # Debian keeps OpenCVConfig.cmake in libopencv-dev, which pulls in hundreds of packages; the four libraries do.

@@ -31,6 +31,7 @@ SUFFIXES = {".h", ".cpp", ".inl", ".cu", ".comp"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 JSON_PARSER = "engine/base/json.h"   # the one place that bounds the depth of JSON
 JSON_PARSE = re.compile(r"[Jj]son(::|\.)parse\s*\(")
+GLM_DOOR = "engine/math/vec.h"   # the one place that includes glm: its settings change its types
 FOREIGN_OWNERS = {"torch/": {"neural"}, "ATen/": {"neural"}, "c10/": {"neural"}, "vulkan/": {"vulkan", "preview", "window"}}
 
 
@@ -114,6 +115,8 @@ def check_file(root, path):
         found = INCLUDE.match(line)
         if found:
             yield from check_include(relative, number, found.group(1), path.suffix == ".h")
+        if found and found.group(1).startswith("glm/") and str(relative) != GLM_DOOR:
+            yield f"{relative}:{number}: glm is included by {GLM_DOOR}"
         if JSON_PARSE.search(line) and relative.parts[0] != "tests" and str(relative) != JSON_PARSER:
             yield f"{relative}:{number}: JSON is parsed with parse_json() or try_parse_json()"
     if relative.parts[0] in {"engine", "app", "ui"}:
@@ -148,6 +151,7 @@ def self_test():
         "engine/base/f.cpp": ("// x\n" + "int x;\n" * 700, "lines (at most 600)"),
         "engine/base/g.cpp": ("// x\nvoid f(int a) {\n" + "    a += 1;\n" * 70 + "}\n", "a function of 72 lines"),
         "app/j.cpp": ("// x\nauto a = nlohmann::json::parse(text);\n", "parsed with parse_json()"),
+        "ui/k.cpp": ("// x\n#include <glm/vec3.hpp>\n", "glm is included by"),
         "engine/raster/h.cpp": ("// x\n#include \"app/main.h\"\n", "must not include app"),
         "strange": (None, "not a top-level name"),
     }

@@ -17,31 +17,8 @@ constexpr double ZoomPerNotch = 0.86;
 constexpr double NearestShare = 1e-4, FarthestShare = 1e4;  // of the home radius
 constexpr double PoleMargin = 0.02;  // radians the view keeps from straight up and down
 
-/// Rotation by `angle` about a unit axis (Rodrigues).
-Mat3 about(const Vec3& axis, double angle) {
-    const double c = std::cos(angle), s = std::sin(angle), t = 1 - c;
-    const auto& [x, y, z] = axis;
-    return {{t * x * x + c, t * x * y - s * z, t * x * z + s * y, t * x * y + s * z, t * y * y + c,
-             t * y * z - s * x, t * x * z - s * y, t * y * z + s * x, t * z * z + c}};
-}
-
-Vec3 row(const Mat3& m, int index) { return {m(index, 0), m(index, 1), m(index, 2)}; }
-
-/// Shortest way between two rotations, `share` of it.
-Quat slerp(const Quat& a, Quat b, double share) {
-    double cosine = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
-    if (cosine < 0) {
-        b = {-b.w, -b.x, -b.y, -b.z};
-        cosine = -cosine;
-    }
-    const double angle = std::acos(std::min(1.0, cosine));
-    double from = 1 - share, to = share;
-    if (angle > 1e-6) {
-        from = std::sin((1 - share) * angle) / std::sin(angle);
-        to = std::sin(share * angle) / std::sin(angle);
-    }
-    return {from * a.w + to * b.w, from * a.x + to * b.x, from * a.y + to * b.y, from * a.z + to * b.z};
-}
+/// Rotation by `angle` about a unit axis.
+Mat3 about(const Vec3& axis, double angle) { return rotation_matrix(glm::angleAxis(angle, axis)); }
 
 double angle_between(const Mat3& a, const Mat3& b) {
     const Mat3 difference = a * b.transposed();
@@ -51,7 +28,7 @@ double angle_between(const Mat3& a, const Mat3& b) {
 
 }  // namespace
 
-Vec3 CameraPose::eye() const { return pivot - row(rotation, 2) * distance; }
+Vec3 CameraPose::eye() const { return pivot - rotation.row(2) * distance; }
 
 void CameraControl::set_home(const OrbitParameters& orbit, const Bounds& bounds) {
     home_ = orbit;
@@ -111,7 +88,7 @@ void CameraControl::orbit(double dx_px, double dy_px) {
     const Vec3 up = normalized(home_.up);
     if (dx_px != 0) rotate(about(up, -dx_px * per_px));
     if (dy_px == 0) return;
-    const Vec3 forward = row(now_.rotation, 2);
+    const Vec3 forward = now_.rotation.row(2);
     const double height = std::acos(std::clamp(dot(forward, up), -1.0, 1.0));  // 0 = looks straight up
     // Dragging down lifts the camera: it looks more downwards, the angle to up grows.
     const double wanted = std::clamp(height + dy_px * per_px, PoleMargin, std::numbers::pi - PoleMargin);
@@ -121,7 +98,7 @@ void CameraControl::orbit(double dx_px, double dy_px) {
 
 void CameraControl::pan(double dx_px, double dy_px) {
     const double per_px = now_.distance / focal_px();
-    const Vec3 shift = row(now_.rotation, 0) * (-dx_px * per_px) + row(now_.rotation, 1) * (-dy_px * per_px);
+    const Vec3 shift = now_.rotation.row(0) * (-dx_px * per_px) + now_.rotation.row(1) * (-dy_px * per_px);
     now_.pivot = now_.pivot + shift;
     target_.pivot = target_.pivot + shift;
     at_home_ = false;
@@ -177,14 +154,14 @@ void CameraControl::look_from(const Vec3& direction) {
     CameraPose next = target_;
     // Straight from above the picture keeps its heading, so that it does not spin.
     const bool vertical = std::abs(dot(normalized(direction), normalized(home_.up))) > 0.999;
-    const Vec3 lean = vertical ? row(now_.rotation, 2) * -PoleMargin : Vec3{};
+    const Vec3 lean = vertical ? now_.rotation.row(2) * -PoleMargin : Vec3{};
     next.rotation =
         Camera::look_at(normalized(direction) + lean, {}, home_.up, fov_x_, width_, height_).rotation;
     go(next);
 }
 
 void CameraControl::set_pivot(const Vec3& point) {
-    const double along = dot(point - now_.eye(), row(now_.rotation, 2));
+    const double along = dot(point - now_.eye(), now_.rotation.row(2));
     if (along <= 0) return;
     CameraPose next = target_;
     next.pivot = point;
@@ -199,7 +176,7 @@ bool CameraControl::update(double seconds) {
     const double share = 1 - std::exp(-GlideRate * std::clamp(seconds, 0.0, LongestStep));
     now_.pivot = now_.pivot + (target_.pivot - now_.pivot) * share;
     now_.distance += (target_.distance - now_.distance) * share;
-    now_.rotation = rotation_matrix(slerp(quaternion(now_.rotation), quaternion(target_.rotation), share));
+    now_.rotation = rotation_matrix(glm::slerp(quaternion(now_.rotation), quaternion(target_.rotation), share));
     const double tolerance = ArrivedShare * target_.distance;
     if (length(now_.pivot - target_.pivot) < tolerance &&
         std::abs(now_.distance - target_.distance) < tolerance &&
@@ -223,10 +200,9 @@ Camera CameraControl::camera() const {
 bool same_view(const Camera& a, const Camera& b) {
     constexpr double Tolerance = 1e-6;       // doubles that went through at most a resize
     constexpr double PlaceTolerance = 1e-9;  // of the way to the origin, which may be far from a small scene
-    for (int at = 0; at < 9; ++at)
-        if (std::abs(a.rotation.m[static_cast<std::size_t>(at)] -
-                     b.rotation.m[static_cast<std::size_t>(at)]) > Tolerance)
-            return false;
+    const auto turn = a.rotation.rows(), other = b.rotation.rows();
+    for (std::size_t at = 0; at < turn.size(); ++at)
+        if (std::abs(turn[at] - other[at]) > Tolerance) return false;
     if (length(a.translation - b.translation) > PlaceTolerance * length(a.translation)) return false;
     if (a.width <= 0 || b.width <= 0) return false;
     return std::abs(a.fx / a.width - b.fx / b.width) < Tolerance * (1 + a.fx / a.width);

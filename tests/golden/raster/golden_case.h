@@ -75,8 +75,8 @@ struct GoldenCase {
         camera.cx = k[2];
         camera.fy = k[4];
         camera.cy = k[5];
-        camera.rotation = {
-            {view[0], view[1], view[2], view[4], view[5], view[6], view[8], view[9], view[10]}};
+        camera.rotation = Mat3::from_rows(
+            {view[0], view[1], view[2], view[4], view[5], view[6], view[8], view[9], view[10]});
         camera.translation = {view[3], view[7], view[11]};
         settings.near_plane = static_cast<float>(tensors.number("near_plane"));
         settings.far_plane = static_cast<float>(tensors.number("far_plane"));
@@ -101,7 +101,7 @@ struct GoldenCase {
     /// orthogonal.
     Vec3 eye() const {
         const Mat3& r = camera.rotation;
-        const Vec3 a{r(0, 0), r(0, 1), r(0, 2)}, b{r(1, 0), r(1, 1), r(1, 2)}, c{r(2, 0), r(2, 1), r(2, 2)};
+        const Vec3 a = r.row(0), b = r.row(1), c = r.row(2);
         const Vec3& t = camera.translation;
         return (cross(b, c) * t.x + cross(c, a) * t.y + cross(a, b) * t.z) / -dot(a, cross(b, c));
     }

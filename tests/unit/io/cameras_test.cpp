@@ -14,7 +14,7 @@ namespace {
 double largest_difference(const Camera& a, const Camera& b) {
     double largest = 0;
     for (std::size_t i = 0; i < 9; ++i)
-        largest = std::max(largest, std::abs(a.rotation.m[i] - b.rotation.m[i]));
+        largest = std::max(largest, std::abs(a.rotation.rows()[i] - b.rotation.rows()[i]));
     return std::max({largest, length(a.translation - b.translation), std::abs(a.fx - b.fx),
                      std::abs(a.fy - b.fy), std::abs(a.cx - b.cx), std::abs(a.cy - b.cy)});
 }
@@ -264,7 +264,7 @@ DOCTEST_TEST_CASE("the shared camera folders open and look at their own points")
     constexpr double LeastShare = 0.3;  // a wrong axis or inverse sees close to nothing
     DOCTEST_CHECK(visible_share(plush, points) > LeastShare);
     std::vector<View> turned = plush;  // cameras of another world
-    for (View& view : turned) view.camera.rotation = {{1, 0, 0, 0, -1, 0, 0, 0, -1}};
+    for (View& view : turned) view.camera.rotation = Mat3::from_rows({1, 0, 0, 0, -1, 0, 0, 0, -1});
     DOCTEST_CHECK(visible_share(turned, points) < visible_share(plush, points));
     DOCTEST_CHECK(visible_share({}, points) == 0);
 }

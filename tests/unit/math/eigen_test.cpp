@@ -14,7 +14,7 @@ constexpr double Tolerance = 1e-12;   // relative to the matrix: some dozen roun
 void check(const Mat3& a) {
     const SymmetricEigen eigen = symmetric_eigen(a);
     double size = 1e-300;
-    for (const double entry : a.m) size = std::max(size, std::abs(entry));
+    for (const double entry : a.rows()) size = std::max(size, std::abs(entry));
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) {
             double sum = 0;
@@ -44,7 +44,7 @@ DOCTEST_TEST_CASE("symmetric matrices are the sum of their axes") {
 DOCTEST_TEST_CASE("flat, round and empty matrices") {
     check(Mat3{});
     check(Mat3::identity());
-    check({{1, 1, 1, 1, 1, 1, 1, 1, 1}});                     // one axis only
-    check({{2, 0, 0, 0, 5, 0, 0, 0, 3}});                     // in the wrong order
-    check({{1, 1e-14, 0, 1e-14, 1, 1e-300, 0, 1e-300, 1}});   // nearly round
+    check(Mat3::from_rows({1, 1, 1, 1, 1, 1, 1, 1, 1}));                     // one axis only
+    check(Mat3::from_rows({2, 0, 0, 0, 5, 0, 0, 0, 3}));                     // in the wrong order
+    check(Mat3::from_rows({1, 1e-14, 0, 1e-14, 1, 1e-300, 0, 1e-300, 1}));   // nearly round
 }

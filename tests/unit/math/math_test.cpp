@@ -2,7 +2,10 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <new>
 #include <numbers>
 
 #include "engine/base/random.h"
@@ -22,15 +25,49 @@ Quat random_quaternion(Random& random) {
 
 double largest(const Mat3& a, const Mat3& b) {
     double difference = 0;
-    for (std::size_t i = 0; i < 9; ++i) difference = std::max(difference, std::abs(a.m[i] - b.m[i]));
+    for (std::size_t i = 0; i < 9; ++i) difference = std::max(difference, std::abs(a.rows()[i] - b.rows()[i]));
     return difference;
 }
 
-double determinant(const Mat3& m) {
-    return dot({m(0, 0), m(0, 1), m(0, 2)}, cross({m(1, 0), m(1, 1), m(1, 2)}, {m(2, 0), m(2, 1), m(2, 2)}));
+double determinant(const Mat3& m) { return dot(m.row(0), cross(m.row(1), m.row(2))); }
+
+/// A T without values, in memory that was not empty.
+template <class T>
+T without_values() {
+    alignas(T) std::array<std::byte, sizeof(T)> place;
+    place.fill(std::byte{0x5a});
+    return *new (place.data()) T;
 }
 
 }  // namespace
+
+DOCTEST_TEST_CASE("what is given no values is zero, and a quaternion no turn") {
+    DOCTEST_CHECK(without_values<Vec3>() == Vec3{0, 0, 0});
+    DOCTEST_CHECK(without_values<Mat3>().rows() == std::array<double, 9>{});
+    DOCTEST_CHECK(without_values<Quat>() == Quat{1, 0, 0, 0});
+    DOCTEST_CHECK(without_values<Camera>().translation == Vec3{});
+    DOCTEST_CHECK(normalized(Vec3{}) == Vec3{});
+}
+
+DOCTEST_TEST_CASE("matrices are indexed by row and column") {
+    const double c = std::cos(0.3), s = std::sin(0.3);
+    const std::array<double, 9> rows{c, -s, 0, s, c, 0, 0, 0, 1};   // about z
+    const Mat3 turn = Mat3::from_rows(rows);
+    DOCTEST_CHECK(turn.rows() == rows);
+    DOCTEST_CHECK(turn(0, 1) == -s);
+    DOCTEST_CHECK(turn(1, 0) == s);
+    DOCTEST_CHECK(turn.row(1) == Vec3{s, c, 0});
+    DOCTEST_CHECK(turn.columns[1] == Vec3{-s, c, 0});
+    DOCTEST_CHECK(turn == Mat3::from_columns({c, s, 0}, {-s, c, 0}, {0, 0, 1}));
+    DOCTEST_CHECK(turn.transposed() == Mat3::from_columns(turn.row(0), turn.row(1), turn.row(2)));
+    DOCTEST_CHECK(turn * Vec3{1, 0, 0} == Vec3{c, s, 0});
+    DOCTEST_CHECK(Vec3{1, 0, 0} * turn == Vec3{c, -s, 0});
+    const Quat same{std::cos(0.15), 0, 0, std::sin(0.15)};
+    DOCTEST_CHECK(largest(rotation_matrix(same), turn) < Tolerance);
+    DOCTEST_CHECK(length(quaternion(turn) - same) < Tolerance);
+    const Mat3 a = Mat3::from_rows({1, 2, 3, 4, 5, 6, 7, 8, 9}), b = Mat3::from_rows({0, 1, 0, 0, 0, 2, 3, 0, 0});
+    DOCTEST_CHECK((a * b).rows() == std::array<double, 9>{9, 1, 4, 18, 4, 10, 27, 7, 16});
+}
 
 DOCTEST_TEST_CASE("quaternions and matrices say the same rotation") {
     Random random(1);
@@ -77,7 +114,7 @@ DOCTEST_TEST_CASE("look_at puts the target in the middle and up to the top") {
 }
 
 DOCTEST_TEST_CASE("look_at survives a view along up and a target at the eye") {
-    for (const Vec3 target : {Vec3{0, -5, 0}, Vec3{0, 5, 0}, Vec3{0, 0, 0}}) {
+    for (const Vec3& target : {Vec3{0, -5, 0}, Vec3{0, 5, 0}, Vec3{0, 0, 0}}) {
         const Camera camera = Camera::look_at({0, 0, 0}, target, {0, -1, 0}, 0.8, 100, 100);
         DOCTEST_CHECK(largest(camera.rotation * camera.rotation.transposed(), Mat3::identity()) < Tolerance);
     }

@@ -123,7 +123,7 @@ DOCTEST_TEST_CASE("statistics of nothing are zero, and an orbit can still be fit
 
 DOCTEST_TEST_CASE("every orbit view sees the whole robust box, upright") {
     const SceneStatistics s = compute_statistics(GaussianSet(box_of_splats(2000, {5, -6, 7}, 4)));
-    for (const Vec3 up : {Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{1, 0, 0}}) {
+    for (const Vec3& up : {Vec3{0, -1, 0}, Vec3{0, 0, 1}, Vec3{1, 0, 0}}) {
         const OrbitParameters orbit = fit_orbit(s, up);
         const auto views = orbit_views(orbit, 12, 200, 200);
         DOCTEST_REQUIRE(views.size() == 12);
