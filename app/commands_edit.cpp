@@ -143,8 +143,9 @@ void print_summary(const nlohmann::ordered_json& report, const std::filesystem::
                report["removed"].get<long>(), report["changed_outside_label"].get<std::size_t>(),
                report["psnr_outside_db"].get<double>());
     print("{}\n", report["confidence_text"].get<std::string>());
-    print("{:.1f} s, {:.0f} MB at most\n", report["seconds"]["total"].get<double>(),
-               report["peak_rss_mb"].get<double>());
+    const auto& networks = report["networks"]["total"];
+    print("{:.1f} s, {:.0f} MB at most, {} UNet passes, {:.2f} TFLOP\n", report["seconds"]["total"].get<double>(),
+          report["peak_rss_mb"].get<double>(), networks["unet"].get<std::uint64_t>(), networks["tflop"].get<double>());
     print("edited scene   {}/scene.ply\nbefore, labels {}/source.ply\nfilm           {}/before_after.mp4\n"
                "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
                text, text, text, text, text, text, text);
@@ -157,6 +158,7 @@ nlohmann::ordered_json locate_report(EditJob& job) {
     report["new"] = job.located().seeds.size();
     add_search(report, job);
     report["seconds"] = job.times().to_json();
+    report["networks"] = job.times().networks_json();
     return report;
 }
 

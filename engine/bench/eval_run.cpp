@@ -192,6 +192,7 @@ private:
             for (auto& ablation : ablated)
                 ablation["edits"].push_back(ablate(index, setting, job, ablation["settings"]));
         entry["seconds"] = job.times().to_json();
+        entry["networks"] = job.times().networks_json();
         entry["peak_rss_mb"] = peak_rss_mb();
         add_times(job.times());
         return entry;

@@ -205,6 +205,7 @@ nlohmann::ordered_json make_report(EditJob& job) {
     report["model"] = job.model().name();
     report["settings_from"] = settings_from(job.recipe());
     report["seconds"] = job.times().to_json();
+    report["networks"] = job.times().networks_json();
     report["peak_rss_mb"] = peak_rss_mb();
     report["losses"] = history_json(result);
     return report;

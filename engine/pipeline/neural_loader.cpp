@@ -4,11 +4,14 @@
 #include <dlfcn.h>
 
 #include <array>
+#include <atomic>
 
 #include "engine/base/error.h"
 
 namespace gse::pipeline {
 namespace {
+
+std::atomic<neural::Api*> loaded_api = nullptr;
 
 neural::Api* load() {
     const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
@@ -32,8 +35,13 @@ neural::Api* load() {
 }  // namespace
 
 neural::Api& neural_api() {
-    static neural::Api* const api = load();
+    static neural::Api* const api = loaded_api = load();
     return *api;
+}
+
+neural::NetworkUse network_use() {
+    const neural::Api* api = loaded_api;
+    return api != nullptr ? api->use() : neural::NetworkUse{};
 }
 
 }  // namespace gse::pipeline

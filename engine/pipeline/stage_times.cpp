@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "engine/pipeline/neural_loader.h"
+
 namespace gse::pipeline {
 namespace {
 
@@ -11,14 +13,38 @@ double now_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+nlohmann::ordered_json use_json(const neural::NetworkUse& use) {
+    return {{"unet", use.unet}, {"encoder", use.encoder}, {"decoder", use.decoder}, {"tflop", use.flop * 1e-12}};
+}
+
 }  // namespace
 
 void StageTimes::begin(const std::string& stage) {
     open_ = stage;
     start_ = now_seconds();
+    start_use_ = network_use();
 }
 
-void StageTimes::end() { add(open_, now_seconds() - start_); }
+void StageTimes::end() {
+    add(open_, now_seconds() - start_);
+    const auto use = network_use() - start_use_;
+    const auto found = std::find_if(networks_.begin(), networks_.end(), [&](const auto& entry) { return entry.first == open_; });
+    if (found != networks_.end()) found->second += use;
+    else if (use.flop > 0) networks_.emplace_back(open_, use);
+}
+
+neural::NetworkUse StageTimes::networks() const {
+    neural::NetworkUse total;
+    for (const auto& [stage, use] : networks_) total += use;
+    return total;
+}
+
+nlohmann::ordered_json StageTimes::networks_json() const {
+    nlohmann::ordered_json json;
+    for (const auto& [stage, use] : networks_) json[stage] = use_json(use);
+    json["total"] = use_json(networks());
+    return json;
+}
 
 void StageTimes::add(const std::string& stage, double seconds) {
     const auto found = std::find_if(stages_.begin(), stages_.end(), [&](const auto& entry) { return entry.first == stage; });

@@ -1,4 +1,4 @@
-// How long the parts of a run took.
+// How long the parts of a run took, and what they asked of the networks.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,9 +6,11 @@
 #include <utility>
 #include <vector>
 
+#include "engine/neural/network_use.h"
+
 namespace gse::pipeline {
 
-/// Seconds per stage, in order of first use.
+/// Seconds and network passes per stage, in order of first use. A stage begins and ends on one thread.
 class StageTimes {
 public:
     void begin(const std::string& stage);
@@ -16,11 +18,16 @@ public:
     void add(const std::string& stage, double seconds);
     nlohmann::ordered_json to_json() const;
     double seconds(const std::string& stage) const;   // 0 = it did not run
+    /// Passes over single pictures and 10^12 operations, per stage that asked for any and in total.
+    nlohmann::ordered_json networks_json() const;
+    neural::NetworkUse networks() const;   // of all stages
 
 private:
     std::vector<std::pair<std::string, double>> stages_;
+    std::vector<std::pair<std::string, neural::NetworkUse>> networks_;
     std::string open_;
     double start_ = 0;
+    neural::NetworkUse start_use_;
 };
 
 }  // namespace gse::pipeline
