@@ -240,7 +240,7 @@ DOCTEST_TEST_CASE("a branch goes on from a snapshot with the settings as they ar
     app.branch_from_snapshot(from);   // nothing would be left to do: the edit is not even stopped
     app.update(session.preview);
     DOCTEST_CHECK(app.model().job.running);
-    DOCTEST_CHECK(app.model().toasts.back().text.find("Iterations") != std::string::npos);
+    DOCTEST_CHECK(app.model().toasts.back().text.find("iterations") != std::string::npos);
     request.iterations = from + 12;
     request.guidance_weight = 0.5;
     app.set_request(request);
