@@ -163,7 +163,7 @@ private:
         const int iteration = result.iterations;
         if (tools_.new_label) take_label(result);
         if (tools_.job.stop_requested() || !iterate(iteration, cycle_.next(), result)) {
-            result.stopped = true;
+            result.stopped = !result.failure;
             return false;
         }
         result.iterations = iteration + 1;
@@ -282,7 +282,10 @@ private:
             const StageTimer timer(seconds_.guidance);
             if (rounds_ && rounds_->begins(iteration)) redraw_views(iteration, record);
         } catch (const Error& error) {
-            if (error.code() != ErrorCode::Cancelled) throw;
+            if (error.code() != ErrorCode::Cancelled) {
+                if (result.history.empty()) throw;   // nothing was reached yet
+                result.failure = error;
+            }
             return false;
         }
         {

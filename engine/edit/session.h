@@ -57,7 +57,7 @@ struct EditResult {
     std::size_t nonfinite = 0;               // labelled rows with a NaN or infinity in the result; always 0
     std::size_t unusable_before = 0;         // rows of the base that cannot be drawn (see usable_rows); never changed
     std::size_t unusable = 0;                // rows of the result that cannot be drawn
-    std::optional<Error> failure;            // the guidance failed for good; the result is the last good state
+    std::optional<Error> failure;            // the guidance failed for good, or a later round of view guidance; the result is the last good state
     std::optional<OutOfMemory> shortage;     // the memory ran out; the result is the last good state
     double guidance_scale = 0;               // factor the calibration gave the guidance's gradient
     std::map<std::string, double> seconds;   // per stage: "render", "preserve", "guidance", "backward", "optimise", ...

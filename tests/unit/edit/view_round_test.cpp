@@ -19,6 +19,7 @@ public:
     OracleViews(const GaussianSet& target, raster::Rasterizer& rasterizer) : target_(target), rasterizer_(rasterizer) {}
     edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) override {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "stopped");
+        if (input.round == fails_in) throw Error(ErrorCode::Model, "not finite");
         inputs.push_back(input);
         edit::RoundTargets targets;
         for (const auto& view : views) {
@@ -31,6 +32,7 @@ public:
         return targets;
     }
     std::vector<edit::RoundInput> inputs;
+    int fails_in = -1;   // round
 
 private:
     const GaussianSet& target_;
@@ -45,16 +47,6 @@ GaussianSet blue_ball(const test::BallScene& scene) {
     return GaussianSet(std::move(data));
 }
 
-edit::EditRequest view_request(int rounds, int fit_steps) {
-    edit::EditRequest request;
-    request.prompt = "a blue ball";
-    request.method = "views";
-    request.rounds = rounds;
-    request.fit_steps = fit_steps;
-    request.edited_views = 4;
-    return request;
-}
-
 double difference(const GaussianSet& a, const GaussianSet& b, const std::vector<View>& views, raster::Rasterizer& rasterizer) {
     double sum = 0;
     for (const auto& view : views) {
@@ -64,6 +56,31 @@ double difference(const GaussianSet& a, const GaussianSet& b, const std::vector<
         for (std::size_t i = 0; i < of_a.colour.data.size(); ++i) sum += std::abs(of_a.colour.data[i] - of_b.colour.data[i]);
     }
     return sum;
+}
+
+/// The red ball is to become blue, by an oracle's views; the guidance that pulls is never asked.
+struct Redrawing {
+    test::BallScene scene = test::ball_scene();
+    ThreadPool threads{1};
+    std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(threads);
+    edit::EditPlan plan = test::ball_plan(scene, *rasterizer);
+    GaussianSet target = blue_ball(scene);
+    OracleViews oracle{target, *rasterizer};
+    test::FunctionGuidance never{[](const edit::GuidanceInput&) -> edit::GuidanceOutput { throw Error(ErrorCode::Model, "asked"); }};
+    edit::EditTools tools{*rasterizer, never, {}, {}};
+    Redrawing() { tools.views = &oracle; }
+    edit::EditResult edited(const edit::EditRequest& request) { return edit::run_edit(scene.set, plan, request, tools); }
+    double error_of(const GaussianSet& set) { return difference(set, target, plan.views, *rasterizer); }
+};
+
+edit::EditRequest view_request(int rounds, int fit_steps) {
+    edit::EditRequest request;
+    request.prompt = "a blue ball";
+    request.method = "views";
+    request.rounds = rounds;
+    request.fit_steps = fit_steps;
+    request.edited_views = 4;
+    return request;
 }
 
 double correlation(const Image& a, const Image& b) {
@@ -79,81 +96,69 @@ double correlation(const Image& a, const Image& b) {
 }  // namespace
 
 DOCTEST_TEST_CASE("view guidance: the rows are fitted to what was redrawn, all others keep every bit") {
-    const auto scene = test::ball_scene();
-    ThreadPool threads(1);
-    const auto rasterizer = raster::make_fast_rasterizer(threads);
-    const auto plan = test::ball_plan(scene, *rasterizer);
-    const auto target = blue_ball(scene);
-    OracleViews oracle(target, *rasterizer);
-    auto never = test::FunctionGuidance([](const edit::GuidanceInput&) -> edit::GuidanceOutput { throw Error(ErrorCode::Model, "asked"); });
+    Redrawing run;
     std::vector<int> snapshots;
-    edit::EditTools tools{*rasterizer, never, [&](edit::EditSnapshot snapshot) { snapshots.push_back(snapshot.iteration); }, {}};
-    tools.views = &oracle;
+    run.tools.snapshot = [&](edit::EditSnapshot snapshot) { snapshots.push_back(snapshot.iteration); };
     auto request = view_request(2, 40);
     request.snapshot_every = 20;
-    const auto result = edit::run_edit(scene.set, plan, request, tools);
+    const auto result = run.edited(request);
     DOCTEST_CHECK(result.iterations == 80);
     DOCTEST_CHECK(snapshots == std::vector{20, 40, 60, 80});
     DOCTEST_CHECK(result.changed_outside_label == 0);
     constexpr double most_left = 0.35;   // of the error: noise-free targets, but only eighty steps
-    DOCTEST_CHECK(difference(result.set, target, plan.views, *rasterizer) <
-                  most_left * difference(scene.set, target, plan.views, *rasterizer));
-    DOCTEST_REQUIRE(oracle.inputs.size() == 2);
-    DOCTEST_CHECK(oracle.inputs[1].round == 1);
-    DOCTEST_CHECK(oracle.inputs[0].seed != oracle.inputs[1].seed);
+    DOCTEST_CHECK(run.error_of(result.set) < most_left * run.error_of(run.scene.set));
+    const auto& inputs = run.oracle.inputs;
+    DOCTEST_REQUIRE(inputs.size() == 2);
+    DOCTEST_CHECK(inputs[1].round == 1);
+    DOCTEST_CHECK(inputs[0].seed != inputs[1].seed);
     DOCTEST_CHECK(result.history[0].guidance.count("views") == 1);
     DOCTEST_CHECK(result.history[0].guidance.count("broken") == 0);
     std::size_t drawn_from = 0;
-    for (std::size_t view = 0; view < plan.views.size(); ++view)
+    for (std::size_t view = 0; view < run.plan.views.size(); ++view)
         drawn_from += std::any_of(result.history.begin(), result.history.end(), [&](const auto& line) { return line.view == view; });
     DOCTEST_CHECK(drawn_from == 4);
-    OracleViews again(target, *rasterizer);
-    tools.views = &again;
-    tools.snapshot = {};
-    const auto same = edit::run_edit(scene.set, plan, request, tools);
-    DOCTEST_CHECK(test::same_bytes(same.set.sh(), result.set.sh()));
+    Redrawing again;
+    DOCTEST_CHECK(test::same_bytes(again.edited(request).set.sh(), result.set.sh()));
 }
 
-DOCTEST_TEST_CASE("view guidance: a stop while views are redrawn, and one between steps, keep what was reached") {
-    const auto scene = test::ball_scene();
-    ThreadPool threads(1);
-    const auto rasterizer = raster::make_fast_rasterizer(threads);
-    const auto plan = test::ball_plan(scene, *rasterizer);
-    const auto target = blue_ball(scene);
-    OracleViews oracle(target, *rasterizer);
-    auto still = test::still();
+DOCTEST_TEST_CASE("view guidance: a stop before the next round keeps what was reached") {
+    Redrawing run;
     std::stop_source stop;
-    edit::EditTools tools{*rasterizer, still, {}, {}};
-    tools.job.stop = stop.get_token();
-    tools.views = &oracle;
-    tools.iteration = [&](const edit::IterationRecord& record) {
+    run.tools.job.stop = stop.get_token();
+    run.tools.iteration = [&](const edit::IterationRecord& record) {
         if (record.iteration == 9) stop.request_stop();   // the next round would begin now
     };
-    const auto result = edit::run_edit(scene.set, plan, view_request(3, 10), tools);
+    const auto result = run.edited(view_request(3, 10));
     DOCTEST_CHECK(result.stopped);
     DOCTEST_CHECK(result.iterations == 10);
-    DOCTEST_CHECK(oracle.inputs.size() == 1);
-    DOCTEST_CHECK(difference(result.set, target, plan.views, *rasterizer) < difference(scene.set, target, plan.views, *rasterizer));
+    DOCTEST_CHECK(run.oracle.inputs.size() == 1);
+    DOCTEST_CHECK(run.error_of(result.set) < run.error_of(run.scene.set));
+}
+
+DOCTEST_TEST_CASE("view guidance: a round that fails keeps what the rounds before have reached") {
+    Redrawing run;
+    run.oracle.fails_in = 1;
+    const auto result = run.edited(view_request(3, 10));
+    DOCTEST_REQUIRE(result.failure.has_value());
+    DOCTEST_CHECK(result.failure->code() == ErrorCode::Model);
+    DOCTEST_CHECK(!result.stopped);
+    DOCTEST_CHECK(result.iterations == 10);
+    DOCTEST_CHECK(run.error_of(result.set) < run.error_of(run.scene.set));
+    Redrawing nothing_yet;
+    nothing_yet.oracle.fails_in = 0;
+    DOCTEST_CHECK_THROWS_AS(nothing_yet.edited(view_request(3, 10)), Error);
 }
 
 DOCTEST_TEST_CASE("view guidance: a label corrected in the middle is fitted to what was redrawn already") {
-    const auto scene = test::ball_scene();
-    ThreadPool threads(1);
-    const auto rasterizer = raster::make_fast_rasterizer(threads);
-    const auto plan = test::ball_plan(scene, *rasterizer);
-    const auto target = blue_ball(scene);
-    OracleViews oracle(target, *rasterizer);
-    auto still = test::still();
-    edit::EditTools tools{*rasterizer, still, {}, {}};
-    tools.views = &oracle;
-    std::vector<std::uint8_t> half = scene.first;
+    Redrawing run;
+    std::vector<std::uint8_t> half = run.scene.first;
     for (std::size_t row = 0; row < half.size(); row += 2) half[row] = 0;
     int asked = 0;
-    tools.new_label = [&]() -> std::optional<std::vector<std::uint8_t>> { return asked++ == 5 ? std::optional(half) : std::nullopt; };
-    const auto result = edit::run_edit(scene.set, plan, view_request(1, 20), tools);
+    run.tools.new_label = [&]() -> std::optional<std::vector<std::uint8_t>> { return asked++ == 5 ? std::optional(half) : std::nullopt; };
+    const auto result = run.edited(view_request(1, 20));
     DOCTEST_CHECK(result.label_changes == 1);
     DOCTEST_CHECK(result.iterations == 20);
-    DOCTEST_CHECK(oracle.inputs.size() == 1);
+    DOCTEST_CHECK(run.oracle.inputs.size() == 1);
     DOCTEST_CHECK(result.changed_outside_label == 0);
 }
 
