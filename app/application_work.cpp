@@ -152,13 +152,13 @@ void Application::locate() {
     } catch (const Error& error) {
         return report_error(error);
     }
-    const bool measured = measured_now().guidance >= 0;
+    const Measured measured = measured_now();
     auto work = [search, recipe = open_recipe(recipe), said = model_.said_words, measured, tuned = known_tuning(recipe), scene = working_scene(),
                  views = document_.state().views](const JobControl& control) {
         load(*search, recipe.job, control);
         search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned, said}, control);
         look(*search);
-        if (!measured && search->job->found()) measure_steps(search->measured, *search->job);
+        if (search->job->found() && !steps_measured(measured, *search->job)) measure_steps(search->measured, *search->job);
     };
     auto done = [this, search, recipe, recipe_key = measured_key(), key = model_key(), model = model_path_,
                  on_cpu = model_.model_settings.device == "cpu"](const Error* error) {

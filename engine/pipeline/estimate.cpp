@@ -34,6 +34,8 @@ double redrawn_steps(const edit::EditRequest& request, int steps) {
     return std::ceil(static_cast<double>(steps) / request.fit_steps) * request.edited_views * request.view_steps;
 }
 
+bool led_by_views(const EditJob& job) { return edit::edits_by_views(job.recipe().request, job.located().mode); }
+
 }  // namespace
 
 double estimated_seconds(const Measured& measured, const edit::EditRequest& request, const PlannedWork& work) {
@@ -79,7 +81,7 @@ void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
         return found == result.seconds.end() ? 0 : found->second;
     };
     const auto& request = job.recipe().request;
-    const bool by_views = edit::edits_by_views(request, job.located().mode);
+    const bool by_views = led_by_views(job);
     if (by_views) measured.redraw = seconds("guidance") / redrawn_steps(request, steps);
     else measured.guidance = seconds("guidance") / steps;
     measured.raster = (seconds("render") + seconds("preserve") + seconds("backward") + seconds("optimise") +
@@ -92,6 +94,10 @@ void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
     const bool adds = job.located().mode == edit::EditMode::Add;
     measured.follow = refreshed / could;
     measured.refresh = seconds("dynamic_mask") / (refreshed + looks_again(request, adds));
+}
+
+bool steps_measured(const Measured& measured, const EditJob& job) {
+    return (led_by_views(job) ? measured.redraw : measured.guidance) >= 0;
 }
 
 void measure_steps(Measured& measured, EditJob& job) {

@@ -58,6 +58,8 @@ double estimated_seconds(const Measured& measured, const edit::EditRequest& requ
 void measure_search(Measured& measured, const EditJob& job, double seconds);
 /// What a run of the loop tells; nothing when it was shorter than that.
 void measure_loop(Measured& measured, const EditJob& job, int least_steps);
+/// Whether the steps of the job's loop were measured, by the method it is led by.
+bool steps_measured(const Measured& measured, const EditJob& job);
 /// Runs a few steps of the loop for their time, the result is dropped; nothing where the loop cannot run.
 void measure_steps(Measured& measured, EditJob& job);
 
