@@ -179,10 +179,10 @@ private:
         f("gate_guidance", self.gate_guidance, "Let the model pull inside the dilated mask only.");
         f("dilate_px", self.dilate_px, "Growth of the mask, in pixels of a 512-pixel picture (doubled when adding).",
           Range{0, 256});
-        f("preserve", self.preserve, "Weight of keeping pictures outside the mask as they were (pseudo ground truth).",
+        f("preserve", self.preserve, "Weight of keeping pictures outside the mask as they were (pseudo ground truth; method sds).",
           Range{0, 1e6});
-        f("l1", self.l1, "Share of the absolute difference in it.", Range{0, 10});
-        f("ssim", self.ssim, "Share of the structural difference in it.", Range{0, 10});
+        f("l1", self.l1, "Share of the absolute difference in it (method sds).", Range{0, 10});
+        f("ssim", self.ssim, "Share of the structural difference in it (method sds).", Range{0, 10});
         f("dynamic_mask", self.dynamic_mask, "From some iteration on, let the masks follow what the edit has become.");
         f("dynamic_from", self.dynamic_from, "Share of the iterations after which masks are refreshed.", Range{0, 1});
         f("dynamic_every", self.dynamic_every, "Share of the iterations between two refreshes of a view's mask.", Range{0, 1});

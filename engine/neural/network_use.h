@@ -5,7 +5,7 @@
 
 namespace gse::neural {
 
-/// Passes of each network over one picture, and the arithmetic of all of them.
+/// Passes of each network over one picture, and the arithmetic of the forward passes; gradients come on top.
 struct NetworkUse {
     std::uint64_t unet = 0;
     std::uint64_t encoder = 0;   // of the VAE

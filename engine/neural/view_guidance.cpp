@@ -15,9 +15,6 @@ namespace {
 
 constexpr std::int64_t PixelsAtOnce = 8 * 64 * 64;   // of a batch of views: more would not fit with large models
 
-/// [h,w,C] plain to [1,C,h,w].
-torch::Tensor noise_tensor(const Image& noise, const torch::Device& device) { return to_tensor(noise, device); }
-
 /// Share of each latent cell that may change, grown by one cell: [1,1,h,w].
 torch::Tensor latent_mask(const Mask& mask, std::int64_t cells, const torch::Device& device) {
     Image image(mask.width, mask.height, 1);
@@ -79,7 +76,7 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
         const auto& view = views[v];
         clean.push_back(latents(view.rendered));
         original.push_back(view.rendered.data == view.original.data ? clean.back() : latents(view.original));
-        noise.push_back(noise_tensor(edit::surface_noise(view.depth, view.view.camera, static_cast<int>(cells),
+        noise.push_back(to_tensor(edit::surface_noise(view.depth, view.view.camera, static_cast<int>(cells),
                                                          static_cast<int>(channels), voxel, input.seed, v),
                                      bundle_->device));
         masks.push_back(latent_mask(view.mask, cells, bundle_->device));

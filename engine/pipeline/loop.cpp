@@ -29,7 +29,10 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
                   const EditObserver& observer, const JobControl& control) {
     const auto& model = workplace.model();
     const auto& request = recipe.request;
-    const auto guidance = model.guidance(edit::as_told(request.prompt), with_sentence_before(recipe.guidance, request));
+    const auto prompt = edit::as_told(request.prompt);
+    const auto settings = with_sentence_before(recipe.guidance, request);
+    const auto guidance = model.guidance(prompt, settings);
+    const auto views = edit::edits_by_views(request, located.result.mode) ? model.views(prompt, settings) : nullptr;
     edit::EditTools tools{workplace.painter().rasterizer(), *guidance, observer.snapshot, control, observer.iteration};
     tools.snapshot_seconds = observer.snapshot_seconds;
     tools.new_label = observer.new_label;
@@ -41,9 +44,6 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
     tools.attention = lost ? nullptr : attention.get();
     tools.segmenter = segmenter.get();
     tools.word = dynamic_word(located, request);
-    const auto views = edit::edits_by_views(request, located.result.mode)
-                           ? model.views(edit::as_told(request.prompt), with_sentence_before(recipe.guidance, request))
-                           : nullptr;
     tools.views = views.get();
     Edited edited;
     edited.result = edit::run_edit(workplace.scene().gaussians, plan, request, tools);
