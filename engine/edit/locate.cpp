@@ -30,6 +30,8 @@ constexpr double AttentionLevel = 0.85;     // of the threshold: attention that 
 constexpr double AttentionSoftness = 0.05;  // how far from there it counts a quarter more or less
 constexpr float LabelSeen = 0.5f;           // share of a pixel from which it shows the artist's label
 constexpr std::uint64_t SearchSeed = 0;      // one for all: what is found does not follow the loop's dice
+constexpr double AtOdds = 0.6;              // IoU of a view's mask and the common label, below which the view is asked again
+constexpr std::uint64_t SecondAsking = 9000;   // other noise than the first time
 constexpr double RivalLead = 0.5;           // another thing that has so much more takes the pixel from the mask
 
 Image mask_image(const Mask& mask) {
@@ -142,6 +144,15 @@ private:
         return static_cast<double>(found) / static_cast<double>(renders_.size());
     }
 
+    /// What the views of one word came to.
+    struct Found {
+        localize::LabelWeights weights;
+        Label label;
+        Confidence confidence;
+        SearchProblem problem = SearchProblem::None;
+        std::string message, remedy;
+    };
+
     /// The word with a prompt that surely contains it and its rivals.
     Search search_for(const std::string& word, bool absent) const {
         std::string sentence = as_told(request().prompt);
@@ -190,24 +201,70 @@ private:
     ViewEvidence attend(const Search& search, std::size_t v) {
         ViewEvidence view;
         view.render = renders_[v];
+        auto maps = maps_of(search, v, request().attention_repeats, 5000 + v);
+        view.map = std::move(maps.front());
+        compete(view, maps, search.rivals_given);
+        return view;
+    }
+
+    /// Of the word and its rivals, each divided by its maximum.
+    std::vector<Image> maps_of(const Search& search, std::size_t v, int repeats, std::uint64_t stream) {
         std::vector<std::string> words{search.word};
         words.insert(words.end(), search.rivals.begin(), search.rivals.end());
-        AttentionQuery query{view.render,
+        AttentionQuery query{renders_[v],
                              search.prompt,
                              std::move(words),
                              input_.view_words.empty() ? std::string() : input_.view_words[v],
                              search.absent,
-                             request().attention_repeats,
-                             Random::stream(SearchSeed, 5000 + v).next()};
+                             repeats,
+                             Random::stream(SearchSeed, stream).next()};
         auto maps = ask(query, search.rivals_given);
         GSE_CHECK_EQ(maps.size(), query.words.size());
         for (auto& map : maps) {
-            GSE_CHECK(map.width == view.render.width && map.height == view.render.height);
+            GSE_CHECK(map.width == renders_[v].width && map.height == renders_[v].height);
             normalise_maximum(map);
         }
-        view.map = std::move(maps.front());
-        compete(view, maps, search.rivals_given);
-        return view;
+        return maps;
+    }
+
+    /// Looks with few probes, fuses, and asks views again whose mask is at odds with what all say together; at most half of
+    /// them: where more are, it is not the noise.
+    Found search_views(const Search& search, std::vector<ViewEvidence>& views) {
+        views = look(search);
+        Found found = fuse(search, views);
+        if (found.problem != SearchProblem::None || request().second_look < 1) return found;
+        const auto odd = at_odds(found.label, views);
+        if (odd.empty() || odd.size() * 2 > views.size()) return found;
+        std::vector<ViewEvidence> again;
+        const auto first = static_cast<float>(request().attention_repeats), more = static_cast<float>(request().second_look);
+        for (const auto v : odd) {
+            check_stop();
+            auto maps = maps_of(search, v, request().second_look, SecondAsking + v);
+            ViewEvidence view;
+            view.render = renders_[v];
+            view.map = std::move(maps.front());
+            for (std::size_t i = 0; i < view.map.data.size(); ++i)
+                view.map.data[i] = (first * views[v].map.data[i] + more * view.map.data[i]) / (first + more);
+            normalise_maximum(view.map);
+            compete(view, maps, search.rivals_given);
+            again.push_back(std::move(view));
+        }
+        make_masks(search, again);
+        for (std::size_t i = 0; i < odd.size(); ++i) views[odd[i]] = std::move(again[i]);
+        log::debug("{} of {} views were asked again", odd.size(), views.size());
+        return fuse(search, views);
+    }
+
+    std::vector<std::size_t> at_odds(const Label& label, const std::vector<ViewEvidence>& views) {
+        std::vector<std::size_t> odd;
+        const std::vector<float> values(label.bits->begin(), label.bits->end());
+        Image seen;
+        for (std::size_t v = 0; v < views.size(); ++v) {
+            check_stop();
+            tools_.rasterizer.forward_values(input_.gaussians.spans(), input_.views[v].camera, input_.settings, values, seen);
+            if (localize::mask_iou(localize::threshold_map(seen, LabelSeen), views[v].mask) < AtOdds) odd.push_back(v);
+        }
+        return odd;
     }
 
     static void take_mask(ViewEvidence& view, WordMask found) {
@@ -244,15 +301,6 @@ private:
             if (strict && view.lead.data[i] > 0) view.map.data[i] = 0;
         }
     }
-
-    /// What the views of one word came to.
-    struct Found {
-        localize::LabelWeights weights;
-        Label label;
-        Confidence confidence;
-        SearchProblem problem = SearchProblem::None;
-        std::string message, remedy;
-    };
 
     Found nothing(const Search& search, SearchProblem problem, std::string message, std::string remedy) const {
         const std::size_t rows = input_.gaussians.size();
@@ -358,8 +406,7 @@ private:
             result.views = labelled_views();
             result.label = label_by_hand(result.weights);
         } else {
-            result.views = look(search);
-            Found found = fuse(search, result.views);
+            Found found = search_views(search, result.views);
             result.label = found.label;
             take(found, result);
         }
@@ -405,8 +452,7 @@ private:
         } else if (request().source != request().target) {
             const Search search = search_for(request().source, false);
             result.word = search.word;
-            result.views = look(search);
-            Found found = fuse(search, result.views);
+            Found found = search_views(search, result.views);
             result.source_label = found.label;
             take(found, result);
         } else {

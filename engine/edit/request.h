@@ -36,7 +36,8 @@ struct SearchSettings {
     bool focus = true;
     // Localization
     std::string rivals = "auto";
-    int attention_repeats = 3;
+    int attention_repeats = 1;
+    int second_look = 3;
     double dbscan_eps = 2;
     int dbscan_min_samples = 4;
     double keep_mass = 0.25;
@@ -61,6 +62,9 @@ struct SearchSettings {
           "Other things the scene shows (\"hat grass\", \"top hat, grass\"; auto: those the sentence names; none): pixels that attend more to "
           "them are not taken for the source.");
         f("attention_repeats", self.attention_repeats, "Attention passes per view, each with fresh noise.", Range{1, 100});
+        f("second_look", self.second_look,
+          "Attention passes more for a view that is at odds with what all views say together; 0 = it is left at odds.",
+          Range{0, 100});
         f("dbscan_eps", self.dbscan_eps, "DBSCAN radius in pixels of a 64-pixel map.", Range{1, 32});
         f("dbscan_min_samples", self.dbscan_min_samples, "DBSCAN neighbours that make a core pixel.", Range{1, 1000});
         f("keep_mass", self.keep_mass, "Clusters below this share of the largest one's attention are dropped.", Range{0, 1});

@@ -9,6 +9,7 @@ namespace gse::neural {
 
 struct AttentionParameters {
     std::string method = "probes";
+    int refinement = 0;
     double strength = 0.75;
     int steps = 50;
     double guidance_scale = 7.5;
@@ -19,6 +20,9 @@ struct AttentionParameters {
           "probes: noise the image to a few levels and look once at each; img2img: the paper's way, look at "
           "every step of "
           "an image-to-image run (some hundred times slower).");
+        f("refinement", self.refinement,
+          "How often the maps are spread along the self-attention of the same passes, which keeps to what looks alike; 0 = never.",
+          Range{0, 4});
         f("strength", self.strength, "img2img: share of the steps that are run.", Range{0.02, 1});
         f("steps", self.steps, "img2img: sampling steps.", Range{1, 1000});
         f("guidance_scale", self.guidance_scale, "img2img: classifier-free guidance.", Range{0, 100});

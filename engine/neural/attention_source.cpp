@@ -14,12 +14,13 @@
 namespace gse::neural {
 namespace {
 
-// Noise levels as shares of the schedule, unless the model states its own (method.md X1; starter.md iv for
+// Noise levels as shares of the schedule, unless the model states its own (views.md 6: the best single one; starter.md iv for
 // absent things).
-const std::vector<double> PresentLevels{0.3, 0.5, 0.7};
-const std::vector<double> AbsentLevels{0.8, 0.85, 0.9};
+const std::vector<double> PresentLevels{0.45};
+const std::vector<double> AbsentLevels{0.85};
 constexpr double AbsentStrength = 0.9;      // img2img must begin at least this noisy for an absent thing ...
 constexpr double AbsentLowestLevel = 0.75;  // ... and only steps above this level are looked at
+constexpr std::int64_t LargestAffinitySide = 32;   // 1024 x 1024 numbers per head and picture (views.md 6)
 constexpr std::int64_t BatchPixels =
     64 * 64;  // latent cells per UNet call: one SD image, 16 of the starter's
 
@@ -58,7 +59,33 @@ void AttentionAccumulator::take(std::vector<AttentionCapture::Map>& maps) {
     maps.clear();
 }
 
+void AttentionAccumulator::take_affinities(std::vector<AttentionCapture::Map>& affinities) {
+    for (const auto& map : affinities) {
+        if (map.height != map.width || map.height < affinity_height_) continue;
+        const auto mean = map.probabilities.to(torch::kCPU, torch::kFloat32).mean(0);
+        if (map.height > affinity_height_) {
+            affinity_ = torch::zeros_like(mean);
+            affinities_ = 0;
+            affinity_height_ = map.height;
+        }
+        affinity_ += mean;
+        ++affinities_;
+    }
+    affinities.clear();
+}
+
 torch::Tensor AttentionAccumulator::mean() const { return sum_ / std::max<std::int64_t>(count_, 1); }
+
+torch::Tensor AttentionAccumulator::refined(int times) const {
+    auto map = mean();
+    if (times < 1 || affinities_ == 0) return map;
+    const auto side = affinity_height_;
+    if (map.size(1) != side) map = torch::adaptive_avg_pool2d(map.unsqueeze(0), {side, side})[0];
+    const auto along = (affinity_ / affinities_).t();
+    map = map.flatten(1);
+    for (int i = 0; i < times; ++i) map = map.mm(along);
+    return map.view({-1, side, side});
+}
 
 BundleAttentionSource::BundleAttentionSource(std::shared_ptr<const ModelBundle> bundle,
                                              AttentionParameters parameters)
@@ -76,13 +103,19 @@ AttentionCapture BundleAttentionSource::make_capture() const {
     auto sizes = facts.attention_sizes;
     // A model that names its layers was trained to ground words at full latent resolution. For all others:
     // DAAM, that is everything but the middle and the smallest maps (8x8 at 64x64).
-    if (sizes.empty())
-        sizes = layers.empty() ? std::vector{latent, latent / 2, latent / 4} : std::vector{latent};
+    // Refined maps are as large as the affinities: larger ones would be shrunk again.
+    if (sizes.empty() && layers.empty())
+        sizes = parameters_.refinement > 0 && latent > LargestAffinitySide ? std::vector{latent / 2, latent / 4}
+                                                                            : std::vector{latent, latent / 2, latent / 4};
+    else if (sizes.empty())
+        sizes = {latent};
     if (layers.empty()) layers = {"down_blocks", "up_blocks"};
     AttentionCapture capture;
     capture.wants = [layers, sizes](std::string_view layer, std::int64_t height, std::int64_t) {
         return any_prefix(layer, layers) && std::find(sizes.begin(), sizes.end(), height) != sizes.end();
     };
+    capture.stop_after_last = parameters_.method == "probes";
+    capture.self_attention_side = parameters_.refinement > 0 ? LargestAffinitySide : 0;
     return capture;
 }
 
@@ -120,6 +153,7 @@ void BundleAttentionSource::probe(const edit::AttentionQuery& query, const torch
                 sum.take(one);
             }
         capture.maps.clear();
+        sum.take_affinities(capture.affinities);
     }
 }
 
@@ -144,8 +178,12 @@ void BundleAttentionSource::run_img2img(const edit::AttentionQuery& query, const
         capture.conditional_half_only = job.guidance_scale != 1.0;
         job.after_step = [&](std::int64_t step, const torch::Tensor&) {
             // With few steps none may be that high: then the first one counts.
-            if (sampler->timestep(step) < lowest && step != job.first) capture.maps.clear();
+            if (sampler->timestep(step) < lowest && step != job.first) {
+                capture.maps.clear();
+                capture.affinities.clear();
+            }
             sum.take(capture.maps);
+            sum.take_affinities(capture.affinities);
         };
         const auto noise = seeded_noise(latents.sizes(), seed).to(latents.device());
         denoise(*bundle_, sampler->start_from(latents, noise, job.first), job);
@@ -171,7 +209,7 @@ std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& que
             probe(query, latents, context, capture, sum);
         else
             run_img2img(query, latents, context, capture, sum);
-        const auto mean = checked_mean(sum);
+        const auto mean = checked(sum);
         std::vector<Image> images;
         std::int64_t column = 0;
         for (const auto& tokens : columns) {
@@ -183,12 +221,12 @@ std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& que
     });
 }
 
-torch::Tensor BundleAttentionSource::checked_mean(const AttentionAccumulator& sum) const {
+torch::Tensor BundleAttentionSource::checked(const AttentionAccumulator& sum) const {
     if (sum.count() == 0)
         throw Error(ErrorCode::Model,
                     "the model has no cross-attention layer of the kind that its facts name",
                     "correct attention_layers and attention_sizes in gseditpro.json", bundle_->path);
-    auto mean = sum.mean();
+    auto mean = sum.refined(parameters_.refinement);
     if (!torch::isfinite(mean).all().item<bool>())
         throw Error(ErrorCode::Model, "the attention maps hold values that are not finite numbers",
                     "the model's weights are damaged or the image holds non-finite pixels", bundle_->path);

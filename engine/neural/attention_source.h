@@ -17,13 +17,20 @@ public:
     /// Adds the mean over batch and heads of every map, bicubic to size x size, negative overshoot cut;
     /// clears `maps`.
     void take(std::vector<AttentionCapture::Map>& maps);
+    /// Adds the mean over the batch of every affinity of the largest size there is; clears them.
+    void take_affinities(std::vector<AttentionCapture::Map>& affinities);
     /// Mean over everything taken, [k,size,size].
     torch::Tensor mean() const;
+    /// The mean spread `times` along the mean self-attention, S^times A at its size (DiffSegmenter; views.md 6); the mean itself
+    /// where none was taken.
+    torch::Tensor refined(int times) const;
     std::int64_t count() const { return count_; }
 
 private:
     torch::Tensor sum_;
     std::int64_t count_ = 0;
+    torch::Tensor affinity_;   // sum, [s*s,s*s]
+    std::int64_t affinities_ = 0, affinity_height_ = 0;
 };
 
 /// The maps of the query's words from a loaded model.
@@ -36,7 +43,7 @@ public:
 
 private:
     AttentionCapture make_capture() const;
-    torch::Tensor checked_mean(const AttentionAccumulator& sum) const;
+    torch::Tensor checked(const AttentionAccumulator& sum) const;
     void probe(const edit::AttentionQuery& query, const torch::Tensor& latents, const torch::Tensor& context,
                AttentionCapture& capture, AttentionAccumulator& sum) const;
     void run_img2img(const edit::AttentionQuery& query, const torch::Tensor& latents,

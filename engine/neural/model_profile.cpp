@@ -75,11 +75,12 @@ ModelKind checkpoint_kind(const fs::path& path) {
 Json stated_by(ModelKind kind) {
     if (kind == ModelKind::Small) return Json::object();
     Json json;
-    json["request"] = {{"views", 48},          {"image_size", kind == ModelKind::Sd2Velocity ? 768 : 512},
+    json["request"] = {{"views", 16},          {"image_size", kind == ModelKind::Sd2Velocity ? 768 : 512},
                        {"tau", 0.5},           {"evidence_px", 1.0},
                        {"iterations", 4000},   {"geometry_share", 1.0},
                        {"colour_coupling", 0.0}};
     json["guidance"] = {{"guidance_scale", 7.5}, {"view_guidance_scale", 7.5}, {"t_max_end", 0.5}};
+    json["attention"] = {{"refinement", 1}};   // views.md 15; the starter's own maps are as good without
     json["dreambooth"] = {{"steps", 400},           {"batch", 4},
                           {"class_images", 200},    {"class_steps", 50},
                           {"class_guidance", 7.5},  {"learning_rate", 5e-6},

@@ -1,6 +1,8 @@
 // Spatial transformer of the UNet.
 #include "engine/neural/transformer.h"
 
+#include <algorithm>
+
 namespace gse::neural {
 namespace {
 
@@ -18,6 +20,15 @@ void store(const torch::Tensor& probabilities, const CaptureSite& site) {
     if (!capture.columns.empty())
         kept = kept.index_select(3, torch::tensor(capture.columns, torch::kInt64).to(kept.device()));
     site.capture->maps.push_back({site.layer, site.height, site.width, kept});
+}
+
+void store_affinity(const torch::Tensor& probabilities, const CaptureSite& site) {
+    auto kept = probabilities.detach();
+    if (site.capture->conditional_half_only) {
+        const auto half = kept.size(0) / 2;
+        kept = kept.narrow(0, half, half);
+    }
+    site.capture->affinities.push_back({site.layer, site.height, site.width, kept.mean(1)});
 }
 
 }  // namespace
@@ -74,10 +85,13 @@ TransformerBlockImpl::TransformerBlockImpl(const TransformerShape& shape, const 
 
 torch::Tensor TransformerBlockImpl::forward(torch::Tensor tokens, const torch::Tensor& context,
                                             const CaptureSite& site) const {
-    const auto normed = norm1->forward(tokens);
-    tokens = tokens + attn1->forward(normed, normed, false).output;
     const bool wanted = site.capture != nullptr &&
                         (!site.capture->wants || site.capture->wants(site.layer, site.height, site.width));
+    const bool affine = wanted && std::max(site.height, site.width) <= site.capture->self_attention_side;
+    const auto normed = norm1->forward(tokens);
+    const auto attended = attn1->forward(normed, normed, affine);
+    if (affine) store_affinity(attended.probabilities, site);
+    tokens = tokens + attended.output;
     const auto crossed = attn2->forward(norm2->forward(tokens), context, wanted);
     if (wanted) store(crossed.probabilities, site);
     tokens = tokens + crossed.output;
@@ -98,8 +112,7 @@ torch::Tensor SpatialTransformerImpl::forward(const torch::Tensor& x, const torc
     auto tokens = proj_in->forward(image_to_tokens(norm->forward(x)));
     tokens = block->forward(
         tokens, context,
-        {capture, capture == nullptr ? std::string() : layer_name + ".transformer_blocks.0.attn2", height,
-         width});
+        {capture, capture == nullptr ? std::string() : capture_name(), height, width});
     return x + tokens_to_image(proj_out->forward(tokens), height, width);
 }
 

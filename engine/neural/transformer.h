@@ -63,6 +63,7 @@ public:
     torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& context,
                           AttentionCapture* capture) const;
     std::string layer_name;  // where it stands in the UNet, for captures
+    std::string capture_name() const { return layer_name + ".transformer_blocks.0.attn2"; }
 
 private:
     GroupNorm norm{nullptr};

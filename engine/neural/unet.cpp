@@ -148,6 +148,21 @@ torch::Tensor UNetImpl::time_embedding(const torch::Tensor& projection) const {
     return time_linear_2->forward(apply_silu(time_linear_1->forward(projection)));
 }
 
+/// Level and place of the last wanted layer on the way up; level 0, place 0 where none is wanted there.
+std::pair<std::size_t, std::size_t> UNetImpl::last_wanted(const AttentionCapture& capture,
+                                                          const std::vector<torch::Tensor>& skips) const {
+    std::pair<std::size_t, std::size_t> last{0, 0};
+    std::size_t left = skips.size();
+    for (std::size_t i = 0; i < up_.size(); ++i)
+        for (std::size_t j = 0; j < up_[i].resnets.size(); ++j) {
+            const auto& skip = skips[--left];
+            if (up_[i].attentions.empty()) continue;
+            if (!capture.wants || capture.wants(up_[i].attentions[j]->capture_name(), skip.size(2), skip.size(3)))
+                last = {i, j};
+        }
+    return last;
+}
+
 torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
                                 const torch::Tensor& context, AttentionCapture* capture) const {
     GSE_CHECK_EQ(sample.dim(), std::int64_t{4});
@@ -169,11 +184,15 @@ torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor
     x = mid_->resnets[0]->forward(x, time);
     x = mid_->attentions[0]->forward(x, context, capture);
     x = mid_->resnets[1]->forward(x, time);
-    for (const auto& level : up_) {
+    const bool stops = capture != nullptr && capture->stop_after_last;
+    const auto last = stops ? last_wanted(*capture, skips) : std::pair<std::size_t, std::size_t>{};
+    for (std::size_t i = 0; i < up_.size(); ++i) {
+        const auto& level = up_[i];
         for (std::size_t j = 0; j < level.resnets.size(); ++j) {
             x = level.resnets[j]->forward(torch::cat({x, skips.back()}, 1), time);
             skips.pop_back();
             if (!level.attentions.empty()) x = level.attentions[j]->forward(x, context, capture);
+            if (stops && last == std::pair{i, j}) return {};
         }
         // To the next skip's size: latents need not be a multiple of 2^levels.
         if (!level.upsampler.is_empty())

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/neural/blocks.h"
@@ -24,10 +25,14 @@ struct AttentionCapture {
     std::vector<std::int64_t> columns;   // token columns wanted, in this order; empty = all
     bool conditional_half_only = false;  // the batch is [negative; positive]: keep the second half
     bool keep_graph = false;             // gradients flow through the kept probabilities
+    bool stop_after_last = false;        // the pass ends after the last wanted layer and predicts nothing
+    std::int64_t self_attention_side = 0;   // above 0: keeps `affinities` of wanted layers of at most that side
     /// Which layers; empty = all.
     std::function<bool(std::string_view layer, std::int64_t height, std::int64_t width)> wants;
 
     std::vector<Map> maps;
+    /// Self-attention beside wanted cross-attention, mean over heads: probabilities [B,height*width,height*width], rows sum to 1.
+    std::vector<Map> affinities;
 };
 
 class UNetImpl : public torch::nn::Module {
@@ -36,7 +41,7 @@ public:
     ~UNetImpl() override;
 
     /// sample [B,C,h,w]; timesteps [B] or a scalar, integer or float; context [B,T,D]. All of the weights'
-    /// dtype (timesteps excepted). Returns the prediction [B,out,h,w].
+    /// dtype (timesteps excepted). Returns the prediction [B,out,h,w]; undefined where the capture stopped the pass.
     torch::Tensor forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
                           const torch::Tensor& context, AttentionCapture* capture = nullptr) const;
 
@@ -52,6 +57,8 @@ private:
     void build_down(const Builder& build, std::vector<std::int64_t>& skips);
     void build_middle(const Builder& build);
     void build_up(const Builder& build, std::vector<std::int64_t>& skips);
+    std::pair<std::size_t, std::size_t> last_wanted(const AttentionCapture& capture,
+                                                    const std::vector<torch::Tensor>& skips) const;
 
     UNetConfig config_;
     Conv2d conv_in{nullptr}, conv_out{nullptr};

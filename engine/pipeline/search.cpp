@@ -99,26 +99,51 @@ private:
         return edit::locate(question(workplace_, recipe, views, label.empty() ? nullptr : &label), workplace_.tools(views, control_));
     }
 
+    /// What few views from one distance find.
+    struct Glance {
+        OrbitParameters orbit;
+        edit::LocateResult result;
+        bool sure() const { return result.problem == edit::SearchProblem::None; }
+    };
+
     /// The fitted orbit shows the whole scene; what the words mean may be a small part of it. The distance from which it is
     /// found most surely wins; a few views tell, and what something is added to is enough.
-    Views best_distance(const std::vector<double>& distances) {
-        if (distances.size() == 1) return views_on(nearer(views_.orbit, distances.front()), recipe_);
+    Glance best_glance(const std::vector<double>& distances) {
         EditRecipe scan = recipe_;
         scan.request.views = std::min(scan.request.views, ScanViews);
         scan.request.mode = "modify";
-        double best = -1;
-        OrbitParameters chosen = views_.orbit;
+        Glance best{views_.orbit, {}};
+        best.result.problem = edit::SearchProblem::FewViews;
+        double most = -1;
         for (const double distance : distances) {
             const Views views = views_on(nearer(views_.orbit, distance), scan);
-            const auto found = look(scan, views, {});
+            auto found = look(scan, views, {});
             if (found.problem != edit::SearchProblem::None && found.problem != edit::SearchProblem::Unsure) continue;   // try nearer
             log::debug("orbit at {:.2f} of the fitted distance: confidence {:.3f}", distance, found.confidence.value);
-            if (found.confidence.value > best) {
-                best = found.confidence.value;
-                chosen = views.orbit;
+            if (found.confidence.value > most) {
+                most = found.confidence.value;
+                best = {views.orbit, std::move(found)};
             }
         }
-        return views_on(chosen, recipe_);
+        return best;
+    }
+
+    /// The orbit that frames a label, with room where something is put beside it.
+    OrbitParameters focused_on(const Label& label, bool adds, const OrbitParameters& orbit) const {
+        auto focused = localize::focus_orbit(workplace_.drawn(), *label.bits, orbit);
+        if (adds) focused.radius *= room_around(recipe_.request);
+        return focused;
+    }
+
+    /// Where few views were sure, all views look from where these would move to.
+    Located from_glance(const std::vector<double>& distances) {
+        const Glance glance = best_glance(distances);
+        if (!glance.sure()) return moved_in(views_on(glance.orbit, recipe_), {});
+        const bool adds = edit::decide_mode(recipe_.request, std::nullopt).first == edit::EditMode::Add;
+        const auto focused = focused_on(glance.result.label, adds, glance.orbit);
+        const bool moves = localize::worth_refocusing(glance.orbit, focused);
+        const Views views = views_on(moves ? focused : glance.orbit, recipe_);
+        return {views, recipe_, {}, look(recipe_, views, {}), target_read_, {}};
     }
 
     /// Looks from the views as they are, and once more from nearer where what was found is small.
@@ -127,8 +152,7 @@ private:
         const auto& result = located.result;
         const auto& label = result.mode == edit::EditMode::Add ? result.source_label : result.label;
         if (!moves() || std::find(label.bits->begin(), label.bits->end(), std::uint8_t{1}) == label.bits->end()) return located;
-        auto focused = localize::focus_orbit(workplace_.drawn(), *label.bits, views.orbit);
-        if (result.mode == edit::EditMode::Add) focused.radius *= room_around(recipe_.request);
+        const auto focused = focused_on(label, result.mode == edit::EditMode::Add, views.orbit);
         if (!localize::worth_refocusing(views.orbit, focused)) return located;
         located.views = views_on(focused, recipe_);
         located.result = look(recipe_, located.views, by_hand);
@@ -136,13 +160,13 @@ private:
     }
 
     Located from_all_distances() {
-        Located located = moved_in(best_distance(distances_), {});
+        Located located = from_glance(distances_);
         std::vector<double> others;
         for (const double distance : ScanDistances)
             if (std::find(distances_.begin(), distances_.end(), distance) == distances_.end()) others.push_back(distance);
         if (located.found() || others.empty()) return located;
         // The pictures as a whole fitted best where the word was not found.
-        Located other = moved_in(best_distance(others), {});
+        Located other = from_glance(others);
         const bool better = other.found() || other.result.confidence.value > located.result.confidence.value;
         return better ? other : located;
     }

@@ -84,6 +84,23 @@ DOCTEST_TEST_CASE("attention accumulator: a hand-made map comes back") {
     DOCTEST_CHECK(mean[0][3][3].item<float>() == doctest::Approx(0.25));
 }
 
+DOCTEST_TEST_CASE("attention accumulator: refinement gives a map what its pixels attend to; the largest affinity counts") {
+    AttentionAccumulator sum(2, 1);
+    const auto seen = torch::tensor({1.0f, 0.0f, 0.5f, 0.0f}).reshape({1, 1, 4, 1});
+    std::vector<AttentionCapture::Map> maps = {{"a", 2, 2, seen}};
+    sum.take(maps);
+    DOCTEST_CHECK(torch::equal(sum.refined(2), sum.mean()));   // nothing to refine with
+    const auto pairs = torch::tensor({0.5f, 0.5f, 0.0f, 0.0f, 0.5f, 0.5f, 0.0f, 0.0f,
+                                      0.0f, 0.0f, 0.5f, 0.5f, 0.0f, 0.0f, 0.5f, 0.5f}).reshape({1, 4, 4});
+    std::vector<AttentionCapture::Map> affinities = {{"a", 1, 1, torch::ones({1, 1, 1})}, {"b", 2, 2, pairs}};
+    sum.take_affinities(affinities);
+    DOCTEST_CHECK(affinities.empty());
+    DOCTEST_CHECK(torch::equal(sum.refined(0), sum.mean()));
+    const auto expected = torch::tensor({0.5f, 0.5f, 0.25f, 0.25f}).reshape({1, 2, 2});
+    DOCTEST_CHECK(torch::allclose(sum.refined(1), expected));
+    DOCTEST_CHECK(torch::allclose(sum.refined(3), expected));   // pairs share all they have already
+}
+
 DOCTEST_TEST_CASE("sds guidance: repeatable gradient at the render's size, silent when nothing is asked") {
     for (const char* prediction : {"epsilon", "v_prediction"}) {
         const TinyModel model(prediction);
