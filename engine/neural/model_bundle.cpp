@@ -12,6 +12,7 @@
 #include "engine/base/log.h"
 #include "engine/base/memory.h"
 #include "engine/neural/key_map.h"
+#include "engine/neural/precision.h"
 #include "engine/neural/torch_errors.h"
 
 namespace gse::neural {
@@ -271,7 +272,7 @@ std::int64_t check_files(const Parts& parts, const WeightFiles& files, const Pla
 
 }  // namespace
 
-ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device) {
+ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device, const std::string& precision) {
     const auto parts = find_parts(path);
     return guard_torch("loading the model", [&] {
         const WeightFiles files(parts);
@@ -279,10 +280,11 @@ ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& 
         const auto parameters = static_cast<std::uint64_t>(check_files(parts, files, plans));
         require_memory(parameters * sizeof(float), fmt::format("the model \"{}\"", parts.facts.name));
         const WeightOptions empty{torch::kCPU, torch::kFloat32, false};
+        const WeightOptions unet{torch::kCPU, choose_precision(precision, parts.unet, device), false};
         ModelBundle bundle{path,
                            Tokenizer(parts.tokenizer, parts.pad_token),
                            ClipTextEncoder(parts.text, empty),
-                           UNet(parts.unet, empty),
+                           UNet(parts.unet, unet),
                            AutoencoderKl(parts.vae, empty),
                            NoiseSchedule(parts.scheduler),
                            parts.facts,

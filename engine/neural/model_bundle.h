@@ -65,9 +65,11 @@ struct ModelBundle {
     torch::Tensor encode_prompts(const std::vector<std::string>& prompts) const;
 };
 
-/// Loads a diffusers folder or a single-file checkpoint (.safetensors). All weights are fp32 and frozen.
-/// Throws Error (NotFound, Malformed, Model, Unsupported) with one sentence.
-ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device = torch::kCPU);
+/// Loads a diffusers folder or a single-file checkpoint (.safetensors). All weights are frozen, and fp32 but for those of the
+/// UNet, where `precision` says otherwise (choose_precision). Throws Error (NotFound, Malformed, Model, Unsupported,
+/// InvalidArgument) with one sentence.
+ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device = torch::kCPU,
+                        const std::string& precision = "fp32");
 
 /// Checks that every file is there and every tensor has the right name and shape, without reading any weight.
 ModelDescription describe_model(const std::filesystem::path& path);

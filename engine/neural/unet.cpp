@@ -164,12 +164,14 @@ std::pair<std::size_t, std::size_t> UNetImpl::last_wanted(const AttentionCapture
 }
 
 torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
-                                const torch::Tensor& context, AttentionCapture* capture) const {
+                                const torch::Tensor& words, AttentionCapture* capture) const {
     GSE_CHECK_EQ(sample.dim(), std::int64_t{4});
+    const auto type = conv_in->weight.scalar_type();
+    const auto context = words.to(type);
     thread_use().unet += static_cast<std::uint64_t>(sample.size(0));
     const auto time =
-        apply_silu(time_embedding(time_projection(timesteps, sample.size(0)).to(sample.scalar_type())));
-    auto x = conv_in->forward(sample.contiguous(torch::MemoryFormat::ChannelsLast));
+        apply_silu(time_embedding(time_projection(timesteps, sample.size(0)).to(type)));
+    auto x = conv_in->forward(sample.to(type).contiguous(torch::MemoryFormat::ChannelsLast));
     std::vector<torch::Tensor> skips = {x};
     for (const auto& level : down_) {
         for (std::size_t j = 0; j < level.resnets.size(); ++j) {
@@ -198,7 +200,7 @@ torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor
         if (!level.upsampler.is_empty())
             x = level.upsampler->forward(x, skips.back().size(2), skips.back().size(3));
     }
-    return conv_out->forward(conv_norm_out->forward_silu(x));
+    return conv_out->forward(conv_norm_out->forward_silu(x)).to(sample.scalar_type());
 }
 
 }  // namespace gse::neural

@@ -40,10 +40,10 @@ public:
     explicit UNetImpl(const UNetConfig& config, const WeightOptions& options = {});
     ~UNetImpl() override;
 
-    /// sample [B,C,h,w]; timesteps [B] or a scalar, integer or float; context [B,T,D]. All of the weights'
-    /// dtype (timesteps excepted). Returns the prediction [B,out,h,w]; undefined where the capture stopped the pass.
+    /// sample [B,C,h,w]; timesteps [B] or a scalar, integer or float; words [B,T,D], the context. Computes in
+    /// the weights' type; returns the prediction [B,out,h,w] in the sample's, undefined where the capture stopped the pass.
     torch::Tensor forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
-                          const torch::Tensor& context, AttentionCapture* capture = nullptr) const;
+                          const torch::Tensor& words, AttentionCapture* capture = nullptr) const;
 
     /// Sinusoid [B,C0] in fp32, and what the two linear layers make of it (for tests).
     torch::Tensor time_projection(const torch::Tensor& timesteps, std::int64_t batch) const;
