@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/edit/method_fields.h"
 #include "engine/edit/view_round.h"
 #include "tests/unit/edit/edit_scenes.h"
 #include "tests/unit/edit/view_oracle.h"
@@ -259,6 +260,50 @@ DOCTEST_TEST_CASE("a branch redraws nothing that it need not") {
     other.plan.views[*chosen.begin()].camera.fx *= 1.1;
     other.edited(request);
     DOCTEST_CHECK(other.oracle.inputs.size() == 2);
+}
+
+namespace {
+
+/// Another value that passes the field's check.
+template <class T>
+void change(T& value, double low, double high) {
+    if constexpr (std::is_same_v<T, bool>) value = !value;
+    else if constexpr (std::is_same_v<T, int>) value = value * 2 <= high ? value * 2 + 1 : static_cast<int>(low) + 1;
+    else if constexpr (std::is_same_v<T, double>) value = value * 2 <= high ? value * 2 + 0.125 : low + 0.125;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("settings that are said to have no effect have none") {
+    for (const bool by_views : {true, false}) {
+        const auto run = [by_views](const edit::EditRequest& request) {
+            Redrawing edit;
+            auto guidance = towards({0.1, 0.1, 0.9});
+            edit::EditTools pulling{*edit.rasterizer, guidance, {}, {}};
+            return edit::run_edit(edit.scene.set, edit.plan, request, by_views ? edit.tools : pulling).set;
+        };
+        auto request = view_request(1, 12);
+        request.iterations = 12;
+        request.densify_every = 6;
+        request.densify_from = 6;
+        const auto plain = run(request);
+        std::size_t unused = 0;
+        edit::EditRequest::visit_fields(request, [&](const char* name, auto& value, const char*, auto... range) {
+            DOCTEST_CHECK(edit::has_effect(name, by_views) == edit::why_unused(name, by_views).empty());
+            if (edit::has_effect(name, by_views)) return;
+            ++unused;
+            DOCTEST_CAPTURE(name);
+            const auto kept = value;
+            if constexpr (sizeof...(range) == 1) change(value, (range.low, ...), (range.high, ...));
+            else change(value, 0, 1e9);
+            DOCTEST_CHECK(value != kept);
+            DOCTEST_CHECK(same_bytes(run(request), plain));
+            value = kept;
+        });
+        DOCTEST_CHECK(unused == (by_views ? 13 : 5));
+    }
+    for (const bool by_views : {true, false})
+        for (const char* name : {"seed", "strength", "rate_colour", "snapshot_every", "tau"}) DOCTEST_CHECK(edit::has_effect(name, by_views));
 }
 
 DOCTEST_TEST_CASE("large pictures are shown smaller") {
