@@ -19,6 +19,7 @@
 #include "engine/pipeline/edit_output.h"
 #include "engine/pipeline/gate.h"
 #include "engine/pipeline/model_settings.h"
+#include "engine/pipeline/target_sheet.h"
 
 namespace gse::app {
 namespace {
@@ -202,6 +203,7 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
     write_file(folder.path() / "recipe.json", json_text(recipe_to_json(job.recipe()), 2) + "\n");
     write_labelled_source(folder.path() / "source.ply", job);
     write_evidence(folder.path() / "evidence", job.located(), job.views());
+    write_targets(folder.path() / "evidence", job.targets(), job.views());
     write_before_after(folder.path(), job);
     job.times().end();
     auto report = make_report(job);

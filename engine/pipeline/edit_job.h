@@ -83,6 +83,8 @@ public:
     /// What the loop is told: made anew when label or settings have changed.
     const edit::EditPlan& plan();
     const edit::EditResult& result() const { return edited_->result; }
+    /// The redrawn views of every round, where the edit was led by them.
+    const std::vector<edit::ViewTargets>& targets() const { return edited_->targets; }
     /// What was learned of the scene, if anything was.
     const std::optional<neural::TuneReport>& tuning() const { return tuning_; }
     /// The same with the model that learned it, for another job.
