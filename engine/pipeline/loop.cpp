@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/edit/grabcut_segmenter.h"
+#include "engine/pipeline/neural_loader.h"
 
 namespace gse::pipeline {
 namespace {
@@ -36,6 +37,7 @@ edit::EditPlan plan_of(Workplace& workplace, const Located& located, const EditR
 
 Edited edit_scene(Workplace& workplace, const Located& located, const edit::EditPlan& plan, const EditRecipe& recipe,
                   const EditObserver& observer, const JobControl& control) {
+    const auto use_before = network_use();
     const auto& model = workplace.model();
     const auto& request = recipe.request;
     const auto prompt = edit::as_told(request.prompt);
@@ -62,6 +64,7 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
     };
     tools.target_orders = observer.target_orders;
     edited.result = edit::run_edit(workplace.scene().gaussians, plan, request, tools);
+    edited.use = network_use() - use_before;
     edited.drawn = drawable(edited.result.set);
     edited.key = located.key + fields_to_json(static_cast<const edit::LoopSettings&>(request)).dump() +
                  fields_to_json(recipe.guidance).dump();

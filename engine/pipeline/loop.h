@@ -28,6 +28,8 @@ struct Edited {
     GaussianSet drawn;         // the result without what cannot be drawn
     std::vector<edit::ViewTargets> targets;   // of view guidance: every round that was fitted, as it was in the end
     std::string key;           // of all that it follows from, beside scene, model and what the artist did meanwhile
+    neural::NetworkUse use;    // what the loop has asked for
+    double seconds = 0;        // that it took, with what the artist was waited for
 };
 
 /// The guidance's settings with the sentence before the edit, worked out from the request where none is given.
