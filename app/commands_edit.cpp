@@ -145,8 +145,9 @@ void print_summary(const nlohmann::ordered_json& report, const std::filesystem::
                report["psnr_outside_db"].get<double>());
     print("{}\n", report["confidence_text"].get<std::string>());
     const auto& networks = report["networks"]["total"];
-    print("{:.1f} s, {:.0f} MB at most, {} UNet passes, {:.2f} TFLOP\n", report["seconds"]["total"].get<double>(),
-          report["peak_rss_mb"].get<double>(), networks["unet"].get<std::uint64_t>(), networks["tflop"].get<double>());
+    const auto count = [&](const char* name) { return networks[name].get<std::uint64_t>(); };
+    print("{:.1f} s, {:.0f} MB at most; {}\n", report["seconds"]["total"].get<double>(), report["peak_rss_mb"].get<double>(),
+          use_text({count("unet"), count("encoder"), count("decoder"), networks["tflop"].get<double>() * 1e12}));
     print("edited scene   {}/scene.ply\nbefore, labels {}/source.ply\nfilm           {}/before_after.mp4\n"
                "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
                text, text, text, text, text, text, text);

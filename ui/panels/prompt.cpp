@@ -38,6 +38,7 @@ constexpr std::array<Group, 8> Groups{{{"views", "Views"},
 
 constexpr double LeastStrength = 0;
 constexpr std::array<const char*, 3> Modes{"auto", "modify", "add"};
+constexpr std::array<const char*, 3> Methods{"auto", "views", "sds"};
 constexpr std::array<const char*, 3> ModeHelp{"Modify when the scene shows the target already, else add it.",
                                               "Change what is there: colours, material, shape of the source.",
                                               "Put something new there, such as a hat on the bear."};
@@ -129,6 +130,19 @@ void draw_mode(Context& context) {
     }
     if (mode >= 0 && mode < static_cast<int>(ModeHelp.size()))
         tooltip(ModeHelp[static_cast<std::size_t>(mode)]);
+}
+
+void draw_method(Context& context) {
+    constexpr const char* help =
+        "auto: views where something changes, sds where something is added.\nviews: the model redraws some views, the scene is fitted to "
+        "them.\nsds: the model pulls at every step, the paper's way.";
+    int method = static_cast<int>(std::find(Methods.begin(), Methods.end(), context.request.method) - Methods.begin());
+    row_label(context, "Method", help);
+    if (segmented(context, "prompt.method", Methods, method)) {
+        context.request.method = Methods[static_cast<std::size_t>(method)];
+        context.request_changed = true;
+    }
+    tooltip(help);
 }
 
 /// The steps that the method will run: of the loop, or of the fits to redrawn views.
@@ -359,6 +373,7 @@ void draw_words(Context& context) {
     draw_sentence(context);
     ImGui::Spacing();
     draw_mode(context);
+    draw_method(context);
     draw_strength(context);
     draw_seed(context);
     draw_model_settings(context);
