@@ -108,9 +108,20 @@ void draw_axes(Image& image, const ChartPanel& panel, const Scale& scale) {
     draw_text(image, plot.left - 50, plot.top - 14, panel.y_title, Letter, Ink);
 }
 
+/// Names keep off a line.
+void cover_line(const std::vector<Point>& line, std::vector<Box>& taken) {
+    constexpr int pieces = 40;
+    for (std::size_t i = 1; i < line.size(); ++i)
+        for (int k = 0; k <= pieces; ++k) {
+            const double share = static_cast<double>(k) / pieces;
+            const double x = line[i - 1][0] + share * (line[i][0] - line[i - 1][0]), y = line[i - 1][1] + share * (line[i][1] - line[i - 1][1]);
+            taken.push_back({x - 2, y - 2, x + 2, y + 2});
+        }
+}
+
 /// Where a name stands beside its point: the first place that is free.
 Point free_place(const Point& at, double width, std::vector<Box>& taken) {
-    constexpr double near = 11;
+    constexpr double near = 13;
     const std::array<Point, 6> places{{{at[0] + near, at[1] + Small / 2},
                                        {at[0] - width / 2, at[1] - near},
                                        {at[0] - width / 2, at[1] + near + Small},
@@ -133,12 +144,13 @@ void draw_curves(Image& image, const ChartPanel& panel, const Scale& scale) {
         std::vector<Point> line;
         for (const auto index : pareto_front(curve.points)) line.push_back(place(curve.points[index]));
         draw_polyline(image, line, 2, curve.colour);
+        cover_line(line, taken);
         for (const auto& point : curve.points) {
             if (!drawable(point)) continue;
             const Point at = place(point);
             draw_dot(image, at, 5, curve.colour);
-            if (point.marked) draw_ring(image, at, 9, 2, curve.colour);
-            taken.push_back({at[0] - 9, at[1] - 9, at[0] + 9, at[1] + 9});
+            if (point.marked) draw_ring(image, at, 10, 1, curve.colour);
+            taken.push_back({at[0] - 10, at[1] - 10, at[0] + 10, at[1] + 10});
         }
     }
     for (const auto& curve : panel.curves)

@@ -46,7 +46,7 @@ bool finish(Context& context, const FieldRow& row, T& value, const T& standard) 
 template <class T>
 void label_of(Context& context, const FieldRow& row, const T& value, const T& standard) {
     const bool changed = value != standard;
-    const std::string label = (changed ? "* " : "") + field_label(row.name);
+    const std::string label = fmt::format("{}{}", changed ? "* " : "", field_label(row.name));
     row_label(context, row.unused.empty() ? label : fmt::format("({})", label), help_text(row, standard));
 }
 

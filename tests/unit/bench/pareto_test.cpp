@@ -54,7 +54,7 @@ DOCTEST_TEST_CASE("the picture is as wide as promised and shows every curve in b
     const Image picture = draw_chart(chart);
     DOCTEST_CHECK(picture.width == ChartWidth);
     DOCTEST_CHECK(picture.height < ChartWidth);
-    const auto folder = binary_folder() / "bench_pictures";
+    const auto folder = test::binary_folder() / "bench_pictures";
     std::filesystem::create_directories(folder);
     write_png(folder / "pareto.png", picture);
     if (text_width("x", 10) == 0) return;   // built without OpenCV
