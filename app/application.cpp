@@ -117,6 +117,7 @@ void Application::refresh_jobs(const JobStatus& work, const JobStatus& files) {
     model_.job = job_view(work);
     model_.file_job = job_view(files);
     model_.edit_running = edit_running();
+    if (!model_.edit_running) model_.targets_wait = false;
     model_.read_target = read_target();
     model_.result_waiting = pending_.has_value() && !work_.running();
     relabel_if_wanted();
@@ -146,6 +147,8 @@ void Application::refresh_live() {
     if (live_->version == live_seen_) return;
     live_seen_ = live_->version;
     model_.losses = live_->losses;
+    model_.cost = cost_of(live_->use - live_->use_before);
+    refresh_targets();
     if (live_->gate) {
         model_.gate = *std::exchange(live_->gate, std::nullopt);
         if (model_.gate.warns) toast(model_.gate.verdict);

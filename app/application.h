@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <map>
@@ -26,6 +27,7 @@
 
 namespace gse::app {
 
+constexpr std::size_t MostSnapshots = 24;   // kept for the scrubber; thinned out beyond
 constexpr double MovingSeconds = 0.25;   // after the last movement of the camera the picture is refined
 
 struct ApplicationOptions {
@@ -72,6 +74,18 @@ struct LiveEdit {
     bool wants_gate = false;
     std::optional<ui::GateView> gate;
     std::optional<edit::EditSnapshot> start;   // of an earlier run, to go on from
+    neural::NetworkUse use_before, use;   // of the edit's thread: when it began, and by now
+    // Of view guidance
+    std::vector<ui::TargetRound> targets;
+    std::vector<edit::TargetOrder> orders;     // by the artist, not taken over yet
+    bool reviews = false;                      // the artist looks at every round before it is fitted to
+    bool waits = false;                        // for the artist
+    std::condition_variable_any spoken;        // of orders and waits
+};
+
+/// Memory of the process around the loading of its model, MB; none = nothing was loaded.
+struct ModelLoad {
+    double before = -1, after = -1;
 };
 
 /// Says what is running: name, target and recipe.
@@ -115,6 +129,8 @@ public:
     void pause(bool paused) override;
     void cancel() override;
     void cancel_file_job() override;
+    void order_target(const edit::TargetOrder& order) override;
+    void fit_to_targets() override;
     void apply_result() override;
     void discard_result() override;
     void show_snapshot(int index) override;
@@ -235,10 +251,17 @@ private:
     bool edit_running() const;
     void start_edit(std::optional<edit::EditSnapshot> start);
     void finish_edit(const Error* error);
+
+    // application_estimate.cpp
     std::string measured_key() const;
     Measured measured_now() const;
     void remember_measured(const std::string& key, const Measured& measured);
     void refresh_estimate();
+    PlannedMemory planned_memory() const;
+    void take_load(const ModelLoad& load);
+
+    // application_targets.cpp
+    void refresh_targets();
 
     // application_snapshots.cpp
     void list_snapshots();
@@ -322,6 +345,7 @@ private:
     std::optional<PendingResult> pending_;
     std::uint64_t next_edit_id_ = 1;
     std::map<std::string, Measured> measured_;   // by model and size of pictures
+    ModelLoad model_load_;                       // of the model in memory
     /// An attention threshold that the search has not been told yet.
     struct Threshold {
         double value = 0;
@@ -350,12 +374,16 @@ private:
     JobThread work_, files_, saver_;   // last: their threads end before what they use
 };
 
+ui::NetworkCost cost_of(const neural::NetworkUse& use);
+
 /// The attention itself on the splats: sum(alpha T map) / sum(alpha T) over the views.
 std::vector<float> splat_attention(EditJob& job);
 
 /// On the work thread: runs a located job with the artist's label (empty = as located), feeding `live`.
 void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_t>& label,
               const std::vector<float>& attention, LiveEdit& live);
+/// On the work thread: shows redrawn views in `live` and takes what the artist says about them.
+void watch_targets(const EditJob& job, LiveEdit& live, EditObserver& observer);
 /// Takes what a finished run leaves. Throws Error (Cancelled) when it was stopped before its first step.
 void fill_pending(EditJob& job, PendingResult& pending);
 

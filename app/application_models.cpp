@@ -121,6 +121,7 @@ void Application::try_model(const std::string& path, bool takes_settings) {
                      if (error != nullptr) return refuse_model(wanted, reason_of(*error));
                      use_model(wanted, profile, takes_settings);
                      text_model_ = *model;
+                     model_load_ = {};   // what it took was not seen
                      text_model_key_ = model_key();
                  }});
     list_models();

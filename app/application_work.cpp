@@ -17,17 +17,15 @@
 #include "engine/pipeline/edit_output.h"
 #include "engine/pipeline/gate.h"
 #include "engine/pipeline/model_settings.h"
+#include "engine/pipeline/neural_loader.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/scene/label_ops.h"
 
 namespace gse::app {
 namespace {
 
-constexpr std::size_t MostSnapshots = 24;         // kept for the scrubber; thinned out beyond
-constexpr double LikelyLabel = 0.25;              // share of the splats, while there is no label that says
 constexpr double SnapshotSeconds = 0.7;           // a running edit is seen at least every second
 constexpr int LeastSteps = 8;                     // of a run that tells how long the next one takes
-constexpr double NetworkMb = 320;                 // libtorch and the starter model
 
 }  // namespace
 
@@ -116,6 +114,10 @@ struct Search {
     std::shared_ptr<neural::TextToImage> model;
     std::vector<float> attention;
     Measured measured;
+    ModelLoad loaded;
+    bool first_load = false;   // in this process: the libraries come with it
+    PlannedMemory memory;
+    neural::NetworkUse use;
 };
 
 double seconds_since(std::chrono::steady_clock::time_point then) {
@@ -126,15 +128,27 @@ void load(Search& search, const JobParameters& job, const JobControl& control) {
     control.report("loading the model", 0, 0);
     if (search.model) return use_threads(job);
     const auto start = std::chrono::steady_clock::now();
+    search.loaded.before = current_rss_mb();
     search.model = load_recipe_model(job);
+    search.loaded.after = current_rss_mb();
     search.measured.load = seconds_since(start);
+    if (search.first_load) search.measured.load_mb = search.loaded.after - search.loaded.before;
+}
+
+/// The most memory that the job has taken beside model and scene.
+void measure_peak(Search& search, const PeakMemory& peak) {
+    if (search.loaded.after >= 0) measure_memory(search.measured, search.memory, search.loaded.after, peak.mb());
 }
 
 void look(Search& search) {
     search.job->locate();
     measure_search(search.measured, *search.job, search.job->times().seconds("locate"));
     const double tuning = search.job->times().seconds("dreambooth");
-    if (tuning > 0) search.measured.tune_step = tuning / std::max(1, search.job->recipe().dreambooth.steps);
+    if (tuning > 0) {
+        const double steps = std::max(1, search.job->recipe().dreambooth.steps);
+        search.measured.tune_step = tuning / steps;
+        search.measured.tune_step_tflop = search.job->times().networks("dreambooth").flop * 1e-12 / steps;
+    }
     search.attention = splat_attention(*search.job);
 }
 
@@ -145,6 +159,9 @@ void Application::locate() {
     if (pending_) return toast("Apply or discard the edit first.");
     auto search = std::make_shared<Search>();
     search->model = text_model_key_ == model_key() ? text_model_ : nullptr;
+    if (search->model) search->loaded = model_load_;
+    search->first_load = text_model_ == nullptr;
+    search->memory = planned_memory();
     EditRecipe recipe = current_recipe();
     if (recipe.request.prompt.empty() && !recipe.request.source.empty()) recipe.request.prompt = "a " + recipe.request.source;
     try {
@@ -155,17 +172,23 @@ void Application::locate() {
     const Measured measured = measured_now();
     auto work = [search, recipe = open_recipe(recipe), said = model_.said_words, measured, tuned = known_tuning(recipe), scene = working_scene(),
                  views = document_.state().views](const JobControl& control) {
+        const auto before = network_use();
         load(*search, recipe.job, control);
+        const PeakMemory peak;
         search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned, said}, control);
         look(*search);
+        search->use = network_use() - before;
         if (search->job->found() && !steps_measured(measured, *search->job)) measure_steps(search->measured, *search->job);
+        measure_peak(*search, peak);
     };
     auto done = [this, search, recipe, recipe_key = measured_key(), key = model_key(), model = model_path_,
                  on_cpu = model_.model_settings.device == "cpu"](const Error* error) {
+        take_load(search->loaded);
         if (search->model) text_model_ = search->model, text_model_key_ = key;
         else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu) drop_model(model, *error);
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
         job_ = search->job;
+        model_.cost = cost_of(search->use);
         EditRecipe searched = recipe;
         searched.request.target = job_->recipe().request.target;
         job_key_ = search_key(searched);
@@ -195,6 +218,7 @@ void show_gate(EditJob& job, LiveEdit& live) {
     view.warns = gate.warns;
     const std::lock_guard lock(live.mutex);
     live.gate = std::move(view);
+    live.use = network_use();
     ++live.version;
 }
 
@@ -238,16 +262,24 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     if (job_fits()) search->job = job_;
     live_recipe_ = recipe;
     search->model = text_model_key_ == model_key() ? text_model_ : nullptr;
+    if (search->model) search->loaded = model_load_;
+    search->first_load = text_model_ == nullptr;
+    search->memory = planned_memory();
+    const Measured known = measured_now();   // parts of what a run can only tell the sum of
+    search->measured.redraw = known.redraw, search->measured.redraw_view = known.redraw_view;
+    search->measured.question_tflop = known.question_tflop;
     std::vector<std::uint8_t> label;
     if (label_drives_edit()) label = *document_.state().labels[static_cast<std::size_t>(document_.state().active_label)].bits;
     live_ = std::make_shared<LiveEdit>();
     live_->wants_gate = model_.model_settings.gate && !start;
+    live_->reviews = model_.model_settings.review;
     describe(*live_, recipe);
     live_->snapshots = snapshots_;
     live_->losses = model_.losses;
     live_->start = std::move(start);
     live_seen_ = 0;
     if (!live_->start) model_.gate = {};
+    model_.target_rounds.clear();
     list_snapshots();
     model_.shown_snapshot = -1;
     snapshot_base_ = document_.state().current;
@@ -255,7 +287,9 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     auto work = [search, recipe, label, pending, live = live_, open = open_recipe(recipe), said = model_.said_words,
                  tuned = known_tuning(recipe), scene = working_scene(),
                  views = document_.state().views](const JobControl& control) {
+        live->use_before = live->use = network_use();
         load(*search, recipe.job, control);
+        const PeakMemory peak;
         if (search->job) {
             search->job->set_control(control);
             search->job->take_settings(recipe, label.empty());
@@ -265,16 +299,22 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
             look(*search);
         }
         const double idea = search->job->times().seconds("gate");
+        const auto idea_use = search->job->times().networks("gate");
         run_live(search->job, label, search->attention, *live);
-        if (live->wants_gate) search->measured.idea = search->job->times().seconds("gate") - idea;
+        if (live->wants_gate) {
+            search->measured.idea = search->job->times().seconds("gate") - idea;
+            search->measured.idea_tflop = (search->job->times().networks("gate") - idea_use).flop * 1e-12;
+        }
         measure_loop(search->measured, *search->job, LeastSteps);
         const auto finishing = std::chrono::steady_clock::now();
         fill_pending(*search->job, *pending);
         search->measured.finish = seconds_since(finishing);
+        measure_peak(*search, peak);
         throw_what_ended(search->job->result());
     };
     auto done = [this, search, pending, recipe_key = measured_key(), key = model_key(), model = model_path_,
                  on_cpu = model_.model_settings.device == "cpu"](const Error* error) {
+        take_load(search->loaded);
         if (search->model) text_model_ = search->model, text_model_key_ = key;
         else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu) drop_model(model, *error);
         remember_measured(recipe_key, search->measured);
@@ -304,6 +344,7 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
     edit::require_found(job->located());
     if (live.wants_gate) show_gate(*job, live);
     EditObserver observer;
+    watch_targets(*job, live, observer);
     observer.start = live.start;
     observer.snapshot_seconds = SnapshotSeconds;
     observer.snapshot = [&live](edit::EditSnapshot snapshot) {
@@ -327,6 +368,7 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
         if (loss != record.guidance.end()) point.guidance_loss = static_cast<float>(loss->second);
         const std::lock_guard lock(live.mutex);
         live.losses.push_back(point);
+        live.use = network_use();
         ++live.version;
     };
     if (!adds)
@@ -335,6 +377,10 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
             return std::exchange(live.label, std::nullopt);
         };
     job->run(observer);
+    const std::lock_guard lock(live.mutex);
+    live.use = network_use();
+    live.waits = false;
+    ++live.version;
 }
 
 void fill_pending(EditJob& job, PendingResult& pending) {
@@ -410,47 +456,5 @@ void Application::discard_result() {
 void Application::pause(bool paused) { work_.pause(paused); }
 
 void Application::cancel() { work_.cancel(); }
-
-std::string Application::measured_key() const {
-    return fmt::format("{} at {} px", model_in_use(), model_.request.image_size);
-}
-
-Measured Application::measured_now() const {
-    const auto found = measured_.find(measured_key());
-    return found == measured_.end() ? Measured{} : found->second;
-}
-
-void Application::remember_measured(const std::string& key, const Measured& measured) {
-    Measured& known = measured_[key];
-    nlohmann::ordered_json news = fields_to_json(measured);
-    if (measured.raster < 0) news.erase("rows");
-    for (auto entry = news.begin(); entry != news.end();) entry = *entry < 0 ? news.erase(entry) : std::next(entry);
-    fields_from_json(known, news);
-    save_settings();
-}
-
-void Application::refresh_estimate() {
-    PlannedWork work;
-    work.loaded = text_model_ != nullptr && text_model_key_ == model_key();
-    work.located = job_fits();
-    work.shows_idea = model_.model_settings.gate;
-    const bool learns = model_.model_settings.learn_scene && !work.located && !known_tuning(current_recipe());
-    work.tune_steps = learns ? model_.model_settings.learning.steps : 0;
-    work.rows = document_.state().current.size();
-    try {
-        work.adds = edit::decide_mode(edit::validated(model_.request), std::nullopt).first == edit::EditMode::Add;
-    } catch (const Error&) {   // not a sentence yet
-    }
-    model_.estimate.seconds = estimated_seconds(measured_now(), model_.request, work);
-    const double scene_mb = static_cast<double>(document_.state().current.byte_size()) / 1e6;
-    const double share = model_.labelled > 0 && work.rows > 0
-                             ? static_cast<double>(model_.labelled) / static_cast<double>(work.rows)
-                             : LikelyLabel;
-    // Working set, gradients, two moments and anchors of the labelled rows, and the snapshots that are kept: of the label's
-    // rows, and two put together (the newest and the one that is looked at).
-    model_.estimate.memory_mb = current_rss_mb() + (text_model_ ? 0 : NetworkMb) + (6 + 2) * scene_mb +
-                                static_cast<double>(MostSnapshots) * scene_mb * share;
-    model_.estimate.memory_free_mb = static_cast<double>(free_memory()) / (1 << 20);
-}
 
 }  // namespace gse::app

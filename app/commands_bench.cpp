@@ -12,10 +12,14 @@
 #include "app/bench_speed.h"
 #include "app/cli.h"
 #include "app/engine_names.h"
+#include "app/eval_settings.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/path_text.h"
 #include "engine/base/print.h"
+#include "engine/base/staged_folder.h"
 #include "engine/bench/clip_bench.h"
+#include "engine/bench/edit_bench.h"
 #include "engine/bench/raster_report.h"
 #include "engine/bench/search_bench.h"
 #include "engine/io/cameras.h"
@@ -151,6 +155,32 @@ void add_search_bench(CLI::App& bench, CommandContext& context) {
     });
 }
 
+void add_edit_bench(CLI::App& bench, CommandContext& context) {
+    struct Options {
+        EditBenchParameters parameters;
+        EditRecipe settings;
+        std::filesystem::path output = "out/bench_edit";
+    };
+    auto options = std::make_shared<Options>();
+    auto* command = bench.add_subcommand("edit", "What edits reach against TFLOP and seconds, a curve per method: JSON and a picture");
+    command->add_option("--out", options->output, "Folder for edit.json, pareto.png and contact sheets")->capture_default_str();
+    bind_fields(*command, options->parameters, "Cases and points");
+    add_eval_settings(*command, options->settings);
+    command->callback([options, command, &context] {
+        apply_eval_model(*command, options->settings);
+        StagedFolder folder(options->output, {"edit.json", {"edit.json", "pareto.png"}});
+        folder.keep_on_failure();
+        auto report = bench_edit(options->parameters, options->settings, folder.path(), context.job());
+        report["files"] = folder.listing();
+        write_file(folder.path() / "edit.json", json_text(report, 1) + "\n");
+        folder.commit();
+        fmt::print("{}picture {}/pareto.png\n", edit_bench_table(report),
+                   std::filesystem::absolute(options->output).lexically_normal().string());
+        if (report["stopped"].get<bool>())
+            throw Error(ErrorCode::Cancelled, "the measurement was stopped; what it had reached is saved", "", options->output);
+    });
+}
+
 #ifdef GSE_WINDOW
 void add_preview_bench(CLI::App& bench) {
     struct Options {
@@ -190,6 +220,7 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
 #endif
     add_clip_bench(*bench, context);
     add_search_bench(*bench, context);
+    add_edit_bench(*bench, context);
 }
 
 }  // namespace gse::app

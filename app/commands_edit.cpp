@@ -19,6 +19,7 @@
 #include "engine/pipeline/edit_output.h"
 #include "engine/pipeline/gate.h"
 #include "engine/pipeline/model_settings.h"
+#include "engine/pipeline/target_sheet.h"
 
 namespace gse::app {
 namespace {
@@ -144,8 +145,9 @@ void print_summary(const nlohmann::ordered_json& report, const std::filesystem::
                report["psnr_outside_db"].get<double>());
     print("{}\n", report["confidence_text"].get<std::string>());
     const auto& networks = report["networks"]["total"];
-    print("{:.1f} s, {:.0f} MB at most, {} UNet passes, {:.2f} TFLOP\n", report["seconds"]["total"].get<double>(),
-          report["peak_rss_mb"].get<double>(), networks["unet"].get<std::uint64_t>(), networks["tflop"].get<double>());
+    const auto count = [&](const char* name) { return networks[name].get<std::uint64_t>(); };
+    print("{:.1f} s, {:.0f} MB at most; {}\n", report["seconds"]["total"].get<double>(), report["peak_rss_mb"].get<double>(),
+          use_text({count("unet"), count("encoder"), count("decoder"), networks["tflop"].get<double>() * 1e12}));
     print("edited scene   {}/scene.ply\nbefore, labels {}/source.ply\nfilm           {}/before_after.mp4\n"
                "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
                text, text, text, text, text, text, text);
@@ -202,6 +204,7 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
     write_file(folder.path() / "recipe.json", json_text(recipe_to_json(job.recipe()), 2) + "\n");
     write_labelled_source(folder.path() / "source.ply", job);
     write_evidence(folder.path() / "evidence", job.located(), job.views());
+    write_targets(folder.path() / "evidence", job.targets(), job.views());
     write_before_after(folder.path(), job);
     job.times().end();
     auto report = make_report(job);

@@ -6,6 +6,7 @@
 #include "app/cli.h"
 #include "app/dreambooth_options.h"
 #include "app/engine_names.h"
+#include "app/eval_settings.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/path_text.h"
@@ -13,7 +14,6 @@
 #include "engine/bench/eval_run.h"
 #include "engine/bench/eval_summary.h"
 #include "engine/pipeline/edit_output.h"
-#include "engine/pipeline/model_settings.h"
 
 namespace gse::app {
 namespace {
@@ -23,40 +23,6 @@ struct EvalOptions {
     std::filesystem::path output = "out/eval";
     bool json = false;
 };
-
-/// The suite's own words, mode and seed are not asked for.
-bool is_asked_for(const std::string& field) {
-    return field != "source" && field != "prompt" && field != "target" && field != "mode" && field != "seed";
-}
-
-void add_settings(CLI::App& command, EditRecipe& settings) {
-    command.add_option("--model", settings.job.model, "Model to measure; the starter when left out");
-    command.add_option("--device", settings.job.device, "Where the networks run: cpu or cuda")
-        ->capture_default_str();
-    command
-        .add_option("--threads", settings.job.threads,
-                    "Threads of the networks; another number may round differently")
-        ->capture_default_str()
-        ->check(CLI::Range(1, 256));
-    const auto bind = [&](const std::string& group) {
-        return [&command, group](const char* name, auto& value, const char* help, const auto&... range) {
-            if (group == "Edit" && !is_asked_for(name)) return;
-            add_field_option(command, option_name(name), value, help, range...)->group(group);
-        };
-    };
-    edit::EditRequest::visit_fields(settings.request, bind("Edit"));
-    neural::SdsParameters::visit_fields(settings.guidance, bind("Guidance (score distillation)"));
-}
-
-/// What the command line does not say is as the model states.
-void apply_model(const CLI::App& command, EditRecipe& settings) {
-    std::set<std::string> given;
-    note_given(command, settings.job, "job", given);
-    note_given(command, settings.request, "request", given);
-    note_given(command, settings.guidance, "guidance", given);
-    note_given(command, settings.dreambooth, "dreambooth", given, "--dreambooth-");
-    apply_profile(profile_of(settings.job), settings, given);
-}
 
 void run_eval_command(EvalOptions& options, const CommandContext& context) {
     StagedFolder folder(options.output, {"eval.json", {"eval.json", "eval.txt"}});
@@ -89,10 +55,10 @@ void add_eval_command(CLI::App& app, CommandContext& context) {
     command->add_option("--scenes", options->run.scenes,
                         "Real scenes to edit: PATH or PATH:source:sentence:target");
     bind_fields(*command, options->run.parameters, "Suite");
-    add_settings(*command, options->run.settings);
+    add_eval_settings(*command, options->run.settings);
     add_dreambooth_options(*command, options->run.settings);   // of real scenes: the suite's are of the model's own world
     command->callback([options, command, &context] {
-        apply_model(*command, options->run.settings);
+        apply_eval_model(*command, options->run.settings);
         run_eval_command(*options, context);
     });
 }

@@ -194,10 +194,15 @@ private:
                         {"error", model.job.error}};
         state["file_job"] = {{"running", model.file_job.running}, {"title", model.file_job.title},
                              {"outcome", model.file_job.outcome}, {"error", model.file_job.error}};
-        state["estimate"] = model.estimate.seconds;
+        state["estimate"] = {{"seconds", model.estimate.seconds}, {"tflop", model.estimate.tflop}, {"memory_mb", model.estimate.memory_mb}};
         state["losses"] = model.losses.size();
         state["snapshots"] = model.snapshots.size();
         state["result_waiting"] = model.result_waiting;
+        state["targets"] = {{"rounds", model.target_rounds.size()}, {"waits", model.targets_wait}};
+        if (!model.target_rounds.empty())
+            for (const auto& target : model.target_rounds.back().targets)
+                state["targets"]["views"].push_back({{"view", target.view}, {"redrawn", target.attempt}, {"dropped", target.dropped}});
+        state["cost"] = {{"unet", model.cost.unet}, {"tflop", model.cost.tflop}};
         state["comparison"] = static_cast<int>(model.comparison);
         state["mode"] = model.view.mode;
         state["frames"] = frames_;

@@ -42,6 +42,9 @@ public:
     virtual void pause(bool paused) = 0;
     virtual void cancel() = 0;                                     // the edit job
     virtual void cancel_file_job() = 0;
+    /// Of the round that is fitted to now: what the fit uses, or a view once more.
+    virtual void order_target(const edit::TargetOrder& order) = 0;
+    virtual void fit_to_targets() = 0;                             // the edit waits for it
     virtual void apply_result() = 0;
     virtual void discard_result() = 0;
     virtual void show_snapshot(int index) = 0;                     // -1 = newest

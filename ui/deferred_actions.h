@@ -68,6 +68,12 @@ public:
     void cancel_file_job() override {
         later([this] { target_->cancel_file_job(); });
     }
+    void order_target(const edit::TargetOrder& order) override {
+        later([this, order] { target_->order_target(order); });
+    }
+    void fit_to_targets() override {
+        later([this] { target_->fit_to_targets(); });
+    }
     void apply_result() override {
         later([this] { target_->apply_result(); });
     }

@@ -51,7 +51,7 @@ Layout Layout::standard() {
     Layout layout;
     for (const auto panel : {PanelId::History, PanelId::Views, PanelId::Export, PanelId::Settings})
         layout.place(panel).area = Area::RightBottom;
-    for (const auto panel : {PanelId::Attention, PanelId::Progress, PanelId::Log})
+    for (const auto panel : {PanelId::Attention, PanelId::Targets, PanelId::Progress, PanelId::Log})
         layout.place(panel).area = Area::Bottom;
     layout.front = {static_cast<int>(PanelId::Prompt), static_cast<int>(PanelId::History),
                     static_cast<int>(PanelId::Attention)};

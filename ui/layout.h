@@ -17,13 +17,14 @@ enum class PanelId {
     Export,
     Settings,
     Attention,
+    Targets,
     Progress,
     Log
 };
-inline constexpr std::size_t PanelCount = 11;
+inline constexpr std::size_t PanelCount = 12;
 inline constexpr std::array<const char*, PanelCount> PanelNames{"Prompt",    "Labels",   "Scene",  "Models",
                                                                 "History",   "Views",    "Export", "Settings",
-                                                                "Attention", "Progress", "Log"};
+                                                                "Attention", "Targets",  "Progress", "Log"};
 
 /// Where a tab can be: the right column is split in two, the bottom area runs below the viewport.
 enum class Area { RightTop, RightBottom, Bottom };

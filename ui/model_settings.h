@@ -14,6 +14,7 @@ namespace gse::ui {
 /// How the model is run, asked and taught: what a recipe has beside the request. One list of fields for each part.
 struct ModelSettings {
     bool gate = true;
+    bool review = false;
     bool learn_scene = false;
     std::string device = "cpu";
     int threads = 1;
@@ -25,6 +26,7 @@ struct ModelSettings {
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
         f("gate", self.gate, "Before the edit, show what the model itself makes of four views, and warn when that is not what was asked.");
+        f("review", self.review, "Method views: before the scene is fitted to redrawn views, wait until you have looked at them.");
         f("learn_scene", self.learn_scene, "DreamBooth: the model learns this scene from renders of it first.");
         f("device", self.device, "Where the networks run: cpu, or cuda where there is one.");
         f("threads", self.threads, "Threads of the networks; small ones gain nothing from more. Another number may round differently.", Range{1, 256});

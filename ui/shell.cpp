@@ -74,6 +74,14 @@ void show_failed_search(Context& context) {
     show_panel(context.state, PanelId::Attention);
 }
 
+/// An edit that waits for the artist's look at the redrawn views shows them.
+void show_waiting_targets(Context& context) {
+    auto& shown = context.state.targets.waited_for;
+    const int round = context.model.targets_wait && !context.model.target_rounds.empty() ? context.model.target_rounds.back().round : -1;
+    if (round >= 0 && round != shown) show_panel(context.state, PanelId::Targets);
+    shown = round;
+}
+
 /// The accent below the tab in front.
 void underline_tab(Context& context) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
@@ -302,6 +310,7 @@ void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
     begin_keyboard(context);
     update_sentence(context);
     show_failed_search(context);
+    show_waiting_targets(context);
     handle_keys(context);
     answer_requests(context);
     state_->keyboard.stops.clear();  // their names are those of the widgets
@@ -336,6 +345,8 @@ void draw_panel(Context& context, PanelId panel) {
             return draw_settings_panel(context);
         case PanelId::Attention:
             return draw_attention_panel(context);
+        case PanelId::Targets:
+            return draw_targets_panel(context);
         case PanelId::Progress:
             return draw_progress_panel(context);
         case PanelId::Log:

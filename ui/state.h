@@ -100,6 +100,11 @@ struct ProgressState {
     std::array<bool, 2> norms{true, true};
 };
 
+struct TargetsState {
+    int chosen = -1;      // round, -1 = the last
+    int waited_for = -1;  // round whose fit waited in the last frame, -1 = none
+};
+
 struct LogState {
     std::array<bool, 4> shown{false, true, true, true};  // Debug, Info, Warning, Error
     std::string filter;
@@ -118,6 +123,7 @@ struct UiState {
     AttentionState attention;
     LabelsState labels;
     ProgressState progress;
+    TargetsState targets;
     LogState log;
     HistoryState history;
     FileBrowser files;

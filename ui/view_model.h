@@ -14,6 +14,7 @@
 #include "engine/base/log.h"
 #include "engine/edit/locate.h"
 #include "engine/edit/request.h"
+#include "engine/edit/view_targets.h"
 #include "engine/math/framing.h"
 #include "engine/scene/camera_key.h"
 #include "engine/scene/document.h"
@@ -146,6 +147,7 @@ struct LogLine {
 /// What an edit will cost, before it starts.
 struct Estimate {
     double seconds = -1;         // negative = not known yet
+    double tflop = -1;           // 10^12 operations of the networks
     double memory_mb = -1;
     double memory_free_mb = -1;
 };
@@ -230,6 +232,29 @@ struct GateView {
 };
 
 
+/// A view as the model has redrawn it.
+struct TargetView {
+    std::size_t view = 0;                        // of the edit's views
+    std::string name;
+    std::shared_ptr<const Image> before, after;  // [H,W,3]
+    Camera camera;
+    int attempt = 0;                             // how often it was redrawn anew
+    bool dropped = false;                        // the fit does not use it
+    bool ordered = false;                        // something was said about it that is not done yet
+};
+
+/// The redrawn views of a round.
+struct TargetRound {
+    int round = 0, rounds = 1;
+    std::vector<TargetView> targets;
+};
+
+/// What the networks were asked for by the running or last job.
+struct NetworkCost {
+    std::uint64_t unet = 0, encoder = 0, decoder = 0;   // passes over one picture
+    double tflop = 0;                                   // 10^12 operations
+};
+
 /// Everything the panels read. Pointers are valid for the frame.
 struct ViewModel {
     // Document
@@ -275,6 +300,9 @@ struct ViewModel {
     bool edit_running = false;                   // the job is an edit
     JobView file_job;                            // load, export, save
     GateView gate;
+    std::vector<TargetRound> target_rounds;      // of the running or last edit that views lead, in their order
+    bool targets_wait = false;                   // the fit of the last round begins when the artist says so
+    NetworkCost cost;
     std::vector<LossPoint> losses;
     std::vector<SnapshotView> snapshots;
     int shown_snapshot = -1;                     // index into snapshots, -1 = newest

@@ -43,4 +43,16 @@ double current_rss_mb() {
     return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
 }
 
+PeakMemory::PeakMemory() {
+    std::ofstream file("/proc/self/clear_refs");
+    file << "5" << std::flush;   // proc(5): the peak becomes what is resident now
+}
+
+double PeakMemory::mb() const {
+    std::ifstream file("/proc/self/status");
+    for (std::string line; std::getline(file, line);)
+        if (line.starts_with("VmHWM:")) return std::atof(line.c_str() + 6) / 1024.0;
+    return peak_rss_mb();
+}
+
 }  // namespace gse

@@ -22,14 +22,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A part of the method that is left out.
-struct Ablation {
-    std::string name, meaning;
-    Json settings;  // of the request
-};
-
-const std::vector<Ablation>& ablations() {
-    static const std::vector<Ablation> list{
+/// Parts of the method that are left out.
+const std::vector<EvalVariant>& ablations() {
+    static const std::vector<EvalVariant> list{
         {"no_localization",
          "every splat may change, and everywhere in the pictures",
          {{"localize", false}, {"gate_guidance", false}}},
@@ -94,7 +89,8 @@ public:
         report["text_image_score"] = score_ != nullptr;
         report["stopped"] = false;
         report["edits"] = report["ablations"] = report["scenes"] = Json::array();
-        if (run_.parameters.ablations) begin_ablations(report["ablations"]);
+        if (run_.parameters.ablations) begin_variants(ablations(), report["ablations"]);
+        begin_variants(run_.variants, report["ablations"]);
         try {
             synthetic(report);
             real(report["scenes"]);
@@ -117,11 +113,11 @@ private:
         if (job_.stop_requested()) throw Error(ErrorCode::Cancelled, "the evaluation was stopped");
     }
 
-    static void begin_ablations(Json& list) {
-        for (const auto& ablation : ablations())
-            list.push_back({{"name", ablation.name},
-                            {"meaning", ablation.meaning},
-                            {"settings", ablation.settings},
+    static void begin_variants(const std::vector<EvalVariant>& variants, Json& list) {
+        for (const auto& variant : variants)
+            list.push_back({{"name", variant.name},
+                            {"meaning", variant.meaning},
+                            {"settings", variant.settings},
                             {"edits", Json::array()}});
     }
 
@@ -217,6 +213,8 @@ private:
         figures["drift"] = evaluate::drifted_rows(setting.source.scene.gaussians, result.set,
                                                   result.base_to_new, *job.located().label.bits);
         figures["iterations"] = result.iterations;
+        const auto& use = job.edited().use;
+        figures["cost"] = {{"seconds", job.edited().seconds}, {"unet", use.unet}, {"tflop", use.flop * 1e-12}};
         figures["edit_seconds"] = result.seconds;
         job.times().end();
         return figures;

@@ -45,9 +45,16 @@ struct EvalParameters {
     }
 };
 
+/// Other settings of the loop, with which every edit is repeated after its search.
+struct EvalVariant {
+    std::string name, meaning;
+    nlohmann::ordered_json settings;  // of the request
+};
+
 struct EvalRun {
     EvalParameters parameters;
     pipeline::EditRecipe settings;              // model, machine, request (its words are the suite's), guidance
+    std::vector<EvalVariant> variants;          // beside the ablations, and reported with them
     std::vector<std::string> scenes;  // real ones: "PATH" or "PATH:source:sentence:target"
 };
 

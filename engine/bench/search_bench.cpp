@@ -129,6 +129,7 @@ private:
         entry["attention_inside"] = confidence.attention;
         entry["labelled_share"] = confidence.share;
         entry["recognition"] = confidence.recognition;
+        entry["networks"] = job.times().networks_json()["total"];
         if (question.present)
             entry["overlap"] = evaluate::row_overlap(*found.label.bits, rows_of(scene, question.part), found.weights.evidence).iou;
         return entry;

@@ -51,8 +51,8 @@ std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
     return {EditMode::Modify, "\"" + request.target + "\" describes \"" + request.source + "\""};
 }
 
-int planned_steps(const EditRequest& request) {
-    return loop_steps(request, edits_by_views(request, decide_mode(request, std::nullopt).first));
-}
+bool planned_by_views(const EditRequest& request) { return edits_by_views(request, decide_mode(request, std::nullopt).first); }
+
+int planned_steps(const EditRequest& request) { return loop_steps(request, planned_by_views(request)); }
 
 }  // namespace gse::edit

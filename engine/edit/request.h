@@ -261,7 +261,8 @@ enum class EditMode { Modify, Add };
 bool edits_by_views(const LoopSettings& settings, EditMode mode);
 /// Optimisation steps of an edit.
 int loop_steps(const LoopSettings& settings, bool by_views);
-/// The same as the words and the mode of the request say, before anything was looked for.
+/// Both as the words and the mode of the request say, before anything was looked for.
+bool planned_by_views(const EditRequest& request);
 int planned_steps(const EditRequest& request);
 
 /// The sentence's terms, with compound prepositions ("next to") as one: what a reader of noun phrases goes through.

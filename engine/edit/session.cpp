@@ -21,7 +21,8 @@
 #include "engine/edit/edit_strength.h"
 #include "engine/edit/preservation.h"
 #include "engine/edit/scales.h"
-#include "engine/edit/view_round.h"
+#include "engine/edit/stage_timer.h"
+#include "engine/edit/view_phase.h"
 #include "engine/edit/working_set.h"
 #include "engine/localize/back_projection.h"
 #include "engine/localize/clusters.h"
@@ -79,19 +80,6 @@ private:
     std::size_t position_ = 0;
 };
 
-/// Adds the time it lives to a stage.
-class StageTimer {
-public:
-    explicit StageTimer(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
-    ~StageTimer() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-    StageTimer(const StageTimer&) = delete;
-    StageTimer& operator=(const StageTimer&) = delete;
-
-private:
-    double& seconds_;
-    std::chrono::steady_clock::time_point start_;
-};
-
 /// Seconds per stage of the loop.
 struct StageSeconds {
     double originals = 0, render = 0, preserve = 0, guidance = 0, backward = 0, optimise = 0, densify = 0, snapshot = 0,
@@ -132,7 +120,7 @@ public:
         if (tools.start != nullptr) set_.resume(base.drawn, *tools.start);
         render_originals();
         settings_.negative_colour_slope = TrainingColourSlope;
-        if (tools.views != nullptr) rounds_.emplace(plan_, request_, *tools.views);
+        if (tools.views != nullptr) phase_.emplace(plan_, request_, tools, originals_, masks_);
     }
 
     const std::vector<std::uint8_t>& label() const { return label_; }
@@ -162,7 +150,7 @@ private:
     bool advance(EditResult& result) {
         const int iteration = result.iterations;
         if (tools_.new_label) take_label(result);
-        if (tools_.job.stop_requested() || !iterate(iteration, cycle_.next(), result)) {
+        if (tools_.job.stop_requested() || !iterate(iteration, result)) {
             result.stopped = !result.failure;
             return false;
         }
@@ -208,7 +196,9 @@ private:
 
     void take_snapshot(int iteration) {
         const StageTimer timer(seconds_.snapshot);
-        tools_.snapshot(set_.snapshot(base_.set, iteration + 1));
+        EditSnapshot snapshot = set_.snapshot(base_.set, iteration + 1);
+        if (phase_) snapshot.round = phase_->state();
+        tools_.snapshot(std::move(snapshot));
         last_snapshot_ = std::chrono::steady_clock::now();
     }
 
@@ -235,28 +225,8 @@ private:
 
     /// The views the edit is seen in: all are drawn, or those that are redrawn.
     void begin_with(const std::vector<std::size_t>& visible) {
-        if (!rounds_) return draw_only(visible);
-        std::vector<Mask> masks;
-        for (std::size_t v = 0; v < plan_.views.size(); ++v) masks.push_back(masks_.mask(v));
-        rounds_->choose(visible, masks);
-        draw_only(rounds_->views());
-    }
-
-    /// Has the model redraw its views of the rows as they are now.
-    void redraw_views(int iteration, IterationRecord& record) {
-        std::vector<RoundView> views;
-        for (const auto v : rounds_->views()) {
-            tools_.rasterizer.forward(spans(set_.rows()), plan_.views[v].camera, settings_, output_);
-            RoundView view{{}, originals_[v], output_.depth, masks_.mask(v), plan_.views[v],
-                           plan_.view_words.empty() ? std::string() : plan_.view_words[v]};
-            show(view.rendered);
-            for (auto& value : view.original.data) value = std::clamp(value, 0.0f, 1.0f);
-            for (std::size_t i = 0; i < view.depth.data.size(); ++i)
-                view.depth.data[i] = output_.alpha.data[i] > 0.5f ? view.depth.data[i] / output_.alpha.data[i] : 0.0f;
-            views.push_back(std::move(view));
-        }
-        record.guidance = rounds_->redraw(iteration, std::move(views), originals_, tools_.job);
-        std::erase_if(record.guidance, [](const auto& scalar) { return !std::isfinite(scalar.second); });
+        if (phase_) phase_->choose(visible);
+        draw_only(phase_ ? phase_->fitted() : visible);
     }
 
     /// From here on only these views are drawn, and have to come to rest.
@@ -274,13 +244,11 @@ private:
     }
 
     /// One step, left out when the guidance is not finite; false when the guidance was stopped, with everything as before.
-    bool iterate(int iteration, std::size_t view, EditResult& result) {
+    bool iterate(int iteration, EditResult& result) {
         IterationRecord record;
         record.iteration = iteration;
-        record.view = view;
         try {
-            const StageTimer timer(seconds_.guidance);
-            if (rounds_ && rounds_->begins(iteration)) redraw_views(iteration, record);
+            if (phase_ && phase_->ready(iteration, spans(set_.rows()), settings_, record.guidance)) draw_only(phase_->fitted());
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Cancelled) {
                 if (result.history.empty()) throw;   // nothing was reached yet
@@ -288,6 +256,7 @@ private:
             }
             return false;
         }
+        const std::size_t view = record.view = cycle_.next();
         {
             const StageTimer timer(seconds_.render);
             tools_.rasterizer.forward(spans(set_.rows()), plan_.views[view].camera, settings_, output_);
@@ -298,8 +267,8 @@ private:
             const StageTimer timer(seconds_.preserve);
             gradient_.resize(output_.colour.width, output_.colour.height, 3);
             std::fill(gradient_.data.begin(), gradient_.data.end(), 0.0f);
-            if (rounds_)   // redrawn inside the mask, the original outside: one loss for both
-                record.preservation = preservation_.add_gradient(output_.colour, rounds_->target(view), no_mask(), gradient_);
+            if (phase_)   // redrawn inside the mask, the original outside: one loss for both
+                record.preservation = preservation_.add_gradient(output_.colour, phase_->target(view), no_mask(), gradient_);
             else
                 record.preservation =
                     preservation_.add_gradient(output_.colour, originals_[view], masks_.mask(view), gradient_);
@@ -307,7 +276,7 @@ private:
         }
         try {
             const StageTimer timer(seconds_.guidance);
-            record.skipped = !rounds_ && !add_guidance(iteration, view, record);
+            record.skipped = !phase_ && !add_guidance(iteration, view, record);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Cancelled) throw;
             return false;
@@ -351,10 +320,7 @@ private:
         set_.relabel(base_.drawn, label_, request_);
         for (std::size_t v = 0; v < masks.size(); ++v) masks_.set_static(v, std::move(masks[v]));
         ++result.label_changes;
-        if (rounds_) {
-            for (const auto v : rounds_->views()) rounds_->blend(v, originals_[v], masks_.mask(v));
-            return;
-        }
+        if (phase_) return phase_->take_masks();
         const auto now = visible_views();
         if (!now.empty() || !seen_in.empty()) draw_only(now.empty() ? seen_in : now);
     }
@@ -482,6 +448,10 @@ private:
         result.generation = reached.generation();
         result.skipped_rows = set_.skipped_rows();
         result.guidance_scale = guidance_scale_;
+        if (phase_) {
+            result.redrawn_views = phase_->redrawn();
+            seconds_.guidance = phase_->seconds();
+        }
         result.seconds = {{"originals", seconds_.originals}, {"render", seconds_.render},     {"preserve", seconds_.preserve},
                           {"guidance", seconds_.guidance},   {"backward", seconds_.backward}, {"optimise", seconds_.optimise},
                           {"densify", seconds_.densify},     {"snapshot", seconds_.snapshot}, {"dynamic_mask", seconds_.dynamic_mask}};
@@ -496,7 +466,6 @@ private:
     WorkingSet set_;
     Preservation preservation_;
     DynamicMasks masks_;
-    std::optional<ViewRounds> rounds_;   // of view guidance
     Mask no_mask_;
     ViewCycle cycle_;
     RestDetector rest_;
@@ -505,6 +474,7 @@ private:
     raster::ForwardOutput output_;
     raster::Gradients gradients_;
     std::vector<Image> originals_;
+    std::optional<ViewPhase> phase_;   // of view guidance
     Image gradient_;
     Image shown_, label_seen_;
     std::size_t skipped_in_a_row_ = 0;

@@ -15,6 +15,7 @@
 #include "engine/edit/interfaces.h"
 #include "engine/edit/request.h"
 #include "engine/edit/snapshot.h"
+#include "engine/edit/view_targets.h"
 #include "engine/raster/rasterizer.h"
 
 namespace gse::edit {
@@ -52,6 +53,7 @@ struct EditResult {
     std::size_t masks_refreshed = 0;         // by the dynamic mask
     std::size_t skipped_steps = 0;           // left out because the guidance was not finite
     std::size_t skipped_rows = 0;            // rows whose gradient was not finite, summed over the steps
+    std::size_t redrawn_views = 0;           // pictures that view guidance has asked for
     std::size_t cloned = 0, split = 0, pruned = 0;
     std::size_t changed_outside_label = 0;   // rows outside the label that differ from the base in any bit; always 0
     std::size_t nonfinite = 0;               // labelled rows with a NaN or infinity in the result; always 0
@@ -83,6 +85,12 @@ struct EditTools {
     const EditSnapshot* start = nullptr;
     ViewGuidance* views = nullptr;      // leads the edit in place of `guidance`: it redraws views, the rows are fitted to them
     double snapshot_seconds = 0;        // above 0: a snapshot whenever this much time has passed, instead of by iterations
+    /// Of view guidance: shows the redrawn views, as soon as a round is redrawn and whenever something about them changes.
+    std::function<void(const ViewTargets&)> targets = {};
+    /// Asked when a round was redrawn, before every iteration, and again after orders: what the artist says meanwhile, or
+    /// nothing. May wait for an answer; a stop request has to end that.
+    std::function<std::vector<TargetOrder>()> target_orders = {};
+    std::string redraw_key = {};        // of what `views` is made from: a round begun with another key is redrawn
 };
 
 /// Runs the edit. Rows outside the label come back bit-identical (checked at the end), and so do rows that cannot be drawn,

@@ -10,6 +10,8 @@
 
 namespace gse::edit {
 
+struct RoundState;
+
 /// The rows of the label as they are at that moment.
 struct SnapshotRows {
     GaussianData rows;                    // those that are the base's, in its order, then those born in the run
@@ -25,6 +27,7 @@ struct EditSnapshot {
     GaussianSet base;
     std::shared_ptr<const SnapshotRows> rows;
     int iteration = 0;
+    std::shared_ptr<const RoundState> round = {};   // of view guidance: what the rows are fitted to; null = nothing yet
 
     /// Rows of the edited set.
     std::size_t size() const { return base.size() - rows->removed.size() + rows->ancestor.size(); }

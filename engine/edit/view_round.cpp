@@ -95,18 +95,38 @@ void ViewRounds::choose(const std::vector<std::size_t>& visible, const std::vect
 
 bool ViewRounds::begins(int iteration) const { return round_ < 0 || iteration / request_.fit_steps > round_; }
 
-std::map<std::string, double> ViewRounds::redraw(int iteration, std::vector<RoundView> views, const std::vector<Image>& originals,
-                                                 const JobControl& job) {
+/// What this round is asked to be; `stream` of the request's seed.
+RoundInput ViewRounds::input(std::uint64_t stream) const {
+    return {round_, request_.rounds, request_.view_steps, request_.view_strength, Random::stream(request_.seed, stream).next()};
+}
+
+std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vector<RoundView>& views,
+                                                 const std::vector<Image>& originals, const JobControl& job) {
     GSE_CHECK_EQ(views.size(), views_.size());
     round_ = iteration / request_.fit_steps;
-    const auto seed = Random::stream(request_.seed, 40000 + static_cast<std::uint64_t>(round_)).next();
-    auto drawn = guidance_.edit(views, {round_, request_.rounds, request_.view_steps, request_.view_strength, seed}, job);
+    auto drawn = guidance_.edit(views, input(40000 + static_cast<std::uint64_t>(round_)), job);
     GSE_CHECK_EQ(drawn.images.size(), views.size());
-    for (std::size_t i = 0; i < views.size(); ++i) {
-        edited_[views_[i]] = std::move(drawn.images[i]);
-        blend(views_[i], originals[views_[i]], views[i].mask);
-    }
+    for (std::size_t i = 0; i < views.size(); ++i)
+        replace(views_[i], std::move(drawn.images[i]), originals[views_[i]], views[i].mask);
     return std::move(drawn.scalars);
+}
+
+void ViewRounds::redo(std::size_t view, const RoundView& begun, int attempt, const Image& original, const JobControl& job) {
+    constexpr std::uint64_t first = 1u << 20, most_views = 1u << 20, most_rounds = 64;   // streams that nothing else draws from
+    const auto stream = first + (static_cast<std::uint64_t>(attempt) * most_rounds + static_cast<std::uint64_t>(round_)) * most_views + view;
+    auto drawn = guidance_.edit({begun}, input(stream), job);
+    GSE_CHECK_EQ(drawn.images.size(), std::size_t{1});
+    replace(view, std::move(drawn.images.front()), original, begun.mask);
+}
+
+void ViewRounds::replace(std::size_t view, Image edited, const Image& original, const Mask& mask) {
+    edited_[view] = std::move(edited);
+    blend(view, original, mask);
+}
+
+void ViewRounds::resume(int round, std::vector<std::size_t> views) {
+    round_ = round;
+    views_ = std::move(views);
 }
 
 void ViewRounds::blend(std::size_t view, const Image& original, const Mask& mask) {

@@ -38,15 +38,26 @@ public:
     const std::vector<std::size_t>& views() const { return views_; }
     /// Whether a round begins with this iteration.
     bool begins(int iteration) const;
+    int round() const { return round_; }   // -1 = none has begun
     /// Has the views redrawn, in the order of views(); `originals` of all views of the plan. Returns what the model tells.
-    std::map<std::string, double> redraw(int iteration, std::vector<RoundView> views, const std::vector<Image>& originals,
+    std::map<std::string, double> redraw(int iteration, const std::vector<RoundView>& views, const std::vector<Image>& originals,
                                          const JobControl& job);
+    /// Has one of them redrawn once more, from a seed of its own for every `attempt` from 1 on.
+    void redo(std::size_t view, const RoundView& begun, int attempt, const Image& original, const JobControl& job);
+    /// Another picture for a view of this round.
+    void replace(std::size_t view, Image edited, const Image& original, const Mask& mask);
+    /// Goes on in the middle of a round in which these views were redrawn; their pictures come by replace().
+    void resume(int round, std::vector<std::size_t> views);
     /// Another mask: what was redrawn counts inside it.
     void blend(std::size_t view, const Image& original, const Mask& mask);
     /// What the scene is fitted to: redrawn inside the mask, the original outside.
     const Image& target(std::size_t view) const { return targets_[view]; }
+    /// As the model would have it.
+    const Image& edited(std::size_t view) const { return edited_[view]; }
 
 private:
+    RoundInput input(std::uint64_t stream) const;
+
     const EditPlan& plan_;
     const EditRequest& request_;
     ViewGuidance& guidance_;

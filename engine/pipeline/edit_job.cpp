@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "engine/base/check.h"
@@ -249,22 +250,32 @@ OrbitParameters EditJob::film_orbit() const {
     return orbit;
 }
 
-void EditJob::run(const EditObserver& observer) {
-    times_.begin("edit");
-    edited_ = std::make_shared<const Edited>(edit_scene(*workplace_, *located_, plan(), recipe_, observer, control_));
-    times_.end();
+void EditJob::edit(const EditRecipe& recipe, const EditObserver& observer, const JobControl& control) {
+    const auto start = std::chrono::steady_clock::now();
+    Edited edited = edit_scene(*workplace_, *located_, plan(), recipe, observer, control);
+    edited.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    edited_ = std::make_shared<const Edited>(std::move(edited));
 }
 
-void EditJob::probe(int steps) {
+void EditJob::run(const EditObserver& observer) {
+    times_.begin("edit");
+    edit(recipe_, observer, control_);
+    times_.end();
+    log::info("edited in {:.1f} s ({} steps): {}; with what came before it {}", edited_->seconds, result().history.size(),
+              use_text(edited_->use), use_text(times_.networks()));
+}
+
+void EditJob::probe(const ProbeSize& size) {
     EditRecipe plain = recipe_;
-    plain.request.iterations = steps;
+    plain.request.iterations = plain.request.fit_steps = size.steps;
     plain.request.dynamic_mask = plain.request.look_again = plain.request.early_stop = false;
     plain.request.densify_every = 0;
     plain.request.rounds = 1;
-    plain.request.fit_steps = steps;
+    plain.request.edited_views = size.edited_views;
+    plain.request.view_steps = size.view_steps;
     JobControl quiet;
     quiet.stop = control_.stop;
-    edited_ = std::make_shared<const Edited>(edit_scene(*workplace_, *located_, plan(), plain, {}, quiet));
+    edit(plain, {}, quiet);
 }
 
 }  // namespace gse::pipeline

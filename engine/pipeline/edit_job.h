@@ -63,8 +63,12 @@ public:
     void use_label(const std::vector<std::uint8_t>& bits);
     /// Runs the edit loop.
     void run(const EditObserver& observer = {});
-    /// Runs that many plain steps of the loop, for their time; result() is of them until run() replaces it.
-    void probe(int steps);
+    /// Runs a plain loop of that many steps, for its time; where views lead it, that many are redrawn first. What edited()
+    /// says is of it until run() replaces it.
+    struct ProbeSize {
+        int steps = 1, edited_views = 1, view_steps = 1;
+    };
+    void probe(const ProbeSize& size);
     /// Replaces where to report and what stops (a job that located goes on to edit).
     void set_control(JobControl control) { control_ = std::move(control); }
     /// Takes the settings of the loop and of the guidance, and the label's thresholds, of a recipe with the same search_key():
@@ -83,6 +87,9 @@ public:
     /// What the loop is told: made anew when label or settings have changed.
     const edit::EditPlan& plan();
     const edit::EditResult& result() const { return edited_->result; }
+    const Edited& edited() const { return *edited_; }
+    /// The redrawn views of every round, where the edit was led by them.
+    const std::vector<edit::ViewTargets>& targets() const { return edited_->targets; }
     /// What was learned of the scene, if anything was.
     const std::optional<neural::TuneReport>& tuning() const { return tuning_; }
     /// The same with the model that learned it, for another job.
@@ -103,6 +110,7 @@ public:
     neural::TextToImage& model() { return workplace_->model(); }
     Painter& painter() { return workplace_->painter(); }
     StageTimes& times() { return times_; }
+    const StageTimes& times() const { return times_; }
     const JobControl& control() const { return control_; }
 
 private:
@@ -111,6 +119,7 @@ private:
     void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, const GivenCameras& given);
     void take(Located located);
     void look_again(const EditRecipe& recipe);
+    void edit(const EditRecipe& recipe, const EditObserver& observer, const JobControl& control);
     std::vector<Image> instance_pictures();
 
     EditRecipe recipe_;

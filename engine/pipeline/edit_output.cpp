@@ -17,6 +17,7 @@
 #include "engine/io/scene_io.h"
 #include "engine/io/video.h"
 #include "engine/pipeline/model_settings.h"
+#include "engine/pipeline/target_sheet.h"
 
 namespace gse::pipeline {
 namespace {
@@ -202,6 +203,7 @@ nlohmann::ordered_json make_report(EditJob& job) {
     report["cloned"] = result.cloned;
     report["split"] = result.split;
     report["pruned"] = result.pruned;
+    if (!job.targets().empty()) report["targets"] = targets_to_json(job.targets(), job.views());
     report["model"] = job.model().name();
     report["settings_from"] = settings_from(job.recipe());
     report["seconds"] = job.times().to_json();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/pipeline/gate.h"
 
 namespace gse::pipeline {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 constexpr double LookAgainRounds = 2;             // over all views, when something is added
 constexpr double UsualFollow = 0.6;
 constexpr int ProbeSteps = 5;
+constexpr double LibrariesMb = 300;   // of torch, until the first load was measured
 
 double words_of_search(bool adds) { return adds ? 2 : 1; }
 
@@ -29,82 +31,207 @@ double looks_again(const edit::EditRequest& request, bool adds) {
     return adds && request.look_again ? LookAgainRounds * request.views : 0;
 }
 
-/// Denoising steps of single views in the last `steps` of the loop.
-double redrawn_steps(const edit::EditRequest& request, int steps) {
-    return std::ceil(static_cast<double>(steps) / request.fit_steps) * request.edited_views * request.view_steps;
+/// Views that are redrawn from that iteration on; a round that was begun is not begun again.
+double redrawn_views(const edit::EditRequest& request, int first_iteration) {
+    const double begun = std::ceil(static_cast<double>(first_iteration) / request.fit_steps);
+    return std::max(0.0, request.rounds - begun) * request.edited_views;
 }
 
 bool led_by_views(const EditJob& job) { return edit::edits_by_views(job.recipe().request, job.located().mode); }
 
+double tflop_of(const neural::NetworkUse& use) { return use.flop * 1e-12; }
+
+/// Adds up parts; what is needed and was not measured makes the sum unknown.
+class Sum {
+public:
+    void add(double count, double seconds, double tflop = 0) {
+        if (count <= 0) return;
+        known_seconds_ &= seconds >= 0;
+        known_tflop_ &= tflop >= 0;
+        cost_.seconds += count * seconds;
+        cost_.tflop += count * tflop;
+    }
+    Cost cost() const { return {known_seconds_ ? cost_.seconds : -1, known_tflop_ ? cost_.tflop : -1}; }
+
+private:
+    Cost cost_{0, 0};
+    bool known_seconds_ = true, known_tflop_ = true;
+};
+
+/// The pictures before the edit; until they were drawn once, from what a pass of the UNet takes.
+void add_idea(Sum& sum, const Measured& measured) {
+    if (measured.idea >= 0) return sum.add(1, measured.idea, measured.idea_tflop);
+    const GateParameters gate;
+    constexpr double halves = 2;   // with and without the prompt
+    const double passes = gate.views * gate.steps * halves;
+    sum.add(passes, std::max(0.0, measured.pass), measured.pass_tflop);
+}
+
+/// What a scene takes beside its own splats: working set, gradients, two moments and anchors of the labelled rows; two sets
+/// put together (the newest snapshot and the one that is looked at), and the snapshots of the label's rows.
+double scene_work_mb(const PlannedMemory& memory) {
+    constexpr double sets = 6 + 2;
+    return sets * memory.scene + static_cast<double>(memory.snapshots) * memory.scene * memory.labelled_share;
+}
+
 }  // namespace
 
-double estimated_seconds(const Measured& measured, const edit::EditRequest& request, const PlannedWork& work) {
-    double seconds = 0;
-    bool known = true;
-    const auto add = [&](double count, double each) {
-        if (count <= 0) return;
-        known &= each >= 0;
-        seconds += count * each;
-    };
-    add(work.loaded ? 0 : 1, measured.load);
-    add(work.tune_steps, measured.tune_step);
+Cost estimated_cost(const Measured& measured, const edit::EditRequest& request, const PlannedWork& work) {
+    Sum sum;
+    sum.add(work.loaded ? 0 : 1, measured.load);
+    sum.add(work.tune_steps, measured.tune_step, measured.tune_step_tflop);
     const double rounds = measured.rounds > 0 ? measured.rounds : 1;
     const double search = rounds * request.views * words_of_search(work.adds);
-    add(work.located ? 0 : search, measured.question);
-    add(work.shows_idea ? 1 : 0, measured.idea >= 0 ? measured.idea : 0);
+    sum.add(work.located ? 0 : search, measured.question, measured.question_tflop);
+    if (work.shows_idea) add_idea(sum, measured);
     const bool by_views = edit::edits_by_views(request, work.adds ? edit::EditMode::Add : edit::EditMode::Modify);
     const int steps = std::max(0, edit::loop_steps(request, by_views) - work.first_iteration);
-    if (by_views) add(redrawn_steps(request, steps), measured.redraw);
-    else add(steps, measured.guidance);
-    add(steps * static_cast<double>(work.rows) / measured.rows, measured.raster);
-    const double follow = measured.follow >= 0 ? measured.follow : UsualFollow;
-    add(by_views ? 0 : follow * refreshes(request, work.first_iteration) + looks_again(request, work.adds),
-        measured.refresh >= 0 ? measured.refresh : measured.question);
-    add(1, measured.finish >= 0 ? measured.finish : 0);
-    return known ? seconds : -1;
+    const double size = static_cast<double>(work.rows) / measured.rows;
+    sum.add(size, std::max(0.0, measured.begin));
+    if (by_views) {
+        const double views = redrawn_views(request, work.first_iteration);
+        sum.add(views, std::max(0.0, measured.redraw_view), std::max(0.0, measured.redraw_view_tflop));
+        sum.add(views * request.view_steps, measured.redraw, measured.redraw_tflop);
+    } else {
+        sum.add(steps, measured.guidance, measured.guidance_tflop);
+        const double follow = measured.follow >= 0 ? measured.follow : UsualFollow;
+        sum.add(follow * refreshes(request, work.first_iteration) + looks_again(request, work.adds),
+                measured.refresh >= 0 ? measured.refresh : measured.question, measured.question_tflop);
+    }
+    sum.add(steps * size, measured.raster);
+    // Before it was seen: every view drawn before and after, which is about a step of the loop.
+    sum.add(1, measured.finish >= 0 ? measured.finish : request.views * size * std::max(0.0, measured.raster));
+    return sum.cost();
+}
+
+double estimated_memory_mb(const Measured& measured, const PlannedMemory& memory) {
+    const double load = measured.load_mb >= 0 ? measured.load_mb : LibrariesMb + memory.weights;
+    const double begin = memory.loaded ? memory.before_load : memory.process;
+    return std::max(memory.process, begin + load + std::max(0.0, measured.work_mb) + scene_work_mb(memory));
+}
+
+void measure_memory(Measured& measured, const PlannedMemory& memory, double after_load, double peak) {
+    measured.work_mb = std::max(measured.work_mb, std::max(0.0, peak - after_load - scene_work_mb(memory)));
 }
 
 void measure_search(Measured& measured, const EditJob& job, double seconds) {
     const auto asked = static_cast<double>(job.questions());
     if (asked <= 0) return;
     const double words = words_of_search(job.located().mode == edit::EditMode::Add);
+    const auto use = job.times().networks("locate");
     measured.question = seconds / asked;
+    measured.question_tflop = tflop_of(use) / asked;
     measured.rounds = asked / words / job.recipe().request.views;
+    if (use.unet == 0) return;
+    measured.pass = seconds / static_cast<double>(use.unet);
+    measured.pass_tflop = tflop_of(use) / static_cast<double>(use.unet);
 }
+
+namespace {
+
+double stage_seconds(const edit::EditResult& result, const char* stage) {
+    const auto found = result.seconds.find(stage);
+    return found == result.seconds.end() ? 0 : found->second;
+}
+
+/// Per step, beside the model's part.
+double raster_seconds(const edit::EditResult& result) {
+    double sum = 0;
+    for (const char* stage : {"render", "preserve", "backward", "optimise", "densify", "snapshot"}) sum += stage_seconds(result, stage);
+    return sum;
+}
+
+/// A whole run knows the sum of its parts, and keeps the proportion of what is known of them.
+void measure_redrawing(Measured& measured, const EditJob& job) {
+    const auto& result = job.result();
+    const double views = static_cast<double>(result.redrawn_views), steps = job.recipe().request.view_steps;
+    if (views <= 0) return;
+    const double seconds = stage_seconds(result, "guidance") / views;
+    if (measured.redraw < 0 || measured.redraw_view < 0) {
+        measured.redraw = seconds / steps;
+        measured.redraw_view = 0;
+        measured.redraw_tflop = tflop_of(job.edited().use) / views / steps;
+        measured.redraw_view_tflop = 0;
+        return;
+    }
+    const double expected = measured.redraw_view + steps * measured.redraw;
+    if (expected <= 0) return;
+    measured.redraw *= seconds / expected;
+    measured.redraw_view *= seconds / expected;
+}
+
+void measure_pulling(Measured& measured, const EditJob& job, int steps) {
+    const auto& result = job.result();
+    const auto& request = job.recipe().request;
+    measured.guidance = stage_seconds(result, "guidance") / steps;
+    const auto refreshed = static_cast<double>(result.masks_refreshed);
+    const bool adds = job.located().mode == edit::EditMode::Add;
+    const double looks = stage_seconds(result, "dynamic_mask") > 0 ? refreshed + looks_again(request, adds) : 0;
+    const double masks = looks * std::max(0.0, measured.question_tflop);
+    if (looks <= 0 || measured.question_tflop >= 0) measured.guidance_tflop = std::max(0.0, tflop_of(job.edited().use) - masks) / steps;
+    const double could = refreshes(request, request.iterations - steps);
+    if (refreshed <= 0 || could <= 0 || result.stopped) return;
+    measured.follow = refreshed / could;
+    measured.refresh = stage_seconds(result, "dynamic_mask") / (refreshed + looks_again(request, adds));
+}
+
+}  // namespace
 
 void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
     const auto& result = job.result();
     const int steps = static_cast<int>(result.history.size());
     if (steps < least_steps || steps == 0) return;
-    const auto seconds = [&](const char* stage) {
-        const auto found = result.seconds.find(stage);
-        return found == result.seconds.end() ? 0 : found->second;
-    };
-    const auto& request = job.recipe().request;
-    const bool by_views = led_by_views(job);
-    if (by_views) measured.redraw = seconds("guidance") / redrawn_steps(request, steps);
-    else measured.guidance = seconds("guidance") / steps;
-    measured.raster = (seconds("render") + seconds("preserve") + seconds("backward") + seconds("optimise") +
-                       seconds("densify") + seconds("snapshot")) / steps;
+    if (led_by_views(job)) measure_redrawing(measured, job);
+    else measure_pulling(measured, job, steps);
+    measured.raster = raster_seconds(result) / steps;
     measured.rows = static_cast<double>(std::max<std::size_t>(1, job.scene().gaussians.size()));
-    if (by_views) return;
-    const double could = refreshes(request, request.iterations - steps);
-    if (result.masks_refreshed == 0 || could <= 0 || result.stopped) return;
-    const auto refreshed = static_cast<double>(result.masks_refreshed);
-    const bool adds = job.located().mode == edit::EditMode::Add;
-    measured.follow = refreshed / could;
-    measured.refresh = seconds("dynamic_mask") / (refreshed + looks_again(request, adds));
 }
 
 bool steps_measured(const Measured& measured, const EditJob& job) {
-    return (led_by_views(job) ? measured.redraw : measured.guidance) >= 0;
+    return led_by_views(job) ? measured.redraw >= 0 && measured.redraw_view >= 0 : measured.guidance >= 0;
 }
+
+namespace {
+
+/// Redraws with one step and with three: what a step takes, and what a view takes beside its steps.
+void probe_views(Measured& measured, EditJob& job) {
+    constexpr double pixels_at_once = 8 * 64 * 64;   // as many as the model takes in one piece
+    constexpr int more_steps = 3;
+    const double side = job.model().image_size();
+    const int views = std::clamp(static_cast<int>(pixels_at_once / (side * side)), 1, job.recipe().request.edited_views);
+    struct Probe {
+        double seconds, tflop, count;
+    };
+    const auto redraw = [&](int steps, int view_steps) {
+        job.probe({steps, views, view_steps});
+        return Probe{stage_seconds(job.result(), "guidance"), tflop_of(job.edited().use), static_cast<double>(job.result().redrawn_views)};
+    };
+    redraw(1, 1);   // the first pass of a model takes longer than the others
+    const Probe many = redraw(1, more_steps), one = redraw(ProbeSteps, 1);
+    if (one.count <= 0 || many.count != one.count) return;
+    const auto step = [&](double of_many, double of_one) { return std::max(0.0, (of_many - of_one) / (more_steps - 1) / one.count); };
+    measured.redraw = step(many.seconds, one.seconds);
+    measured.redraw_tflop = step(many.tflop, one.tflop);
+    measured.redraw_view = std::max(0.0, one.seconds / one.count - measured.redraw);
+    measured.redraw_view_tflop = std::max(0.0, one.tflop / one.count - measured.redraw_tflop);
+}
+
+}  // namespace
 
 void measure_steps(Measured& measured, EditJob& job) {
     try {
-        job.probe(1);   // the first step of a model takes longer than the others
-        job.probe(ProbeSteps);
-        measure_loop(measured, job, ProbeSteps);
+        if (led_by_views(job)) {
+            probe_views(measured, job);
+        } else {
+            job.probe({1});
+            job.probe({ProbeSteps});
+            measure_pulling(measured, job, static_cast<int>(job.result().history.size()));
+        }
+        const auto& result = job.result();
+        const double raster = raster_seconds(result);
+        measured.raster = raster / std::max<std::size_t>(1, result.history.size());
+        measured.begin = std::max(0.0, job.edited().seconds - raster - stage_seconds(result, "guidance"));
+        measured.rows = static_cast<double>(std::max<std::size_t>(1, job.scene().gaussians.size()));
     } catch (const Error& error) {
         if (error.code() == ErrorCode::Cancelled) throw;   // else: the edit itself will say what is wrong
     }

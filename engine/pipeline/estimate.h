@@ -1,4 +1,4 @@
-// How long an edit will take, from what its parts took on this machine.
+// What an edit will take, from what its parts took on this machine.
 #pragma once
 
 #include <cstddef>
@@ -8,39 +8,57 @@
 
 namespace gse::pipeline {
 
-/// Seconds that parts of the work took with one model and one size of pictures; negative = not measured yet.
+/// What parts of the work took with one model and one size of pictures; negative = not measured yet. Seconds, and 10^12
+/// operations of the networks where the name says so.
 struct Measured {
-    double load = -1;        // reading the model
-    double question = -1;    // one picture searched for one word
-    double rounds = -1;      // how often all views were searched: moving in on what was found means once more
-    double idea = -1;        // the pictures before the edit
-    double guidance = -1;    // the model's part of a step
-    double redraw = -1;      // one denoising step of one redrawn view, with its share of encoding and decoding
-    double raster = -1;      // the rest of a step, for `rows` splats
+    double load = -1, load_mb = -1;
+    double work_mb = -1;
+    double question = -1, question_tflop = -1;
+    double rounds = -1;
+    double pass = -1, pass_tflop = -1;
+    double idea = -1, idea_tflop = -1;
+    double begin = -1;
+    double guidance = -1, guidance_tflop = -1;
+    double redraw = -1, redraw_tflop = -1;
+    double redraw_view = -1, redraw_view_tflop = -1;
+    double raster = -1;
     double rows = 1;
-    double refresh = -1;     // one mask that follows the edit
-    double follow = -1;      // how many of the masks that could have followed did: a view is only looked at when its turn comes
-    double finish = -1;      // checking and packing the result
-    double tune_step = -1;   // learning the scene
+    double refresh = -1;
+    double follow = -1;
+    double finish = -1;
+    double tune_step = -1, tune_step_tflop = -1;
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
-        f("load", self.load, "Reading the model.", Range{-1, 1e6});
-        f("question", self.question, "One picture searched for one word.", Range{-1, 1e6});
-        f("rounds", self.rounds, "How often all views were searched.", Range{-1, 100});
-        f("idea", self.idea, "The pictures before the edit.", Range{-1, 1e6});
-        f("guidance", self.guidance, "The model's part of a step.", Range{-1, 1e6});
-        f("redraw", self.redraw, "One denoising step of one redrawn view.", Range{-1, 1e6});
-        f("raster", self.raster, "The rest of a step.", Range{-1, 1e6});
+        constexpr Range any{-1, 1e9};
+        f("load", self.load, "Reading the model.", any);
+        f("load_mb", self.load_mb, "Memory that the loaded model takes.", any);
+        f("work_mb", self.work_mb, "Memory that a search or an edit takes beside the model and the scene.", any);
+        f("question", self.question, "One picture searched for one word.", any);
+        f("question_tflop", self.question_tflop, "Operations of that.", any);
+        f("rounds", self.rounds, "How often all views were searched: moving in on what was found means once more.", any);
+        f("pass", self.pass, "One pass of the UNet over one picture, in a search.", any);
+        f("pass_tflop", self.pass_tflop, "Operations of that.", any);
+        f("idea", self.idea, "The pictures before the edit.", any);
+        f("idea_tflop", self.idea_tflop, "Operations of that.", any);
+        f("begin", self.begin, "What the loop does before its first step.", any);
+        f("guidance", self.guidance, "The model's part of a step.", any);
+        f("guidance_tflop", self.guidance_tflop, "Operations of that.", any);
+        f("redraw", self.redraw, "One denoising step of one redrawn view.", any);
+        f("redraw_tflop", self.redraw_tflop, "Operations of that.", any);
+        f("redraw_view", self.redraw_view, "One redrawn view beside its steps: encoding and decoding.", any);
+        f("redraw_view_tflop", self.redraw_view_tflop, "Operations of that.", any);
+        f("raster", self.raster, "The rest of a step.", any);
         f("rows", self.rows, "Splats of the scene that was measured.", Range{1, 1e12});
-        f("refresh", self.refresh, "One mask that follows the edit.", Range{-1, 1e6});
-        f("follow", self.follow, "Share of the masks that could have followed and did.", Range{-1, 10});
-        f("finish", self.finish, "Checking and packing the result.", Range{-1, 1e6});
-        f("tune_step", self.tune_step, "One step of learning the scene.", Range{-1, 1e6});
+        f("refresh", self.refresh, "One mask that follows the edit.", any);
+        f("follow", self.follow, "Share of the masks that could have followed and did: a view is only looked at when its turn comes.", any);
+        f("finish", self.finish, "Checking and packing the result.", any);
+        f("tune_step", self.tune_step, "One step of learning the scene.", any);
+        f("tune_step_tflop", self.tune_step_tflop, "Operations of that, without gradients.", any);
     }
 };
 
-/// What decides about an edit's time besides its request.
+/// What decides about an edit's cost besides its request.
 struct PlannedWork {
     bool loaded = false;           // the model is in memory
     bool located = false;          // the search is done
@@ -51,16 +69,37 @@ struct PlannedWork {
     int first_iteration = 0;
 };
 
-/// Seconds until the result is there; negative = a part that is needed has not been measured.
-double estimated_seconds(const Measured& measured, const edit::EditRequest& request, const PlannedWork& work);
+/// Until the result is there; negative = a part that is needed has not been measured.
+struct Cost {
+    double seconds = -1;
+    double tflop = -1;             // of the networks' forward passes
+};
+Cost estimated_cost(const Measured& measured, const edit::EditRequest& request, const PlannedWork& work);
+
+/// What decides about an edit's memory, in MB.
+struct PlannedMemory {
+    double process = 0;            // of this process now
+    bool loaded = false;           // with the model in it,
+    double before_load = 0;        // and as it was before that
+    double weights = 0;            // of the model's files: says what loading takes until it was measured
+    double scene = 0;              // of the splats
+    double labelled_share = 0;     // of them
+    std::size_t snapshots = 0;     // kept at most
+};
+/// The most that the process will hold.
+double estimated_memory_mb(const Measured& measured, const PlannedMemory& memory);
+/// What a job tells whose peak was so high; `after_load` is of the process before it began, with the model in it.
+void measure_memory(Measured& measured, const PlannedMemory& memory, double after_load, double peak);
 
 /// What a finished search tells; `seconds` of the whole search.
 void measure_search(Measured& measured, const EditJob& job, double seconds);
-/// What a run of the loop tells; nothing when it was shorter than that.
+/// What a run of the loop tells; nothing when it was shorter than that. Where views led it, `measured` may hold what is known
+/// of its parts.
 void measure_loop(Measured& measured, const EditJob& job, int least_steps);
 /// Whether the steps of the job's loop were measured, by the method it is led by.
 bool steps_measured(const Measured& measured, const EditJob& job);
-/// Runs a few steps of the loop for their time, the result is dropped; nothing where the loop cannot run.
+/// Runs a few steps of the loop, or redraws a few views, for their time; the result is dropped. Nothing where the loop cannot
+/// run.
 void measure_steps(Measured& measured, EditJob& job);
 
 }  // namespace gse::pipeline

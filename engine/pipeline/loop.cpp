@@ -1,7 +1,10 @@
 // Puts guidance, masks and loop together.
 #include "engine/pipeline/loop.h"
 
+#include <algorithm>
+
 #include "engine/edit/grabcut_segmenter.h"
+#include "engine/pipeline/neural_loader.h"
 
 namespace gse::pipeline {
 namespace {
@@ -11,6 +14,13 @@ std::string dynamic_word(const Located& located, const edit::EditRequest& reques
     const auto& result = located.result;
     const bool named = edit::has_word(request.prompt, result.word);
     return result.mode == edit::EditMode::Modify && named ? result.word : request.target;
+}
+
+/// A sheet takes the place of the one of its round.
+void keep(std::vector<edit::ViewTargets>& rounds, const edit::ViewTargets& sheet) {
+    const auto found = std::find_if(rounds.begin(), rounds.end(), [&](const auto& round) { return round.round == sheet.round; });
+    if (found == rounds.end()) rounds.push_back(sheet);
+    else *found = sheet;
 }
 
 }  // namespace
@@ -27,6 +37,7 @@ edit::EditPlan plan_of(Workplace& workplace, const Located& located, const EditR
 
 Edited edit_scene(Workplace& workplace, const Located& located, const edit::EditPlan& plan, const EditRecipe& recipe,
                   const EditObserver& observer, const JobControl& control) {
+    const auto use_before = network_use();
     const auto& model = workplace.model();
     const auto& request = recipe.request;
     const auto prompt = edit::as_told(request.prompt);
@@ -45,8 +56,15 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
     tools.segmenter = segmenter.get();
     tools.word = dynamic_word(located, request);
     tools.views = views.get();
+    tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings).dump();
     Edited edited;
+    tools.targets = [&](const edit::ViewTargets& sheet) {
+        keep(edited.targets, sheet);
+        if (observer.targets) observer.targets(sheet);
+    };
+    tools.target_orders = observer.target_orders;
     edited.result = edit::run_edit(workplace.scene().gaussians, plan, request, tools);
+    edited.use = network_use() - use_before;
     edited.drawn = drawable(edited.result.set);
     edited.key = located.key + fields_to_json(static_cast<const edit::LoopSettings&>(request)).dump() +
                  fields_to_json(recipe.guidance).dump();

@@ -17,14 +17,19 @@ struct EditObserver {
     double snapshot_seconds = 0;   // above 0: time between snapshots, instead of the request's iterations
     edit::IterationCallback iteration;
     std::optional<edit::EditSnapshot> start = {};   // goes on from there
-    std::function<std::optional<std::vector<std::uint8_t>>()> new_label = {};   // see edit::EditTools
+    std::function<std::optional<std::vector<std::uint8_t>>()> new_label = {};   // these three: see edit::EditTools
+    std::function<void(const edit::ViewTargets&)> targets = {};
+    std::function<std::vector<edit::TargetOrder>()> target_orders = {};
 };
 
 /// What became of the scene. A value.
 struct Edited {
     edit::EditResult result;
     GaussianSet drawn;         // the result without what cannot be drawn
+    std::vector<edit::ViewTargets> targets;   // of view guidance: every round that was fitted, as it was in the end
     std::string key;           // of all that it follows from, beside scene, model and what the artist did meanwhile
+    neural::NetworkUse use;    // what the loop has asked for
+    double seconds = 0;        // that it took, with what the artist was waited for
 };
 
 /// The guidance's settings with the sentence before the edit, worked out from the request where none is given.

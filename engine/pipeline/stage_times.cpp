@@ -1,6 +1,8 @@
 // Wall time per stage.
 #include "engine/pipeline/stage_times.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -19,6 +21,11 @@ nlohmann::ordered_json use_json(const neural::NetworkUse& use) {
 
 }  // namespace
 
+std::string use_text(const neural::NetworkUse& use) {
+    return fmt::format("{} UNet, {} encoder and {} decoder passes, {:.{}f} TFLOP", use.unet, use.encoder, use.decoder, use.flop * 1e-12,
+                       use.flop < 1e12 ? 3 : use.flop < 1e14 ? 1 : 0);
+}
+
 void StageTimes::begin(const std::string& stage) {
     open_ = stage;
     start_ = now_seconds();
@@ -36,6 +43,13 @@ void StageTimes::end() {
 neural::NetworkUse StageTimes::networks() const {
     neural::NetworkUse total;
     for (const auto& [stage, use] : networks_) total += use;
+    return total;
+}
+
+neural::NetworkUse StageTimes::networks(const std::string& wanted) const {
+    neural::NetworkUse total;
+    for (const auto& [stage, use] : networks_)
+        if (stage == wanted) total += use;
     return total;
 }
 

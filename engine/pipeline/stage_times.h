@@ -10,6 +10,9 @@
 
 namespace gse::pipeline {
 
+/// "144 UNet, 16 encoder and 16 decoder passes, 0.17 TFLOP".
+std::string use_text(const neural::NetworkUse& use);
+
 /// Seconds and network passes per stage, in order of first use. A stage begins and ends on one thread.
 class StageTimes {
 public:
@@ -21,6 +24,7 @@ public:
     /// Passes over single pictures and 10^12 operations, per stage that asked for any and in total.
     nlohmann::ordered_json networks_json() const;
     neural::NetworkUse networks() const;   // of all stages
+    neural::NetworkUse networks(const std::string& stage) const;
 
 private:
     std::vector<std::pair<std::string, double>> stages_;

@@ -96,6 +96,23 @@ class Edits(ProgramTest):
         for i in range(4):
             self.assertTrue((out / f"evidence/gate_{i}.png").is_file())
 
+    def test_redrawn_views_are_part_of_the_evidence(self):
+        out = self.folder / "views"
+        self.edit(out, "--method", "views", "--edited-views", 3, "--rounds", 2, "--fit-steps", 8, "--view-steps", 2)
+        report = json.loads((out / "report.json").read_text())
+        self.assertEqual([entry["round"] for entry in report["targets"]], [0, 1])
+        for entry in report["targets"]:
+            self.assertTrue((out / entry["file"]).read_bytes().startswith(b"\x89PNG"))
+            self.assertIn(entry["file"], report["files"])
+            self.assertEqual(len(entry["views"]), 3)
+            self.assertFalse(any(view["dropped"] or view["redrawn"] for view in entry["views"]))
+        networks = report["networks"]["edit"]
+        self.assertEqual(networks["decoder"], 2 * 3 * 2)   # rounds, views, before and after
+        self.assertGreater(networks["tflop"], 0)
+        plain = self.folder / "plain"
+        self.edit(plain)
+        self.assertNotIn("targets", json.loads((plain / "report.json").read_text()))
+
     def test_the_recipe_gives_the_same_bytes(self):
         # Names that are not UTF-8 have to come back from the recipe, too.
         first, second = self.folder / os.fsdecode(b"first \xff"), self.folder / "second"

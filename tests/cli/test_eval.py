@@ -76,6 +76,33 @@ class Evaluations(ProgramTest):
         self.assertEqual(scene["nonfinite"], 0)
         self.assertIsNone(report["summary"]["existing_weighted_iou"]["value"])
 
+    def test_bench_edit_draws_a_curve_per_method(self):
+        out = self.folder / "bench"
+        process = run("-q", "bench", "edit", "--out", out, "--edits", 2, "--kinds", "recolour material", "--seed", 55, *QUICK,
+                      "--edited-views", 2, "--view-steps", 2, "--fit-steps", 10, "--sds", "6 12", "--redraws", "2x2x1 3x1x2")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        report = json.loads((out / "edit.json").read_text())
+        curves = {curve["method"]: {point["name"]: point for point in curve["points"]} for curve in report["curves"]}
+        self.assertEqual(set(curves["sds"]), {"6", "12"})
+        self.assertEqual(set(curves["views"]), {"2x2x1", "3x1x2"})
+        self.assertEqual([name for points in curves.values() for name in points if points[name]["default"]], ["12", "2x2x1"])
+        self.assertIn("2x2x1", process.stdout)
+        ran = [point for points in curves.values() for point in points.values() if point["ran"] > 0]
+        for point in ran:
+            self.assertEqual(point["edits"], 2)
+            self.assertGreater(point["tflop"], 0)
+            self.assertGreater(point["seconds"], 0)
+            self.assertTrue(-1 <= point["error_removed"] <= 1)
+        if ran:
+            self.assertLess(curves["sds"]["6"]["tflop"], curves["sds"]["12"]["tflop"])
+            self.assertLess(curves["views"]["2x2x1"]["unet"], curves["views"]["3x1x2"]["unet"])   # 4 and 6 denoising steps
+        self.assertTrue((out / "pareto.png").read_bytes().startswith(b"\x89PNG"))
+        self.assertIn("pareto.png", report["files"])
+        for points in ["8x6", "8x6x1x", "eight"]:
+            self.assert_one_sentence(run("-q", "bench", "edit", "--out", self.folder / "none", "--redraws", points), "8x6x1")
+        self.assert_one_sentence(run("-q", "bench", "edit", "--out", self.folder / "none", "--redraws", "8000x6x1"), "edited_views")
+        self.assertFalse((self.folder / "none").exists())
+
     def test_wrong_settings_leave_nothing(self):
         out = self.folder / "out"
         self.assert_one_sentence(run("-q", "eval", "--out", out, "--kinds", "melt"), "melt")

@@ -15,6 +15,7 @@ void draw_views_panel(Context& context);
 void draw_export_panel(Context& context);
 void draw_settings_panel(Context& context);
 void draw_attention_panel(Context& context);
+void draw_targets_panel(Context& context);
 void draw_progress_panel(Context& context);
 void draw_log_panel(Context& context);
 

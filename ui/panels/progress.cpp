@@ -63,6 +63,20 @@ void draw_gate(Context& context) {
     if (!gate.verdict.empty()) coloured_text(gate.warns ? palette::Warning : palette::TextDim, gate.verdict);
 }
 
+/// What the running or last job has asked of the networks, and the way to what came of it.
+void draw_cost(Context& context) {
+    const auto& cost = context.model.cost;
+    if (cost.unet > 0) {
+        property(context, "Networks", fmt::format("{} UNet, {} encoder, {} decoder passes", count_text(cost.unet), count_text(cost.encoder),
+                                                  count_text(cost.decoder)));
+        note(context, "progress.networks");
+        property(context, "Arithmetic", tflop_text(cost.tflop));
+    }
+    if (context.model.target_rounds.empty()) return;
+    if (button(context, {.name = "progress.targets", .text = "Redrawn views", .tooltip = "What the scene is fitted to, view by view"}))
+        show_panel(context.state, PanelId::Targets);
+}
+
 std::string why_not_branch(const Context& context, int iteration) {
     if (const int steps = edit::planned_steps(context.request); steps <= iteration)
         return fmt::format("The edit has {} iterations: set more than {} to go on from here", steps, iteration);
@@ -182,6 +196,7 @@ void draw_progress_panel(Context& context) {
     if (beside) ImGui::BeginChild("job", {left, height}, false, ImGuiWindowFlags_NavFlattened);
     draw_result_notice(context, "progress");
     draw_job(context);
+    draw_cost(context);
     draw_snapshots(context);
     draw_gate(context);
     if (beside) {

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "engine/edit/method_fields.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/scene/strength.h"
 #include "ui/commands.h"
@@ -37,6 +38,7 @@ constexpr std::array<Group, 8> Groups{{{"views", "Views"},
 
 constexpr double LeastStrength = 0;
 constexpr std::array<const char*, 3> Modes{"auto", "modify", "add"};
+constexpr std::array<const char*, 3> Methods{"auto", "views", "sds"};
 constexpr std::array<const char*, 3> ModeHelp{"Modify when the scene shows the target already, else add it.",
                                               "Change what is there: colours, material, shape of the source.",
                                               "Put something new there, such as a hat on the bear."};
@@ -130,6 +132,39 @@ void draw_mode(Context& context) {
         tooltip(ModeHelp[static_cast<std::size_t>(mode)]);
 }
 
+void draw_method(Context& context) {
+    constexpr const char* help =
+        "auto: views where something changes, sds where something is added.\nviews: the model redraws some views, the scene is fitted to "
+        "them.\nsds: the model pulls at every step, the paper's way.";
+    int method = static_cast<int>(std::find(Methods.begin(), Methods.end(), context.request.method) - Methods.begin());
+    row_label(context, "Method", help);
+    if (segmented(context, "prompt.method", Methods, method)) {
+        context.request.method = Methods[static_cast<std::size_t>(method)];
+        context.request_changed = true;
+    }
+    tooltip(help);
+}
+
+/// The steps that the method will run: of the loop, or of the fits to redrawn views.
+void draw_iterations(Context& context) {
+    auto& request = context.request;
+    const bool by_views = edit::planned_by_views(request);
+    const std::string help =
+        by_views ? fmt::format("Steps of fitting to the redrawn views: {} round{} of {}. Rounds and views are under \"All settings\".",
+                               request.rounds, request.rounds == 1 ? "" : "s", request.fit_steps)
+                 : "Optimisation steps. More = closer to the sentence, and longer.";
+    row_label(context, "Iterations", help);
+    const int least = 1;
+    int steps = edit::loop_steps(request, by_views);
+    if (ImGui::DragInt("##prompt.iterations", &steps, by_views ? 1.0f : 5.0f, least, 100000, "%d", ImGuiSliderFlags_AlwaysClamp)) {
+        if (by_views) request.fit_steps = std::max(1, (steps + request.rounds - 1) / request.rounds);
+        else request.iterations = steps;
+        context.request_changed = true;
+    }
+    note(context, "prompt.iterations");
+    tooltip(help);
+}
+
 void draw_strength(Context& context) {
     row_label(context, "Strength",
               "How much of the edit is kept. 1: what the model made of it. Less: between before and after. More: colours go "
@@ -140,12 +175,7 @@ void draw_strength(Context& context) {
     if (!std::isfinite(context.request.strength)) context.request.strength = before;   // "1e999" was typed
     context.request.strength = std::clamp(context.request.strength, LeastStrength, MostStrength);
     note(context, "prompt.strength");
-    row_label(context, "Iterations", "Optimisation steps. More = closer to the sentence, and longer.");
-    const int least = 1;
-    if (ImGui::DragInt("##prompt.iterations", &context.request.iterations, 5, least, 100000, "%d",
-                       ImGuiSliderFlags_AlwaysClamp))
-        context.request_changed = true;
-    note(context, "prompt.iterations");
+    draw_iterations(context);
 }
 
 void draw_seed(Context& context) {
@@ -180,6 +210,7 @@ std::string estimate_text(const Estimate& estimate) {
     if (estimate.seconds < 0 && estimate.memory_mb < 0) return {};
     std::string text = estimate.seconds >= 0 ? fmt::format("Estimate: about {}", duration_text(estimate.seconds))
                                              : "Time: measured with the first search";
+    if (estimate.tflop >= 0) text += fmt::format(", {}", tflop_text(estimate.tflop));
     if (estimate.memory_mb < 0) return text;
     text += ", " + bytes_text(estimate.memory_mb * 1e6);
     if (estimate.memory_free_mb >= 0)
@@ -250,6 +281,11 @@ void back_to_defaults(Context& context) {
 
 void nothing_before(const char*, bool&) {}
 
+/// Which settings count for nothing with the method that the edit is led by.
+UnusedField unused_by_method(const Context& context) {
+    return [by_views = edit::planned_by_views(context.request)](const char* name) { return edit::why_unused(name, by_views); };
+}
+
 /// Fields of the request under the headers of their groups.
 void draw_request_groups(Context& context) {
     bool in_groups = false, tree_open = false;
@@ -264,14 +300,16 @@ void draw_request_groups(Context& context) {
         shown = in_groups && tree_open;
     };
     const auto all = [](const char*, const char*) { return true; };
-    context.request_changed |= field_rows(context, "request", context.request, all, before, context.model.request_defaults);
+    context.request_changed |=
+        field_rows(context, "request", context.request, all, before, context.model.request_defaults, unused_by_method(context));
     if (tree_open) ImGui::TreePop();
 }
 
 /// Fields of the model's settings that `wanted` lets through, with the prefix they have in a recipe.
 template <class P, class Wanted>
 void model_rows(Context& context, const char* prefix, P& part, const P& standard, Wanted&& wanted) {
-    context.model_settings_changed |= field_rows(context, prefix, part, wanted, nothing_before, standard);
+    context.model_settings_changed |=
+        field_rows(context, prefix, part, wanted, nothing_before, standard, unused_by_method(context));
 }
 
 template <class Wanted>
@@ -307,8 +345,8 @@ void draw_found_settings(Context& context, const std::string& wanted) {
         any |= match;
         return match;
     };
-    context.request_changed |=
-        field_rows(context, "request", context.request, matches, nothing_before, context.model.request_defaults);
+    context.request_changed |= field_rows(context, "request", context.request, matches, nothing_before,
+                                          context.model.request_defaults, unused_by_method(context));
     draw_model_groups(context, false, matches);
     if (!any) dim_text("No setting is called so.");
 }
@@ -323,6 +361,8 @@ void draw_advanced(Context& context) {
                          .text = "Back to the defaults",
                          .tooltip = "All settings below; words and seed stay"}))
         back_to_defaults(context);
+    dim_text(fmt::format("In brackets: no effect while the edit is led by {}.",
+                         edit::planned_by_views(context.request) ? "redrawn views" : "the model's pull (method sds)"));
     if (!wanted.empty()) return draw_found_settings(context, wanted);
     draw_request_groups(context);
     draw_model_groups(context, true, [](const char*, const char*) { return true; });
@@ -333,6 +373,7 @@ void draw_words(Context& context) {
     draw_sentence(context);
     ImGui::Spacing();
     draw_mode(context);
+    draw_method(context);
     draw_strength(context);
     draw_seed(context);
     draw_model_settings(context);

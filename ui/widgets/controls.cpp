@@ -318,6 +318,10 @@ std::string bytes_text(double bytes) {
     return fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
+std::string tflop_text(double tflop) {
+    return fmt::format("{:.{}f} TFLOP", tflop, tflop < 0.1 ? 3 : tflop < 1 ? 2 : tflop < 100 ? 1 : 0);
+}
+
 std::string percent_text(double share) { return fmt::format("{:.0f} %", share * 100); }
 
 void plain_text(std::string_view text) { put_text(text); }

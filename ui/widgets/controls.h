@@ -72,6 +72,7 @@ void end_notice();
 std::string count_text(std::size_t count);                     // "1 234 567"
 std::string duration_text(double seconds);                     // "7 min 05 s"
 std::string bytes_text(double bytes);                          // "1.7 GB"
+std::string tflop_text(double tflop);                        // "0.17 TFLOP", "240 TFLOP"
 std::string percent_text(double share);                        // "43 %"
 std::string shortened(std::string_view text, float width_px);  // middle replaced by ... to fit
 

@@ -18,13 +18,19 @@ constexpr double SliderSpan = 4.0;  // ranges up to this wide get a slider, wide
 std::string identity(const FieldRow& row) { return fmt::format("##{}.{}", row.prefix, row.name); }
 
 template <class T>
-std::string help_text(const FieldRow& row, const T& standard) {
+std::string default_text(const FieldRow& row, const T& standard) {
     const char* whose = row.stated ? "Default of the model" : "Default";
     if constexpr (std::is_same_v<T, bool>)
         return fmt::format("{}\n{}: {}.", row.help, whose, standard ? "on" : "off");
     if constexpr (std::is_same_v<T, std::string>)
         return standard.empty() ? std::string(row.help) : fmt::format("{}\n{}: {}.", row.help, whose, standard);
     return fmt::format("{}\n{}: {}. Right click: back to it.", row.help, whose, standard);
+}
+
+template <class T>
+std::string help_text(const FieldRow& row, const T& standard) {
+    const std::string text = default_text(row, standard);
+    return row.unused.empty() ? text : fmt::format("{}\n{}", row.unused, text);
 }
 
 /// Label, and the reset by right click on the control that was drawn last.
@@ -40,7 +46,8 @@ bool finish(Context& context, const FieldRow& row, T& value, const T& standard) 
 template <class T>
 void label_of(Context& context, const FieldRow& row, const T& value, const T& standard) {
     const bool changed = value != standard;
-    row_label(context, (changed ? "* " : "") + field_label(row.name), help_text(row, standard));
+    const std::string label = fmt::format("{}{}", changed ? "* " : "", field_label(row.name));
+    row_label(context, row.unused.empty() ? label : fmt::format("({})", label), help_text(row, standard));
 }
 
 const char* number_format(double size) {

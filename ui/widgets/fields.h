@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "engine/base/fields.h"
 #include "ui/context.h"
@@ -17,7 +19,11 @@ struct FieldRow {
     const char* help;
     std::optional<Range> range;
     bool stated = false;   // the default is what the model states, another than the program's
+    std::string_view unused = {};   // why it has no effect now; empty = it has
 };
+
+/// Why the field of that name has no effect now; empty = it has.
+using UnusedField = std::function<std::string_view(const char* name)>;
 
 /// One row each: label with help, control, right click = back to `standard`. True when the value changed.
 bool field_row(Context& context, const FieldRow& row, bool& value, bool standard);
@@ -52,7 +58,7 @@ Value value_named(const P& parameters, const char* name) {
 /// whether the rows that follow are shown (a folded group). `standard` has the values to go back to.
 template <class P, class Wanted, class Before>
 bool field_rows(Context& context, const char* prefix, P& parameters, Wanted&& wanted, Before&& before,
-                const P& standard = program_defaults<P>()) {
+                const P& standard = program_defaults<P>(), const UnusedField& unused = {}) {
     bool changed = false, shown = true;
     P::visit_fields(parameters, [&](const char* name, auto& value, const char* help, auto... range) {
         using Value = std::remove_reference_t<decltype(value)>;
@@ -61,6 +67,7 @@ bool field_rows(Context& context, const char* prefix, P& parameters, Wanted&& wa
         const auto fallback = value_named<Value>(standard, name);
         FieldRow row{prefix, name, help, std::nullopt};
         row.stated = fallback != value_named<Value>(program_defaults<P>(), name);
+        if (unused) row.unused = unused(name);
         if constexpr (sizeof...(range) == 1) row.range = (range, ...);
         changed |= field_row(context, row, value, fallback);
     });

@@ -35,6 +35,7 @@ const std::vector<Shot>& shots() {
         {"scene", Situation::Scene, {PanelId::Prompt, PanelId::Views, PanelId::Log}},
         {"located", Situation::Located, {PanelId::Labels, PanelId::History, PanelId::Attention}},
         {"editing", Situation::Editing, {PanelId::Prompt, PanelId::History, PanelId::Progress}},
+        {"targets", Situation::Editing, {PanelId::Prompt, PanelId::History, PanelId::Targets}},
         {"result", Situation::ResultWaiting, {PanelId::Scene, PanelId::Export, PanelId::Progress}},
         {"help", Situation::Scene, {}, [](Harness& harness) { harness.key(ui::key::F1); }},
         {"files",

@@ -236,6 +236,8 @@ void FakeApplication::make_work(bool running) {
         model_.gate.pictures.push_back(picture);
     }
     model_.gate.verdict = "The model shows the edit in 4 of 4 views.";
+    model_.cost = {144, 16, 16, 0.167};
+    make_targets();
     model_.job = {};
     model_.job.title = "Edit: a bear wearing a red hat";
     if (running) {
@@ -257,6 +259,28 @@ void FakeApplication::make_work(bool running) {
     model_.result_waiting = true;
 }
 
+/// Two rounds of eight views in blue; one of the last is dropped, one redrawn.
+void FakeApplication::make_targets() {
+    for (int round = 0; round < 2; ++round) {
+        ui::TargetRound shown{round, 2, {}};
+        for (std::size_t i = 0; i < 8; ++i) {
+            const auto& view = model_.attention[3 * i];
+            auto after = std::make_shared<Image>(*view.render);
+            for (std::size_t at = 0; at < after->pixel_count(); ++at)
+                if (view.map->data[at] > 0.2f) std::swap(after->data[at * 3], after->data[at * 3 + 2]);
+            shown.targets.push_back({3 * i, view.name, view.render, after, view.camera});
+        }
+        model_.target_rounds.push_back(std::move(shown));
+    }
+    model_.target_rounds.back().targets[2].dropped = true;
+    model_.target_rounds.back().targets[5].attempt = 1;
+}
+
+void FakeApplication::order_target(const edit::TargetOrder& order) {
+    constexpr std::array<const char*, 3> names{"accept", "drop", "redo"};
+    calls.push_back(fmt::format("order_target {} {} {}", order.round, order.view, names[static_cast<std::size_t>(order.choice)]));
+}
+
 void FakeApplication::make_rest() {
     model_.cannot_edit = "";
     model_.request.source = "bear";
@@ -266,7 +290,7 @@ void FakeApplication::make_rest() {
                              "grass", "dog", "made", "of", "stone"})
         model_.known_words.emplace_back(word);
     model_.words_known = true;
-    model_.estimate = {62, 850, 14200};
+    model_.estimate = {62, 0.42, 850, 14200};
     model_.models = {
         {"starter", "/usr/share/gseditpro/models/starter", "starter, 64 px", 48u << 20, true, "", true},
         {"stable-diffusion-v1-5", "/home/mira/ComfyUI/models/checkpoints/v1-5-pruned-emaonly.safetensors",

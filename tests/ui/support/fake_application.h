@@ -64,6 +64,8 @@ public:
     void pause(bool paused) override { calls.push_back(paused ? "pause" : "resume"); }
     void cancel() override { calls.push_back("cancel"); }
     void cancel_file_job() override { calls.push_back("cancel_file_job"); }
+    void order_target(const edit::TargetOrder& order) override;
+    void fit_to_targets() override { calls.push_back("fit_to_targets"); }
     void apply_result() override { calls.push_back("apply_result"); }
     void discard_result() override { calls.push_back("discard_result"); }
     void show_snapshot(int index) override { calls.push_back("show_snapshot " + std::to_string(index)); }
@@ -136,6 +138,7 @@ private:
     void make_scene();
     void make_attention();
     void make_work(bool running);
+    void make_targets();
     void make_rest();
 
     ui::ViewModel model_;

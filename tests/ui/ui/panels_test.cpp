@@ -46,7 +46,7 @@ void check_right_edges(const Harness& harness) {
         if (!rect.visible || rect.text_width <= 0) continue;
         for (const char* panel :
              {"panel.Prompt", "panel.Labels", "panel.Scene", "panel.Models", "panel.History", "panel.Views",
-              "panel.Export", "panel.Settings", "panel.Attention", "panel.Progress", "panel.Log"}) {
+              "panel.Export", "panel.Settings", "panel.Attention", "panel.Targets", "panel.Progress", "panel.Log"}) {
             const auto* place = harness.find(panel);
             if (place == nullptr) continue;
             const float x = rect.x + rect.width / 2, y = rect.y + rect.height / 2;

@@ -1,6 +1,7 @@
 // View guidance on a tiny random model: properties that hold for any weights, and what it asks of the networks.
 #include <cmath>
 
+#include "engine/edit/method_fields.h"
 #include "engine/neural/network_use.h"
 #include "engine/neural/view_guidance.h"
 #include "tests/unit/neural/tiny_model.h"
@@ -87,6 +88,28 @@ DOCTEST_TEST_CASE("redrawn views: repeatable, of the size that came in, and coun
     const auto start = thread_use();
     same.edit(views, input, {});
     DOCTEST_CHECK((thread_use() - start).unet == 2 * 3 * 2);
+}
+
+DOCTEST_TEST_CASE("redrawn views: settings of the guidance that are said to have no effect have none, the others do") {
+    const TinyModel model;
+    const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
+    const auto views = wall_views();
+    edit::RoundInput input;
+    input.steps = 2;
+    SdsParameters parameters;
+    parameters.before_prompt = "a bear";
+    const auto drawn = [&] { return DiffusionViews(bundle, "a red bear", parameters).edit(views, input, {}).images[0].data; };
+    const auto plain = drawn();
+    SdsParameters::visit_fields(parameters, [&](const char* name, auto& value, const char*, auto...) {
+        using Value = std::remove_reference_t<decltype(value)>;
+        const Value kept = value;
+        if constexpr (std::is_same_v<Value, bool>) value = !value;
+        else if constexpr (std::is_same_v<Value, double>) value = value / 2 + 0.1;
+        else value = value.empty() ? "a red hat" : "";
+        DOCTEST_CAPTURE(name);
+        DOCTEST_CHECK((drawn() == plain) == !edit::has_effect(name, true));
+        value = kept;
+    });
 }
 
 DOCTEST_TEST_CASE("redrawing views can be stopped") {

@@ -29,6 +29,10 @@ pipeline::PlannedWork located() {
     return work;
 }
 
+double seconds(const pipeline::Measured& measured, const edit::EditRequest& request, const pipeline::PlannedWork& work) {
+    return pipeline::estimated_cost(measured, request, work).seconds;
+}
+
 }  // namespace
 
 DOCTEST_TEST_CASE("an estimate is the sum of what is to be done") {
@@ -37,40 +41,96 @@ DOCTEST_TEST_CASE("an estimate is the sum of what is to be done") {
     request.views = 10;
     request.dynamic_mask = false;
     auto work = located();
-    DOCTEST_CHECK(pipeline::estimated_seconds(measured(), request, work) == doctest::Approx(4 + 100 * 0.06 + 1));
+    DOCTEST_CHECK(seconds(measured(), request, work) == doctest::Approx(4 + 100 * 0.06 + 1));
     work.shows_idea = false;
-    DOCTEST_CHECK(pipeline::estimated_seconds(measured(), request, work) == doctest::Approx(100 * 0.06 + 1));
+    DOCTEST_CHECK(seconds(measured(), request, work) == doctest::Approx(100 * 0.06 + 1));
     work.first_iteration = 60;   // a branch
-    DOCTEST_CHECK(pipeline::estimated_seconds(measured(), request, work) == doctest::Approx(40 * 0.06 + 1));
+    DOCTEST_CHECK(seconds(measured(), request, work) == doctest::Approx(40 * 0.06 + 1));
     work = located();
     work.rows = 3000;   // the model's part of a step stays
-    DOCTEST_CHECK(pipeline::estimated_seconds(measured(), request, work) == doctest::Approx(4 + 100 * 0.08 + 1));
+    DOCTEST_CHECK(seconds(measured(), request, work) == doctest::Approx(4 + 100 * 0.08 + 1));
     work = located();
     work.loaded = work.located = false;
     work.tune_steps = 10;
     // Ten views twice.
-    DOCTEST_CHECK(pipeline::estimated_seconds(measured(), request, work) ==
+    DOCTEST_CHECK(seconds(measured(), request, work) ==
                   doctest::Approx(3 + 3 + 20 * 0.1 + 4 + 100 * 0.06 + 1));
     request.dynamic_mask = true;   // half of the steps, each view once an eighth
     auto known = measured();
     known.follow = 0.5;
-    DOCTEST_CHECK(pipeline::estimated_seconds(known, request, located()) ==
+    DOCTEST_CHECK(seconds(known, request, located()) ==
                   doctest::Approx(4 + 100 * 0.06 + 20 * 0.1 + 1));
     known.refresh = 0.2;
-    DOCTEST_CHECK(pipeline::estimated_seconds(known, request, located()) ==
+    DOCTEST_CHECK(seconds(known, request, located()) ==
                   doctest::Approx(4 + 100 * 0.06 + 20 * 0.2 + 1));
+}
+
+DOCTEST_TEST_CASE("an estimate of redrawn views: what a view takes, and each of its steps, once per round") {
+    edit::EditRequest request;
+    request.method = "views";
+    request.rounds = 2;
+    request.edited_views = 8;
+    request.view_steps = 6;
+    request.fit_steps = 40;
+    auto known = measured();
+    known.redraw = 0.02;
+    known.redraw_tflop = 0.003;
+    known.redraw_view = 0.05;
+    known.redraw_view_tflop = 0.002;
+    known.begin = 0.5;
+    auto work = located();
+    work.shows_idea = false;
+    const double fit = 80 * 0.01, rest = 0.5 + 1;
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(16 * (0.05 + 6 * 0.02) + fit + rest));
+    DOCTEST_CHECK(pipeline::estimated_cost(known, request, work).tflop == doctest::Approx(16 * (0.002 + 6 * 0.003)));
+    work.first_iteration = 10;   // a branch goes on with what was redrawn
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(8 * (0.05 + 6 * 0.02) + 70 * 0.01 + rest));
+    work = located();   // the pictures before the edit, from a pass of the search
+    known.idea = -1;
+    known.pass = 0.01;
+    known.pass_tflop = 0.001;
+    constexpr double passes = 4 * 30 * 2;
+    DOCTEST_CHECK(seconds(known, request, work) ==
+                  doctest::Approx(passes * 0.01 + 16 * (0.05 + 6 * 0.02) + fit + rest));
+    DOCTEST_CHECK(pipeline::estimated_cost(known, request, work).tflop ==
+                  doctest::Approx(passes * 0.001 + 16 * (0.002 + 6 * 0.003)));
+    known.redraw = -1;
+    DOCTEST_CHECK(seconds(known, request, work) < 0);
+}
+
+DOCTEST_TEST_CASE("an estimate of memory: the process without the model, the model, the work, and what follows from the scene") {
+    pipeline::PlannedMemory memory;
+    memory.process = 100;
+    memory.weights = 50;
+    memory.scene = 10;
+    memory.labelled_share = 0.5;
+    memory.snapshots = 24;
+    const double scene = 8 * 10 + 24 * 10 * 0.5;
+    DOCTEST_CHECK(pipeline::estimated_memory_mb({}, memory) == doctest::Approx(100 + 300 + 50 + scene));
+    pipeline::Measured known;
+    known.load_mb = 400;
+    pipeline::measure_memory(known, memory, 500, 1000);
+    pipeline::measure_memory(known, memory, 500, 600);   // a smaller job changes nothing
+    DOCTEST_CHECK(known.work_mb == doctest::Approx(500 - scene));
+    DOCTEST_CHECK(pipeline::estimated_memory_mb(known, memory) == doctest::Approx(1000));
+    memory.loaded = true;
+    memory.before_load = 100;
+    memory.process = 700;
+    DOCTEST_CHECK(pipeline::estimated_memory_mb(known, memory) == doctest::Approx(1000));
+    memory.process = 1200;   // it holds more already
+    DOCTEST_CHECK(pipeline::estimated_memory_mb(known, memory) == doctest::Approx(1200));
 }
 
 DOCTEST_TEST_CASE("what was never measured is not guessed") {
     edit::EditRequest request;
-    DOCTEST_CHECK(pipeline::estimated_seconds({}, request, {}) < 0);
+    DOCTEST_CHECK(seconds({}, request, {}) < 0);
     auto known = measured();
     known.guidance = -1;
-    DOCTEST_CHECK(pipeline::estimated_seconds(known, request, located()) < 0);
+    DOCTEST_CHECK(seconds(known, request, located()) < 0);
     known = measured();
     known.load = -1;
-    DOCTEST_CHECK(pipeline::estimated_seconds(known, request, located()) > 0);   // it is loaded already
+    DOCTEST_CHECK(seconds(known, request, located()) > 0);   // it is loaded already
     auto work = located();
     work.loaded = false;
-    DOCTEST_CHECK(pipeline::estimated_seconds(known, request, work) < 0);
+    DOCTEST_CHECK(seconds(known, request, work) < 0);
 }

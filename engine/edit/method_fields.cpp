@@ -1,0 +1,35 @@
+// Two lists of names; a test changes every one of them and asks that nothing else changes.
+#include "engine/edit/method_fields.h"
+
+#include <algorithm>
+#include <array>
+
+namespace gse::edit {
+namespace {
+
+using Names = std::string_view;
+
+/// Of the gradient, its masks that follow the edit, and the pseudo ground truth. Growth comes once per round instead.
+constexpr std::array<Names, 20> GradientOnly{
+    "iterations",    "guidance_weight", "gate_guidance",  "preserve",    "l1",          "ssim",  "dynamic_mask",
+    "dynamic_from",  "dynamic_every",   "look_again",     "look_again_tau", "densify_from", "densify_until", "t_min",
+    "t_max_start",   "t_max_end",       "guidance_scale", "clamp",       "weight",      "sample_posterior"};
+constexpr std::array<Names, 6> ViewsOnly{"edited_views", "rounds",        "view_steps",
+                                         "fit_steps",    "view_strength", "view_guidance_scale"};
+
+template <std::size_t N>
+bool among(const std::array<Names, N>& names, std::string_view field) {
+    return std::find(names.begin(), names.end(), field) != names.end();
+}
+
+}  // namespace
+
+bool has_effect(std::string_view field, bool by_views) { return by_views ? !among(GradientOnly, field) : !among(ViewsOnly, field); }
+
+std::string_view why_unused(std::string_view field, bool by_views) {
+    if (has_effect(field, by_views)) return {};
+    return by_views ? "Has no effect now: views are redrawn and fitted to. It counts with method sds."
+                    : "Has no effect now: the model pulls at every step. It counts with method views.";
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,203 @@
+// Rounds, orders and the sheet of targets.
+#include "engine/edit/view_phase.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/edit/stage_timer.h"
+#include "engine/localize/clusters.h"
+
+namespace gse::edit {
+namespace {
+
+/// Every setting that the redrawn pictures follow from.
+std::string redraw_key(const EditRequest& request, const std::string& of_model) {
+    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, request.seed, request.rounds, request.edited_views,
+                       request.view_steps, request.view_strength, of_model);
+}
+
+bool same_camera(const Camera& a, const Camera& b) {
+    return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy &&
+           a.rotation == b.rotation && a.translation == b.translation;
+}
+
+std::shared_ptr<const Image> shown_copy(const Image& image) {
+    const int longer = std::max(image.width, image.height);
+    if (longer <= ShownSide) return std::make_shared<const Image>(image);
+    const auto side = [&](int pixels) { return std::max(1, pixels * ShownSide / longer); };
+    return std::make_shared<const Image>(localize::resize_image(image, side(image.width), side(image.height)));
+}
+
+std::ptrdiff_t index_of(const std::vector<std::size_t>& views, std::size_t view) {
+    const auto found = std::find(views.begin(), views.end(), view);
+    return found == views.end() ? -1 : found - views.begin();
+}
+
+}  // namespace
+
+ViewPhase::ViewPhase(const EditPlan& plan, const EditRequest& request, const EditTools& tools, const std::vector<Image>& originals,
+                     const DynamicMasks& masks)
+    : plan_(plan),
+      request_(request),
+      tools_(tools),
+      originals_(originals),
+      masks_(masks),
+      rounds_(plan, request, *tools.views),
+      key_(redraw_key(request, tools.redraw_key)) {}
+
+/// Whether the edit goes on in the middle of this round, with the same settings from the same cameras.
+bool ViewPhase::resumes(const RoundState& start, const std::vector<std::size_t>& visible) const {
+    if (start.key != key_ || start.round != tools_.start->iteration / request_.fit_steps) return false;
+    for (std::size_t i = 0; i < start.views.size(); ++i) {
+        const auto view = start.views[i];
+        if (view >= plan_.views.size() || index_of(visible, view) < 0) return false;
+        if (!same_camera((*start.begun)[i].view.camera, plan_.views[view].camera)) return false;
+    }
+    return true;
+}
+
+void ViewPhase::choose(const std::vector<std::size_t>& visible) {
+    const auto* start = tools_.start != nullptr ? tools_.start->round.get() : nullptr;
+    if (start == nullptr || !resumes(*start, visible)) {
+        std::vector<Mask> masks;
+        for (std::size_t v = 0; v < plan_.views.size(); ++v) masks.push_back(masks_.mask(v));
+        return rounds_.choose(visible, masks);
+    }
+    rounds_.resume(start->round, start->views);
+    for (std::size_t i = 0; i < start->views.size(); ++i) {
+        const auto view = start->views[i];
+        rounds_.replace(view, *start->edited[i], originals_[view], masks_.mask(view));
+    }
+    state_ = tools_.start->round;
+    begin_sheet();
+}
+
+std::vector<std::size_t> ViewPhase::fitted() const {
+    if (!state_) return rounds_.views();
+    std::vector<std::size_t> views;
+    for (std::size_t i = 0; i < state_->views.size(); ++i)
+        if (!state_->dropped[i]) views.push_back(state_->views[i]);
+    return views;
+}
+
+std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpans& rows, const raster::Settings& settings) {
+    const StageTimer timer(seconds_);
+    auto begun = std::make_shared<std::vector<RoundView>>();
+    for (const auto v : rounds_.views()) {
+        tools_.rasterizer.forward(rows, plan_.views[v].camera, settings, output_);
+        RoundView view{output_.colour, originals_[v], output_.depth, masks_.mask(v), plan_.views[v],
+                       plan_.view_words.empty() ? std::string() : plan_.view_words[v]};
+        for (Image* picture : {&view.rendered, &view.original})
+            for (auto& value : picture->data) value = std::clamp(value, 0.0f, 1.0f);
+        for (std::size_t i = 0; i < view.depth.data.size(); ++i)
+            view.depth.data[i] = output_.alpha.data[i] > 0.5f ? view.depth.data[i] / output_.alpha.data[i] : 0.0f;
+        begun->push_back(std::move(view));
+    }
+    auto scalars = rounds_.redraw(iteration, *begun, originals_, tools_.job);
+    std::erase_if(scalars, [](const auto& scalar) { return !std::isfinite(scalar.second); });
+    auto state = std::make_shared<RoundState>();
+    state->round = rounds_.round();
+    state->key = key_;
+    state->views = rounds_.views();
+    state->begun = begun;
+    for (const auto view : state->views) state->edited.push_back(std::make_shared<const Image>(rounds_.edited(view)));
+    state->attempts.assign(state->views.size(), 0);
+    state->dropped.assign(state->views.size(), false);
+    state_ = std::move(state);
+    redrawn_ += state_->views.size();
+    begin_sheet();
+    return scalars;
+}
+
+bool ViewPhase::ready(int iteration, const GaussianSpans& rows, const raster::Settings& settings,
+                      std::map<std::string, double>& scalars) {
+    const auto before = state_;
+    if (rounds_.begins(iteration)) scalars = redraw(iteration, rows, settings);
+    if (tools_.target_orders) take_orders();
+    if (state_ == before) return false;
+    const std::vector<bool> none(state_->views.size(), false);
+    return (before ? before->dropped : none) != state_->dropped;
+}
+
+/// As long as there are orders: an artist may think about what came of the last ones.
+void ViewPhase::take_orders() {
+    for (auto orders = tools_.target_orders(); !orders.empty(); orders = tools_.target_orders()) {
+        auto next = std::make_shared<RoundState>(*state_);
+        bool changed = false;
+        for (const auto& order : orders) changed |= follow(order, *next);
+        if (changed) state_ = std::move(next);
+        show_sheet();   // also where nothing has changed: the orders are done
+    }
+    if (tools_.job.stop_requested()) throw Error(ErrorCode::Cancelled, "the edit was stopped");
+}
+
+/// True when something has changed.
+bool ViewPhase::follow(const TargetOrder& order, RoundState& next) {
+    const auto found = order.round == next.round ? index_of(next.views, order.view) : -1;
+    if (found < 0) return false;   // of a round that is over
+    const auto index = static_cast<std::size_t>(found);
+    const bool drops = order.choice == TargetChoice::Drop;
+    if (drops && std::count(next.dropped.begin(), next.dropped.end(), false) <= 1) {
+        log::warning("the last redrawn view cannot be dropped: the scene is fitted to it");
+        return false;
+    }
+    const bool was_dropped = next.dropped[index];
+    next.dropped[index] = drops;
+    if (order.choice == TargetChoice::Redo) redo(index, next);
+    sheet_.views[index].dropped = next.dropped[index];
+    return order.choice == TargetChoice::Redo || was_dropped != drops;
+}
+
+void ViewPhase::redo(std::size_t index, RoundState& next) {
+    const StageTimer timer(seconds_);
+    const auto view = next.views[index];
+    ++next.attempts[index];
+    RoundView begun = (*next.begun)[index];
+    begun.mask = masks_.mask(view);
+    try {
+        rounds_.redo(view, begun, next.attempts[index], originals_[view], tools_.job);
+    } catch (const Error& error) {
+        if (error.code() == ErrorCode::Cancelled) throw;
+        return log::warning("{} could not be redrawn and stays as it is: {}", plan_.views[view].name, error.what());
+    }
+    ++redrawn_;
+    next.edited[index] = std::make_shared<const Image>(rounds_.edited(view));
+    sheet_.views[index].attempt = next.attempts[index];
+    refresh_sheet(index);
+}
+
+void ViewPhase::take_masks() {
+    if (!state_) return;
+    for (std::size_t i = 0; i < state_->views.size(); ++i) {
+        const auto view = state_->views[i];
+        rounds_.blend(view, originals_[view], masks_.mask(view));
+        refresh_sheet(i);
+    }
+    show_sheet();
+}
+
+void ViewPhase::begin_sheet() {
+    sheet_ = {state_->round, request_.rounds, {}};
+    for (std::size_t i = 0; i < state_->views.size(); ++i) {
+        sheet_.views.push_back(
+            {state_->views[i], shown_copy((*state_->begun)[i].rendered), {}, state_->attempts[i], state_->dropped[i]});
+        refresh_sheet(i);
+    }
+    show_sheet();
+}
+
+void ViewPhase::refresh_sheet(std::size_t index) {
+    Image target = rounds_.target(state_->views[index]);
+    for (auto& value : target.data) value = std::clamp(value, 0.0f, 1.0f);
+    sheet_.views[index].after = shown_copy(target);
+}
+
+void ViewPhase::show_sheet() const {
+    if (tools_.targets) tools_.targets(sheet_);
+}
+
+}  // namespace gse::edit

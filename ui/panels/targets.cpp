@@ -1,0 +1,176 @@
+// Targets: the views that the model has redrawn, as a contact sheet: what the scene is fitted to, and what the artist says of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/panels/panels.h"
+#include "ui/state.h"
+#include "ui/widgets/controls.h"
+
+namespace gse::ui {
+namespace {
+
+using edit::TargetChoice;
+
+/// The round that is looked at.
+const TargetRound& shown_round(Context& context) {
+    const auto& rounds = context.model.target_rounds;
+    auto& chosen = context.state.targets.chosen;
+    const auto found = std::find_if(rounds.begin(), rounds.end(), [&](const TargetRound& round) { return round.round == chosen; });
+    if (found == rounds.end()) chosen = -1;
+    return found == rounds.end() ? rounds.back() : *found;
+}
+
+std::string why_not_change(const Context& context, const TargetRound& round) {
+    if (!context.model.edit_running) return "The edit is over: branch from a snapshot to go on with other views";
+    if (round.round != context.model.target_rounds.back().round) return "This round is over";
+    return {};
+}
+
+void draw_picture(Context& context, const std::shared_ptr<const Image>& picture, float side, bool dropped) {
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const ImVec2 high(low.x + side, low.y + side);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    ImGui::Dummy({side, side});
+    list->AddRectFilled(low, high, palette::Sunken, context.em * 0.2f);
+    if (picture == nullptr || !ImGui::IsItemVisible()) return;
+    list->AddImage(imgui_texture(context.textures.texture(picture)), low, high, {0, 0}, {1, 1},
+                   dropped ? IM_COL32(255, 255, 255, 70) : IM_COL32_WHITE);
+}
+
+/// Render and target beside each other, larger while the mouse is on them.
+void draw_pair(Context& context, const TargetView& target, const std::string& name, float side) {
+    ImGui::BeginGroup();
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(1, 1));
+    draw_picture(context, target.before, side, target.dropped);
+    ImGui::SameLine();
+    draw_picture(context, target.after, side, target.dropped);
+    ImGui::PopStyleVar();
+    ImGui::EndGroup();
+    note(context, name);
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    if (target.ordered || target.dropped)
+        ImGui::GetWindowDrawList()->AddRect(low, high, target.ordered ? palette::Accent : palette::Warning, context.em * 0.2f, 0,
+                                            std::max(1.0f, context.em * 0.1f));
+    if (!ImGui::IsItemHovered() || target.after == nullptr || target.before == nullptr) return;
+    if (ImGui::IsMouseDoubleClicked(0)) return context.actions.set_camera(target.camera);
+    if (ImGui::IsAnyMouseDown()) return;
+    const float large = std::min(context.em * 15, ImGui::GetIO().DisplaySize.x * 0.3f);
+    ImGui::BeginTooltip();
+    for (const auto* picture : {&target.before, &target.after}) {
+        if (picture == &target.after) ImGui::SameLine();
+        ImGui::Image(imgui_texture(context.textures.texture(*picture)), {large, large});
+    }
+    plain_text("Left the scene, right what it is fitted to. Double click: look through it.");
+    ImGui::EndTooltip();
+}
+
+std::string state_text(const TargetView& target) {
+    std::string text = target.name;
+    if (target.attempt > 0) text += fmt::format(", redrawn {} more", target.attempt);
+    if (target.dropped) text += ", dropped";
+    return text;
+}
+
+/// What can be said about a view; off where `why` says so.
+void draw_choices(Context& context, const TargetRound& round, const TargetView& target, const std::string& name, const std::string& why) {
+    const auto order = [&](TargetChoice choice) { context.actions.order_target({round.round, target.view, choice}); };
+    const auto used = std::count_if(round.targets.begin(), round.targets.end(), [](const TargetView& other) { return !other.dropped; });
+    const std::string why_not_now = !why.empty() ? why : target.ordered ? "What was said before is being done" : "";
+    if (target.dropped) {
+        if (button(context, {.name = name + ".accept", .text = "Accept", .why_off = why_not_now, .tooltip = "The fit uses it again"}))
+            order(TargetChoice::Accept);
+    } else if (button(context, {.name = name + ".drop",
+                                .text = "Drop",
+                                .why_off = why_not_now.empty() && used <= 1 ? std::string_view("The fit needs one view at least") : why_not_now,
+                                .tooltip = "The fit does not use it any more"})) {
+        order(TargetChoice::Drop);
+    }
+    ImGui::SameLine();
+    if (button(context, {.name = name + ".redo",
+                         .text = "Redo",
+                         .why_off = why_not_now,
+                         .tooltip = "The model draws it once more, from another seed"}))
+        order(TargetChoice::Redo);
+}
+
+void draw_target(Context& context, const TargetRound& round, std::size_t index, float side, const std::string& why) {
+    const auto& target = round.targets[index];
+    const std::string name = fmt::format("targets.{}", index);
+    ImGui::PushID(static_cast<int>(index));
+    ImGui::BeginGroup();
+    draw_pair(context, target, name, side);
+    const std::string text = state_text(target);
+    dim_text(shortened(text, 2 * side));
+    draw_choices(context, round, target, name, why);
+    ImGui::EndGroup();
+    ImGui::PopID();
+}
+
+/// As many pairs beside each other as fit.
+void draw_sheet(Context& context, const TargetRound& round) {
+    const float gap = context.em * 0.6f, least = std::max(context.em * 4.2f, button_width("Accept") * 0.5f + button_width("Redo") * 0.5f + context.em * 0.5f);
+    if (ImGui::BeginChild("sheet", {0, 0}, false, ImGuiWindowFlags_NavFlattened)) {
+        const float width = ImGui::GetContentRegionAvail().x;
+        const int columns = std::max(1, static_cast<int>((width + gap) / (2 * least + gap)));
+        const float side = std::floor(std::min(context.em * 8, ((width + gap) / static_cast<float>(columns) - gap) * 0.5f - 1));
+        const std::string why = why_not_change(context, round);
+        for (std::size_t index = 0; index < round.targets.size(); ++index) {
+            if (static_cast<int>(index) % columns != 0) ImGui::SameLine(0, gap);
+            draw_target(context, round, index, side, why);
+        }
+    }
+    ImGui::EndChild();
+}
+
+void draw_rounds(Context& context) {
+    const auto& rounds = context.model.target_rounds;
+    if (rounds.size() < 2) return;
+    for (const auto& round : rounds) {
+        const std::string text = fmt::format("Round {}", round.round + 1);
+        if (&round != &rounds.front()) flow(button_width(text));
+        const bool shown = &shown_round(context) == &round;
+        if (button(context, {.name = fmt::format("targets.round.{}", round.round),
+                             .text = text,
+                             .look = shown ? Look::Primary : Look::Normal}))
+            context.state.targets.chosen = &round == &rounds.back() ? -1 : round.round;
+    }
+}
+
+/// The edit waits for the artist.
+void draw_wait(Context& context) {
+    if (!context.model.targets_wait) return;
+    begin_notice(context, "targets.wait", palette::Accent);
+    wrapped_text("The edit waits for you: drop views that are wrong or have them redrawn, then let the scene be fitted to the rest.");
+    if (button(context, {.name = "targets.fit", .text = "Fit the scene to these", .look = Look::Primary})) context.actions.fit_to_targets();
+    end_notice();
+}
+
+std::string summary(const TargetRound& round) {
+    const auto dropped = std::count_if(round.targets.begin(), round.targets.end(), [](const TargetView& target) { return target.dropped; });
+    std::string text = fmt::format("Round {} of {}: {} views redrawn", round.round + 1, round.rounds, round.targets.size());
+    if (dropped > 0) text += fmt::format(", {} dropped", dropped);
+    return text + ". Left the scene, right what it is fitted to.";
+}
+
+}  // namespace
+
+void draw_targets_panel(Context& context) {
+    const auto review = [&] {
+        context.model_settings_changed |= checkbox(context, "targets.review", "Wait for me before each fit", context.model_settings.review,
+                                                   "The edit waits when views were redrawn, until you have looked at them.");
+    };
+    if (context.model.target_rounds.empty()) {
+        dim_text("An edit with method views or auto redraws views here: look at them, drop those that are wrong, have others redrawn.");
+        return review();
+    }
+    draw_wait(context);
+    draw_rounds(context);
+    const auto& round = shown_round(context);
+    dim_text(summary(round));
+    review();
+    draw_sheet(context, round);
+}
+
+}  // namespace gse::ui
