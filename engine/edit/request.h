@@ -98,7 +98,7 @@ struct LabelThresholds {
 struct LoopSettings {
     std::uint64_t seed = 0;
     bool localize = true;
-    std::string method = "sds";
+    std::string method = "auto";
     int iterations = 200;
     // View guidance
     int edited_views = 8;

@@ -207,7 +207,7 @@ class Edits(ProgramTest):
         out = self.folder / "out"
         arguments = [PROGRAM, "edit", ASSETS / "scenes/bear/scene.ply", "--source", "bear", "--prompt",
                      "a blue bear on the grass", "--target", "blue", "--out", out, *QUICK[:6], *QUICK[8:],
-                     "--iterations", 100000]
+                     "--method", "sds", "--iterations", 100000]
         process = subprocess.Popen([str(argument) for argument in arguments], stderr=subprocess.PIPE,
                                    stdout=subprocess.DEVNULL, text=True)
         for line in process.stderr:

@@ -80,6 +80,7 @@ struct Session {
         request.target = "blue";
         request.views = 8;
         request.image_size = 64;
+        request.method = "sds";   // goes on for as many steps as a test needs
         request.iterations = 30;
         app.set_request(request);
     }

@@ -143,6 +143,7 @@ DOCTEST_TEST_CASE("the word that is new is read off the scene when it is searche
     typed.source = "grass";
     typed.prompt = "a bear on the snow";
     typed.target.clear();
+    typed.method = "sds";
     typed.iterations = 2;
     app.set_request(typed);
     DOCTEST_CHECK(app.target() == "bear");   // all that the sentence alone can say

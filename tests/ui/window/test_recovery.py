@@ -47,6 +47,7 @@ class Recovery(WindowTest):
             window.click("tool.orbit")
             window.write("prompt.source", "bear")
             window.write("prompt.sentence", "a blue bear")
+            window.click("prompt.method.sds")   # takes long enough
             window.click("prompt.edit")
             window.wait(lambda s: s["snapshots"] >= 1 or not s["job"]["running"], "no snapshot came")
         pause = generator.uniform(0, 2 * LOST_SECONDS)
