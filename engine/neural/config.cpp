@@ -164,7 +164,7 @@ UNetConfig UNetConfig::from_json(const Json& json, const std::filesystem::path& 
     reader.expect("conv_out_kernel", {3});
     for (const char* key :
          {"num_class_embeds", "class_embed_type", "addition_embed_type", "encoder_hid_dim",
-          "time_cond_proj_dim", "time_embedding_dim", "time_embedding_act_fn", "timestep_post_act"})
+          "time_embedding_dim", "time_embedding_act_fn", "timestep_post_act"})
         reader.expect_absent(key);
     UNetConfig config;
     if (reader.has("sample_size") && json.at("sample_size").is_number())
@@ -183,6 +183,10 @@ UNetConfig UNetConfig::from_json(const Json& json, const std::filesystem::path& 
     reader.get("cross_attention_dim", config.cross_attention_dim);
     reader.get("use_linear_projection", config.use_linear_projection);
     reader.get("upcast_attention", config.upcast_attention);
+    if (reader.has("time_cond_proj_dim")) {
+        reader.get("time_cond_proj_dim", config.time_cond_proj_dim);
+        reader.positive("time_cond_proj_dim", config.time_cond_proj_dim, MaxWidth);
+    }
     config.heads = read_heads(reader, config.block_out_channels.size());
     reader.positive("in_channels", config.in_channels, 64);
     reader.positive("out_channels", config.out_channels, 64);
@@ -210,6 +214,7 @@ Json UNetConfig::to_json() const {
     json["norm_num_groups"] = norm_num_groups;
     json["out_channels"] = out_channels;
     json["sample_size"] = sample_size;
+    if (time_cond_proj_dim > 0) json["time_cond_proj_dim"] = time_cond_proj_dim;
     json["up_block_types"] = up_block_types;
     json["upcast_attention"] = upcast_attention;
     json["use_linear_projection"] = use_linear_projection;
@@ -361,7 +366,7 @@ Json ClipConfig::to_json() const {
 SchedulerConfig SchedulerConfig::from_json(const Json& json, const std::filesystem::path& path) {
     const Reader reader(json, path);
     reader.expect("beta_schedule", {"scaled_linear", "linear", "squaredcos_cap_v2"});
-    reader.expect("prediction_type", {"epsilon", "v_prediction"});
+    reader.expect("prediction_type", {"epsilon", "v_prediction", "sample"});
     reader.expect("timestep_spacing", {"leading", "linspace", "trailing"});
     reader.expect("rescale_betas_zero_snr", {false});
     reader.expect_absent("trained_betas");
@@ -381,7 +386,13 @@ SchedulerConfig SchedulerConfig::from_json(const Json& json, const std::filesyst
     reader.get("steps_offset", config.steps_offset);
     reader.get("set_alpha_to_one", config.set_alpha_to_one);
     reader.get("clip_sample", config.clip_sample);
+    reader.get("clip_sample_range", config.clip_sample_range);
+    reader.get("original_inference_steps", config.original_inference_steps);
+    reader.get("timestep_scaling", config.timestep_scaling);
     reader.positive("num_train_timesteps", config.num_train_timesteps, 1 << 20);
+    reader.positive("original_inference_steps", config.original_inference_steps, config.num_train_timesteps);
+    if (config.clip_sample_range <= 0 || config.timestep_scaling <= 0)
+        reader.malformed("the scheduler's \"clip_sample_range\" and \"timestep_scaling\" must be above 0");
     return config;
 }
 
@@ -392,6 +403,10 @@ Json SchedulerConfig::to_json() const {
     json["beta_start"] = beta_start;
     json["clip_sample"] = clip_sample;
     json["num_train_timesteps"] = num_train_timesteps;
+    if (class_name == "LCMScheduler" || class_name == "TCDScheduler") {
+        json["original_inference_steps"] = original_inference_steps;
+        json["timestep_scaling"] = timestep_scaling;
+    }
     json["prediction_type"] = prediction_type;
     json["set_alpha_to_one"] = set_alpha_to_one;
     json["skip_prk_steps"] = true;

@@ -31,6 +31,8 @@ struct UNetConfig {
     std::vector<std::int64_t> heads = {8, 8, 8, 8};  // per down block; "attention_head_dim" in the file
     bool use_linear_projection = false;
     bool upcast_attention = false;
+    /// Width of the embedding of a guidance scale that the network takes beside the timestep (LCM); 0 = none.
+    std::int64_t time_cond_proj_dim = 0;
 
     /// Throws Error (Model, Malformed) naming the key that is wrong or not supported.
     static UNetConfig from_json(const Json& json, const std::filesystem::path& path);
@@ -112,6 +114,10 @@ struct SchedulerConfig {
     std::int64_t steps_offset = 1;
     bool set_alpha_to_one = false;
     bool clip_sample = false;
+    double clip_sample_range = 1;
+    // Of models distilled to few steps (LCM, TCD)
+    std::int64_t original_inference_steps = 50;  // of the solver they were distilled from
+    double timestep_scaling = 10;
 
     static SchedulerConfig from_json(const Json& json, const std::filesystem::path& path);
     Json to_json() const;
