@@ -6,6 +6,7 @@
 #include "app/cli.h"
 #include "app/dreambooth_options.h"
 #include "app/engine_names.h"
+#include "app/model_options.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/path_text.h"
@@ -30,7 +31,7 @@ bool is_asked_for(const std::string& field) {
 }
 
 void add_settings(CLI::App& command, EditRecipe& settings) {
-    command.add_option("--model", settings.job.model, "Model to measure; the starter when left out");
+    add_model_options(command, settings.job);
     command.add_option("--device", settings.job.device, "Where the networks run: cpu or cuda")
         ->capture_default_str();
     command

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "engine/base/fields.h"
 #include "engine/edit/request.h"
@@ -20,6 +21,8 @@ struct JobParameters {
     std::string scene;
     std::string cameras;
     std::string model;
+    std::vector<std::string> lora;
+    std::string taesd;
     std::string device = "cpu";
     int threads = 1;
     std::string up = "auto";
@@ -34,6 +37,11 @@ struct JobParameters {
         f("cameras", self.cameras,
           "COLMAP folder, transforms.json or cameras.json; found beside the scene when empty, \"none\" for an orbit.");
         f("model", self.model, "Diffusers folder or .safetensors checkpoint; empty = the starter model.");
+        f("lora", self.lora,
+          "LoRA that is merged into the model, as FILE or FILE:strength; of kohya, LyCORIS (LoCon), PEFT or diffusers. May be given "
+          "several times.");
+        f("taesd", self.taesd,
+          "Folder of a tiny autoencoder (TAESD), for all pictures but the last; empty = \"taesd\" beside the weights, \"none\" = not used.");
         f("device", self.device, "Where the networks run: cpu or cuda.");
         f("threads", self.threads, "Threads of the networks; small ones gain nothing from more. Another number may round differently.", Range{1, 256});
         f("up", self.up, "World up: auto, x, y, z, -x, -y or -z.");
