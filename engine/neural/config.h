@@ -56,6 +56,22 @@ struct VaeConfig {
     Json to_json() const;
 };
 
+/// config.json of a tiny autoencoder (AutoencoderTiny); the defaults are TAESD's.
+struct TinyAutoencoderConfig {
+    std::int64_t in_channels = 3;
+    std::int64_t out_channels = 3;
+    std::int64_t latent_channels = 4;
+    std::int64_t channels = 64;  // of every layer between
+    std::vector<std::int64_t> encoder_blocks = {1, 3, 3, 3};
+    std::vector<std::int64_t> decoder_blocks = {3, 3, 3, 1};
+    double scaling_factor = 1;
+
+    /// Pixels per latent cell.
+    std::int64_t factor() const { return std::int64_t{1} << (encoder_blocks.size() - 1); }
+    static TinyAutoencoderConfig from_json(const Json& json, const std::filesystem::path& path);
+    Json to_json() const;
+};
+
 /// text_encoder/config.json (CLIPTextModel, CLIPTextModelWithProjection).
 struct TextEncoderConfig {
     std::int64_t vocab_size = 49408;

@@ -21,6 +21,8 @@ std::vector<std::int64_t> visited_levels(const NoiseSchedule& schedule, const Sa
     if (original > schedule.steps())
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("{} original steps are more than the schedule's {}", original, schedule.steps()));
+    if (!(options.strength > 0 && options.strength <= 1))
+        throw Error(ErrorCode::InvalidArgument, fmt::format("a strength of {} is outside 0..1", options.strength));
     std::vector<std::int64_t> levels;
     if (options.any_level) {
         const auto count = static_cast<std::int64_t>(static_cast<double>(schedule.steps()) * options.strength);

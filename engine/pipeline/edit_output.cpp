@@ -203,6 +203,7 @@ nlohmann::ordered_json make_report(EditJob& job) {
     report["split"] = result.split;
     report["pruned"] = result.pruned;
     report["model"] = job.model().name();
+    report["model_kind"] = neural::kind_name(job.model().kind());
     report["settings_from"] = settings_from(job.recipe());
     report["seconds"] = job.times().to_json();
     report["networks"] = job.times().networks_json();
