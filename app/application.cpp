@@ -272,6 +272,7 @@ void Application::save_settings() {
     nlohmann::json json;
     json["ui_scale"] = chosen_scale_;
     json["model"] = model_path_;
+    json["loras"] = loras_;
     for (const auto& [key, measured] : measured_) json["measured"][key] = fields_to_json(measured);
     if (!layout_.empty()) json["layout"] = layout_;
     gse::save_settings(json);
@@ -296,6 +297,7 @@ void Application::load_settings() {
             }
         }
     model_path_ = text("model");
+    loras_ = texts_of(json, "loras");
     layout_ = text("layout");
     layout_loaded_ = !layout_.empty();
 }

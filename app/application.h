@@ -165,6 +165,9 @@ public:
     void set_viewport_size(int width, int height) override;
     void set_request(const edit::EditRequest& request) override;
     void choose_model(const std::string& path) override;
+    void add_lora(const std::string& text) override;
+    void set_lora_strength(std::size_t index, double strength) override;
+    void remove_lora(std::size_t index) override;
     void set_exports(const ui::ExportSettings& settings) override;
     void export_picture() override;
     void export_turntable() override;
@@ -276,7 +279,9 @@ private:
     void list_models();
     void refuse_model(const std::string& path, std::string problem);
     void take_chosen_model();
-    void try_model(const std::string& path, bool takes_settings);
+    void try_model(const std::string& path, std::vector<std::string> loras, bool takes_settings);
+    void try_loras(std::vector<std::string> loras);
+    void list_loras();
     void use_model(const std::string& path, const neural::ModelProfile& profile, bool takes_settings);
     void use_profile(const neural::ModelProfile& profile, bool takes_settings);
     void drop_model(const std::string& path, const Error& error);
@@ -327,6 +332,7 @@ private:
     // Work
     std::shared_ptr<neural::TextToImage> text_model_;
     std::string text_model_key_, model_path_, model_tried_;
+    std::vector<std::string> loras_;   // FILE or FILE:strength, merged into the model in use
     neural::ModelProfile profile_;   // of the model in use
     EditRecipe defaults_;            // what settings are that nobody chose
     std::map<std::string, std::string> model_problems_;   // by path, of models that were tried; empty = none yet
@@ -386,6 +392,9 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
 void watch_targets(const EditJob& job, LiveEdit& live, EditObserver& observer);
 /// Takes what a finished run leaves. Throws Error (Cancelled) when it was stopped before its first step.
 void fill_pending(EditJob& job, PendingResult& pending);
+
+/// The texts of a list in settings or projects; what is no text is passed over.
+std::vector<std::string> texts_of(const nlohmann::json& json, const char* key);
 
 /// Where models were found and what they are, those of `also` with them; reads headers only.
 std::vector<ui::ModelView> scan_models(const std::string& chosen, const std::vector<std::string>& also);

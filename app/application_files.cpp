@@ -204,6 +204,7 @@ nlohmann::json Application::ui_json() const {
     json["request"] = fields_to_json(model_.request);
     json["model_settings"] = ui::model_settings_to_json(model_.model_settings);
     json["model"] = model_path_;
+    json["loras"] = loras_;
     if (!layout_.empty()) json["layout"] = layout_;
     const auto rotation = camera_.rotation;
     json["camera"] = {{"fx", camera_.fx}, {"fy", camera_.fy}, {"width", camera_.width}, {"height", camera_.height}};
@@ -226,7 +227,7 @@ void Application::ui_from_json(const nlohmann::json& json) {
             if (contains_word(model_.said_words, model_.request.target)) model_.request.target.clear();
         }
         if (json.contains("model_settings")) model_.model_settings = ui::model_settings_from_json(json["model_settings"], model_.model_settings);
-        if (json.contains("model")) try_model(json["model"].get<std::string>(), !json.contains("request"));
+        if (json.contains("model")) try_model(json["model"].get<std::string>(), texts_of(json, "loras"), !json.contains("request"));
         if (json.contains("layout")) {
             layout_ = json["layout"].get<std::string>();
             layout_loaded_ = true;

@@ -5,6 +5,7 @@
 
 #include "app/application.h"
 #include "engine/base/error.h"
+#include "engine/neural/lora_spec.h"
 #include "engine/pipeline/model_settings.h"
 
 namespace gse::app {
@@ -15,6 +16,14 @@ std::string reason_of(const Error& error) {
 }
 
 }  // namespace
+
+std::vector<std::string> texts_of(const nlohmann::json& json, const char* key) {
+    std::vector<std::string> texts;
+    if (json.contains(key) && json[key].is_array())
+        for (const auto& entry : json[key])
+            if (entry.is_string()) texts.push_back(entry.get<std::string>());
+    return texts;
+}
 
 std::string Application::model_in_use() const {
     return model_path_.empty() ? starter_model_path().string() : model_path_;
@@ -74,6 +83,7 @@ void Application::use_profile(const neural::ModelProfile& profile, bool takes_se
     standard.guidance = next.guidance;
     standard.attention = next.attention;
     standard.threads = next.job.threads;
+    model_.edits_by_instruction = profile.bundle == neural::BundleKind::InstructPix2Pix;
     profile_ = profile;
     defaults_ = std::move(next);
 }
@@ -83,17 +93,25 @@ void Application::take_chosen_model() {
     try {
         JobParameters job;
         job.model = model_path_;
+        job.lora = loras_;
         use_profile(profile_of(job), true);
+        list_loras();
     } catch (const Error& error) {
+        if (!loras_.empty()) {
+            loras_.clear();
+            list_loras();
+            toast(fmt::format("The LoRAs cannot be used any more: {}. The model works without them.", reason_of(error)), true);
+            return take_chosen_model();
+        }
         refuse_model(std::exchange(model_path_, {}), reason_of(error));
     }
 }
 
-void Application::choose_model(const std::string& path) { try_model(path, true); }
+void Application::choose_model(const std::string& path) { try_model(path, loras_, true); }
 
-void Application::try_model(const std::string& path, bool takes_settings) {
+void Application::try_model(const std::string& path, std::vector<std::string> loras, bool takes_settings) {
     const std::string wanted = path.empty() ? starter_model_path().string() : path;
-    if (wanted == model_in_use()) return list_models();
+    if (wanted == model_in_use()) return loras == loras_ ? list_models() : try_loras(std::move(loras));
     if (work_.running()) return toast("Another model can be chosen when the job is done.");
     const auto rows = scan_models(wanted, {});
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& model) { return model.path == wanted; });
@@ -102,6 +120,8 @@ void Application::try_model(const std::string& path, bool takes_settings) {
     JobParameters job;
     job.model = wanted;
     job.device = model_.model_settings.device;
+    job.precision = model_.model_settings.precision;
+    job.lora = loras;
     neural::ModelProfile profile;
     try {
         profile = profile_of(job);
@@ -116,9 +136,11 @@ void Application::try_model(const std::string& path, bool takes_settings) {
                      control.report("loading the model", 0, 0);
                      *model = load_recipe_model(job);
                  },
-                 [this, wanted, model, profile, takes_settings](const Error* error) {
+                 [this, wanted, model, profile, takes_settings, loras = std::move(loras)](const Error* error) {
                      model_tried_.clear();
                      if (error != nullptr) return refuse_model(wanted, reason_of(*error));
+                     loras_ = loras;
+                     list_loras();
                      use_model(wanted, profile, takes_settings);
                      text_model_ = *model;
                      model_load_ = {};   // what it took was not seen
@@ -127,8 +149,87 @@ void Application::try_model(const std::string& path, bool takes_settings) {
     list_models();
 }
 
-/// A model that was in use and cannot be loaded any more gives way to the one that comes with the program.
+void Application::list_loras() {
+    model_.loras.clear();
+    for (const auto& text : loras_) {
+        const auto lora = neural::parse_lora(text);
+        model_.loras.push_back({lora.file.string(), lora.file.stem().string(), lora.strength});
+    }
+}
+
+/// The model in use with other LoRAs; it stays as it was where that fails.
+void Application::try_loras(std::vector<std::string> loras) {
+    if (work_.running()) return toast("LoRAs can be changed when the job is done.");
+    JobParameters job;
+    job.model = model_path_;
+    job.device = model_.model_settings.device;
+    job.precision = model_.model_settings.precision;
+    job.lora = loras;
+    const auto refuse = [this](const Error& error) {
+        const auto file = error.path().empty() ? std::string() : fmt::format(" \"{}\"", error.path().filename().string());
+        toast(fmt::format("The LoRA{} cannot be used: {}. The model stays as it was.", file, reason_of(error)), true);
+    };
+    neural::ModelProfile profile;
+    try {
+        profile = profile_of(job);
+    } catch (const Error& error) {
+        return refuse(error);
+    }
+    auto model = std::make_shared<std::shared_ptr<neural::TextToImage>>();
+    model_.loras_checking = true;
+    work_.start({"Merge the LoRAs",
+                 [job, model](const JobControl& control) {
+                     control.report("loading the model", 0, 0);
+                     *model = load_recipe_model(job);
+                 },
+                 [this, model, profile, refuse, loras = std::move(loras)](const Error* error) {
+                     model_.loras_checking = false;
+                     if (error != nullptr) return refuse(*error);
+                     loras_ = loras;
+                     list_loras();
+                     use_profile(profile, true);
+                     text_model_ = *model;
+                     text_model_key_ = model_key();
+                     save_settings();
+                 }});
+}
+
+void Application::add_lora(const std::string& text) {
+    auto loras = loras_;
+    try {
+        const auto found = neural::find_loras({text}).front();
+        loras.push_back(neural::lora_text({std::filesystem::absolute(found.file).lexically_normal(), found.strength}));
+    } catch (const Error& error) {
+        return toast(fmt::format("The LoRA cannot be used: {}.", reason_of(error)), true);
+    }
+    try_loras(std::move(loras));
+}
+
+void Application::set_lora_strength(std::size_t index, double strength) {
+    if (index >= loras_.size()) return;
+    auto loras = loras_;
+    const double most = neural::MostLoraStrength;
+    loras[index] = neural::lora_text({neural::parse_lora(loras_[index]).file, std::clamp(strength, -most, most)});
+    if (loras != loras_) try_loras(std::move(loras));
+}
+
+void Application::remove_lora(std::size_t index) {
+    if (index >= loras_.size()) return;
+    auto loras = loras_;
+    loras.erase(loras.begin() + static_cast<std::ptrdiff_t>(index));
+    try_loras(std::move(loras));
+}
+
+/// A model that was in use and cannot be loaded any more gives way to the one that comes with the program. LoRAs go first.
 void Application::drop_model(const std::string& path, const Error& error) {
+    const bool of_lora = std::any_of(loras_.begin(), loras_.end(),
+                                     [&](const auto& text) { return neural::parse_lora(text).file == error.path(); });
+    if (path == model_path_ && of_lora) {
+        loras_.clear();
+        list_loras();
+        take_chosen_model();
+        return toast(fmt::format("The LoRAs cannot be used any more: {}. The model works without them.", reason_of(error)), true);
+    }
     if (path.empty() || path != model_path_) return;
     model_path_.clear();
     take_chosen_model();

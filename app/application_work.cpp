@@ -1,5 +1,6 @@
 // Locate and edit: jobs on the work thread, live states while they run, and the result that waits to be applied.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -33,12 +34,14 @@ EditRecipe Application::current_recipe() const {
     EditRecipe recipe = defaults_;
     recipe.job.scene = scene_path_;
     recipe.job.model = model_path_;
+    recipe.job.lora = loras_;
     recipe.request = model_.request;
     recipe.use_dreambooth = model_.model_settings.learn_scene;
     recipe.dreambooth = model_.model_settings.learning;
     recipe.guidance = model_.model_settings.guidance;
     recipe.attention = model_.model_settings.attention;
     recipe.job.device = model_.model_settings.device;
+    recipe.job.precision = model_.model_settings.precision;
     recipe.job.threads = model_.model_settings.threads;
     recipe.job.front = model_.model_settings.front;
     auto set_by_user = changed_fields("request", recipe.request, defaults_.request);
@@ -72,7 +75,9 @@ EditRecipe Application::open_recipe(EditRecipe recipe) const {
 }
 
 /// What the loaded model depends on.
-std::string Application::model_key() const { return model_path_ + '\n' + model_.model_settings.device; }
+std::string Application::model_key() const {
+    return fmt::format("{}\n{}\n{}\n{}", model_path_, model_.model_settings.device, model_.model_settings.precision, fmt::join(loras_, "\n"));
+}
 
 Scene Application::working_scene() const {
     Scene scene;

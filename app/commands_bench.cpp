@@ -13,6 +13,7 @@
 #include "app/cli.h"
 #include "app/engine_names.h"
 #include "app/eval_settings.h"
+#include "app/model_options.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/path_text.h"
@@ -120,7 +121,7 @@ void add_clip_bench(CLI::App& bench, CommandContext& context) {
     };
     auto options = std::make_shared<Options>();
     auto* command = bench.add_subcommand("clip", "A model's image-text encoder on held-out synthetic scenes");
-    command->add_option("--model", options->job.model, "Model to measure; the starter when left out");
+    add_model_options(*command, options->job);
     command->add_option("--out", options->output, "Also write the JSON to this file");
     bind_fields(*command, options->parameters, "Cases");
     command->callback([options, &context] {
@@ -144,7 +145,7 @@ void add_search_bench(CLI::App& bench, CommandContext& context) {
     };
     auto options = std::make_shared<Options>();
     auto* command = bench.add_subcommand("search", "How sure searches are, for words a scene shows and words it does not show");
-    command->add_option("--model", options->settings.job.model, "Model to measure; the starter when left out");
+    add_model_options(*command, options->settings.job);
     command->add_option("--out", options->output, "Also write the JSON to this file");
     bind_fields(*command, options->parameters, "Cases");
     command->add_option("--views", options->settings.request.views, "Viewpoints of a search")->capture_default_str()->check(CLI::Range(3, 512));

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/cli.h"
+#include "app/model_options.h"
 #include "engine/pipeline/model_settings.h"
 
 namespace gse::app {
@@ -18,7 +19,7 @@ bool is_asked_for(const std::string& field) {
 }  // namespace
 
 void add_eval_settings(CLI::App& command, EditRecipe& settings) {
-    command.add_option("--model", settings.job.model, "Model to measure; the starter when left out");
+    add_model_options(command, settings.job);
     command.add_option("--device", settings.job.device, "Where the networks run: cpu or cuda")
         ->capture_default_str();
     command

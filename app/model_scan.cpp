@@ -1,4 +1,5 @@
 // Finds models in the places where artists keep them and tells what they are from their headers, without loading networks.
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -28,6 +29,16 @@ std::uint64_t shape_at(const HeaderJson& header, const char* key, std::size_t fr
     return header[key]["shape"][header[key]["shape"].size() - 1 - from_end].get<std::uint64_t>();
 }
 
+/// What a UNet takes beside the four channels of the latents.
+void describe_channels(std::uint64_t channels, ui::ModelView& model) {
+    if (channels == 8) model.structure += ", InstructPix2Pix";
+    for (const auto& [others, what] : {std::pair{5u, "depth-to-image"}, std::pair{7u, "upscaler"}, std::pair{9u, "inpainting"}}) {
+        if (channels != others) continue;
+        model.structure += fmt::format(" {}", what);
+        model.problem = fmt::format("{} models are not supported; use the plain one", what);
+    }
+}
+
 /// ux.md: told apart by keys and by the width of the cross-attention.
 void describe_checkpoint(const fs::path& path, ui::ModelView& model) {
     const HeaderJson header = safetensors_header(path);
@@ -51,12 +62,8 @@ void describe_checkpoint(const fs::path& path, ui::ModelView& model) {
     }
     const auto width = shape_at(header, "model.diffusion_model.input_blocks.2.1.transformer_blocks.0.attn2.to_k.weight", 0, 0);
     model.structure = width == 1024 ? "Stable Diffusion 2.x" : "Stable Diffusion 1.x";
-    if (shape_at(header, "model.diffusion_model.input_blocks.0.0.weight", 2, 4) == 9) {
-        model.structure += " inpainting";
-        model.problem = "inpainting models are not supported; use the plain one";
-        return;
-    }
-    model.usable = true;
+    describe_channels(shape_at(header, "model.diffusion_model.input_blocks.0.0.weight", 2, 4), model);
+    model.usable = model.problem.empty();
 }
 
 void describe_folder(const fs::path& path, ui::ModelView& model) {
@@ -66,6 +73,10 @@ void describe_folder(const fs::path& path, ui::ModelView& model) {
                       : text.is_object() && text.value("hidden_size", 768) >= 1024 ? "Stable Diffusion 2.x"
                                                                                    : "Stable Diffusion 1.x";
     if (own.is_object() && own.contains("name") && own["name"].is_string()) model.name = own["name"].get<std::string>();
+    const HeaderJson unet = read_json(path / "unet/config.json"), scheduler = read_json(path / "scheduler/scheduler_config.json");
+    if (unet.is_object() && unet.contains("in_channels") && unet["in_channels"].is_number_unsigned())
+        describe_channels(unet["in_channels"].get<std::uint64_t>(), model);
+    if (scheduler.is_object() && scheduler.value("_class_name", "") == std::string("LCMScheduler")) model.structure += ", LCM";
     for (const char* part : {"unet", "vae", "text_encoder", "tokenizer"})
         if (!fs::exists(path / part)) model.problem += (model.problem.empty() ? "missing: " : ", ") + std::string(part);
     std::error_code ignored;

@@ -83,6 +83,9 @@ public:
     virtual void set_request(const edit::EditRequest& request) = 0;
     virtual void set_model_settings(const ModelSettings& settings) = 0;
     virtual void choose_model(const std::string& path) = 0;        // a path typed or picked; added to the list
+    virtual void add_lora(const std::string& text) = 0;            // FILE or FILE:strength; these three load the model anew, and
+    virtual void set_lora_strength(std::size_t index, double strength) = 0;   // leave it as it was where that fails
+    virtual void remove_lora(std::size_t index) = 0;
     // Export
     virtual void set_exports(const ExportSettings& settings) = 0;
     virtual void export_picture() = 0;

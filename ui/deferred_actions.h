@@ -176,6 +176,15 @@ public:
     void choose_model(const std::string& path) override {
         later([this, path] { target_->choose_model(path); });
     }
+    void add_lora(const std::string& text) override {
+        later([this, text] { target_->add_lora(text); });
+    }
+    void set_lora_strength(std::size_t index, double strength) override {
+        later([this, index, strength] { target_->set_lora_strength(index, strength); });
+    }
+    void remove_lora(std::size_t index) override {
+        later([this, index] { target_->remove_lora(index); });
+    }
     void set_exports(const ExportSettings& settings) override {
         later([this, settings] { target_->set_exports(settings); });
     }

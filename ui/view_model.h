@@ -138,6 +138,13 @@ struct ModelView {
     bool checking = false;       // it is being loaded, to see whether it can be used
 };
 
+/// A LoRA that is merged into the model in use.
+struct LoraView {
+    std::string path;
+    std::string name;
+    double strength = 1;
+};
+
 struct LogLine {
     log::Level level = log::Level::Info;
     std::string time;            // "14:02:07"
@@ -309,6 +316,9 @@ struct ViewModel {
     bool result_waiting = false;                 // an edit is done and asks: apply or discard
     // Rest
     std::vector<ModelView> models;
+    bool edits_by_instruction = false;           // the model in use is told what to do, too
+    std::vector<LoraView> loras;
+    bool loras_checking = false;                 // others are being loaded, to see whether they can be used
     std::vector<LogLine> log;
     std::vector<Toast> toasts;
     ViewSettings view;

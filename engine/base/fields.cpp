@@ -91,4 +91,10 @@ void read_field(const char* name, std::string& value, const Json& json) {
     value = json.get<std::string>();
 }
 
+void read_field(const char* name, std::vector<std::string>& value, const Json& json) {
+    const auto is_text = [](const Json& entry) { return entry.is_string(); };
+    if (!json.is_array() || !std::all_of(json.begin(), json.end(), is_text)) refuse(name, "a list of texts", shown(json));
+    value = json.get<std::vector<std::string>>();
+}
+
 }  // namespace gse

@@ -2,7 +2,8 @@
 //
 // A struct P offers   template <class Self, class F> static void visit_fields(Self& self, F&& f)
 // that calls          f("name", self.member, "What it does.", Range{low, high})   once per member;
-// the range is left out where there is none. Members are bool, int, std::uint64_t, float, double or std::string.
+// the range is left out where there is none. Members are bool, int, std::uint64_t, float, double, std::string or a list of texts
+// (std::vector<std::string>).
 #pragma once
 
 #include <cstdint>
@@ -10,6 +11,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "engine/base/error.h"
 
@@ -36,6 +38,7 @@ void read_field(const char* name, std::uint64_t& value, const nlohmann::ordered_
 void read_field(const char* name, float& value, const nlohmann::ordered_json& json, const Range* range = nullptr);
 void read_field(const char* name, double& value, const nlohmann::ordered_json& json, const Range* range = nullptr);
 void read_field(const char* name, std::string& value, const nlohmann::ordered_json& json);
+void read_field(const char* name, std::vector<std::string>& value, const nlohmann::ordered_json& json);
 
 /// Throws Error that names the setting when the number is not finite or not in its range (may be null).
 void check_field(const char* name, double value, const Range* range);

@@ -101,6 +101,7 @@ struct LoopSettings {
     std::string method = "auto";
     int iterations = 200;
     // View guidance
+    std::string instruction;
     int edited_views = 8;
     int rounds = 1;
     int view_steps = 6;
@@ -171,6 +172,9 @@ private:
           "How the model leads the edit: views (it redraws some views, the scene is fitted to them), sds (it pulls at every step, the "
           "paper's way) or auto (views where something changes, sds where something is added).");
         f("iterations", self.iterations, "Optimisation steps of method sds.", Range{0, 1e6});
+        f("instruction", self.instruction,
+          "What a model that edits pictures by instructions (InstructPix2Pix) is told to do (\"make the bear golden\"); empty = to turn "
+          "the source into what the sentence says.");
         f("edited_views", self.edited_views, "Views that the model redraws in a round.", Range{1, 64});
         f("rounds", self.rounds, "How often they are redrawn, each time from what the scene has become.", Range{1, 20});
         f("view_steps", self.view_steps, "Denoising steps of a redrawn view.", Range{1, 100});

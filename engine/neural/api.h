@@ -13,7 +13,9 @@
 #include "engine/edit/interfaces.h"
 #include "engine/edit/text_image_score.h"
 #include "engine/neural/attention_parameters.h"
+#include "engine/neural/bundle_kind.h"
 #include "engine/neural/dreambooth_parameters.h"
+#include "engine/neural/lora_spec.h"
 #include "engine/neural/network_use.h"
 #include "engine/neural/sds_parameters.h"
 #include "engine/neural/starter_trainer.h"
@@ -27,6 +29,7 @@ struct SampleRequest {
     int steps = 30;
     double guidance_scale = 5;
     double strength = 1.0;      // img2img only: share of the steps that are run
+    double image_guidance_scale = 1.5;   // of models that edit pictures
     std::uint64_t seed = 0;
 };
 
@@ -47,6 +50,8 @@ public:
     /// Side of the square images the model works at.
     virtual int image_size() const = 0;
     virtual std::string name() const = 0;
+    /// How views are redrawn by it.
+    virtual BundleKind kind() const = 0;
     virtual Image sample(const SampleRequest& request) const = 0;
     virtual Image img2img(const Image& image, const SampleRequest& request) const = 0;
     /// The bundle's text-image encoder; null when it has none.
@@ -71,12 +76,24 @@ struct TunedModel {
     TuneReport report;
 };
 
+/// What a model is loaded with.
+struct ModelOptions {
+    std::string device = "cpu";
+    /// Merged into the weights, in order; one that was distilled (lora_mark()) only into those that redraw views and sample.
+    std::vector<LoraSpec> loras = {};
+    /// Folder of the tiny autoencoder; empty = as the model says, or "taesd" beside its weights; "none" = none.
+    std::string taesd = {};
+    /// fp32, bf16, or auto: bf16 for the UNet where it was measured to be faster (precision.h).
+    std::string precision = "auto";
+};
+
 /// Everything the program asks of engine/neural.
 class Api {
 public:
     virtual ~Api() = default;
-    /// Loads a diffusers folder or a single-file checkpoint. Throws Error (Model, NotFound).
-    virtual std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const std::string& device) = 0;
+    /// Loads a diffusers folder or a single-file checkpoint. Throws Error (Model, NotFound); what is wrong with a LoRA is said
+    /// before any weight is read.
+    virtual std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const ModelOptions& options) = 0;
     virtual void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
                                const std::filesystem::path& work, const std::filesystem::path& output,
                                const JobControl& job) = 0;

@@ -37,6 +37,11 @@ Image word_map(const torch::Tensor& tokens, int width, int height) {
     return to_image(highest > 0 ? map / highest : map);
 }
 
+/// What a model that takes a picture is shown beside the noisy one: the same picture.
+torch::Tensor shown_picture(const ModelBundle& bundle, const torch::Tensor& latents) {
+    return takes_picture(bundle.unet->config()) ? latents / bundle.scaling_factor() : torch::Tensor();
+}
+
 }  // namespace
 
 std::string with_view_words(const std::string& prompt, const std::string& view_words) {
@@ -136,6 +141,7 @@ void BundleAttentionSource::probe(const edit::AttentionQuery& query, const torch
                 seeded_noise(latents.sizes(), Random::stream(query.seed, timesteps.size()).next()));
         }
     const auto count = static_cast<std::int64_t>(timesteps.size());
+    const auto shown = shown_picture(*bundle_, latents);
     const auto batch = std::max<std::int64_t>(1, BatchPixels / (latents.size(2) * latents.size(3)));
     const auto all_noise = torch::cat(noises).to(latents.device());
     const auto all_t = torch::tensor(timesteps, torch::kInt64);
@@ -144,7 +150,10 @@ void BundleAttentionSource::probe(const edit::AttentionQuery& query, const torch
         const auto t = all_t.narrow(0, first, size);
         const auto start = latents.expand({size, -1, -1, -1});
         const auto noisy = bundle_->schedule.add_noise(start, all_noise.narrow(0, first, size), t);
-        bundle_->unet->forward(noisy, t, context.expand({size, -1, -1}), &capture);
+        const auto words = context.expand({size, -1, -1});
+        const double scale = bundle_->unet->config().time_cond_proj_dim > 0 ? UsualEmbeddedScale : 1;
+        const Conditioning conditioning{torch::stack({words, words}, 1), scale, shown.defined() ? shown.expand({size, -1, -1, -1}) : shown};
+        guided_output(bundle_->unet, noisy, t, conditioning, &capture);
         // Equal weight for every pass: a smaller last batch must not count as much as a full one.
         for (auto& map : capture.maps)
             for (std::int64_t row = 0; row < size; ++row) {
@@ -175,7 +184,10 @@ void BundleAttentionSource::run_img2img(const edit::AttentionQuery& query, const
         job.context = torch::cat({negative, context});
         job.seed = seed;
         job.capture = &capture;
-        capture.conditional_half_only = job.guidance_scale != 1.0;
+        job.picture = shown_picture(*bundle_, latents);
+        job.image_guidance_scale = 1;
+        capture.conditional_half_only =
+            row_parts(bundle_->unet->config(), {{}, job.guidance_scale, {}, job.image_guidance_scale}) == 2;
         job.after_step = [&](std::int64_t step, const torch::Tensor&) {
             // With few steps none may be that high: then the first one counts.
             if (sampler->timestep(step) < lowest && step != job.first) {
@@ -202,7 +214,7 @@ std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& que
     return guard_torch("finding the words in the image", [&] {
         const torch::NoGradGuard no_grad;
         const auto image = resize_square(to_tensor(query.image, bundle_->device), bundle_->image_size());
-        const auto latents = image_to_latents(*bundle_, image);
+        const auto latents = image_to_latents(*bundle_, image, Codec::Quick);
         const auto context = bundle_->encode_prompts({prompt});
         AttentionAccumulator sum(latents.size(2), static_cast<std::int64_t>(capture.columns.size()));
         if (parameters_.method == "probes")

@@ -41,6 +41,10 @@ public:
     void expect_absent(const char* key) const {
         if (has(key)) refuse(fmt::format("the configuration asks for \"{}\", which is not supported", key));
     }
+    /// The same for a key that tells what the model is.
+    void expect_absent(const char* key, const char* model) const {
+        if (has(key)) refuse(fmt::format("this is {}: the configuration asks for \"{}\", which is not supported", model, key));
+    }
     void positive(const char* key, std::int64_t value, std::int64_t limit) const {
         if (value < 1 || value > limit)
             throw Error(ErrorCode::Malformed,
@@ -162,10 +166,11 @@ UNetConfig UNetConfig::from_json(const Json& json, const std::filesystem::path& 
     reader.expect("time_embedding_type", {"positional"});
     reader.expect("conv_in_kernel", {3});
     reader.expect("conv_out_kernel", {3});
-    for (const char* key :
-         {"num_class_embeds", "class_embed_type", "addition_embed_type", "encoder_hid_dim",
-          "time_cond_proj_dim", "time_embedding_dim", "time_embedding_act_fn", "timestep_post_act"})
-        reader.expect_absent(key);
+    reader.expect_absent("addition_embed_type", "SDXL or a later model");
+    reader.expect_absent("num_class_embeds", "an upscaler or another model of classes");
+    reader.expect_absent("class_embed_type", "a model of classes or unCLIP");
+    reader.expect_absent("encoder_hid_dim", "a model that is told by another encoder (Kandinsky, IF)");
+    for (const char* key : {"time_embedding_dim", "time_embedding_act_fn", "timestep_post_act"}) reader.expect_absent(key);
     UNetConfig config;
     if (reader.has("sample_size") && json.at("sample_size").is_number())
         reader.get("sample_size", config.sample_size);
@@ -183,6 +188,10 @@ UNetConfig UNetConfig::from_json(const Json& json, const std::filesystem::path& 
     reader.get("cross_attention_dim", config.cross_attention_dim);
     reader.get("use_linear_projection", config.use_linear_projection);
     reader.get("upcast_attention", config.upcast_attention);
+    if (reader.has("time_cond_proj_dim")) {
+        reader.get("time_cond_proj_dim", config.time_cond_proj_dim);
+        reader.positive("time_cond_proj_dim", config.time_cond_proj_dim, MaxWidth);
+    }
     config.heads = read_heads(reader, config.block_out_channels.size());
     reader.positive("in_channels", config.in_channels, 64);
     reader.positive("out_channels", config.out_channels, 64);
@@ -210,6 +219,7 @@ Json UNetConfig::to_json() const {
     json["norm_num_groups"] = norm_num_groups;
     json["out_channels"] = out_channels;
     json["sample_size"] = sample_size;
+    if (time_cond_proj_dim > 0) json["time_cond_proj_dim"] = time_cond_proj_dim;
     json["up_block_types"] = up_block_types;
     json["upcast_attention"] = upcast_attention;
     json["use_linear_projection"] = use_linear_projection;
@@ -254,6 +264,56 @@ Json VaeConfig::to_json() const {
     json["sample_size"] = sample_size;
     json["scaling_factor"] = scaling_factor;
     json["up_block_types"] = std::vector<std::string>(levels, "UpDecoderBlock2D");
+    return json;
+}
+
+TinyAutoencoderConfig TinyAutoencoderConfig::from_json(const Json& json, const std::filesystem::path& path) {
+    const Reader reader(json, path);
+    reader.expect("_class_name", {"AutoencoderTiny"});
+    reader.expect("act_fn", {"relu"});
+    reader.expect("upsampling_scaling_factor", {2});
+    reader.expect("latent_magnitude", {3, 3.0});
+    TinyAutoencoderConfig config;
+    std::vector<std::int64_t> encoder_widths, decoder_widths;
+    reader.get("in_channels", config.in_channels);
+    reader.get("out_channels", config.out_channels);
+    reader.get("latent_channels", config.latent_channels);
+    reader.get("encoder_block_out_channels", encoder_widths);
+    reader.get("decoder_block_out_channels", decoder_widths);
+    reader.get("num_encoder_blocks", config.encoder_blocks);
+    reader.get("num_decoder_blocks", config.decoder_blocks);
+    reader.get("scaling_factor", config.scaling_factor);
+    encoder_widths.insert(encoder_widths.end(), decoder_widths.begin(), decoder_widths.end());
+    if (!encoder_widths.empty()) config.channels = encoder_widths.front();
+    for (const auto width : encoder_widths)
+        if (width != config.channels) reader.refuse("a tiny autoencoder whose layers differ in width is not supported");
+    reader.positive("in_channels", config.in_channels, 16);
+    reader.positive("out_channels", config.out_channels, 16);
+    reader.positive("latent_channels", config.latent_channels, 64);
+    reader.positive("encoder_block_out_channels", config.channels, MaxWidth);
+    for (const auto* blocks : {&config.encoder_blocks, &config.decoder_blocks}) {
+        reader.positive("num_encoder_blocks (count)", static_cast<std::int64_t>(blocks->size()), MaxLevels);
+        for (const auto count : *blocks) reader.positive("num_encoder_blocks", count, 64);
+    }
+    if (config.encoder_blocks.size() != config.decoder_blocks.size())
+        reader.malformed("the tiny autoencoder's halves have different numbers of levels");
+    if (!(config.scaling_factor > 0)) reader.malformed("the tiny autoencoder's \"scaling_factor\" must be above 0");
+    return config;
+}
+
+Json TinyAutoencoderConfig::to_json() const {
+    const auto levels = encoder_blocks.size();
+    Json json = {{"_class_name", "AutoencoderTiny"}, {"_diffusers_version", "0.20.0"}, {"act_fn", "relu"}};
+    json["decoder_block_out_channels"] = std::vector<std::int64_t>(levels, channels);
+    json["encoder_block_out_channels"] = std::vector<std::int64_t>(levels, channels);
+    json["in_channels"] = in_channels;
+    json["latent_channels"] = latent_channels;
+    json["latent_magnitude"] = 3;
+    json["num_decoder_blocks"] = decoder_blocks;
+    json["num_encoder_blocks"] = encoder_blocks;
+    json["out_channels"] = out_channels;
+    json["scaling_factor"] = scaling_factor;
+    json["upsampling_scaling_factor"] = 2;
     return json;
 }
 
@@ -361,7 +421,7 @@ Json ClipConfig::to_json() const {
 SchedulerConfig SchedulerConfig::from_json(const Json& json, const std::filesystem::path& path) {
     const Reader reader(json, path);
     reader.expect("beta_schedule", {"scaled_linear", "linear", "squaredcos_cap_v2"});
-    reader.expect("prediction_type", {"epsilon", "v_prediction"});
+    reader.expect("prediction_type", {"epsilon", "v_prediction", "sample"});
     reader.expect("timestep_spacing", {"leading", "linspace", "trailing"});
     reader.expect("rescale_betas_zero_snr", {false});
     reader.expect_absent("trained_betas");
@@ -381,7 +441,13 @@ SchedulerConfig SchedulerConfig::from_json(const Json& json, const std::filesyst
     reader.get("steps_offset", config.steps_offset);
     reader.get("set_alpha_to_one", config.set_alpha_to_one);
     reader.get("clip_sample", config.clip_sample);
+    reader.get("clip_sample_range", config.clip_sample_range);
+    reader.get("original_inference_steps", config.original_inference_steps);
+    reader.get("timestep_scaling", config.timestep_scaling);
     reader.positive("num_train_timesteps", config.num_train_timesteps, 1 << 20);
+    reader.positive("original_inference_steps", config.original_inference_steps, config.num_train_timesteps);
+    if (config.clip_sample_range <= 0 || config.timestep_scaling <= 0)
+        reader.malformed("the scheduler's \"clip_sample_range\" and \"timestep_scaling\" must be above 0");
     return config;
 }
 
@@ -392,6 +458,10 @@ Json SchedulerConfig::to_json() const {
     json["beta_start"] = beta_start;
     json["clip_sample"] = clip_sample;
     json["num_train_timesteps"] = num_train_timesteps;
+    if (class_name == "LCMScheduler" || class_name == "TCDScheduler") {
+        json["original_inference_steps"] = original_inference_steps;
+        json["timestep_scaling"] = timestep_scaling;
+    }
     json["prediction_type"] = prediction_type;
     json["set_alpha_to_one"] = set_alpha_to_one;
     json["skip_prk_steps"] = true;

@@ -31,6 +31,8 @@ struct UNetConfig {
     std::vector<std::int64_t> heads = {8, 8, 8, 8};  // per down block; "attention_head_dim" in the file
     bool use_linear_projection = false;
     bool upcast_attention = false;
+    /// Width of the embedding of a guidance scale that the network takes beside the timestep (LCM); 0 = none.
+    std::int64_t time_cond_proj_dim = 0;
 
     /// Throws Error (Model, Malformed) naming the key that is wrong or not supported.
     static UNetConfig from_json(const Json& json, const std::filesystem::path& path);
@@ -51,6 +53,22 @@ struct VaeConfig {
     /// Pixels per latent cell.
     std::int64_t factor() const { return std::int64_t{1} << (block_out_channels.size() - 1); }
     static VaeConfig from_json(const Json& json, const std::filesystem::path& path);
+    Json to_json() const;
+};
+
+/// config.json of a tiny autoencoder (AutoencoderTiny); the defaults are TAESD's.
+struct TinyAutoencoderConfig {
+    std::int64_t in_channels = 3;
+    std::int64_t out_channels = 3;
+    std::int64_t latent_channels = 4;
+    std::int64_t channels = 64;  // of every layer between
+    std::vector<std::int64_t> encoder_blocks = {1, 3, 3, 3};
+    std::vector<std::int64_t> decoder_blocks = {3, 3, 3, 1};
+    double scaling_factor = 1;
+
+    /// Pixels per latent cell.
+    std::int64_t factor() const { return std::int64_t{1} << (encoder_blocks.size() - 1); }
+    static TinyAutoencoderConfig from_json(const Json& json, const std::filesystem::path& path);
     Json to_json() const;
 };
 
@@ -112,6 +130,10 @@ struct SchedulerConfig {
     std::int64_t steps_offset = 1;
     bool set_alpha_to_one = false;
     bool clip_sample = false;
+    double clip_sample_range = 1;
+    // Of models distilled to few steps (LCM, TCD)
+    std::int64_t original_inference_steps = 50;  // of the solver they were distilled from
+    double timestep_scaling = 10;
 
     static SchedulerConfig from_json(const Json& json, const std::filesystem::path& path);
     Json to_json() const;

@@ -12,7 +12,8 @@
 namespace gse::neural {
 namespace {
 
-/// A network of the same structure whose parameters are those of `source`: shared memory, or a copy.
+/// A network of the same structure in fp32 whose parameters are those of `source`: shared memory where they are fp32 already and
+/// no copy is asked for.
 template <class Holder>
 Holder twin_of(const Holder& source, bool copy) {
     const torch::NoGradGuard no_grad;
@@ -20,7 +21,7 @@ Holder twin_of(const Holder& source, bool copy) {
     auto to = twin->parameters();
     const auto from = source->parameters();
     for (std::size_t i = 0; i < to.size(); ++i) {
-        to[i].set_data(copy ? from[i].detach().clone() : from[i].detach());
+        to[i].set_data(from[i].detach().to(torch::kFloat32, /*non_blocking=*/false, copy));
         to[i].set_requires_grad(false);
     }
     twin->eval();

@@ -101,7 +101,7 @@ private:
         const auto side = bundle_.latent_size();
         const auto size = std::min(ClassBatch, parameters_.class_images - index * ClassBatch);
         const auto sampler = make_sampler(SamplerKind::Ddim, bundle_.schedule, sampler_steps_);
-        auto latents = seeded_noise({size, bundle_.unet->config().in_channels, side, side},
+        auto latents = seeded_noise({size, bundle_.latent_channels(), side, side},
                                     Random::stream(Random::stream(parameters_.seed, ClassStream).next(),
                                                    static_cast<std::uint64_t>(index))
                                         .next())
@@ -251,6 +251,10 @@ void side_by_side(ThreadPool& pool, std::size_t count, const std::function<void(
 
 TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameters& parameters, const TuningTask& task,
                             const JobControl& job) {
+    if (bundle.kind != BundleKind::Plain)
+        throw Error(ErrorCode::Unsupported, fmt::format("a model of the kind \"{}\" cannot learn a scene", kind_name(bundle.kind)),
+                    is_few_step(bundle.kind) ? "let the plain model learn it, with the few steps as a LoRA (--lora)" : "leave DreamBooth off: it sees the scene",
+                    bundle.path);
     check_task(bundle, task);
     const double start = seconds_now();
     TuneReport report;

@@ -82,10 +82,10 @@ std::string unet_key(const std::string& name, const UNetConfig& config) {
     return renamed(name, UNetTop);
 }
 
-constexpr std::array VaeAttention{Rename{"group_norm.", "norm."}, Rename{"to_q.", "q."},
+constexpr std::array VaeAttentionNames{Rename{"group_norm.", "norm."}, Rename{"to_q.", "q."},
                                   Rename{"to_k.", "k."}, Rename{"to_v.", "v."},
                                   Rename{"to_out.0.", "proj_out."}};
-constexpr std::array VaeResnet{Rename{"conv_shortcut.", "nin_shortcut."}};
+constexpr std::array VaeResnetNames{Rename{"conv_shortcut.", "nin_shortcut."}};
 constexpr std::array VaeHalf{Rename{"conv_norm_out.", "norm_out."}};
 
 std::string vae_half_key(const Words& words, std::int64_t levels) {
@@ -95,12 +95,12 @@ std::string vae_half_key(const Words& words, std::int64_t levels) {
         const char* list = up ? "up" : "down";
         if (words[3] == "resnets")
             return fmt::format("{}.{}.block.{}.{}", list, block, words[4],
-                               renamed(join(words, 5), VaeResnet));
+                               renamed(join(words, 5), VaeResnetNames));
         return fmt::format("{}.{}.{}.conv.{}", list, block, up ? "upsample" : "downsample", words.back());
     }
     if (words[1] == "mid_block") {
-        if (words[2] == "attentions") return "mid.attn_1." + renamed(join(words, 4), VaeAttention);
-        return fmt::format("mid.block_{}.{}", words[3] == "0" ? 1 : 2, renamed(join(words, 4), VaeResnet));
+        if (words[2] == "attentions") return "mid.attn_1." + renamed(join(words, 4), VaeAttentionNames);
+        return fmt::format("mid.block_{}.{}", words[3] == "0" ? 1 : 2, renamed(join(words, 4), VaeResnetNames));
     }
     return renamed(join(words, 1), VaeHalf);
 }

@@ -63,7 +63,7 @@ torch::Tensor LinearImpl::forward(const torch::Tensor& x) const {
 
 Conv2dImpl::Conv2dImpl(const Shape& shape, const WeightOptions& options) : shape_(shape) {
     weight = make_parameter(*this, "weight", {shape.out, shape.in, shape.kernel, shape.kernel}, options);
-    bias = make_parameter(*this, "bias", {shape.out}, options);
+    if (shape.bias) bias = make_parameter(*this, "bias", {shape.out}, options);
     if (options.initialize) Conv2dImpl::reset();
 }
 

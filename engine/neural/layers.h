@@ -48,6 +48,7 @@ class Conv2dImpl : public torch::nn::Module, public Resettable {
 public:
     struct Shape {
         std::int64_t in = 0, out = 0, kernel = 3, stride = 1, padding = 1;
+        bool bias = true;
     };
     Conv2dImpl(const Shape& shape, const WeightOptions& options);
     void reset() override;

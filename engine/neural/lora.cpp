@@ -1,7 +1,8 @@
-// Low-rank changes: making, merging, reading and writing them.
+// Low-rank changes: making, checking, merging and writing them.
 #include "engine/neural/lora.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -16,8 +17,8 @@
 namespace gse::neural {
 namespace {
 
-constexpr std::string_view UNetPrefix = "lora_unet_", TextPrefix = "lora_te_";
-constexpr std::string_view Down = ".lora_down.weight", Up = ".lora_up.weight", Alpha = ".alpha";
+constexpr std::string_view LoraUNetPrefix = "lora_unet_", LoraTextPrefix = "lora_te_";
+constexpr std::string_view LoraDown = ".lora_down.weight", LoraUp = ".lora_up.weight", LoraAlpha = ".alpha";
 constexpr std::array<std::string_view, 8> TargetEndings{".to_q",   ".to_k",   ".to_v",   ".to_out.0",
                                                         ".q_proj", ".k_proj", ".v_proj", ".out_proj"};
 
@@ -33,40 +34,51 @@ torch::Tensor uniform(torch::IntArrayRef shape, double bound, Random& random) {
     return tensor;
 }
 
+using Shape = std::vector<std::int64_t>;
+
+/// A matrix and a 1x1 convolution hold the same numbers.
+Shape matrix_shape(const torch::Tensor& tensor) {
+    Shape shape(tensor.sizes().begin(), tensor.sizes().end());
+    if (shape.size() == 4 && shape[2] == 1 && shape[3] == 1) shape.resize(2);
+    return shape;
+}
+
 bool fits(const LoraFactor& factor, const torch::Tensor& weight) {
-    if (factor.down.dim() < 2 || factor.up.dim() < 2 || factor.up.flatten(1).size(1) != factor.rank()) return false;
-    return factor.up.size(0) == weight.size(0) && factor.down.numel() == factor.rank() * weight[0].numel();
-}
-
-/// The factors of one part of the file; complete triples (alpha may be missing: then it is the rank).
-std::vector<LoraFactor> read_part(const SafetensorsFile& file, std::string_view prefix) {
-    std::vector<LoraFactor> factors;
-    for (const auto& [key, entry] : file.entries()) {
-        if (!key.starts_with(prefix) || !key.ends_with(Down)) continue;
-        const auto stem = key.substr(0, key.size() - Down.size());
-        LoraFactor factor;
-        factor.layer = stem.substr(prefix.size());
-        factor.down = file.tensor(key).to(torch::kFloat32);
-        factor.up = file.tensor(stem + std::string(Up)).to(torch::kFloat32);
-        if (factor.down.dim() == 0 || factor.down.size(0) == 0)
-            throw Error(ErrorCode::Model, fmt::format("the LoRA's tensor \"{}\" is empty", key), {}, file.path());
-        const auto alpha = stem + std::string(Alpha);
-        factor.alpha = file.contains(alpha) ? file.tensor(alpha).to(torch::kFloat64).reshape({-1})[0].item<double>()
-                                            : static_cast<double>(factor.rank());
-        factors.push_back(std::move(factor));
+    const auto rank = factor.rank();
+    const Shape whole = matrix_shape(weight);
+    Shape down = whole;
+    down[0] = rank;
+    if (factor.mid.defined()) {
+        Shape mid = whole;
+        if (mid.size() == 4) mid[0] = mid[1] = rank;
+        if (mid.size() != 4 || matrix_shape(factor.mid) != mid) return false;
+        down.resize(2);
     }
-    return factors;
+    return matrix_shape(factor.down) == down && matrix_shape(factor.up) == Shape{whole[0], rank};
 }
 
-bool is_lora_key(const std::string& key) {
-    return (key.starts_with(UNetPrefix) || key.starts_with(TextPrefix)) &&
-           (key.ends_with(Down) || key.ends_with(Up) || key.ends_with(Alpha));
+/// Weights of the network by their layer's flat name; handles to them.
+std::map<std::string, torch::Tensor> weights_by_layer(const torch::nn::Module& network) {
+    std::map<std::string, torch::Tensor> weights;
+    for (const auto& item : network.named_parameters()) {
+        constexpr std::string_view ending = ".weight";
+        const auto& name = item.key();
+        if (name.ends_with(ending) && item.value().dim() >= 2)
+            weights.emplace(flat_name(name.substr(0, name.size() - ending.size())), item.value());
+    }
+    return weights;
 }
+
+std::string shape_text(const torch::Tensor& tensor) { return fmt::format("[{}]", fmt::join(tensor.sizes(), ",")); }
 
 }  // namespace
 
 torch::Tensor LoraFactor::change_of(const torch::Tensor& weight) const {
-    return (up.flatten(1).mm(down.flatten(1)) * scale()).view(weight.sizes());
+    const auto left = up.flatten(1), right = down.flatten(1);
+    if (!mid.defined()) return (left.mm(right) * scale()).view(weight.sizes());
+    // out x rank, rank x rank x kernel, rank x in: one matrix product on either side of the middle.
+    const auto rows = left.mm(mid.flatten(1)).view({left.size(0), mid.size(1), -1});              // [out,r,kk]
+    return (rows.transpose(1, 2).matmul(right).transpose(1, 2) * scale()).reshape(weight.sizes());   // [out,in,kk]
 }
 
 std::vector<LoraTarget> lora_targets(const torch::nn::Module& network) {
@@ -99,26 +111,41 @@ std::vector<LoraFactor> new_lora(const std::vector<LoraTarget>& targets, std::in
     return factors;
 }
 
+void check_lora(const torch::nn::Module& network, const std::vector<LoraFactor>& factors, const std::filesystem::path& path) {
+    const auto weights = weights_by_layer(network);
+    std::size_t unknown = 0;
+    const LoraFactor* first_unknown = nullptr;
+    for (const auto& factor : factors) {
+        const auto& name = factor.key.empty() ? factor.layer : factor.key;
+        const auto found = weights.find(factor.layer);
+        if (found == weights.end()) {
+            if (unknown++ == 0) first_unknown = &factor;
+        } else if (!fits(factor, found->second)) {
+            throw Error(ErrorCode::Model,
+                        fmt::format("the LoRA's change of \"{}\" has another shape: {} and {} do not make {}", name,
+                                    shape_text(factor.down), shape_text(factor.up), shape_text(found->second)),
+                        "it was made for a model of another size: use it with the model it was made for", path);
+        }
+    }
+    if (first_unknown == nullptr) return;
+    const auto& name = first_unknown->key.empty() ? first_unknown->layer : first_unknown->key;
+    throw Error(ErrorCode::Model,
+                fmt::format("the LoRA changes a layer the model does not have, \"{}\" ({} of {} are not there)", name, unknown,
+                            factors.size()),
+                "it was made for another kind of model: use it with the one it was made for", path);
+}
+
 void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& factors, double strength) {
     const torch::NoGradGuard no_grad;
-    std::map<std::string, torch::Tensor> weights;
-    for (auto& item : network.named_parameters()) {
-        constexpr std::string_view ending = ".weight";
-        const auto& name = item.key();
-        if (name.ends_with(ending) && item.value().dim() >= 2)
-            weights.emplace(flat_name(name.substr(0, name.size() - ending.size())), item.value());
-    }
+    check_lora(network, factors);
+    auto weights = weights_by_layer(network);
     for (const auto& factor : factors) {
-        const auto found = weights.find(factor.layer);
-        if (found == weights.end())
-            throw Error(ErrorCode::Model, fmt::format("the LoRA changes a layer the model does not have, \"{}\"", factor.layer),
-                        "it was made for another kind of model");
-        auto& weight = found->second;
-        if (!fits(factor, weight))
-            throw Error(ErrorCode::Model, fmt::format("the LoRA's change of \"{}\" has another shape", factor.layer),
-                        "it was made for a model of another size");
-        const LoraFactor here{factor.layer, factor.down.to(weight.device()), factor.up.to(weight.device()), factor.alpha};
-        weight.set_data(weight + here.change_of(weight) * strength);
+        auto& weight = weights.at(factor.layer);
+        auto here = factor;
+        for (auto* part : {&here.down, &here.up, &here.mid})
+            if (part->defined()) *part = part->to(weight.device(), torch::kFloat32);
+        const auto changed = weight.to(torch::kFloat32) + here.change_of(weight) * strength;
+        weight.set_data(changed.to(weight.scalar_type()));
     }
 }
 
@@ -128,31 +155,19 @@ void write_lora(const std::filesystem::path& path, const LoraWeights& weights) {
         for (const auto& factor : factors) {
             const auto stem = std::string(prefix) + factor.layer;
             const auto plain = [](const torch::Tensor& t) { return t.detach().to(torch::kCPU, torch::kFloat32).contiguous(); };
-            tensors.emplace_back(stem + std::string(Alpha), torch::tensor(static_cast<float>(factor.alpha)));
-            tensors.emplace_back(stem + std::string(Down), plain(factor.down));
-            tensors.emplace_back(stem + std::string(Up), plain(factor.up));
+            tensors.emplace_back(stem + std::string(LoraAlpha), torch::tensor(static_cast<float>(factor.alpha)));
+            tensors.emplace_back(stem + std::string(LoraDown), plain(factor.down));
+            tensors.emplace_back(stem + std::string(LoraUp), plain(factor.up));
         }
     };
-    add(UNetPrefix, weights.unet);
-    add(TextPrefix, weights.text);
+    add(LoraUNetPrefix, weights.unet);
+    add(LoraTextPrefix, weights.text);
     std::map<std::string, std::string> metadata{{"ss_network_module", "networks.lora"}};
     if (!weights.unet.empty()) {
         metadata["ss_network_dim"] = std::to_string(weights.unet.front().rank());
         metadata["ss_network_alpha"] = fmt::format("{}", weights.unet.front().alpha);
     }
     write_safetensors(path, tensors, metadata);
-}
-
-LoraWeights read_lora(const std::filesystem::path& path) {
-    const SafetensorsFile file(path);
-    for (const auto& [key, entry] : file.entries())
-        if (!is_lora_key(key))
-            throw Error(ErrorCode::Model, fmt::format("the LoRA file has a tensor that is not known, \"{}\"", key),
-                        "only kohya's names (lora_unet_..., lora_te_...) are read", path);
-    LoraWeights weights{read_part(file, UNetPrefix), read_part(file, TextPrefix)};
-    if (weights.unet.empty() && weights.text.empty())
-        throw Error(ErrorCode::Model, "there is no LoRA in this file", {}, path);
-    return weights;
 }
 
 }  // namespace gse::neural

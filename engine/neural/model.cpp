@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "engine/base/error.h"
+#include "engine/base/log.h"
 #include "engine/neural/attention_source.h"
 #include "engine/neural/clip_score.h"
 #include "engine/neural/dreambooth.h"
@@ -25,19 +26,40 @@ namespace {
 /// wait for them in a loop all the same, on the processor that the viewport needs.
 constexpr std::int64_t WidestSmallModel = 256;
 
+/// A LoRA that makes the model another kind.
+struct Distilled {
+    LoraWeights weights;
+    double strength = 1;
+    LoraMark mark = LoraMark::None;
+};
+using DistilledLoras = std::vector<Distilled>;
+
+std::shared_ptr<const ModelBundle> distilled(std::shared_ptr<const ModelBundle> bundle, const DistilledLoras& loras) {
+    for (const auto& lora : loras) {
+        auto merged = with_lora(*bundle, lora.weights, lora.strength);
+        if (merged.kind == BundleKind::Plain) merged.kind = lora.mark == LoraMark::Tcd ? BundleKind::Tcd : BundleKind::Lcm;
+        bundle = std::make_shared<const ModelBundle>(std::move(merged));
+    }
+    return bundle;
+}
+
+/// A distilled model's answer at a noise level is not the score: the weights without what was distilled are probed, pull and learn.
 class Model final : public TextToImage {
 public:
     using Bundle = std::shared_ptr<const ModelBundle>;
-    explicit Model(ModelBundle bundle) : loaded_(std::make_shared<const ModelBundle>(std::move(bundle))), bundle_(loaded_) {}
-    Model(Bundle loaded, Bundle tuned, std::optional<LoraWeights> lora)
-        : loaded_(std::move(loaded)), bundle_(std::move(tuned)), lora_(std::move(lora)) {}
+    Model(ModelBundle bundle, DistilledLoras fast)
+        : loaded_(std::make_shared<const ModelBundle>(std::move(bundle))), slow_(loaded_), fast_(std::move(fast)),
+          bundle_(distilled(slow_, fast_)) {}
+    Model(Bundle loaded, Bundle tuned, std::optional<LoraWeights> lora, DistilledLoras fast)
+        : loaded_(std::move(loaded)), slow_(std::move(tuned)), fast_(std::move(fast)), bundle_(distilled(slow_, fast_)),
+          lora_(std::move(lora)) {}
 
     using TextToImage::attention;
     std::unique_ptr<edit::AttentionSource> attention(const AttentionParameters& parameters) const override {
-        return std::make_unique<BundleAttentionSource>(bundle_, parameters);
+        return std::make_unique<BundleAttentionSource>(slow_, parameters);
     }
     std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const SdsParameters& parameters) const override {
-        return std::make_unique<SdsGuidance>(bundle_, prompt, parameters);
+        return std::make_unique<SdsGuidance>(slow_, prompt, parameters);
     }
     std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const SdsParameters& parameters) const override {
         return std::make_unique<DiffusionViews>(bundle_, prompt, parameters);
@@ -45,6 +67,7 @@ public:
     std::vector<std::string> known_words() const override { return bundle_->facts.vocabulary; }
     int image_size() const override { return static_cast<int>(bundle_->image_size()); }
     std::string name() const override { return bundle_->facts.name; }
+    BundleKind kind() const override { return bundle_->kind; }
 
     std::unique_ptr<edit::TextImageScore> text_image_score() const override {
         const auto folder = loaded_->path / "clip";
@@ -62,7 +85,7 @@ public:
         auto result = guard_torch("tuning the model", [&] {
             return run_dreambooth(*loaded_, parameters, {instance, instance_prompt, class_prompt}, job);
         });
-        return {std::make_shared<Model>(loaded_, std::move(result.bundle), std::move(result.lora)), std::move(result.report)};
+        return {std::make_shared<Model>(loaded_, std::move(result.bundle), std::move(result.lora), fast_), std::move(result.report)};
     }
     void save_lora(const std::filesystem::path& path) const override {
         if (!lora_)
@@ -75,7 +98,7 @@ public:
         auto merged = guard_torch("merging a LoRA", [&] {
             return std::make_shared<const ModelBundle>(with_lora(*loaded_, weights, strength));
         });
-        return std::make_shared<Model>(loaded_, std::move(merged), std::move(weights));
+        return std::make_shared<Model>(loaded_, std::move(merged), std::move(weights), fast_);
     }
 
 private:
@@ -83,26 +106,31 @@ private:
         return guard_torch("sampling", [&] {
             const torch::NoGradGuard no_grad;
             const auto side = bundle_->latent_size();
-            const auto sampler = make_sampler(SamplerKind::Ddim, bundle_->schedule, request.steps);
-            auto latents = seeded_noise({1, bundle_->unet->config().in_channels, side, side}, request.seed)
-                               .to(bundle_->device);
+            const double strength = image != nullptr ? request.strength : 1;
+            const auto walk = image_to_image(sampler_of(bundle_->kind), bundle_->schedule, request.steps, {.strength = strength});
+            auto latents = seeded_noise({1, bundle_->latent_channels(), side, side}, request.seed).to(bundle_->device);
             DenoiseJob job;
-            job.sampler = sampler.get();
+            job.sampler = walk.sampler.get();
+            job.first = walk.first;
             job.guidance_scale = request.guidance_scale;
+            job.image_guidance_scale = request.image_guidance_scale;
             job.context = bundle_->encode_prompts({request.negative_prompt, request.prompt});
             job.seed = request.seed;
             if (image != nullptr) {
-                job.first =
-                    std::min(first_step(sampler->step_count(), request.strength), sampler->step_count() - 1);
                 const auto source = resize_square(to_tensor(*image, bundle_->device), bundle_->image_size());
-                latents = sampler->start_from(image_to_latents(*bundle_, source), latents, job.first);
+                job.picture = picture_latents(*bundle_, source);
+                latents = walk.sampler->start_from(image_to_latents(*bundle_, source), latents, job.first);
+            } else if (takes_picture(bundle_->unet->config())) {
+                job.picture = torch::zeros_like(latents);
             }
             return to_image(latents_to_image(*bundle_, denoise(*bundle_, latents, job)));
         });
     }
 
-    const Bundle loaded_, bundle_;           // as read; in use (the same unless tuned)
-    const std::optional<LoraWeights> lora_;  // the change between them, when it is low-rank
+    const Bundle loaded_, slow_;             // as read; in use where many steps are taken (the same unless tuned)
+    const DistilledLoras fast_;
+    const Bundle bundle_;                    // in use where few are: the same with what was distilled
+    const std::optional<LoraWeights> lora_;  // the tuning, when it is low-rank
 };
 
 }  // namespace
@@ -127,12 +155,31 @@ void set_threads(int count) {
     torch::set_num_threads(count > 0 ? count : cores);
 }
 
-std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const std::string& device) {
-    auto bundle = load_bundle(path, parse_device(device));
+std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const ModelOptions& options) {
+    const auto device = parse_device(options.device);
+    std::vector<LoraWeights> weights;
+    for (const auto& lora : options.loras) {
+        weights.push_back(guard_torch("reading a LoRA", [&] { return read_lora(lora.file); }));
+        check_lora(path, weights.back());
+    }
+    auto bundle = load_bundle(path, device, options.taesd, options.precision);
+    DistilledLoras fast;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const auto& lora = options.loras[i];
+        const auto mark = lora_mark(lora.file);
+        if (mark == LoraMark::None) {   // nobody else holds these weights yet
+            merge_lora(*bundle.unet, weights[i].unet, lora.strength);
+            merge_lora(*bundle.text_encoder, weights[i].text, lora.strength);
+        } else {
+            fast.push_back({std::move(weights[i]), lora.strength, mark});
+            log::info("the LoRA \"{}\" was distilled, as its name says: views are redrawn in few steps ({})", lora.file.filename().string(),
+                      mark == LoraMark::Tcd ? "tcd" : "lcm");
+        }
+    }
     const auto& widths = bundle.unet->config().block_out_channels;
     const bool small = *std::max_element(widths.begin(), widths.end()) <= WidestSmallModel;
     set_blas_threads(small ? 1 : torch::get_num_threads());
-    return std::make_unique<Model>(std::move(bundle));
+    return std::make_unique<Model>(std::move(bundle), std::move(fast));
 }
 
 }  // namespace gse::neural

@@ -5,10 +5,13 @@
 
 namespace gse::neural {
 
-/// Loads a diffusers folder or a single-file checkpoint (.safetensors) to `device` ("cpu", "cuda", "cuda:1").
+/// Loads a diffusers folder or a single-file checkpoint (.safetensors) to a device ("cpu", "cuda", "cuda:1").
 /// Throws Error (Model, NotFound, Malformed) with one sentence that names the file and, if it is a tensor,
 /// its name.
-std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const std::string& device);
+std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const ModelOptions& options);
+inline std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const char* device) {
+    return load_model(path, ModelOptions{device});
+}
 
 /// Threads inside one network operation; 0 = one per hardware thread. More threads than free cores make small
 /// networks slower, not faster.

@@ -33,6 +33,10 @@ struct Parts {
     fs::path tokenizer;
     std::string pad_token;
     ModelFacts facts;
+    BundleKind kind = BundleKind::Plain;
+
+    /// Where what belongs to the model lies beside its weights.
+    fs::path folder() const { return single_file ? root.parent_path() : root; }
 };
 
 constexpr const char* FolderHint =
@@ -81,6 +85,12 @@ Parts folder_parts(const fs::path& root) {
     if (index.is_object() && index.contains("text_encoder_2"))
         throw Error(ErrorCode::Unsupported, "the model has two text encoders (SDXL or later)",
                     "only Stable Diffusion 1.x and 2.x can be used", root / "model_index.json");
+    if (index.is_object() && index.contains("transformer") && !fs::exists(root / "unet"))
+        throw Error(ErrorCode::Unsupported,
+                    fmt::format("this is a {}, which has a transformer instead of a UNet",
+                                index.contains("_class_name") && index["_class_name"].is_string() ? index["_class_name"].get<std::string>()
+                                                                                                   : std::string("model of another kind")),
+                    "only Stable Diffusion 1.x and 2.x structures can be loaded", root / "model_index.json");
     parts.unet_file = find_weights(root / "unet", "diffusion_pytorch_model");
     parts.vae_file = find_weights(root / "vae", "diffusion_pytorch_model");
     parts.text_file = find_weights(root / "text_encoder", "model");
@@ -91,8 +101,6 @@ Parts folder_parts(const fs::path& root) {
     const auto scheduler = root / "scheduler/scheduler_config.json";
     parts.scheduler = SchedulerConfig::from_json(config_of(scheduler), scheduler);
     parts.tokenizer = root / "tokenizer";
-    if (fs::exists(root / "gseditpro.json"))
-        parts.facts = ModelFacts::from_json(read_json_file(root / "gseditpro.json"), root / "gseditpro.json");
     return parts;
 }
 
@@ -136,6 +144,41 @@ Parts single_file_parts(const fs::path& path) {
     return parts;
 }
 
+/// gseditpro.json beside the weights. A checkpoint may share its folder with others: of its name and looks it tells nothing.
+void read_facts(Parts& parts) {
+    const auto file = parts.folder() / "gseditpro.json";
+    if (!fs::exists(file)) return;
+    auto facts = ModelFacts::from_json(read_json_file(file), file);
+    if (!parts.single_file) {
+        parts.facts = std::move(facts);
+    } else {
+        parts.facts.kind = std::move(facts.kind);
+        parts.facts.taesd = std::move(facts.taesd);
+    }
+}
+
+/// The folder of the tiny autoencoder; empty where there is none. `asked` is the run's own setting.
+fs::path tiny_folder(const Parts& parts, const std::string& asked) {
+    if (!asked.empty()) return asked == "none" ? fs::path() : fs::path(asked);
+    const auto& stated = parts.facts.taesd;
+    if (!stated.empty()) return stated == "none" ? fs::path() : parts.folder() / stated;
+    const auto beside = parts.folder() / "taesd";
+    return has_tiny_autoencoder(beside) ? beside : fs::path();
+}
+
+/// Loaded, and checked against the VAE that it stands in for.
+TinyAutoencoder load_tiny(const fs::path& folder, const VaeConfig& vae) {
+    auto tiny = load_tiny_autoencoder(folder);
+    const auto& config = tiny->config();
+    if (config.latent_channels != vae.latent_channels || config.factor() != vae.factor() || config.in_channels != 3 ||
+        config.out_channels != 3)
+        throw Error(ErrorCode::Model,
+                    fmt::format("the tiny autoencoder has {} latent channels and {} pixels per cell, the model's VAE {} and {}",
+                                config.latent_channels, config.factor(), vae.latent_channels, vae.factor()),
+                    "use the one that was made for this model, or none", folder);
+    return tiny;
+}
+
 Parts find_parts(const fs::path& path) {
     std::error_code ignored;
     if (!fs::exists(path, ignored))
@@ -149,16 +192,13 @@ Parts find_parts(const fs::path& path) {
                         "name a diffusers folder or a .safetensors checkpoint", path);
         return single_file_parts(path);
     }();
+    read_facts(parts);
     // The projection is not part of the conditioning and is often missing.
     parts.text.with_projection = false;
     if (parts.facts.image_size == 0) parts.facts.image_size = parts.unet.sample_size * parts.vae.factor();
     if (parts.facts.name.empty()) parts.facts.name = path.stem().string();
-    if (parts.unet.in_channels != parts.vae.latent_channels ||
-        parts.unet.out_channels != parts.vae.latent_channels)
-        throw Error(ErrorCode::Unsupported,
-                    fmt::format("the UNet takes {} channels but the VAE has {}", parts.unet.in_channels,
-                                parts.vae.latent_channels),
-                    "inpainting, depth and instruction models cannot be used", path);
+    parts.kind = bundle_kind(parts.unet, parts.scheduler, parts.vae.latent_channels, parts.facts.kind, path);
+    if (parts.kind == BundleKind::Turbo) parts.scheduler.timestep_spacing = "trailing";
     if (parts.unet.cross_attention_dim != parts.text.hidden_size)
         throw Error(ErrorCode::Model,
                     fmt::format("the UNet expects text of width {} but the text encoder gives {}",
@@ -227,6 +267,8 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
     get("attention_timesteps", facts.attention_timesteps);
     get("attention_absent_timesteps", facts.attention_absent_timesteps);
     get("vocabulary", facts.vocabulary);
+    get("kind", facts.kind);
+    get("taesd", facts.taesd);
     if (facts.image_size < 0 || facts.image_size > 8192)
         throw Error(ErrorCode::Malformed, "\"image_size\" is outside 0..8192", {}, path);
     return facts;
@@ -272,7 +314,8 @@ std::int64_t check_files(const Parts& parts, const WeightFiles& files, const Pla
 
 }  // namespace
 
-ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device, const std::string& precision) {
+ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device, const std::string& taesd,
+                        const std::string& precision) {
     const auto parts = find_parts(path);
     return guard_torch("loading the model", [&] {
         const WeightFiles files(parts);
@@ -296,6 +339,11 @@ ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& 
         freeze(bundle.text_encoder, device);
         freeze(bundle.unet, device);
         freeze(bundle.vae, device);
+        bundle.kind = parts.kind;
+        if (const auto folder = tiny_folder(parts, taesd); !folder.empty()) {
+            bundle.tiny = load_tiny(folder, parts.vae);
+            freeze(bundle.tiny, device);
+        }
         return bundle;
     });
 }
@@ -309,8 +357,16 @@ ModelDescription describe_model(const std::filesystem::path& path) {
                                 parts.facts.image_size,
                                 check_files(parts, files, plans_of(parts, files.vae)),
                                 parts.scheduler.prediction_type,
-                                parts.facts.vocabulary};
+                                parts.facts.vocabulary,
+                                parts.kind};
     });
+}
+
+void check_lora(const std::filesystem::path& model, const LoraWeights& weights) {
+    const auto parts = find_parts(model);
+    const WeightOptions described{torch::kMeta, torch::kFloat32, false};
+    check_lora(*UNet(parts.unet, described), weights.unet, weights.path);
+    check_lora(*ClipTextEncoder(parts.text, described), weights.text, weights.path);
 }
 
 torch::Device parse_device(const std::string& name) {

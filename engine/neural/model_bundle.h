@@ -6,7 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "engine/neural/bundle_kind.h"
+#include "engine/neural/lora.h"
 #include "engine/neural/schedulers.h"
+#include "engine/neural/taesd.h"
 #include "engine/neural/text_encoder.h"
 #include "engine/neural/tokenizer.h"
 #include "engine/neural/unet.h"
@@ -31,6 +34,10 @@ struct ModelFacts {
     std::vector<double> attention_absent_timesteps;
     /// Words the model was trained on; empty = an open vocabulary.
     std::vector<std::string> vocabulary;
+    /// "plain", "lcm", "tcd" or "turbo" where the configurations do not tell; see bundle_kind().
+    std::string kind;
+    /// Folder of the tiny autoencoder, relative to the model's; "none" = the one beside it is not used.
+    std::string taesd;
 
     static ModelFacts from_json(const Json& json, const std::filesystem::path& path);
 };
@@ -43,6 +50,7 @@ struct ModelDescription {
     std::int64_t parameters = 0;
     std::string prediction;  // "epsilon" or "v_prediction"
     std::vector<std::string> vocabulary;
+    BundleKind kind = BundleKind::Plain;
 };
 
 struct ModelBundle {
@@ -54,7 +62,11 @@ struct ModelBundle {
     NoiseSchedule schedule;
     ModelFacts facts;
     torch::Device device = torch::kCPU;
+    BundleKind kind = BundleKind::Plain;
+    TinyAutoencoder tiny{nullptr};   // where its files are
 
+    bool has_tiny() const { return !tiny.is_empty(); }
+    std::int64_t latent_channels() const { return vae->config().latent_channels; }
     /// Tokens of a prompt: the tokenizer's length, at most what the text encoder can take.
     std::int64_t token_count() const;
     std::int64_t image_size() const { return facts.image_size; }
@@ -66,10 +78,14 @@ struct ModelBundle {
 };
 
 /// Loads a diffusers folder or a single-file checkpoint (.safetensors). All weights are frozen, and fp32 but for those of the
-/// UNet, where `precision` says otherwise (choose_precision). Throws Error (NotFound, Malformed, Model, Unsupported,
-/// InvalidArgument) with one sentence.
-ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device = torch::kCPU,
+/// UNet, where `precision` says otherwise (choose_precision). `taesd`: folder of the tiny autoencoder; empty = as the model says,
+/// or "taesd" beside the weights, "none" = none. Throws Error (NotFound, Malformed, Model, Unsupported, InvalidArgument) with one
+/// sentence.
+ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device = torch::kCPU, const std::string& taesd = {},
                         const std::string& precision = "fp32");
+
+/// Checks that a LoRA fits the model's networks, from their configurations. Throws as check_lora() does.
+void check_lora(const std::filesystem::path& model, const LoraWeights& weights);
 
 /// Checks that every file is there and every tensor has the right name and shape, without reading any weight.
 ModelDescription describe_model(const std::filesystem::path& path);

@@ -48,18 +48,32 @@ Config config_or(const fs::path& path, Config otherwise) {
     return fs::exists(path) ? Config::from_json(read_json_file(path), path) : otherwise;
 }
 
-ModelKind kind_of(const UNetConfig& unet, const SchedulerConfig& scheduler) {
+ModelKind size_of(const UNetConfig& unet, const SchedulerConfig& scheduler) {
     if (unet.block_out_channels.empty() || unet.block_out_channels.front() < LeastSdWidth) return ModelKind::Small;
     if (!unet.use_linear_projection && unet.cross_attention_dim < Sd2TextWidth) return ModelKind::Sd1;
     return scheduler.prediction_type == "v_prediction" ? ModelKind::Sd2Velocity : ModelKind::Sd2;
 }
 
-ModelKind checkpoint_kind(const fs::path& path) {
+/// "kind" of gseditpro.json beside the weights.
+std::string stated_kind(const fs::path& folder) {
+    const auto file = folder / "gseditpro.json";
+    if (!fs::exists(file)) return {};
+    const auto json = read_json_file(file);
+    return json.is_object() && json.contains("kind") && json["kind"].is_string() ? json["kind"].get<std::string>() : std::string();
+}
+
+ModelNature nature_of(const UNetConfig& unet, const SchedulerConfig& scheduler, std::int64_t latent_channels, const fs::path& folder) {
+    return {size_of(unet, scheduler), bundle_kind(unet, scheduler, latent_channels, stated_kind(folder), folder),
+            unet.time_cond_proj_dim > 0};
+}
+
+ModelNature checkpoint_nature(const fs::path& path) {
     const auto header = safetensors_header(path);
     const auto first = header.is_object() ? shape_of(header, "input_blocks.0.0.weight") : std::vector<std::int64_t>{};
-    if (first.empty()) return ModelKind::Small;
+    if (first.empty()) return {};
     UNetConfig unet;
     unet.block_out_channels = {first.front()};
+    if (first.size() == 4) unet.in_channels = first[1];
     const auto key = shape_of(header, "input_blocks.1.1.transformer_blocks.0.attn2.to_k.weight");
     if (key.size() == 2) unet.cross_attention_dim = key[1];
     unet.use_linear_projection = shape_of(header, "input_blocks.1.1.proj_in.weight").size() == 2;
@@ -68,11 +82,43 @@ ModelKind checkpoint_kind(const fs::path& path) {
     // As the model is loaded: nothing in the file tells what an SD 2.x predicts.
     SchedulerConfig scheduler;
     if (unet.cross_attention_dim >= Sd2TextWidth) scheduler.prediction_type = "v_prediction";
-    return kind_of(unet, config_or(beside / "scheduler_config.json", scheduler));
+    return nature_of(unet, config_or(beside / "scheduler_config.json", scheduler), unet.out_channels, beside);
+}
+
+/// What suits a kind that redraws views in its own way, over what its size states (views.md section 15). The difference to the
+/// sentence before the edit is left out: it doubles the few calls, and a model that sees the unedited view needs none.
+void state_kind(Json& json, const ModelNature& nature) {
+    if (nature.kind == BundleKind::Plain) return;
+    auto& request = json["request"];
+    auto& guidance = json["guidance"];
+    request["method"] = "views";
+    request["rounds"] = 2;
+    guidance["delta"] = 0.0;
+    switch (nature.kind) {
+        case BundleKind::Lcm:
+        case BundleKind::Tcd:
+            request["view_steps"] = 4;
+            request["view_strength"] = 0.8;
+            guidance["view_guidance_scale"] = nature.embeds_guidance ? 8.5 : 1.0;
+            break;
+        case BundleKind::Turbo:
+            request["view_steps"] = 2;
+            request["view_strength"] = 0.75;
+            guidance["view_guidance_scale"] = 1.0;
+            break;
+        case BundleKind::InstructPix2Pix:
+            request["view_steps"] = 6;
+            request["view_strength"] = 0.98;
+            guidance["view_guidance_scale"] = 7.5;
+            guidance["image_guidance_scale"] = 1.0;
+            break;
+        case BundleKind::Plain:
+            break;
+    }
 }
 
 /// method.md section 7; LoRA and class pictures: views.md section 15. What is not here suits all kinds.
-Json stated_by(ModelKind kind) {
+Json stated_by_size(ModelKind kind) {
     if (kind == ModelKind::Small) return Json::object();
     Json json;
     json["request"] = {{"views", 16},          {"image_size", kind == ModelKind::Sd2Velocity ? 768 : 512},
@@ -140,21 +186,37 @@ Json read_stated(const fs::path& file) {
 
 }  // namespace
 
-ModelKind model_kind(const fs::path& model) {
+ModelKind model_kind(const fs::path& model) { return model_nature(model).size; }
+
+ModelNature model_nature(const fs::path& model, const std::vector<LoraSpec>& loras) {
+    ModelNature nature;
     try {
-        if (!fs::is_directory(model)) return checkpoint_kind(model);
-        if (!fs::exists(model / "unet/config.json")) return ModelKind::Small;
-        return kind_of(config_or(model / "unet/config.json", UNetConfig{}),
-                       config_or(model / "scheduler/scheduler_config.json", SchedulerConfig{}));
-    } catch (const Error&) {
-        return ModelKind::Small;
+        if (!fs::is_directory(model)) {
+            nature = checkpoint_nature(model);
+        } else if (fs::exists(model / "unet/config.json")) {
+            nature = nature_of(config_or(model / "unet/config.json", UNetConfig{}),
+                               config_or(model / "scheduler/scheduler_config.json", SchedulerConfig{}),
+                               config_or(model / "vae/config.json", VaeConfig{}).latent_channels, model);
+        }
+    } catch (const Error&) {   // said when it is loaded
+        return {};
     }
+    for (const auto& lora : loras) {
+        const auto mark = lora_mark(lora.file);
+        if (nature.kind == BundleKind::Plain && mark != LoraMark::None)
+            nature.kind = mark == LoraMark::Tcd ? BundleKind::Tcd : BundleKind::Lcm;
+    }
+    return nature;
 }
 
-ModelProfile model_profile(const fs::path& model) {
+ModelProfile model_profile(const fs::path& model, const std::vector<LoraSpec>& loras) {
+    const auto nature = model_nature(model, loras);
     ModelProfile profile;
-    profile.kind = model_kind(model);
-    add(profile, stated_by(profile.kind), "model");
+    profile.kind = nature.size;
+    profile.bundle = nature.kind;
+    Json stated = stated_by_size(nature.size);
+    state_kind(stated, nature);
+    add(profile, stated, "model");
     const auto file = (fs::is_directory(model) ? model : model.parent_path()) / "gseditpro.json";
     if (fs::exists(file)) add(profile, read_stated(file), "file gseditpro.json");
     return profile;

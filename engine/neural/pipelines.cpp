@@ -14,31 +14,26 @@ torch::Tensor seeded_noise(torch::IntArrayRef shape, std::uint64_t seed) {
     return noise;
 }
 
-torch::Tensor guided(const torch::Tensor& output, double scale) {
-    const auto halves = output.chunk(2, 0);
-    return halves[0] + scale * (halves[1] - halves[0]);
-}
-
 torch::Tensor denoise(const ModelBundle& bundle, torch::Tensor latents, const DenoiseJob& job) {
     const torch::NoGradGuard no_grad;
     GSE_CHECK(job.sampler != nullptr);
     auto& sampler = *job.sampler;
-    const bool guidance = job.guidance_scale != 1.0;
-    const auto context = guidance ? job.context : job.context.narrow(0, 1, 1);
+    const Conditioning conditioning{job.context.unsqueeze(0), job.guidance_scale, job.picture, job.image_guidance_scale};
     latents = latents.to(bundle.device);
     for (std::int64_t i = job.first; i < sampler.step_count(); ++i) {
         if (job.control != nullptr && job.control->stop_requested())
             throw Error(ErrorCode::Cancelled, "sampling was stopped");
         const auto input = sampler.scale_input(latents, i);
         const auto t = torch::full({1}, sampler.timestep(i), torch::kFloat32);
-        const auto output =
-            bundle.unet->forward(guidance ? torch::cat({input, input}) : input, t, context, job.capture);
+        const auto output = guided_output(bundle.unet, input, t, conditioning, job.capture);
         torch::Tensor noise;
-        if (sampler.needs_noise())
+        if (job.noise)
+            noise = job.noise(i).to(bundle.device);
+        else if (sampler.needs_noise())
             noise = seeded_noise(latents.sizes(),
                                  Random::stream(job.seed, static_cast<std::uint64_t>(i) + 1).next())
                         .to(bundle.device);
-        latents = sampler.step(guidance ? guided(output, job.guidance_scale) : output, latents, i, noise);
+        latents = sampler.step(output, latents, i, noise);
         if (job.after_step) job.after_step(i, latents);
         if (job.control != nullptr)
             job.control->report("sampling", static_cast<int>(i - job.first + 1),
@@ -47,12 +42,24 @@ torch::Tensor denoise(const ModelBundle& bundle, torch::Tensor latents, const De
     return latents;
 }
 
-torch::Tensor image_to_latents(const ModelBundle& bundle, const torch::Tensor& image) {
+SamplerKind sampler_of(BundleKind kind) {
+    if (kind == BundleKind::Lcm) return SamplerKind::Lcm;
+    return kind == BundleKind::Tcd ? SamplerKind::Tcd : SamplerKind::Ddim;
+}
+
+torch::Tensor image_to_latents(const ModelBundle& bundle, const torch::Tensor& image, Codec codec) {
+    if (codec == Codec::Quick && bundle.has_tiny()) return bundle.tiny->encode(image);
     return bundle.vae->encode_moments(image * 2 - 1).mean * bundle.scaling_factor();
 }
 
-torch::Tensor latents_to_image(const ModelBundle& bundle, const torch::Tensor& latents) {
+torch::Tensor latents_to_image(const ModelBundle& bundle, const torch::Tensor& latents, Codec codec) {
+    if (codec == Codec::Quick && bundle.has_tiny()) return bundle.tiny->decode(latents).clamp(0, 1);
     return (bundle.vae->decode(latents / bundle.scaling_factor()) / 2 + 0.5).clamp(0, 1);
+}
+
+torch::Tensor picture_latents(const ModelBundle& bundle, const torch::Tensor& image) {
+    if (!takes_picture(bundle.unet->config())) return {};
+    return bundle.vae->encode_moments(image * 2 - 1).mean;
 }
 
 SdsResult sds_gradient(const ModelBundle& bundle, const torch::Tensor& latents, const SdsStep& step) {
@@ -61,12 +68,19 @@ SdsResult sds_gradient(const ModelBundle& bundle, const torch::Tensor& latents, 
     const auto t = torch::full({1}, step.timestep, torch::kInt64);
     SdsResult result;
     result.noisy_latents = schedule.add_noise(latents, step.noise, t);
+    result.weight = 1.0 - static_cast<double>(schedule.alpha_cumprod(step.timestep));
+    const auto& config = bundle.unet->config();
+    if (takes_picture(config) || config.time_cond_proj_dim > 0) {
+        const Conditioning conditioning{step.context.unsqueeze(0), step.guidance_scale, step.picture, step.image_guidance_scale};
+        const auto output = guided_output(bundle.unet, result.noisy_latents, t, conditioning);
+        result.gradient = result.weight * (schedule.to_epsilon(output, result.noisy_latents, t) - step.noise);
+        return result;
+    }
     const auto input = torch::cat({result.noisy_latents, result.noisy_latents});
     const auto output = bundle.unet->forward(input, t, step.context);
     const auto epsilon = schedule.to_epsilon(output, input, t.expand({2}));
     result.epsilon_negative = epsilon.narrow(0, 0, 1);
     result.epsilon_positive = epsilon.narrow(0, 1, 1);
-    result.weight = 1.0 - static_cast<double>(schedule.alpha_cumprod(step.timestep));
     result.gradient = result.weight * (guided(epsilon, step.guidance_scale) - step.noise);
     return result;
 }

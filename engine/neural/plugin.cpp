@@ -14,8 +14,8 @@ namespace {
 class Plugin final : public Api {
 public:
     std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path,
-                                            const std::string& device) override {
-        return neural::load_model(path, device);
+                                            const ModelOptions& options) override {
+        return neural::load_model(path, options);
     }
     void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
                        const std::filesystem::path& work, const std::filesystem::path& output,

@@ -33,8 +33,10 @@ std::vector<double> ascending(const SchedulerConfig& config, const std::string& 
         } else if (spacing == "leading") {
             t = static_cast<double>(i * (total / count) + config.steps_offset);
         } else {
-            const double ratio = static_cast<double>(total) / static_cast<double>(count);
-            t = std::nearbyint(static_cast<double>(total) - ratio * static_cast<double>(count - 1 - i)) - 1;
+            // The reference steps down by the difference of its first two values, which decides ties (goldens.md trap 23).
+            const double all = static_cast<double>(total);
+            const double stride = (all - all / static_cast<double>(count)) - all;
+            t = std::nearbyint(all + static_cast<double>(count - 1 - i) * stride) - 1;
         }
         result.push_back(std::clamp(t, 0.0, static_cast<double>(total - 1)));
     }
@@ -74,7 +76,7 @@ public:
         const double a = alpha(static_cast<std::int64_t>(t));
         const double previous = alpha(static_cast<std::int64_t>(t) - stride_);
         predicted_x0_ = schedule_.to_x0(output, x, as_index(t));
-        if (schedule_.config().clip_sample) predicted_x0_ = predicted_x0_.clamp(-1, 1);
+        predicted_x0_ = clipped(predicted_x0_);
         const auto epsilon = schedule_.to_epsilon(output, x, as_index(t));
         const double variance = (1 - previous) / (1 - a) * (1 - a / previous);
         const double deviation = eta_ * std::sqrt(std::max(0.0, variance));
@@ -131,7 +133,7 @@ public:
         const double previous = t >= stride_ ? schedule_.alpha_cumprod(t - stride_) : 1.0;
         const double alpha = a / previous;
         predicted_x0_ = schedule_.to_x0(output, x, as_index(timestep(i)));
-        if (schedule_.config().clip_sample) predicted_x0_ = predicted_x0_.clamp(-1, 1);
+        predicted_x0_ = clipped(predicted_x0_);
         auto next = std::sqrt(previous) * (1 - alpha) / (1 - a) * predicted_x0_ +
                     std::sqrt(alpha) * (1 - previous) / (1 - a) * x;
         if (t == 0) return next;
@@ -301,18 +303,28 @@ private:
 
 }  // namespace
 
+torch::Tensor Sampler::clipped(const torch::Tensor& x0) const {
+    const auto& config = schedule_.config();
+    return config.clip_sample ? x0.clamp(-config.clip_sample_range, config.clip_sample_range) : x0;
+}
+
 torch::Tensor Sampler::start_from(const torch::Tensor& x0, const torch::Tensor& noise, std::int64_t i) const {
     return schedule_.add_noise(x0, noise, as_index(timestep(i)));
 }
 
 std::unique_ptr<Sampler> make_sampler(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps,
-                                      double eta) {
+                                      const SamplerOptions& options) {
     if (steps < 1 || steps > schedule.steps())
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("{} sampling steps are outside 1..{}", steps, schedule.steps()));
+    using enum SamplerKind;
+    const bool any_prediction = kind == Ddim || kind == Ddpm || kind == Lcm || kind == Tcd;
+    if (schedule.prediction() == Prediction::Sample && !any_prediction)
+        throw Error(ErrorCode::Unsupported, "a model that predicts the clean sample cannot be walked by this scheduler",
+                    "use DDIMScheduler");
     switch (kind) {
         case SamplerKind::Ddim:
-            return std::make_unique<DdimSampler>(schedule, steps, eta);
+            return std::make_unique<DdimSampler>(schedule, steps, options.eta);
         case SamplerKind::DdimInverse:
             return std::make_unique<DdimInverseSampler>(schedule, steps);
         case SamplerKind::Ddpm:
@@ -325,6 +337,9 @@ std::unique_ptr<Sampler> make_sampler(SamplerKind kind, const NoiseSchedule& sch
             return std::make_unique<PndmSampler>(schedule, steps);
         case SamplerKind::DpmSolverPp2M:
             return std::make_unique<DpmSolverSampler>(schedule, steps);
+        case SamplerKind::Lcm:
+        case SamplerKind::Tcd:
+            return make_consistency_sampler(kind, schedule, steps, options);
     }
     GSE_CHECK(false);
 }

@@ -32,13 +32,18 @@ torch::Tensor make_betas(const SchedulerConfig& config) {
     return torch::tensor(betas);
 }
 
+Prediction prediction_of(const SchedulerConfig& config) {
+    if (config.prediction_type == "v_prediction") return Prediction::Velocity;
+    return config.prediction_type == "sample" ? Prediction::Sample : Prediction::Epsilon;
+}
+
 }  // namespace
 
 NoiseSchedule::NoiseSchedule(const SchedulerConfig& config)
     : config_(config),
       betas_(make_betas(config)),
       alphas_cumprod_(torch::cumprod(1.0 - betas_, 0)),
-      prediction_(config.prediction_type == "v_prediction" ? Prediction::Velocity : Prediction::Epsilon) {
+      prediction_(prediction_of(config)) {
     const float* data = alphas_cumprod_.data_ptr<float>();
     values_.assign(data, data + alphas_cumprod_.numel());
 }
@@ -67,6 +72,7 @@ torch::Tensor NoiseSchedule::velocity(const torch::Tensor& x0, const torch::Tens
 
 torch::Tensor NoiseSchedule::target(const torch::Tensor& x0, const torch::Tensor& noise,
                                     const torch::Tensor& t) const {
+    if (prediction_ == Prediction::Sample) return x0;
     return prediction_ == Prediction::Velocity ? velocity(x0, noise, t) : noise;
 }
 
@@ -74,11 +80,13 @@ torch::Tensor NoiseSchedule::to_epsilon(const torch::Tensor& output, const torch
                                         const torch::Tensor& t) const {
     if (prediction_ == Prediction::Epsilon) return output;
     const auto [signal, sigma] = roots(t, x_t);
+    if (prediction_ == Prediction::Sample) return (x_t - signal * output) / sigma;
     return signal * output + sigma * x_t;
 }
 
 torch::Tensor NoiseSchedule::to_x0(const torch::Tensor& output, const torch::Tensor& x_t,
                                    const torch::Tensor& t) const {
+    if (prediction_ == Prediction::Sample) return output;
     const auto [signal, sigma] = roots(t, x_t);
     return prediction_ == Prediction::Velocity ? signal * x_t - sigma * output
                                                : (x_t - sigma * output) / signal;
@@ -105,6 +113,8 @@ SamplerKind sampler_kind(const SchedulerConfig& config) {
     if (name == "EulerAncestralDiscreteScheduler") return SamplerKind::EulerAncestral;
     if (name == "PNDMScheduler") return SamplerKind::Pndm;
     if (name == "DPMSolverMultistepScheduler") return SamplerKind::DpmSolverPp2M;
+    if (name == "LCMScheduler") return SamplerKind::Lcm;
+    if (name == "TCDScheduler") return SamplerKind::Tcd;
     throw Error(ErrorCode::Model, fmt::format("the scheduler \"{}\" is not supported", name),
                 "use DDIMScheduler");
 }
@@ -113,6 +123,13 @@ std::int64_t first_step(std::int64_t step_count, double strength) {
     const auto kept =
         std::min(step_count, static_cast<std::int64_t>(static_cast<double>(step_count) * strength));
     return std::max<std::int64_t>(0, step_count - kept);
+}
+
+ImageToImage image_to_image(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps, SamplerOptions options) {
+    if (kind == SamplerKind::Lcm || kind == SamplerKind::Tcd) return {make_sampler(kind, schedule, steps, options), 0};
+    auto sampler = make_sampler(kind, schedule, steps, options);
+    const auto count = sampler->step_count();
+    return {std::move(sampler), std::min(first_step(count, options.strength), count - 1)};
 }
 
 }  // namespace gse::neural

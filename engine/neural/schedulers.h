@@ -1,4 +1,4 @@
-// Noise schedules of diffusion models and the samplers that walk them (DDIM, DDPM, Euler, PNDM, DPM++ 2M).
+// Noise schedules of diffusion models and the samplers that walk them (DDIM, DDPM, Euler, PNDM, DPM++ 2M, LCM, TCD).
 #pragma once
 
 #include <torch/torch.h>
@@ -11,7 +11,7 @@
 namespace gse::neural {
 
 /// What the UNet's output means.
-enum class Prediction { Epsilon, Velocity };
+enum class Prediction { Epsilon, Velocity, Sample };
 
 /// The forward process: betas and cumulative products, fp32 as in the reference.
 class NoiseSchedule {
@@ -52,7 +52,7 @@ private:
 /// alphas_cumprod [steps] of the scaled_linear schedule, fp32 on the CPU.
 torch::Tensor scaled_linear_alphas_cumprod(std::int64_t steps, double beta_start, double beta_end);
 
-enum class SamplerKind { Ddim, DdimInverse, Ddpm, Euler, EulerAncestral, Pndm, DpmSolverPp2M };
+enum class SamplerKind { Ddim, DdimInverse, Ddpm, Euler, EulerAncestral, Pndm, DpmSolverPp2M, Lcm, Tcd };
 
 /// One walk from noise to a sample (DdimInverse: back). Usage, for step i in [first, step_count()):
 ///   output = unet(scale_input(x, i), timestep(i)); x = step(output, x, i, noise).
@@ -77,15 +77,45 @@ public:
 
 protected:
     explicit Sampler(const NoiseSchedule& schedule) : schedule_(schedule) {}
+    /// As the schedule's configuration asks: a clean sample in its range.
+    torch::Tensor clipped(const torch::Tensor& x0) const;
+
     const NoiseSchedule schedule_;
     std::vector<double> timesteps_;
     std::vector<float> sigmas_;
     torch::Tensor predicted_x0_;
 };
 
-/// `eta` is DDIM's share of fresh noise; the other samplers ignore it.
+/// What only some samplers go by; the others ignore it.
+struct SamplerOptions {
+    double eta = 0;                   // share of fresh noise: DDIM's eta, TCD's gamma
+    double strength = 1;              // LCM, TCD: image to image begins at this share of their table; see image_to_image()
+    std::int64_t original_steps = 0;  // LCM, TCD: of the solver they were distilled from; 0 = as the configuration says
+    bool any_level = false;           // TCD: visits every timestep, not only the solver's
+};
+
+/// Throws Error (InvalidArgument) for a number of steps that the schedule, or the table of a distilled model, does not have.
 std::unique_ptr<Sampler> make_sampler(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps,
-                                      double eta = 0.0);
+                                      const SamplerOptions& options = {});
+
+/// LCM and TCD: the samplers of models distilled to few steps.
+std::unique_ptr<Sampler> make_consistency_sampler(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps,
+                                                  const SamplerOptions& options);
+
+/// Shares of the sample and of what the network says in a consistency model's answer: at timestep 0 the sample itself.
+struct BoundaryScalings {
+    double skip = 0, out = 1;
+};
+BoundaryScalings boundary_scalings(double timestep, double timestep_scaling);
+
+/// An image to image run: what walks, and the first step that is done.
+struct ImageToImage {
+    std::unique_ptr<Sampler> sampler;
+    std::int64_t first = 0;
+};
+/// LCM and TCD take the strength into their table and do all `steps`; the others do the last int(steps * strength) of them,
+/// at least one.
+ImageToImage image_to_image(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps, SamplerOptions options);
 
 /// The sampler a scheduler_config.json names. Throws Error (Model) for one that is not implemented.
 SamplerKind sampler_kind(const SchedulerConfig& config);

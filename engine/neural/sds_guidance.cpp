@@ -42,16 +42,21 @@ const torch::Tensor& SdsGuidance::context_for(const std::string& prompt, const s
         .first->second;
 }
 
-torch::Tensor SdsGuidance::pull_on_original(const edit::GuidanceInput& input, const torch::Tensor& deviation,
-                                            SdsStep step) {
+const torch::Tensor& SdsGuidance::original_latents(const edit::GuidanceInput& input) {
     const torch::NoGradGuard no_grad;
     auto& mean = originals_[input.view_index];
     if (!mean.defined()) {
         const auto image = to_tensor(*input.original, bundle_->device).clamp(0, 1);
         mean = image_to_latents(*bundle_, resize_square(image, bundle_->image_size()));
     }
+    return mean;
+}
+
+torch::Tensor SdsGuidance::pull_on_original(const edit::GuidanceInput& input, const torch::Tensor& deviation,
+                                            SdsStep step) {
+    const torch::NoGradGuard no_grad;
     step.context = context_for(parameters_.before_prompt, input.view_words);
-    return sds_gradient(*bundle_, mean + deviation, step).gradient;
+    return sds_gradient(*bundle_, original_latents(input) + deviation, step).gradient;
 }
 
 edit::GuidanceOutput SdsGuidance::evaluate(const edit::GuidanceInput& input) {
@@ -69,7 +74,10 @@ edit::GuidanceOutput SdsGuidance::evaluate(const edit::GuidanceInput& input) {
             z = moments.sample(seeded_noise(z.sizes(), random.next()).to(z.device()));
         const auto latents = z * bundle_->scaling_factor();
         const auto noise = seeded_noise(latents.sizes(), random.next()).to(latents.device());
-        const SdsStep step{noise, t, parameters_.guidance_scale, context_for(prompt_, input.view_words)};
+        SdsStep step{noise, t, parameters_.guidance_scale, context_for(prompt_, input.view_words)};
+        step.image_guidance_scale = parameters_.image_guidance_scale;
+        if (takes_picture(bundle_->unet->config()))
+            step.picture = input.original != nullptr ? original_latents(input) / bundle_->scaling_factor() : moments.mean.detach();
         auto result = sds_gradient(*bundle_, latents, step);
         if (input.original != nullptr && takes_difference()) {
             const auto deviation = latents.detach() - moments.mean.detach() * bundle_->scaling_factor();

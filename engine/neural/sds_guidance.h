@@ -21,11 +21,15 @@ public:
     edit::GuidanceOutput evaluate(const edit::GuidanceInput& input) override;
 
 private:
-    /// False without a sentence before the edit, or with the same one: the difference would be the pull itself.
+    /// False without a sentence before the edit, or with the same one: the difference would be the pull itself. A model that sees
+    /// the unedited view takes it into account by itself.
     bool takes_difference() const {
-        return parameters_.delta > 0 && !parameters_.before_prompt.empty() && parameters_.before_prompt != prompt_;
+        return parameters_.delta > 0 && !parameters_.before_prompt.empty() && parameters_.before_prompt != prompt_ &&
+               !takes_picture(bundle_->unet->config());
     }
     const torch::Tensor& context_for(const std::string& prompt, const std::string& view_words);
+    /// Latents of the unedited view, posterior mean.
+    const torch::Tensor& original_latents(const edit::GuidanceInput& input);
     /// Latent gradient of the unedited view with the same noise, under the sentence before the edit.
     torch::Tensor pull_on_original(const edit::GuidanceInput& input, const torch::Tensor& deviation, SdsStep step);
 

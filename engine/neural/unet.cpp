@@ -9,6 +9,16 @@
 
 namespace gse::neural {
 
+torch::Tensor guidance_embedding(const torch::Tensor& w, std::int64_t width) {
+    const auto half = width / 2;
+    const auto options = torch::TensorOptions().dtype(torch::kFloat32).device(w.device());
+    const auto frequency = (torch::arange(half, options) * (-std::log(10000.0) / static_cast<double>(half - 1))).exp();
+    const auto angle = (w.to(torch::kFloat32) * 1000.0).reshape({-1, 1}) * frequency;
+    std::vector<torch::Tensor> parts{angle.sin(), angle.cos()};
+    if (width % 2 == 1) parts.push_back(torch::zeros({w.numel(), 1}, options));
+    return torch::cat(parts, 1);
+}
+
 /// One resolution of the network (or the middle).
 struct UNetImpl::Level {
     std::vector<ResnetBlock> resnets;
@@ -50,6 +60,9 @@ UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : con
         time->register_module("linear_1", Linear(LinearImpl::Shape{widths[0], build.time_width()}, options));
     time_linear_2 = time->register_module(
         "linear_2", Linear(LinearImpl::Shape{build.time_width(), build.time_width()}, options));
+    if (config_.time_cond_proj_dim > 0)
+        time_cond_proj = time->register_module(
+            "cond_proj", Linear(LinearImpl::Shape{config_.time_cond_proj_dim, widths[0], false}, options));
     register_module("time_embedding", time);
 
     std::vector<std::int64_t> skips = {widths[0]};  // channels of the stored activations
@@ -144,8 +157,13 @@ torch::Tensor UNetImpl::time_projection(const torch::Tensor& timesteps, std::int
                                    : torch::cat({angle.sin(), angle.cos()}, 1);
 }
 
-torch::Tensor UNetImpl::time_embedding(const torch::Tensor& projection) const {
-    return time_linear_2->forward(apply_silu(time_linear_1->forward(projection)));
+torch::Tensor UNetImpl::time_embedding(const torch::Tensor& projection, const torch::Tensor& time_condition) const {
+    auto sum = projection;
+    if (time_condition.defined()) {
+        GSE_CHECK(!time_cond_proj.is_empty());
+        sum = sum + time_cond_proj->forward(time_condition.to(projection.device(), projection.scalar_type()));
+    }
+    return time_linear_2->forward(apply_silu(time_linear_1->forward(sum)));
 }
 
 /// Level and place of the last wanted layer on the way up; level 0, place 0 where none is wanted there.
@@ -164,13 +182,14 @@ std::pair<std::size_t, std::size_t> UNetImpl::last_wanted(const AttentionCapture
 }
 
 torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
-                                const torch::Tensor& words, AttentionCapture* capture) const {
+                                const torch::Tensor& words, AttentionCapture* capture,
+                                const torch::Tensor& time_condition) const {
     GSE_CHECK_EQ(sample.dim(), std::int64_t{4});
     const auto type = conv_in->weight.scalar_type();
     const auto context = words.to(type);
     thread_use().unet += static_cast<std::uint64_t>(sample.size(0));
     const auto time =
-        apply_silu(time_embedding(time_projection(timesteps, sample.size(0)).to(type)));
+        apply_silu(time_embedding(time_projection(timesteps, sample.size(0)).to(type), time_condition));
     auto x = conv_in->forward(sample.to(type).contiguous(torch::MemoryFormat::ChannelsLast));
     std::vector<torch::Tensor> skips = {x};
     for (const auto& level : down_) {

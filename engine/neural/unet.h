@@ -35,19 +35,24 @@ struct AttentionCapture {
     std::vector<Map> affinities;
 };
 
+/// Embedding [B,width] of guidance scales w [B] (LCM's is the scale - 1), fp32: sines, then cosines, of 1000 w f_i with
+/// f_i = 10000^(-i / (width/2 - 1)) (Luo et al. 2023, section 4.2; an odd width ends in 0).
+torch::Tensor guidance_embedding(const torch::Tensor& w, std::int64_t width);
+
 class UNetImpl : public torch::nn::Module {
 public:
     explicit UNetImpl(const UNetConfig& config, const WeightOptions& options = {});
     ~UNetImpl() override;
 
-    /// sample [B,C,h,w]; timesteps [B] or a scalar, integer or float; words [B,T,D], the context. Computes in
-    /// the weights' type; returns the prediction [B,out,h,w] in the sample's, undefined where the capture stopped the pass.
-    torch::Tensor forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
-                          const torch::Tensor& words, AttentionCapture* capture = nullptr) const;
+    /// sample [B,C,h,w]; timesteps [B] or a scalar, integer or float; words [B,T,D], the context. `time_condition`
+    /// [B,time_cond_proj_dim] or undefined: guidance_embedding(), for networks that were distilled with it. Computes in the weights'
+    /// type; returns the prediction [B,out,h,w] in the sample's, undefined where the capture stopped the pass.
+    torch::Tensor forward(const torch::Tensor& sample, const torch::Tensor& timesteps, const torch::Tensor& words,
+                          AttentionCapture* capture = nullptr, const torch::Tensor& time_condition = {}) const;
 
     /// Sinusoid [B,C0] in fp32, and what the two linear layers make of it (for tests).
     torch::Tensor time_projection(const torch::Tensor& timesteps, std::int64_t batch) const;
-    torch::Tensor time_embedding(const torch::Tensor& projection) const;
+    torch::Tensor time_embedding(const torch::Tensor& projection, const torch::Tensor& time_condition = {}) const;
 
     const UNetConfig& config() const { return config_; }
 
@@ -62,7 +67,7 @@ private:
 
     UNetConfig config_;
     Conv2d conv_in{nullptr}, conv_out{nullptr};
-    Linear time_linear_1{nullptr}, time_linear_2{nullptr};
+    Linear time_linear_1{nullptr}, time_linear_2{nullptr}, time_cond_proj{nullptr};
     GroupNorm conv_norm_out{nullptr};
     std::vector<Level> down_, up_;
     std::unique_ptr<Level> mid_;

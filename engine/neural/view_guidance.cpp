@@ -14,6 +14,10 @@ namespace gse::neural {
 namespace {
 
 constexpr std::int64_t PixelsAtOnce = 8 * 64 * 64;   // of a batch of views: more would not fit with large models
+constexpr std::int64_t TurboLevels = 4;   // noise levels that a Turbo model was trained at (Sauer et al. 2023, section 4)
+constexpr std::uint64_t FreshNoiseStream = 1;   // of a round's seed: noise between the steps
+/// Above it an LCM's picture has little to do with the render, and what the decoder loses of that says nothing (views.md 8.5).
+constexpr double LcmPlainDecode = 0.9;
 
 /// Share of each latent cell that may change, grown by one cell: [1,1,h,w].
 torch::Tensor latent_mask(const Mask& mask, std::int64_t cells, const torch::Device& device) {
@@ -35,6 +39,32 @@ std::vector<std::int64_t> redraw_timesteps(double strength, int steps, std::int6
     return timesteps;
 }
 
+std::vector<std::int64_t> redraw_levels(BundleKind kind, const NoiseSchedule& schedule, double strength, int steps) {
+    const double total = static_cast<double>(schedule.steps());
+    std::vector<std::int64_t> levels;
+    const auto take = [&](const std::vector<double>& timesteps) {
+        for (const double t : timesteps) levels.push_back(static_cast<std::int64_t>(t));
+        return levels;
+    };
+    if (kind == BundleKind::Lcm || kind == BundleKind::Tcd) {
+        const double known = static_cast<double>(schedule.config().original_inference_steps);
+        const double reached = std::clamp(strength, 1 / known, 1.0);
+        const auto count = std::min<std::int64_t>(steps, static_cast<std::int64_t>(known * reached));
+        return take(make_sampler(SamplerKind::Lcm, schedule, std::max<std::int64_t>(count, 1), {.strength = reached})->timesteps());
+    }
+    if (kind != BundleKind::Turbo) return redraw_timesteps(strength, steps, schedule.steps());
+    const double share = std::clamp(strength, 1 / total, 1.0);
+    const auto grid = std::min<std::int64_t>(schedule.steps(),
+                                             std::max<std::int64_t>(TurboLevels, static_cast<std::int64_t>(std::ceil(steps / share))));
+    const auto all = make_sampler(SamplerKind::Euler, schedule, grid)->timesteps();
+    const std::vector<double> below(all.begin() + first_step(grid, share), all.end());
+    const auto kept = std::max<std::size_t>(1, std::min<std::size_t>(static_cast<std::size_t>(steps), below.size()));
+    if (below.empty()) return take({all.back()});
+    std::vector<double> chosen;
+    for (std::size_t i = 0; i < kept; ++i) chosen.push_back(below[i * below.size() / kept]);
+    return take(chosen);
+}
+
 /// Everything of one round, view after view along the first dimension.
 struct DiffusionViews::Batch {
     torch::Tensor clean;      // [K,C,h,w] latents of the renders
@@ -43,6 +73,7 @@ struct DiffusionViews::Batch {
     torch::Tensor mask;       // [K,1,h,w]
     torch::Tensor contexts;   // [K,2,T,D] negative, positive
     torch::Tensor before;     // the same with the sentence before the edit; undefined where nothing is taken off
+    torch::Tensor picture;    // [K,C,h,w] what a model that edits pictures is shown: the unedited views; else undefined
     torch::Tensor x;          // what the steps have made of it
 };
 
@@ -57,7 +88,9 @@ torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views
     };
     std::vector<torch::Tensor> rows;
     for (const auto& view : views) {
-        const auto sentence = parameters_.view_words ? with_view_words(prompt, view.view_words) : prompt;
+        // An instruction says what to do, whatever the picture shows of the thing.
+        const bool says_view = parameters_.view_words && bundle_->kind != BundleKind::InstructPix2Pix;
+        const auto sentence = says_view ? with_view_words(prompt, view.view_words) : prompt;
         rows.push_back(torch::cat({encoded(parameters_.negative_prompt), encoded(sentence)}));
     }
     return torch::stack(rows);
@@ -65,55 +98,62 @@ torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views
 
 DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>& views, const edit::RoundInput& input) {
     const auto cells = bundle_->latent_size();
-    const auto channels = bundle_->unet->config().in_channels;
-    const double voxel = edit::noise_voxel(views, static_cast<int>(cells));
     Batch batch;
-    std::vector<torch::Tensor> clean, original, noise, masks;
+    std::vector<torch::Tensor> clean, original, masks;
     const auto latents = [&](const Image& image) {
-        return image_to_latents(*bundle_, resize_square(to_tensor(image, bundle_->device), bundle_->image_size()));
+        return image_to_latents(*bundle_, resize_square(to_tensor(image, bundle_->device), bundle_->image_size()), Codec::Quick);
     };
     for (std::size_t v = 0; v < views.size(); ++v) {
         const auto& view = views[v];
         clean.push_back(latents(view.rendered));
         original.push_back(view.rendered.data == view.original.data ? clean.back() : latents(view.original));
-        noise.push_back(to_tensor(edit::surface_noise(view.depth, view.view.camera, static_cast<int>(cells),
-                                                         static_cast<int>(channels), voxel, input.seed, v),
-                                     bundle_->device));
         masks.push_back(latent_mask(view.mask, cells, bundle_->device));
     }
     batch.clean = torch::cat(clean);
     batch.original = torch::cat(original);
-    batch.noise = torch::cat(noise);
+    batch.noise = noise(views, input.seed);
     batch.mask = torch::cat(masks);
     batch.contexts = contexts(views, prompt_);
+    if (takes_picture(bundle_->unet->config())) {
+        batch.picture = batch.original / bundle_->scaling_factor();   // as the model is used to it: not scaled
+        return batch;   // it sees what it must not change
+    }
     const auto& before = parameters_.before_prompt;
     if (parameters_.delta > 0 && !before.empty() && before != prompt_) batch.before = contexts(views, before);
     return batch;
 }
 
-torch::Tensor DiffusionViews::output(const torch::Tensor& x, std::int64_t timestep, const torch::Tensor& contexts,
-                                      double guidance_scale) const {
+torch::Tensor DiffusionViews::noise(const std::vector<edit::RoundView>& views, std::uint64_t seed) const {
+    const auto cells = static_cast<int>(bundle_->latent_size());
+    const auto channels = static_cast<int>(bundle_->latent_channels());
+    const double voxel = edit::noise_voxel(views, cells);
+    std::vector<torch::Tensor> parts;
+    for (std::size_t v = 0; v < views.size(); ++v)
+        parts.push_back(to_tensor(edit::surface_noise(views[v].depth, views[v].view.camera, cells, channels, voxel, seed, v), bundle_->device));
+    return torch::cat(parts);
+}
+
+torch::Tensor DiffusionViews::output(const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning) const {
     const auto side = bundle_->image_size();
     const auto at_once = std::max<std::int64_t>(1, PixelsAtOnce / (side * side));
-    const bool guided_by_two = guidance_scale != 1.0;
     std::vector<torch::Tensor> parts;
     for (std::int64_t first = 0; first < x.size(0); first += at_once) {
         const auto count = std::min(at_once, x.size(0) - first);
-        const auto some = x.narrow(0, first, count);
-        const auto words = contexts.narrow(0, first, count);
-        const auto positive = words.select(1, 1);
+        auto some = conditioning;
+        some.context = conditioning.context.narrow(0, first, count);
+        if (some.picture.defined()) some.picture = conditioning.picture.narrow(0, first, count);
         const auto t = torch::full({1}, timestep, torch::kFloat32);
-        parts.push_back(guided_by_two ? guided(bundle_->unet->forward(torch::cat({some, some}), t,
-                                                                      torch::cat({words.select(1, 0), positive})),
-                                               guidance_scale)
-                                      : bundle_->unet->forward(some, t, positive));
+        parts.push_back(guided_output(bundle_->unet, x.narrow(0, first, count), t, some));
     }
     return torch::cat(parts);
 }
 
-void DiffusionViews::denoise(Batch& batch, const edit::RoundInput& input, const JobControl& job) const {
+void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
+                             const JobControl& job) const {
     const auto& schedule = bundle_->schedule;
-    const auto timesteps = redraw_timesteps(input.strength, input.steps, schedule.steps());
+    const auto timesteps = redraw_levels(bundle_->kind, schedule, input.strength, input.steps);
+    const Conditioning edited{batch.contexts, parameters_.view_guidance_scale, batch.picture, parameters_.image_guidance_scale};
+    const Conditioning unedited_words{batch.before, 1};
     const auto roots = [&](std::int64_t t) {
         const double a = schedule.alpha_cumprod(t);
         return std::pair{std::sqrt(a), std::sqrt(1 - a)};
@@ -123,12 +163,12 @@ void DiffusionViews::denoise(Batch& batch, const edit::RoundInput& input, const 
     for (std::size_t i = 0; i < timesteps.size(); ++i) {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "redrawing the views was stopped");
         const auto t = torch::full({1}, timesteps[i], torch::kInt64);
-        auto x0 = schedule.to_x0(output(batch.x, timesteps[i], batch.contexts, parameters_.view_guidance_scale), batch.x, t);
+        auto x0 = schedule.to_x0(output(batch.x, timesteps[i], edited), batch.x, t);
         if (batch.before.defined()) {   // what it would change on the unedited view anyway is taken off
             const auto [a, b] = roots(timesteps[i]);
             const auto unedited = a * batch.original + b * batch.noise;
             x0 = x0 + parameters_.delta *
-                          (batch.original - schedule.to_x0(output(unedited, timesteps[i], batch.before, 1.0), unedited, t));
+                          (batch.original - schedule.to_x0(output(unedited, timesteps[i], unedited_words), unedited, t));
         }
         x0 = batch.mask * x0 + (1 - batch.mask) * batch.original;   // the surroundings stay, and keep the steps in place
         const auto [now, spread] = roots(timesteps[i]);
@@ -136,23 +176,34 @@ void DiffusionViews::denoise(Batch& batch, const edit::RoundInput& input, const 
             batch.x = x0;
         } else {
             const auto [next, less] = roots(timesteps[i + 1]);
-            batch.x = next * x0 + less * ((batch.x - now * x0) / spread);
+            // A latent consistency model goes on from fresh noise; the others from what is left of the first.
+            const bool fresh = bundle_->kind == BundleKind::Lcm;
+            const auto left = fresh ? noise(views, Random::stream(input.seed, FreshNoiseStream + i).next())
+                                    : (batch.x - now * x0) / spread;
+            batch.x = next * x0 + less * left;
         }
         job.report("redrawing the views", static_cast<int>(i + 1), static_cast<int>(timesteps.size()));
     }
 }
 
-/// What the decoder makes of the change is added to the render: its own loss, and that of the resize, cancel.
-edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<edit::RoundView>& views) const {
+/// What the decoder makes of the change is added to the render: its own loss, and that of the resize, cancel. Where the picture
+/// is made anew, it is taken as it is. The tiny decoder does for all rounds but the last.
+edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<edit::RoundView>& views,
+                                          const edit::RoundInput& input) const {
+    const auto codec = input.round + 1 < input.rounds ? Codec::Quick : Codec::Full;
+    const bool anew = bundle_->kind == BundleKind::InstructPix2Pix ||
+                      (bundle_->kind == BundleKind::Lcm && input.strength >= LcmPlainDecode);
     edit::RoundTargets targets;
     double change = 0, pixels = 0;
     for (std::size_t v = 0; v < views.size(); ++v) {
         const auto row = static_cast<std::int64_t>(v);
-        const auto decoded = latents_to_image(*bundle_, torch::cat({batch.x.narrow(0, row, 1), batch.clean.narrow(0, row, 1)}));
-        const auto difference = decoded.narrow(0, 0, 1) - decoded.narrow(0, 1, 1);
+        auto decoded = latents_to_image(
+            *bundle_, anew ? batch.x.narrow(0, row, 1) : torch::cat({batch.x.narrow(0, row, 1), batch.clean.narrow(0, row, 1)}), codec);
+        if (!anew) decoded = decoded.narrow(0, 0, 1) - decoded.narrow(0, 1, 1);
         const Image& rendered = views[v].rendered;
-        const auto enlarged = torch::upsample_bilinear2d(difference, {rendered.height, rendered.width}, false);
-        targets.images.push_back(to_image((to_tensor(rendered, bundle_->device) + enlarged).clamp(0, 1)));
+        auto enlarged = torch::upsample_bilinear2d(decoded, {rendered.height, rendered.width}, false);
+        if (!anew) enlarged = to_tensor(rendered, bundle_->device) + enlarged;
+        targets.images.push_back(to_image(enlarged.clamp(0, 1)));
         for (std::size_t i = 0; i < views[v].mask.data.size(); ++i) {
             if (views[v].mask.data[i] == 0) continue;
             for (std::size_t c = 0; c < 3; ++c)
@@ -169,8 +220,8 @@ edit::RoundTargets DiffusionViews::edit(const std::vector<edit::RoundView>& view
     return guard_torch("redrawing the views", [&] {
         const torch::NoGradGuard no_grad;
         Batch batch = prepare(views, input);
-        denoise(batch, input, job);
-        auto targets = finish(batch, views);
+        denoise(batch, views, input, job);
+        auto targets = finish(batch, views, input);
         if (!torch::isfinite(batch.x).all().item<bool>())
             throw Error(ErrorCode::Model, "the model's pictures hold values that are not finite",
                         "its weights are damaged, or it overflows: try another model or a lower guidance scale");

@@ -15,6 +15,11 @@ namespace gse::neural {
 /// rounded to the schedule, descending, none twice.
 std::vector<std::int64_t> redraw_timesteps(double strength, int steps, std::int64_t total);
 
+/// The same for a kind of model (views.md 4 and 10), of which a distilled one knows some levels only: of an LCM or TCD those of
+/// its table up to the strength; of a Turbo model trailing ones, at least the quarters it was trained on. Never none; at most
+/// `steps`.
+std::vector<std::int64_t> redraw_levels(BundleKind kind, const NoiseSchedule& schedule, double strength, int steps);
+
 class DiffusionViews final : public edit::ViewGuidance {
 public:
     DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters);
@@ -24,11 +29,13 @@ public:
 private:
     struct Batch;
     Batch prepare(const std::vector<edit::RoundView>& views, const edit::RoundInput& input);
-    void denoise(Batch& batch, const edit::RoundInput& input, const JobControl& job) const;
-    edit::RoundTargets finish(const Batch& batch, const std::vector<edit::RoundView>& views) const;
+    void denoise(Batch& batch, const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) const;
+    edit::RoundTargets finish(const Batch& batch, const std::vector<edit::RoundView>& views, const edit::RoundInput& input) const;
     torch::Tensor contexts(const std::vector<edit::RoundView>& views, const std::string& prompt);
+    /// Noise [K,C,h,w] on the scene's surface.
+    torch::Tensor noise(const std::vector<edit::RoundView>& views, std::uint64_t seed) const;
     /// Guided output of the UNet for latents [K,C,h,w], in pieces that fit into memory.
-    torch::Tensor output(const torch::Tensor& x, std::int64_t timestep, const torch::Tensor& contexts, double guidance_scale) const;
+    torch::Tensor output(const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning) const;
 
     std::shared_ptr<const ModelBundle> bundle_;
     std::string prompt_;

@@ -36,6 +36,16 @@ std::filesystem::path model_path(const JobParameters& job) {
     return job.model.empty() ? starter_model_path() : std::filesystem::path(job.model);
 }
 
+/// So that a recipe that was written elsewhere names the same files. Throws Error for one that is not there.
+std::vector<std::string> absolute_loras(const JobParameters& job) {
+    std::vector<std::string> texts;
+    for (auto lora : neural::find_loras(job.lora)) {
+        lora.file = std::filesystem::absolute(lora.file).lexically_normal();
+        texts.push_back(neural::lora_text(lora));
+    }
+    return texts;
+}
+
 }  // namespace
 
 void warn_unknown_words(const std::vector<std::string>& words, const std::vector<std::string>& known) {
@@ -52,13 +62,14 @@ void use_threads(const JobParameters& job) { neural_api().set_threads(job.thread
 
 std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job) {
     use_threads(job);
-    return neural_api().load_model(model_path(job), job.device);
+    return neural_api().load_model(model_path(job), {job.device, neural::find_loras(job.lora), job.taesd, job.precision});
 }
 
 EditJob::EditJob(EditRecipe recipe, JobControl control) : recipe_(std::move(recipe)), control_(std::move(control)) {
     check_recipe(nullptr);
     times_.begin("load_scene");
     recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
+    recipe_.job.lora = absolute_loras(recipe_.job);
     Scene scene = load_scene(recipe_.job.scene);
     if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene);
     times_.end();

@@ -205,6 +205,7 @@ nlohmann::ordered_json make_report(EditJob& job) {
     report["pruned"] = result.pruned;
     if (!job.targets().empty()) report["targets"] = targets_to_json(job.targets(), job.views());
     report["model"] = job.model().name();
+    report["model_kind"] = neural::kind_name(job.model().kind());
     report["settings_from"] = settings_from(job.recipe());
     report["seconds"] = job.times().to_json();
     report["networks"] = job.times().networks_json();

@@ -59,6 +59,18 @@ void judge(EditJob& job, Gate& gate) {
     if (gate.warns) log::warning("{}", gate.verdict);
 }
 
+/// A model that has a way of its own to redraw pictures is asked as the edit will ask it.
+void ask_its_own_way(neural::SampleRequest& request, EditJob& job) {
+    const auto kind = job.model().kind();
+    if (kind == neural::BundleKind::Plain) return;
+    const auto& recipe = job.recipe();
+    request.steps = recipe.request.view_steps;
+    request.strength = recipe.request.view_strength;
+    request.guidance_scale = recipe.guidance.view_guidance_scale;
+    request.image_guidance_scale = recipe.guidance.image_guidance_scale;
+    if (kind == neural::BundleKind::InstructPix2Pix) request.prompt = told_to_editor(recipe.request);
+}
+
 }  // namespace
 
 Gate look_through_gate(EditJob& job, const GateParameters& parameters) {
@@ -78,6 +90,7 @@ Gate look_through_gate(EditJob& job, const GateParameters& parameters) {
         request.steps = parameters.steps;
         request.guidance_scale = parameters.guidance_scale;
         request.strength = parameters.strength;
+        ask_its_own_way(request, job);
         request.seed = job.recipe().request.seed + i;
         gate.pictures.push_back({view, before, job.model().img2img(before, request)});
         job.control().report("asking the model", static_cast<int>(i + 1), static_cast<int>(count));

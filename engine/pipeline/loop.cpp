@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "engine/edit/grabcut_segmenter.h"
+#include "engine/edit/instruction.h"
 #include "engine/pipeline/neural_loader.h"
 
 namespace gse::pipeline {
@@ -30,6 +31,8 @@ neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const
     return guidance;
 }
 
+std::string told_to_editor(const edit::EditRequest& request) { return edit::as_told(edit::instruction_of(request)); }
+
 edit::EditPlan plan_of(Workplace& workplace, const Located& located, const EditRecipe& recipe) {
     const auto* label = located.by_label() ? &located.label : nullptr;
     return edit::make_plan(question(workplace, recipe, located.views, label), located.result, workplace.painter().rasterizer());
@@ -40,7 +43,8 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
     const auto use_before = network_use();
     const auto& model = workplace.model();
     const auto& request = recipe.request;
-    const auto prompt = edit::as_told(request.prompt);
+    const bool editor = model.kind() == neural::BundleKind::InstructPix2Pix;
+    const auto prompt = editor ? told_to_editor(request) : edit::as_told(request.prompt);
     const auto settings = with_sentence_before(recipe.guidance, request);
     const auto guidance = model.guidance(prompt, settings);
     const auto views = edit::edits_by_views(request, located.result.mode) ? model.views(prompt, settings) : nullptr;

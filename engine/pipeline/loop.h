@@ -35,6 +35,9 @@ struct Edited {
 /// The guidance's settings with the sentence before the edit, worked out from the request where none is given.
 neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request);
 
+/// What a model that edits pictures by instructions is told.
+std::string told_to_editor(const edit::EditRequest& request);
+
 /// Masks, label and seeds for the loop. Of the recipe, how far masks are grown counts.
 edit::EditPlan plan_of(Workplace& workplace, const Located& located, const EditRecipe& recipe);
 

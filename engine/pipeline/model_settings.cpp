@@ -7,7 +7,8 @@ namespace gse::pipeline {
 
 #ifdef GSE_NEURAL
 neural::ModelProfile profile_of(const JobParameters& job) {
-    return neural::model_profile(job.model.empty() ? starter_model_path() : std::filesystem::path(job.model));
+    return neural::model_profile(job.model.empty() ? starter_model_path() : std::filesystem::path(job.model),
+                                 neural::find_loras(job.lora));
 }
 #else
 neural::ModelProfile profile_of(const JobParameters&) { return {}; }

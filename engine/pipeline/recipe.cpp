@@ -7,6 +7,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/path_text.h"
+#include "engine/neural/lora_spec.h"
 
 namespace gse::pipeline {
 namespace {
@@ -17,7 +18,14 @@ using Json = nlohmann::ordered_json;
 
 /// What the networks are, and from where the scene is looked at.
 Json surroundings(const JobParameters& job) {
-    return {job.model, job.device, job.cameras, job.up, job.front};
+    return {job.model, job.lora, job.taesd, job.device, job.precision, job.cameras, job.up, job.front};
+}
+
+/// "FILE:strength" with the file in that folder.
+std::string lora_beside(const std::string& text, const std::filesystem::path& folder) {
+    auto lora = neural::parse_lora(text);
+    if (!lora.file.is_absolute()) lora.file = std::filesystem::weakly_canonical(folder / lora.file);
+    return neural::lora_text(lora);
 }
 
 }  // namespace
@@ -26,8 +34,11 @@ nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe) {
     nlohmann::ordered_json json;
     json["version"] = RecipeVersion;
     json["job"] = fields_to_json(recipe.job);
-    for (auto& value : json["job"])
+    for (auto& value : json["job"]) {
         if (value.is_string()) value = text_of_path(value.get<std::string>());
+        if (value.is_array())
+            for (auto& entry : value) entry = text_of_path(entry.get<std::string>());
+    }
     json["request"] = fields_to_json(recipe.request);
     json["guidance"] = fields_to_json(recipe.guidance);
     const auto attention = fields_to_json(recipe.attention);
@@ -64,7 +75,8 @@ EditRecipe read_recipe(const std::filesystem::path& path) {
     } catch (const Error& error) {
         throw Error(ErrorCode::InvalidArgument, "in the recipe, " + error.message(), hint, path);
     }
-    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model}) {
+    for (auto& lora : recipe.job.lora) lora = lora_beside(path_of_text(lora), path.parent_path());
+    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd}) {
         *name = path_of_text(*name);
         if (name->empty() || *name == "none" || std::filesystem::path(*name).is_absolute()) continue;
         *name = std::filesystem::weakly_canonical(path.parent_path() / *name).string();

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "engine/base/fields.h"
 #include "engine/edit/request.h"
@@ -20,7 +21,10 @@ struct JobParameters {
     std::string scene;
     std::string cameras;
     std::string model;
+    std::vector<std::string> lora;
+    std::string taesd;
     std::string device = "cpu";
+    std::string precision = "auto";
     int threads = 1;
     std::string up = "auto";
     std::string front;
@@ -34,7 +38,14 @@ struct JobParameters {
         f("cameras", self.cameras,
           "COLMAP folder, transforms.json or cameras.json; found beside the scene when empty, \"none\" for an orbit.");
         f("model", self.model, "Diffusers folder or .safetensors checkpoint; empty = the starter model.");
+        f("lora", self.lora,
+          "LoRA that is merged into the model, as FILE or FILE:strength; of kohya, LyCORIS (LoCon), PEFT or diffusers. May be given "
+          "several times.");
+        f("taesd", self.taesd,
+          "Folder of a tiny autoencoder (TAESD), for all pictures but the last; empty = \"taesd\" beside the weights, \"none\" = not used.");
         f("device", self.device, "Where the networks run: cpu or cuda.");
+        f("precision", self.precision,
+          "Numbers the UNet computes in: fp32, bf16 (AVX-512 BF16 or AMX), or auto: bf16 where a large model was measured to be faster with it.");
         f("threads", self.threads, "Threads of the networks; small ones gain nothing from more. Another number may round differently.", Range{1, 256});
         f("up", self.up, "World up: auto, x, y, z, -x, -y or -z.");
         f("front", self.front,

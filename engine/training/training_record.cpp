@@ -165,7 +165,7 @@ void write_training_record(const std::filesystem::path& work, const std::filesys
         }
     }
     if (!curves.empty()) write_png(model / "log/curves.png", stacked(curves));
-    const auto loaded = pipeline::neural_api().load_model(model, "cpu");
+    const auto loaded = pipeline::neural_api().load_model(model, {});
     write_png(model / "log/samples.png", sample_sheet(*loaded, job));
 }
 

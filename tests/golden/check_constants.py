@@ -10,7 +10,9 @@ import tempfile
 SKIP_CODE = 77
 # Cases whose constants are compared, and the tests that read them.
 CASES = {"dreambooth": "dreambooth: without prior*,dreambooth: UNet and text*", "schedulers": "schedulers: *", "sds": "sds: *",
-         "pipeline_sd1": "pipeline_sd1: *"}
+         "pipeline_sd1": "pipeline_sd1: *", "lcm": "lcm: *", "ip2p": "ip2p: *", "taesd_img2img": "taesd_img2img: *"}
+# What has no effect because of what stands beside it: a text guidance of 1 turns the picture's off too.
+WITHOUT_EFFECT = {("ip2p", "nocfg", "image_guidance_scale")}
 # AdamW does not see the length of a gradient unless it is shorter than its epsilon.
 SHORTEST = {"max_grad_norm": 1e-9}
 
@@ -62,6 +64,8 @@ def main():
             print(f"{case}: fails as it stands")
             return 1
         for path, value in leaves(stated):
+            if (case, *path) in WITHOUT_EFFECT:
+                continue
             with tempfile.TemporaryDirectory(prefix="gse-goldens-") as folder:
                 copy = pathlib.Path(folder) / "goldens"
                 (copy / case).mkdir(parents=True)

@@ -1,11 +1,17 @@
 // Models: where each part was looked for, what was found, what is missing and what to do about it.
 #include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include "ui/commands.h"
+#include "ui/keyboard.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/file_browser.h"
+#include "ui/widgets/icons.h"
 
 namespace gse::ui {
 namespace {
@@ -52,6 +58,54 @@ void draw_card(Context& context, const ModelView& model, int index) {
     end_notice();
 }
 
+void ask_lora(Context& context) {
+    auto& actions = context.actions;
+    context.state.files.ask({.title = "A LoRA: .safetensors of kohya, LyCORIS, PEFT or diffusers",
+                             .confirm = "Add",
+                             .extensions = {".safetensors"},
+                             .saves = false,
+                             .folder_allowed = false,
+                             .start = context.state.lora_text,
+                             .answer = [&actions](const std::filesystem::path& path) { actions.add_lora(utf8_of(path)); }});
+}
+
+void draw_lora(Context& context, const LoraView& lora, std::size_t index) {
+    row_label(context, shortened(lora.name, context.em * 10), lora.path);
+    const float button_space = context.em * 1.75f + ImGui::GetStyle().ItemSpacing.x;
+    ImGui::SetNextItemWidth(std::max(context.em * 3, ImGui::GetContentRegionAvail().x - button_space));
+    double strength = lora.strength;
+    const auto name = fmt::format("models.lora.strength.{}", index);
+    if (ImGui::InputScalar(fmt::format("##{}", name).c_str(), ImGuiDataType_Double, &strength, nullptr, nullptr, "%.2f",
+                           ImGuiInputTextFlags_EnterReturnsTrue) &&
+        std::isfinite(strength) && strength != lora.strength)
+        context.actions.set_lora_strength(index, strength);
+    note(context, name);
+    tooltip("How strongly it counts: 1 = as it was trained, 0 = not at all, below 0 = the opposite. Enter applies it.");
+    takes_letters(context);
+    ImGui::SameLine();
+    if (icon_button(context, {.name = fmt::format("models.lora.remove.{}", index), .icon = Icon::Trash, .tooltip = "Take it off"}))
+        context.actions.remove_lora(index);
+}
+
+/// What is merged into the model in use.
+void draw_loras(Context& context) {
+    heading(context, "LoRAs");
+    const auto& loras = context.model.loras;
+    if (loras.empty()) dim_text("None. A LoRA changes what the model draws, or lets it draw in few steps (LCM, TCD).");
+    for (std::size_t index = 0; index < loras.size(); ++index) draw_lora(context, loras[index], index);
+    if (context.model.loras_checking) dim_text("The model is being loaded with them, to see whether they fit.");
+    auto& text = context.state.lora_text;
+    const bool entered =
+        text_input(context, "models.lora.path", text, "file.safetensors, or file.safetensors:0.8", ImGuiInputTextFlags_EnterReturnsTrue);
+    if (button(context, {.name = "models.lora.add", .text = "Add", .why_off = text.empty() ? "Type a path first" : ""}) ||
+        (entered && !text.empty())) {
+        context.actions.add_lora(text);
+        text.clear();
+    }
+    flow(button_width("Browse..."));
+    if (button(context, {.name = "models.lora.browse", .text = "Browse..."})) ask_lora(context);
+}
+
 }  // namespace
 
 void draw_models_panel(Context& context) {
@@ -69,6 +123,7 @@ void draw_models_panel(Context& context) {
             ImGui::TextUnformatted(word.c_str());
         }
     }
+    draw_loras(context);
     heading(context, "Another model");
     const bool entered = text_input(context, "models.path", context.state.model_path,
                                     "path of a folder or .safetensors", ImGuiInputTextFlags_EnterReturnsTrue);

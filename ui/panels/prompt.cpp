@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "engine/edit/instruction.h"
 #include "engine/edit/method_fields.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/scene/strength.h"
@@ -119,6 +120,15 @@ void draw_sentence(Context& context) {
     const bool chosen =
         std::any_of(prompt.chips.begin(), prompt.chips.end(), [](const Chip& chip) { return chip.target; });
     if (!chosen) dim_text("Click the word that is new: it is the target of the edit.");
+}
+
+/// What a model that edits pictures is told to do.
+void draw_instruction(Context& context) {
+    if (!context.model.edits_by_instruction) return;
+    dim_text("What is to be done");
+    tooltip("The model in use (InstructPix2Pix) is told an order. Empty: what the field shows, made of the words above.");
+    const std::string usual = context.request.prompt.empty() ? "for example: make the bear golden" : edit::instruction_of(context.request);
+    context.request_changed |= text_input(context, "prompt.instruction", context.request.instruction, usual);
 }
 
 void draw_mode(Context& context) {
@@ -371,6 +381,7 @@ void draw_advanced(Context& context) {
 void draw_words(Context& context) {
     draw_source(context);
     draw_sentence(context);
+    draw_instruction(context);
     ImGui::Spacing();
     draw_mode(context);
     draw_method(context);

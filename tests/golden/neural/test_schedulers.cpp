@@ -1,6 +1,7 @@
 // Noise schedule and samplers against diffusers.
 #include "engine/neural/schedulers.h"
 
+#include "tests/golden/neural/fake_model.h"
 #include "tests/golden/neural/golden_case.h"
 #include "tests/golden/neural/tolerances.h"
 
@@ -12,28 +13,7 @@ using namespace gse::test;
 
 // The tolerances of the case's README.
 constexpr double ConversionTolerance = 1e-5;
-constexpr double TrajectoryRelative = 1e-4, TrajectoryAbsolute = 1e-4;
 constexpr double SigmaRelative = 1e-5;
-
-/// What stands in for a network: linear * x + sine * sin(frequency * x + t / period).
-struct FakeModel {
-    explicit FakeModel(const Json& stated)
-        : linear(stated.at("linear").get<double>()),
-          sine(stated.at("sine").get<double>()),
-          frequency(stated.at("frequency").get<double>()),
-          period(stated.at("period").get<double>()) {}
-    torch::Tensor operator()(const torch::Tensor& x, double t) const {
-        return linear * x + sine * torch::sin(frequency * x + t / period);
-    }
-    double linear, sine, frequency, period;
-};
-
-void near_scaled(Margins& margins, const std::string& what, const torch::Tensor& actual,
-                 const torch::Tensor& expected, double relative, double absolute) {
-    DOCTEST_REQUIRE_MESSAGE(actual.sizes() == expected.sizes(), what);
-    const auto allowed = expected.abs() * relative + absolute;
-    margins.near(what, (actual - expected) / allowed, torch::zeros_like(expected), 1.0);
-}
 
 struct Walk {
     std::string name;
@@ -72,7 +52,7 @@ void check_walk(Margins& margins, const GoldenCase& golden, const Walk& walk) {
     const std::int64_t steps =
         walk.from_image ? stated.at(walk.name).at("steps").get<std::int64_t>()
                         : expected.size(0) - 1 - (walk.kind == SamplerKind::Pndm ? 1 : 0);
-    const auto sampler = make_sampler(walk.kind, schedule, steps, walk.eta);
+    const auto sampler = make_sampler(walk.kind, schedule, steps, {.eta = walk.eta});
     const auto first =
         walk.from_image ? first_step(sampler->step_count(), stated.at(walk.name).at("strength").get<double>()) : 0;
     DOCTEST_REQUIRE(sampler->step_count() - first == expected.size(0) - 1);

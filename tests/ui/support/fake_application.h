@@ -115,6 +115,11 @@ public:
     void set_viewport_size(int width, int height) override;
     void set_request(const edit::EditRequest& request) override;
     void choose_model(const std::string& path) override { calls.push_back("choose_model " + path); }
+    void add_lora(const std::string& text) override { calls.push_back("add_lora " + text); }
+    void set_lora_strength(std::size_t index, double strength) override {
+        calls.push_back("set_lora_strength " + std::to_string(index) + " " + std::to_string(strength));
+    }
+    void remove_lora(std::size_t index) override { calls.push_back("remove_lora " + std::to_string(index)); }
     void set_exports(const ui::ExportSettings& settings) override;
     void export_picture() override { calls.push_back("export_picture"); }
     void export_turntable() override { calls.push_back("export_turntable"); }

@@ -338,6 +338,16 @@ DOCTEST_TEST_CASE("views, export, scene, models, settings") {
     harness.frame(3);
     DOCTEST_CHECK(asks(harness, "models.use.1", "choose_model /home/mira/ComfyUI"));
     DOCTEST_CHECK(!asks(harness, "models.use.2", "choose_model"));
+    DOCTEST_CHECK(!harness.rect("models.lora.add").enabled);   // nothing was typed
+    harness.application.model().loras = {{"/loras/style.safetensors", "style", 0.5}};
+    harness.frame(2);
+    DOCTEST_CHECK(asks(harness, "models.lora.remove.0", "remove_lora 0"));
+    harness.shell.show(ui::PanelId::Prompt);
+    for (const bool editor : {false, true}) {
+        harness.application.model().edits_by_instruction = editor;
+        harness.frame(3);
+        DOCTEST_CHECK((harness.find("prompt.instruction") != nullptr) == editor);
+    }
     harness.shell.show(ui::PanelId::Settings);
     harness.frame(3);
     DOCTEST_CHECK(asks(harness, "settings.show_bounds", "set_view_settings"));

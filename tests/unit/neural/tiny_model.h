@@ -60,18 +60,20 @@ neural::NamedTensors tensors_of(const Holder& module) {
 }
 
 struct TinyModel {
-    explicit TinyModel(const std::string& prediction = "epsilon") {
+    explicit TinyModel(const std::string& prediction = "epsilon", const neural::UNetConfig& unet_config = tiny_unet_config(),
+                       const std::string& scheduler_class = "DDIMScheduler") {
         const auto root = scratch.path();
         torch::manual_seed(7);
-        unet = tensors_of(neural::UNet(tiny_unet_config()));
+        unet = tensors_of(neural::UNet(unet_config));
         vae = tensors_of(neural::AutoencoderKl(tiny_vae_config()));
         text = tensors_of(neural::ClipTextEncoder(tiny_text_config()));
         write_weights();
-        write_file(root / "unet/config.json", tiny_unet_config().to_json().dump());
+        write_file(root / "unet/config.json", unet_config.to_json().dump());
         write_file(root / "vae/config.json", tiny_vae_config().to_json().dump());
         write_file(root / "text_encoder/config.json", tiny_text_config().to_json().dump());
         neural::SchedulerConfig scheduler;
         scheduler.prediction_type = prediction;
+        scheduler.class_name = scheduler_class;
         write_file(root / "scheduler/scheduler_config.json", scheduler.to_json().dump());
         write_file(root / "tokenizer/merges.txt", tiny_merges());
         write_file(root / "tokenizer/tokenizer_config.json", "{\"model_max_length\": 24}");

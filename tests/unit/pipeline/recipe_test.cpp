@@ -4,7 +4,10 @@
 
 #include <set>
 
+#include "engine/base/error.h"
+#include "engine/base/file.h"
 #include "engine/pipeline/recipe.h"
+#include "tests/test_paths.h"
 
 namespace {
 
@@ -71,11 +74,34 @@ DOCTEST_TEST_CASE("another model, up axis, front or set of cameras looks again; 
         recipe.job.*field = "other";
         DOCTEST_CHECK(pipeline::search_key(recipe) != before);
     }
+    auto tuned = plain();
+    tuned.job.lora = {"a.safetensors:0.5"};
+    DOCTEST_CHECK(pipeline::search_key(tuned) != before);
     auto recipe = plain();
     recipe.job.turntable_frames = 7;
     DOCTEST_CHECK(pipeline::search_key(recipe) == before);
     recipe.use_dreambooth = true;
     DOCTEST_CHECK(pipeline::search_key(recipe) != before);
+}
+
+DOCTEST_TEST_CASE("LoRAs are a list of the recipe; their files are those beside it, with their strength") {
+    const ScratchFolder scratch;
+    auto recipe = plain();
+    recipe.job.lora = {"style.safetensors:0.7", "/models/lcm.safetensors", "colon:name.safetensors"};
+    const auto path = scratch.path() / "recipe.json";
+    write_file(path, pipeline::recipe_to_json(recipe).dump());
+    const auto read = pipeline::read_recipe(path).job.lora;
+    DOCTEST_REQUIRE(read.size() == 3);
+    const auto folder = std::filesystem::weakly_canonical(scratch.path()).string();
+    DOCTEST_CHECK(read[0] == folder + "/style.safetensors:0.7");
+    DOCTEST_CHECK(read[1] == "/models/lcm.safetensors");
+    DOCTEST_CHECK(read[2] == folder + "/colon:name.safetensors");
+    for (const char* wrong : {"\"one\"", "[1]", "{}"}) {
+        auto json = pipeline::recipe_to_json(recipe);
+        json["job"]["lora"] = nlohmann::ordered_json::parse(wrong);
+        write_file(path, json.dump());
+        DOCTEST_CHECK_THROWS_AS(pipeline::read_recipe(path), Error);
+    }
 }
 
 DOCTEST_TEST_CASE("a target that is left to be guessed is the one that was guessed") {
