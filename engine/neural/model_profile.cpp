@@ -89,8 +89,7 @@ ModelNature checkpoint_nature(const fs::path& path) {
 /// sentence before the edit is left out: it doubles the few calls, and a model that sees the unedited view needs none.
 void state_kind(Json& json, const ModelNature& nature) {
     if (nature.kind == BundleKind::Plain) return;
-    auto& request = json["request"];
-    auto& guidance = json["guidance"];
+    Json request = json.value("request", Json::object()), guidance = json.value("guidance", Json::object());
     request["method"] = "views";
     request["rounds"] = 2;
     guidance["delta"] = 0.0;
@@ -115,6 +114,8 @@ void state_kind(Json& json, const ModelNature& nature) {
         case BundleKind::Plain:
             break;
     }
+    json["request"] = std::move(request);
+    json["guidance"] = std::move(guidance);
 }
 
 /// method.md section 7; LoRA and class pictures: views.md section 15. What is not here suits all kinds.

@@ -56,7 +56,9 @@ std::vector<std::int64_t> redraw_levels(BundleKind kind, const NoiseSchedule& sc
     const double share = std::clamp(strength, 1 / total, 1.0);
     const auto grid = std::min<std::int64_t>(schedule.steps(),
                                              std::max<std::int64_t>(TurboLevels, static_cast<std::int64_t>(std::ceil(steps / share))));
-    const auto all = make_sampler(SamplerKind::Euler, schedule, grid)->timesteps();
+    auto config = schedule.config();
+    config.timestep_spacing = "trailing";
+    const auto all = make_sampler(SamplerKind::Euler, NoiseSchedule(config), grid)->timesteps();
     const std::vector<double> below(all.begin() + first_step(grid, share), all.end());
     const auto kept = std::max<std::size_t>(1, std::min<std::size_t>(static_cast<std::size_t>(steps), below.size()));
     if (below.empty()) return take({all.back()});

@@ -12,7 +12,7 @@ using namespace gse;
 using namespace gse::pipeline;
 
 neural::ModelProfile wide_profile() {
-    return {neural::ModelKind::Sd1,
+    return {neural::ModelKind::Sd1, neural::BundleKind::Plain,
             {{"request", "image_size", 512, "model"},
              {"request", "iterations", 4000, "model"},
              {"guidance", "guidance_scale", 7.5, "model"},

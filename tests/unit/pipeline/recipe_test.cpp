@@ -12,6 +12,7 @@
 namespace {
 
 using namespace gse;
+using test::ScratchFolder;
 
 pipeline::EditRecipe plain() {
     pipeline::EditRecipe recipe;
