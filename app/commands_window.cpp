@@ -187,6 +187,7 @@ private:
         state["source"] = model.request.source;
         state["sentence"] = model.request.prompt;
         state["target"] = app_.target();
+        state["method"] = model.request.method;
         state["search"] = {{"number", model.search.number},   {"confidence", model.search.confidence.value},
                            {"message", model.search.message}, {"remedy", model.search.remedy}};
         state["job"] = {{"running", model.job.running}, {"paused", model.job.paused},   {"title", model.job.title},
@@ -198,7 +199,7 @@ private:
         state["losses"] = model.losses.size();
         state["snapshots"] = model.snapshots.size();
         state["result_waiting"] = model.result_waiting;
-        state["targets"] = {{"rounds", model.target_rounds.size()}, {"waits", model.targets_wait}};
+        state["targets"] = {{"rounds", model.target_rounds.size()}, {"waits", model.targets_wait}, {"review", model.model_settings.review}};
         if (!model.target_rounds.empty())
             for (const auto& target : model.target_rounds.back().targets)
                 state["targets"]["views"].push_back({{"view", target.view}, {"redrawn", target.attempt}, {"dropped", target.dropped}});

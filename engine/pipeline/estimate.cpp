@@ -63,7 +63,7 @@ void add_idea(Sum& sum, const Measured& measured) {
     if (measured.idea >= 0) return sum.add(1, measured.idea, measured.idea_tflop);
     const GateParameters gate;
     constexpr double halves = 2;   // with and without the prompt
-    const double passes = gate.views * gate.steps * halves;
+    const double passes = gate.views * std::round(gate.steps * gate.strength) * halves;
     sum.add(passes, std::max(0.0, measured.pass), measured.pass_tflop);
 }
 

@@ -68,7 +68,7 @@ void draw_pair(Context& context, const TargetView& target, const std::string& na
 
 std::string state_text(const TargetView& target) {
     std::string text = target.name;
-    if (target.attempt > 0) text += fmt::format(", redrawn {} more", target.attempt);
+    if (target.attempt > 0) text += ", redrawn";
     if (target.dropped) text += ", dropped";
     return text;
 }
@@ -142,7 +142,7 @@ void draw_rounds(Context& context) {
 void draw_wait(Context& context) {
     if (!context.model.targets_wait) return;
     begin_notice(context, "targets.wait", palette::Accent);
-    wrapped_text("The edit waits for you: drop views that are wrong or have them redrawn, then let the scene be fitted to the rest.");
+    wrapped_text("The edit waits for you: drop what is wrong, or have it redrawn.");
     if (button(context, {.name = "targets.fit", .text = "Fit the scene to these", .look = Look::Primary})) context.actions.fit_to_targets();
     end_notice();
 }
@@ -165,12 +165,18 @@ void draw_targets_panel(Context& context) {
         dim_text("An edit with method views or auto redraws views here: look at them, drop those that are wrong, have others redrawn.");
         return review();
     }
+    const ImVec2 space = ImGui::GetContentRegionAvail();
+    const bool beside = space.x > context.em * 36;   // else the sheet is below
+    if (beside) ImGui::BeginChild("about", {std::clamp(space.x * 0.27f, context.em * 13, context.em * 20), space.y}, false, ImGuiWindowFlags_NavFlattened);
     draw_wait(context);
     draw_rounds(context);
-    const auto& round = shown_round(context);
-    dim_text(summary(round));
+    dim_text(summary(shown_round(context)));
     review();
-    draw_sheet(context, round);
+    if (beside) {
+        ImGui::EndChild();
+        ImGui::SameLine();
+    }
+    draw_sheet(context, shown_round(context));
 }
 
 }  // namespace gse::ui

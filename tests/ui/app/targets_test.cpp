@@ -116,7 +116,7 @@ DOCTEST_TEST_CASE("what an edit is estimated to take after the search, beside wh
         const PeakMemory peak;
         app.edit();
         DOCTEST_REQUIRE(session.until([&] { return model.result_waiting; }));
-        DOCTEST_MESSAGE(method << ": estimated " << estimate.seconds << " s, " << estimate.tflop << " TFLOP, " << estimate.memory_mb
+        DOCTEST_MESSAGE(std::string(method) << ": estimated " << estimate.seconds << " s, " << estimate.tflop << " TFLOP, " << estimate.memory_mb
                                << " MB; took " << model.job.seconds << " s, " << model.cost.tflop << " TFLOP, " << peak.mb() << " MB");
         // Passes can be foreseen; how many masks follow the edit cannot quite.
         DOCTEST_CHECK(estimate.tflop == doctest::Approx(model.cost.tflop).epsilon(0.25));
