@@ -89,7 +89,7 @@ DOCTEST_TEST_CASE("an estimate of redrawn views: what a view takes, and each of 
     known.idea = -1;
     known.pass = 0.01;
     known.pass_tflop = 0.001;
-    constexpr double passes = 4 * 23 * 2;   // thirty steps from three quarters on, both halves
+    constexpr double passes = 4 * 6 * 2;   // eight steps from three quarters on, both halves
     DOCTEST_CHECK(seconds(known, request, work) ==
                   doctest::Approx(passes * 0.01 + 16 * (0.05 + 6 * 0.02) + fit + rest));
     DOCTEST_CHECK(pipeline::estimated_cost(known, request, work).tflop ==
