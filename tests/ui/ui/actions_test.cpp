@@ -266,6 +266,7 @@ DOCTEST_TEST_CASE("progress: pause, snapshots, cancel") {
     DOCTEST_CHECK(harness.application.asked("show_snapshot 0"));
     // What the branch gives up is asked about, whether the edit still runs or waits to be applied.
     const int iteration = harness.application.model().snapshots.back().iteration;
+    harness.application.model().request.method = "sds";
     harness.application.model().request.iterations = iteration + 100;
     harness.frame(2);
     DOCTEST_CHECK(!asks(harness, "progress.branch", "branch_from_snapshot"));

@@ -84,11 +84,12 @@ DOCTEST_TEST_CASE("redrawn views: settings of the guidance that are said to have
     const auto plain = drawn();
     SdsParameters::visit_fields(parameters, [&](const char* name, auto& value, const char*, auto...) {
         using Value = std::remove_reference_t<decltype(value)>;
+        if (std::string_view(name) == "image_guidance_scale") return;   // counts with models that are told what to do
         const Value kept = value;
         if constexpr (std::is_same_v<Value, bool>) value = !value;
         else if constexpr (std::is_same_v<Value, double>) value = value / 2 + 0.1;
         else value = value.empty() ? "a red hat" : "";
-        DOCTEST_CAPTURE(name);
+        DOCTEST_INFO(std::string(name));
         DOCTEST_CHECK((drawn() == plain) == !edit::has_effect(name, true));
         value = kept;
     });

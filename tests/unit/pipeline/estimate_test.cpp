@@ -37,6 +37,7 @@ double seconds(const pipeline::Measured& measured, const edit::EditRequest& requ
 
 DOCTEST_TEST_CASE("an estimate is the sum of what is to be done") {
     edit::EditRequest request;
+    request.method = "sds";
     request.iterations = 100;
     request.views = 10;
     request.dynamic_mask = false;
@@ -123,6 +124,7 @@ DOCTEST_TEST_CASE("an estimate of memory: the process without the model, the mod
 
 DOCTEST_TEST_CASE("what was never measured is not guessed") {
     edit::EditRequest request;
+    request.method = "sds";
     DOCTEST_CHECK(seconds({}, request, {}) < 0);
     auto known = measured();
     known.guidance = -1;
