@@ -248,6 +248,33 @@ void throw_what_ended(const edit::EditResult& result) {
 
 }  // namespace
 
+namespace {
+
+/// Parts of what a run can only tell the sum of.
+void begin_with_known(Measured& measured, const Measured& known) {
+    measured.redraw = known.redraw, measured.redraw_view = known.redraw_view;
+    measured.question_tflop = known.question_tflop;
+}
+
+/// Gate, loop and what the window makes of the result, each measured.
+void run_measured(Search& search, const std::vector<std::uint8_t>& label, LiveEdit& live, PendingResult& pending,
+                  const PeakMemory& peak) {
+    const double idea = search.job->times().seconds("gate");
+    const auto idea_use = search.job->times().networks("gate");
+    run_live(search.job, label, search.attention, live);
+    if (live.wants_gate) {
+        search.measured.idea = search.job->times().seconds("gate") - idea;
+        search.measured.idea_tflop = (search.job->times().networks("gate") - idea_use).flop * 1e-12;
+    }
+    measure_loop(search.measured, *search.job, LeastSteps);
+    const auto finishing = std::chrono::steady_clock::now();
+    fill_pending(*search.job, pending);
+    search.measured.finish = seconds_since(finishing);
+    measure_peak(search, peak);
+}
+
+}  // namespace
+
 void Application::edit() {
     if (!require_scene() || work_.running()) return;
     if (pending_) return toast("Apply or discard the last edit first.");
@@ -270,11 +297,9 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     if (search->model) search->loaded = model_load_;
     search->first_load = text_model_ == nullptr;
     search->memory = planned_memory();
-    const Measured known = measured_now();   // parts of what a run can only tell the sum of
-    search->measured.redraw = known.redraw, search->measured.redraw_view = known.redraw_view;
-    search->measured.question_tflop = known.question_tflop;
-    std::vector<std::uint8_t> label;
-    if (label_drives_edit()) label = *document_.state().labels[static_cast<std::size_t>(document_.state().active_label)].bits;
+    begin_with_known(search->measured, measured_now());
+    const auto& state = document_.state();
+    const auto label = label_drives_edit() ? *state.labels[static_cast<std::size_t>(state.active_label)].bits : std::vector<std::uint8_t>{};
     live_ = std::make_shared<LiveEdit>();
     live_->wants_gate = model_.model_settings.gate && !start;
     live_->reviews = model_.model_settings.review;
@@ -287,11 +312,10 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     model_.target_rounds.clear();
     list_snapshots();
     model_.shown_snapshot = -1;
-    snapshot_base_ = document_.state().current;
+    snapshot_base_ = state.current;
     auto pending = std::make_shared<PendingResult>();
     auto work = [search, recipe, label, pending, live = live_, open = open_recipe(recipe), said = model_.said_words,
-                 tuned = known_tuning(recipe), scene = working_scene(),
-                 views = document_.state().views](const JobControl& control) {
+                 tuned = known_tuning(recipe), scene = working_scene(), views = state.views](const JobControl& control) {
         live->use_before = live->use = network_use();
         load(*search, recipe.job, control);
         const PeakMemory peak;
@@ -303,18 +327,7 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
             search->job = std::make_shared<EditJob>(open, EditJobInput{scene, views, search->model, label, {}, tuned, said}, control);
             look(*search);
         }
-        const double idea = search->job->times().seconds("gate");
-        const auto idea_use = search->job->times().networks("gate");
-        run_live(search->job, label, search->attention, *live);
-        if (live->wants_gate) {
-            search->measured.idea = search->job->times().seconds("gate") - idea;
-            search->measured.idea_tflop = (search->job->times().networks("gate") - idea_use).flop * 1e-12;
-        }
-        measure_loop(search->measured, *search->job, LeastSteps);
-        const auto finishing = std::chrono::steady_clock::now();
-        fill_pending(*search->job, *pending);
-        search->measured.finish = seconds_since(finishing);
-        measure_peak(*search, peak);
+        run_measured(*search, label, *live, *pending, peak);
         throw_what_ended(search->job->result());
     };
     auto done = [this, search, pending, recipe_key = measured_key(), key = model_key(), model = model_path_,
