@@ -110,7 +110,7 @@ class Edits(ProgramTest):
         self.assertEqual(networks["decoder"], 2 * 3 * 2)   # rounds, views, before and after
         self.assertGreater(networks["tflop"], 0)
         plain = self.folder / "plain"
-        self.edit(plain)
+        self.edit(plain, "--method", "sds")
         self.assertNotIn("targets", json.loads((plain / "report.json").read_text()))
 
     def test_the_recipe_gives_the_same_bytes(self):
