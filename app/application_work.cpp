@@ -438,7 +438,7 @@ void Application::refresh_estimate() {
     work.tune_steps = learns ? model_.model_settings.learning.steps : 0;
     work.rows = document_.state().current.size();
     try {
-        work.adds = edit::decide_mode(edit::validated(model_.request), std::nullopt).first == edit::EditMode::Add;
+        work.mode = edit::decide_mode(edit::validated(model_.request), std::nullopt).first;
     } catch (const Error&) {   // not a sentence yet
     }
     model_.estimate.seconds = estimated_seconds(measured_now(), model_.request, work);

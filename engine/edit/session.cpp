@@ -7,7 +7,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <new>
 #include <numeric>
@@ -18,9 +17,11 @@
 #include "engine/base/memory.h"
 #include "engine/base/random.h"
 #include "engine/edit/dynamic_mask.h"
+#include "engine/edit/edit_checks.h"
 #include "engine/edit/edit_strength.h"
 #include "engine/edit/preservation.h"
 #include "engine/edit/scales.h"
+#include "engine/edit/shape_round.h"
 #include "engine/edit/view_round.h"
 #include "engine/edit/working_set.h"
 #include "engine/localize/back_projection.h"
@@ -33,6 +34,7 @@ constexpr float SeenLabel = 0.5f;              // share of a pixel that the labe
 constexpr std::size_t CalibrationSteps = 20;        // method 2.5
 constexpr std::array LooksAgain{0.5, 0.75};    // shares of the iterations after which new splats are looked for
 constexpr double LeastLeft = 0.15;             // of the new splats; fewer: the model does not see the new thing yet
+constexpr double FadedLogit = -6;              // opacity of what another thing takes the place of: it may come back (views.md 17)
 // A guidance that is not finite is broken for good, not only now and then, when so many steps in a row were left out and
 // all that were are more than this share of the steps.
 constexpr std::size_t SkippedInARow = 10;
@@ -120,7 +122,7 @@ public:
         : base_(base),
           plan_(plan),
           label_(base.editable(plan.label)),
-          request_(loop_request(request, tools.views != nullptr)),
+          request_(loop_request(request, plan.mode, tools.views != nullptr)),
           tools_(tools),
           set_(base.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
           preservation_(tools.views != nullptr ? FitWeights : PreservationWeights{request.l1, request.ssim, request.preserve}),
@@ -132,7 +134,10 @@ public:
         if (tools.start != nullptr) set_.resume(base.drawn, *tools.start);
         render_originals();
         settings_.negative_colour_slope = TrainingColourSlope;
-        if (tools.views != nullptr) rounds_.emplace(plan_, request_, *tools.views);
+        if (tools.views == nullptr) return;
+        if (round_plan(request_, plan.mode).anew && tools.attention != nullptr)
+            shapes_.emplace(plan_, request_, tools.word, *tools.attention, tools.segmenter);
+        rounds_.emplace(plan_, request_, *tools.views, shapes_ ? &*shapes_ : nullptr);
     }
 
     const std::vector<std::uint8_t>& label() const { return label_; }
@@ -162,7 +167,7 @@ private:
     bool advance(EditResult& result) {
         const int iteration = result.iterations;
         if (tools_.new_label) take_label(result);
-        if (tools_.job.stop_requested() || !iterate(iteration, cycle_.next(), result)) {
+        if (tools_.job.stop_requested() || !iterate(iteration, result)) {
             result.stopped = !result.failure;
             return false;
         }
@@ -251,12 +256,38 @@ private:
                            plan_.view_words.empty() ? std::string() : plan_.view_words[v]};
             show(view.rendered);
             for (auto& value : view.original.data) value = std::clamp(value, 0.0f, 1.0f);
-            for (std::size_t i = 0; i < view.depth.data.size(); ++i)
-                view.depth.data[i] = output_.alpha.data[i] > 0.5f ? view.depth.data[i] / output_.alpha.data[i] : 0.0f;
+            take_depth(view.depth);
+            if (shapes_) {
+                tools_.rasterizer.forward(set_.unlabelled(), plan_.views[v].camera, settings_, output_);
+                show(view.backdrop);
+                view.backdrop_depth = output_.depth;
+                take_depth(view.backdrop_depth);
+            }
             views.push_back(std::move(view));
         }
         record.guidance = rounds_->redraw(iteration, std::move(views), originals_, tools_.job);
         std::erase_if(record.guidance, [](const auto& scalar) { return !std::isfinite(scalar.second); });
+        if (shapes_) take_shape(iteration);
+    }
+
+    /// Of the surface in the last render, from depths summed over it; 0 where hardly anything is.
+    void take_depth(Image& depth) const {
+        for (std::size_t i = 0; i < depth.data.size(); ++i)
+            depth.data[i] = output_.alpha.data[i] > 0.5f ? depth.data[i] / output_.alpha.data[i] : 0.0f;
+    }
+
+    /// Begins the new shape in the first round; only views that show it are fitted to.
+    void take_shape(int iteration) {
+        const CutOut& found = rounds_->found();
+        std::vector<std::size_t> usable;
+        for (const auto i : found.usable) usable.push_back(rounds_->views()[i]);
+        draw_only(usable);
+        if (iteration > 0) return;
+        const auto seeds = shapes_->seeds(found, room_for(base_.drawn, label_, plan_.seeds), set_.rows().sh_degree);
+        if (seeds.size() == 0)
+            throw Error(ErrorCode::Model, "the redrawn views agree on no shape of \"" + tools_.word + "\"",
+                        "try another seed, or more views (edited_views)");
+        set_.plant(seeds, FadedLogit);
     }
 
     /// From here on only these views are drawn, and have to come to rest.
@@ -274,10 +305,9 @@ private:
     }
 
     /// One step, left out when the guidance is not finite; false when the guidance was stopped, with everything as before.
-    bool iterate(int iteration, std::size_t view, EditResult& result) {
+    bool iterate(int iteration, EditResult& result) {
         IterationRecord record;
         record.iteration = iteration;
-        record.view = view;
         try {
             const StageTimer timer(seconds_.guidance);
             if (rounds_ && rounds_->begins(iteration)) redraw_views(iteration, record);
@@ -288,6 +318,7 @@ private:
             }
             return false;
         }
+        const std::size_t view = record.view = cycle_.next();
         {
             const StageTimer timer(seconds_.render);
             tools_.rasterizer.forward(spans(set_.rows()), plan_.views[view].camera, settings_, output_);
@@ -371,7 +402,7 @@ private:
             if (plan_.seeds.size() > 0)   // what is added needs its room as before
                 for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] |= plan_.masks[v].data[i];
             else
-                mask = localize::dilate(mask, request_.dilate_px * camera.width / ReferenceSide);
+                mask = localize::dilate(mask, mask_growth_px(request_, plan_.mode) * camera.width / ReferenceSide);
             masks.push_back(std::move(mask));
         }
         return views;
@@ -496,6 +527,7 @@ private:
     WorkingSet set_;
     Preservation preservation_;
     DynamicMasks masks_;
+    std::optional<ShapeFinder> shapes_;  // of view guidance that draws a thing anew
     std::optional<ViewRounds> rounds_;   // of view guidance
     Mask no_mask_;
     ViewCycle cycle_;
@@ -513,45 +545,6 @@ private:
     StageSeconds seconds_;
     std::chrono::steady_clock::time_point last_snapshot_ = std::chrono::steady_clock::now();
 };
-
-bool same_row(std::span<const float> a, std::size_t row_a, std::span<const float> b, std::size_t row_b, std::size_t stride) {
-    return std::memcmp(a.data() + row_a * stride, b.data() + row_b * stride, stride * sizeof(float)) == 0;
-}
-
-/// Rows outside the label that are gone or differ in any bit.
-std::size_t count_changed_outside(const GaussianSet& base, const std::vector<std::uint8_t>& label, const EditResult& result) {
-    const auto sh = static_cast<std::size_t>(sh_coefficient_count(base.sh_degree())) * 3;
-    std::size_t changed = 0;
-    for (std::size_t row = 0; row < base.size(); ++row) {
-        if (label[row] != 0) continue;
-        const std::int64_t now = result.base_to_new[row];
-        const auto to = static_cast<std::size_t>(now);
-        const bool same = now >= 0 && same_row(base.position(), row, result.set.position(), to, 3) &&
-                          same_row(base.log_scale(), row, result.set.log_scale(), to, 3) &&
-                          same_row(base.rotation(), row, result.set.rotation(), to, 4) &&
-                          same_row(base.opacity_logit(), row, result.set.opacity_logit(), to, 1) &&
-                          same_row(base.sh(), row, result.set.sh(), to, sh);
-        changed += same ? 0 : 1;
-    }
-    return changed;
-}
-
-std::size_t count_nonfinite(const EditResult& result) {
-    const auto sh = static_cast<std::size_t>(sh_coefficient_count(result.set.sh_degree())) * 3;
-    const auto bad = [](std::span<const float> values, std::size_t row, std::size_t stride) {
-        return std::any_of(values.begin() + static_cast<std::ptrdiff_t>(row * stride),
-                           values.begin() + static_cast<std::ptrdiff_t>((row + 1) * stride),
-                           [](float value) { return !std::isfinite(value); });
-    };
-    std::size_t count = 0;
-    for (std::size_t row = 0; row < result.set.size(); ++row)
-        if (result.label[row] != 0 &&
-            (bad(result.set.position(), row, 3) || bad(result.set.log_scale(), row, 3) ||
-             bad(result.set.rotation(), row, 4) || bad(result.set.opacity_logit(), row, 1) ||
-             bad(result.set.sh(), row, sh)))
-            ++count;
-    return count;
-}
 
 }  // namespace
 

@@ -87,7 +87,7 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
     batch.mask = torch::cat(masks);
     batch.contexts = contexts(views, prompt_);
     const auto& before = parameters_.before_prompt;
-    if (parameters_.delta > 0 && !before.empty() && before != prompt_) batch.before = contexts(views, before);
+    if (!input.anew && parameters_.delta > 0 && !before.empty() && before != prompt_) batch.before = contexts(views, before);
     return batch;
 }
 
@@ -142,17 +142,25 @@ void DiffusionViews::denoise(Batch& batch, const edit::RoundInput& input, const 
     }
 }
 
-/// What the decoder makes of the change is added to the render: its own loss, and that of the resize, cancel.
-edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<edit::RoundView>& views) const {
+/// What the decoder makes of the change is added to the render: its own loss, and that of the resize, cancel. Where nothing of the
+/// render is kept, its difference to what the decoder makes of it is noise: there the decoded picture counts.
+edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<edit::RoundView>& views, bool anew) const {
     edit::RoundTargets targets;
     double change = 0, pixels = 0;
     for (std::size_t v = 0; v < views.size(); ++v) {
         const auto row = static_cast<std::int64_t>(v);
-        const auto decoded = latents_to_image(*bundle_, torch::cat({batch.x.narrow(0, row, 1), batch.clean.narrow(0, row, 1)}));
-        const auto difference = decoded.narrow(0, 0, 1) - decoded.narrow(0, 1, 1);
         const Image& rendered = views[v].rendered;
-        const auto enlarged = torch::upsample_bilinear2d(difference, {rendered.height, rendered.width}, false);
-        targets.images.push_back(to_image((to_tensor(rendered, bundle_->device) + enlarged).clamp(0, 1)));
+        const auto enlarged = [&](const torch::Tensor& picture) {
+            return torch::upsample_bilinear2d(picture, {rendered.height, rendered.width}, false);
+        };
+        const auto redrawn = batch.x.narrow(0, row, 1);
+        if (anew) {
+            targets.images.push_back(to_image(enlarged(latents_to_image(*bundle_, redrawn)).clamp(0, 1)));
+        } else {
+            const auto decoded = latents_to_image(*bundle_, torch::cat({redrawn, batch.clean.narrow(0, row, 1)}));
+            const auto difference = decoded.narrow(0, 0, 1) - decoded.narrow(0, 1, 1);
+            targets.images.push_back(to_image((to_tensor(rendered, bundle_->device) + enlarged(difference)).clamp(0, 1)));
+        }
         for (std::size_t i = 0; i < views[v].mask.data.size(); ++i) {
             if (views[v].mask.data[i] == 0) continue;
             for (std::size_t c = 0; c < 3; ++c)
@@ -170,7 +178,7 @@ edit::RoundTargets DiffusionViews::edit(const std::vector<edit::RoundView>& view
         const torch::NoGradGuard no_grad;
         Batch batch = prepare(views, input);
         denoise(batch, input, job);
-        auto targets = finish(batch, views);
+        auto targets = finish(batch, views, input.anew);
         if (!torch::isfinite(batch.x).all().item<bool>())
             throw Error(ErrorCode::Model, "the model's pictures hold values that are not finite",
                         "its weights are damaged, or it overflows: try another model or a lower guidance scale");

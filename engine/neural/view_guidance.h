@@ -25,7 +25,7 @@ private:
     struct Batch;
     Batch prepare(const std::vector<edit::RoundView>& views, const edit::RoundInput& input);
     void denoise(Batch& batch, const edit::RoundInput& input, const JobControl& job) const;
-    edit::RoundTargets finish(const Batch& batch, const std::vector<edit::RoundView>& views) const;
+    edit::RoundTargets finish(const Batch& batch, const std::vector<edit::RoundView>& views, bool anew) const;
     torch::Tensor contexts(const std::vector<edit::RoundView>& views, const std::string& prompt);
     /// Guided output of the UNet for latents [K,C,h,w], in pieces that fit into memory.
     torch::Tensor output(const torch::Tensor& x, std::int64_t timestep, const torch::Tensor& contexts, double guidance_scale) const;

@@ -13,7 +13,7 @@ constexpr double LookAgainRounds = 2;             // over all views, when someth
 constexpr double UsualFollow = 0.6;
 constexpr int ProbeSteps = 5;
 
-double words_of_search(bool adds) { return adds ? 2 : 1; }
+double words_of_search(edit::EditMode mode) { return mode == edit::EditMode::Add ? 2 : 1; }
 
 /// Masks that could follow the edit while the loop runs.
 double refreshes(const edit::EditRequest& request, int first_iteration) {
@@ -25,13 +25,13 @@ double refreshes(const edit::EditRequest& request, int first_iteration) {
 }
 
 /// Pictures searched to see where something added is.
-double looks_again(const edit::EditRequest& request, bool adds) {
-    return adds && request.look_again ? LookAgainRounds * request.views : 0;
+double looks_again(const edit::EditRequest& request, edit::EditMode mode) {
+    return mode == edit::EditMode::Add && request.look_again ? LookAgainRounds * request.views : 0;
 }
 
-/// Denoising steps of single views in the last `steps` of the loop.
-double redrawn_steps(const edit::EditRequest& request, int steps) {
-    return std::ceil(static_cast<double>(steps) / request.fit_steps) * request.edited_views * request.view_steps;
+/// Denoising steps of single views in the first `steps` of the loop.
+double redrawn_steps(const edit::EditRequest& request, edit::EditMode mode, int steps) {
+    return static_cast<double>(request.edited_views) * edit::round_plan(request, mode).view_steps_within(steps);
 }
 
 bool led_by_views(const EditJob& job) { return edit::edits_by_views(job.recipe().request, job.located().mode); }
@@ -49,16 +49,16 @@ double estimated_seconds(const Measured& measured, const edit::EditRequest& requ
     add(work.loaded ? 0 : 1, measured.load);
     add(work.tune_steps, measured.tune_step);
     const double rounds = measured.rounds > 0 ? measured.rounds : 1;
-    const double search = rounds * request.views * words_of_search(work.adds);
+    const double search = rounds * request.views * words_of_search(work.mode);
     add(work.located ? 0 : search, measured.question);
     add(work.shows_idea ? 1 : 0, measured.idea >= 0 ? measured.idea : 0);
-    const bool by_views = edit::edits_by_views(request, work.adds ? edit::EditMode::Add : edit::EditMode::Modify);
-    const int steps = std::max(0, edit::loop_steps(request, by_views) - work.first_iteration);
-    if (by_views) add(redrawn_steps(request, steps), measured.redraw);
+    const bool by_views = edit::edits_by_views(request, work.mode);
+    const int steps = std::max(0, edit::loop_steps(request, work.mode) - work.first_iteration);
+    if (by_views) add(redrawn_steps(request, work.mode, steps), measured.redraw);
     else add(steps, measured.guidance);
     add(steps * static_cast<double>(work.rows) / measured.rows, measured.raster);
     const double follow = measured.follow >= 0 ? measured.follow : UsualFollow;
-    add(by_views ? 0 : follow * refreshes(request, work.first_iteration) + looks_again(request, work.adds),
+    add(by_views ? 0 : follow * refreshes(request, work.first_iteration) + looks_again(request, work.mode),
         measured.refresh >= 0 ? measured.refresh : measured.question);
     add(1, measured.finish >= 0 ? measured.finish : 0);
     return known ? seconds : -1;
@@ -67,7 +67,7 @@ double estimated_seconds(const Measured& measured, const edit::EditRequest& requ
 void measure_search(Measured& measured, const EditJob& job, double seconds) {
     const auto asked = static_cast<double>(job.questions());
     if (asked <= 0) return;
-    const double words = words_of_search(job.located().mode == edit::EditMode::Add);
+    const double words = words_of_search(job.located().mode);
     measured.question = seconds / asked;
     measured.rounds = asked / words / job.recipe().request.views;
 }
@@ -82,7 +82,7 @@ void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
     };
     const auto& request = job.recipe().request;
     const bool by_views = led_by_views(job);
-    if (by_views) measured.redraw = seconds("guidance") / redrawn_steps(request, steps);
+    if (by_views) measured.redraw = seconds("guidance") / redrawn_steps(request, job.located().mode, steps);
     else measured.guidance = seconds("guidance") / steps;
     measured.raster = (seconds("render") + seconds("preserve") + seconds("backward") + seconds("optimise") +
                        seconds("densify") + seconds("snapshot")) / steps;
@@ -91,9 +91,8 @@ void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
     const double could = refreshes(request, request.iterations - steps);
     if (result.masks_refreshed == 0 || could <= 0 || result.stopped) return;
     const auto refreshed = static_cast<double>(result.masks_refreshed);
-    const bool adds = job.located().mode == edit::EditMode::Add;
     measured.follow = refreshed / could;
-    measured.refresh = seconds("dynamic_mask") / (refreshed + looks_again(request, adds));
+    measured.refresh = seconds("dynamic_mask") / (refreshed + looks_again(request, job.located().mode));
 }
 
 bool steps_measured(const Measured& measured, const EditJob& job) {

@@ -36,9 +36,10 @@ constexpr std::array<Group, 8> Groups{{{"views", "Views"},
                                        {"snapshot_every", "Running"}}};
 
 constexpr double LeastStrength = 0;
-constexpr std::array<const char*, 3> Modes{"auto", "modify", "add"};
-constexpr std::array<const char*, 3> ModeHelp{"Modify when the scene shows the target already, else add it.",
-                                              "Change what is there: colours, material, shape of the source.",
+constexpr std::array<const char*, 4> Modes{"auto", "modify", "replace", "add"};
+constexpr std::array<const char*, 4> ModeHelp{"As the sentence says: what describes the source modifies it, what stands in its place replaces it.",
+                                              "Change what is there: colours and material of the source.",
+                                              "Put something else in the source's place: a cat for the bear.",
                                               "Put something new there, such as a hat on the bear."};
 
 /// What can be done about a source that the model does not know.
@@ -121,7 +122,7 @@ void draw_sentence(Context& context) {
 
 void draw_mode(Context& context) {
     int mode = static_cast<int>(std::find(Modes.begin(), Modes.end(), context.request.mode) - Modes.begin());
-    row_label(context, "Mode", "auto: modify when the scene shows the target already, else add it.");
+    row_label(context, "Mode", ModeHelp.front());
     if (segmented(context, "prompt.mode", Modes, mode)) {
         context.request.mode = Modes[static_cast<std::size_t>(mode)];
         context.request_changed = true;
