@@ -66,7 +66,7 @@ void Application::refresh_estimate() {
     work.tune_steps = learns ? model_.model_settings.learning.steps : 0;
     work.rows = document_.state().current.size();
     try {
-        work.adds = edit::decide_mode(edit::validated(model_.request), std::nullopt).first == edit::EditMode::Add;
+        work.mode = edit::planned_mode(edit::validated(model_.request));
     } catch (const Error&) {   // not a sentence yet
     }
     const Measured measured = measured_now();

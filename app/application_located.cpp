@@ -103,7 +103,7 @@ void Application::show_located(const EditJob& job) {
                               : attention_view(located.views[v], job.views()[v]));
     model_.attention = std::move(views);
     model_.attention_word = located.word;
-    model_.attention_mode = fmt::format("{}: {}", located.mode == edit::EditMode::Add ? "add" : "modify", located.reason);
+    model_.attention_mode = fmt::format("{}: {}", edit::mode_name(located.mode), located.reason);
     model_.search = {model_.search.number + 1, located.confidence, located.problem, located.message, located.remedy};
     model_.attention_threshold = job.attention_threshold();
     relabelled_threshold_ = job.recipe().request.attention_threshold;

@@ -218,7 +218,7 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
         return Error(code,
                      fmt::format("{}; the edit ended after {} of {} iterations, and what it had reached is saved",
                                  reason.message(), job.result().iterations,
-                                 edit::loop_steps(job.recipe().request, edit::edits_by_views(job.recipe().request, job.located().mode))),
+                                 edit::loop_steps(job.recipe().request, job.located().mode)),
                      reason.hint(), options.output);
     };
     if (const auto& shortage = job.result().shortage) throw ended_by(*shortage, ErrorCode::Foreign);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "engine/evaluate/consistency.h"
@@ -68,8 +69,11 @@ double outline_score(const Mask& predicted, const Mask& truth) {
     return evaluate::boundary_f(predicted, truth, evaluate::boundary_tolerance_px(truth.width, truth.height));
 }
 
+/// A silhouette that is new is not known to the pixel.
+bool new_outline(const EvalCase& edit) { return edit.kind == "add" || edit.kind == "replace"; }
+
 double growth_px(const EvalSetting& setting) {
-    const double doubled = setting.edit.kind == "add" ? 2 : 1;  // as the edit grows its own masks
+    const double doubled = new_outline(setting.edit) ? 2 : 1;
     return setting.request.dilate_px * doubled * setting.request.image_size / edit::ReferenceSide;
 }
 
@@ -97,14 +101,20 @@ double reduction(double before, double after) { return before > 0 ? 1 - after / 
 /// Everything seen from the held-out views.
 struct HeldOut {
     std::vector<Image> before, after, truth;
-    std::vector<Mask> inside;  // the true part, grown
-    std::vector<Mask> traces;  // wherever the true part shows at all, grown
-    std::vector<Mask> part;    // the true part
+    std::vector<Mask> inside;  // the true part, before and after, grown
+    std::vector<Mask> traces;  // wherever the true part shows at all, before or after, grown
+    std::vector<Mask> part;    // the true part: after the edit where it is new
+    std::vector<Mask> old;     // the true part before the edit; only where it is replaced
 };
 
-/// The scene in which the part that changes is there: added things are in the target only.
+/// The scene in which the part that changes is there: new things are in the target only.
 const synth::SynthScene& scene_of_part(const EvalSetting& setting) {
-    return setting.edit.kind == "add" ? setting.target : setting.source;
+    return new_outline(setting.edit) ? setting.target : setting.source;
+}
+
+Mask joined(Mask a, const Mask& b) {
+    for (std::size_t p = 0; p < a.data.size(); ++p) a.data[p] |= b.data[p];
+    return a;
 }
 
 HeldOut look(const EvalSetting& setting, const GaussianSet& edited, pipeline::Painter& painter) {
@@ -115,9 +125,15 @@ HeldOut look(const EvalSetting& setting, const GaussianSet& edited, pipeline::Pa
         seen.after.push_back(picture(painter, edited, view.camera));
         seen.truth.push_back(picture(painter, setting.target.scene.gaussians, view.camera));
         seen.part.push_back(part_mask(painter, owner, setting.edit.part, view.camera, PartShare));
-        seen.inside.push_back(localize::dilate(seen.part.back(), growth_px(setting)));
-        seen.traces.push_back(localize::dilate(
-            part_mask(painter, owner, setting.edit.part, view.camera, TraceShare), growth_px(setting)));
+        Mask inside = seen.part.back(), traces = part_mask(painter, owner, setting.edit.part, view.camera, TraceShare);
+        if (setting.edit.kind == "replace") {
+            seen.old.push_back(part_mask(painter, setting.source, setting.edit.part, view.camera, PartShare));
+            inside = joined(std::move(inside), seen.old.back());
+            traces = joined(std::move(traces),
+                            part_mask(painter, setting.source, setting.edit.part, view.camera, TraceShare));
+        }
+        seen.inside.push_back(localize::dilate(inside, growth_px(setting)));
+        seen.traces.push_back(localize::dilate(traces, growth_px(setting)));
     }
     return seen;
 }
@@ -168,6 +184,38 @@ void add_changed(const HeldOut& seen, Json& json) {
         overlap.add(evaluate::changed_pixels(seen.before[v], seen.after[v], ClearChange), seen.part[v]);
     json["changed_recall"] = overlap.recall();
     json["changed_precision"] = overlap.precision();
+}
+
+/// How well the outline of the new thing is the true one: of all rows that were allowed to change, as seen from the held-out
+/// views, pooled over them.
+void add_silhouette(const EvalSetting& setting, const edit::EditResult& result, const HeldOut& seen,
+                    pipeline::Painter& painter, Json& json) {
+    PooledOverlap overlap;
+    for (std::size_t v = 0; v < seen.part.size(); ++v) {
+        const Camera& camera = setting.held_out.views[v].camera;
+        overlap.add(mask_of_rows(painter, result.set, result.label, camera, PartShare), seen.part[v]);
+    }
+    json["silhouette_iou"] = overlap.iou();
+}
+
+/// Share of the old thing's pixels that are still nearer to what they were than to what they should be; of those where the two
+/// differ clearly.
+void add_old_left(const HeldOut& seen, Json& json) {
+    double left = 0, pixels = 0;
+    for (std::size_t v = 0; v < seen.old.size(); ++v) {
+        const Mask changes = evaluate::changed_pixels(seen.before[v], seen.truth[v], ClearChange);
+        for (std::size_t p = 0; p < changes.data.size(); ++p) {
+            if (changes.data[p] == 0 || seen.old[v].data[p] == 0) continue;
+            double from_old = 0, from_true = 0;
+            for (std::size_t c = p * 3; c < p * 3 + 3; ++c) {
+                from_old += std::abs(static_cast<double>(seen.after[v].data[c]) - seen.before[v].data[c]);
+                from_true += std::abs(static_cast<double>(seen.after[v].data[c]) - seen.truth[v].data[c]);
+            }
+            pixels += 1;
+            left += from_old < from_true ? 1 : 0;
+        }
+    }
+    json["old_left"] = pixels > 0 ? left / pixels : 0;
 }
 
 void add_consistency(const HeldOut& seen, Json& json) {
@@ -267,6 +315,41 @@ EvalSetting make_setting(const EvalCase& edit, const edit::EditRequest& settings
     return setting;
 }
 
+edit::EditMode right_mode(const EvalCase& edit) {
+    return edit.kind == "add"       ? edit::EditMode::Add
+           : edit.kind == "replace" ? edit::EditMode::Replace
+                                    : edit::EditMode::Modify;
+}
+
+void settle_pose(EvalSetting& setting, const GaussianSet& edited, const EvalTools& tools) {
+    if (setting.edit.kind != "replace") return;
+    constexpr int Headings = 8;
+    std::vector<Image> shown;
+    for (const auto& view : setting.held_out.views) shown.push_back(picture(tools.painter, edited, view.camera));
+    double least = std::numeric_limits<double>::infinity();
+    const auto try_pose = [&](synth::SceneSpec spec) {
+        auto scene = synth::generate(spec);
+        double error = 0;
+        for (std::size_t v = 0; v < shown.size(); ++v)
+            error += evaluate::mean_absolute_error(
+                shown[v], picture(tools.painter, scene.scene.gaussians, setting.held_out.views[v].camera));
+        if (error >= least) return;
+        least = error;
+        setting.target = std::move(scene);
+    };
+    const auto asked = setting.edit.target;
+    for (int i = 0; i < Headings; ++i) {
+        auto spec = asked;
+        spec.heading = 2 * std::numbers::pi * i / Headings;
+        try_pose(spec);
+    }
+    for (const double size : {0.85, 1.15}) {
+        auto spec = setting.target.spec;
+        spec.size = size;
+        try_pose(spec);
+    }
+}
+
 Mask part_mask(pipeline::Painter& painter, const synth::SynthScene& scene, synth::Part part, const Camera& camera,
                double share) {
     return mask_of_rows(painter, scene.scene.gaussians, rows_of(scene, part), camera, share);
@@ -275,8 +358,8 @@ Mask part_mask(pipeline::Painter& painter, const synth::SynthScene& scene, synth
 Json located_figures(const EvalSetting& setting, const edit::LocateResult& located, const EvalTools& tools) {
     Json json;
     const bool added = setting.edit.kind == "add";
-    json["mode"] = located.mode == edit::EditMode::Add ? "add" : "modify";
-    json["mode_right"] = (located.mode == edit::EditMode::Add) == added;
+    json["mode"] = edit::mode_name(located.mode);
+    json["mode_right"] = located.mode == right_mode(setting.edit);
     json["failed_views"] = located.failed_views;
     if (added)
         add_place(setting, located, tools.painter, json);
@@ -291,6 +374,11 @@ Json edited_figures(const EvalSetting& setting, const edit::EditPlan& plan, cons
     const HeldOut seen = look(setting, result.set, tools.painter);
     add_inside(seen, json);
     if (setting.edit.kind == "add") add_changed(seen, json);
+    if (new_outline(setting.edit)) add_silhouette(setting, result, seen, tools.painter, json);
+    if (setting.edit.kind == "replace") {
+        add_old_left(seen, json);
+        json["truth"] = {{"heading", setting.target.spec.heading}, {"size", setting.target.spec.size}};
+    }
     add_outside(seen, json);
     add_own_outside(setting, plan, result.set, tools.painter, json);
     add_consistency(seen, json);

@@ -26,7 +26,8 @@ struct EvalViews {
 /// A case with its scenes and cameras.
 struct EvalSetting {
     EvalCase edit;
-    synth::SynthScene source, target;
+    synth::SynthScene source;
+    synth::SynthScene target;   // what a new thing's heading and size are is for settle_pose() to say
     EvalViews seen;      // the edit's views
     EvalViews held_out;  // between them
     edit::EditRequest request;
@@ -40,6 +41,13 @@ struct EvalTools {
 
 /// The scenes and views of a case. `held_out_views` cameras stand between the request's.
 EvalSetting make_setting(const EvalCase& edit, const edit::EditRequest& settings, int held_out_views);
+
+/// The kind of edit that the case's sentence asks for.
+edit::EditMode right_mode(const EvalCase& edit);
+
+/// What the sentence leaves open is no error: of the true scenes with the new thing in eight headings, then in three sizes, takes
+/// the one that is nearest to the edited scene on the held-out views. Nothing changes for edits in which no thing is replaced.
+void settle_pose(EvalSetting& setting, const GaussianSet& edited, const EvalTools& tools);
 
 /// [rows] 1 where a row belongs to the part.
 std::vector<std::uint8_t> rows_of(const synth::SynthScene& scene, synth::Part part);

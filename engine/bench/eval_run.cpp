@@ -154,7 +154,7 @@ private:
 
     pipeline::EditRecipe recipe(const EvalCase& edit) const {
         pipeline::EditRecipe recipe = run_.settings;
-        recipe.request.mode = run_.parameters.mode == "auto" ? "auto" : edit.kind == "add" ? "add" : "modify";
+        recipe.request.mode = run_.parameters.mode == "auto" ? "auto" : edit::mode_name(right_mode(edit));
         recipe.request.source = edit.word;
         recipe.request.prompt = edit.prompt;
         recipe.request.target = run_.parameters.oracle_views ? edit.target_word : std::string();
@@ -202,12 +202,14 @@ private:
 
     EvalTools tools() { return {painter_, score_.get()}; }
 
-    Json edit_and_compare(const EvalSetting& setting, pipeline::EditJob& job) {
+    /// The truth of `setting` becomes the pose that is nearest to the result.
+    Json edit_and_compare(EvalSetting& setting, pipeline::EditJob& job) {
         job.run();
         const auto& result = job.result();
         check_stop();  // a stopped edit is no result
         if (result.failure) throw *result.failure;
         job.times().begin("compare");
+        settle_pose(setting, result.set, tools());
         Json figures = edited_figures(setting, job.plan(), result, tools());
         // Against what was found, also where an ablation lets more change.
         figures["drift"] = evaluate::drifted_rows(setting.source.scene.gaussians, result.set,
@@ -253,7 +255,7 @@ private:
         return best;
     }
 
-    /// Before, attention, what was found, after, truth.
+    /// Before, attention, what was found, after, truth; of new shapes the last two from the other side, too.
     void add_row(const EvalSetting& setting, const edit::LocateResult& located, const edit::EditResult* result) {
         const std::size_t view = telling_view(setting);
         const Camera& camera = setting.seen.views[view].camera;
@@ -268,7 +270,27 @@ private:
         }
         if (result != nullptr) cells[3] = paint(result->set);
         cells[4] = paint(setting.target.scene.gaussians);
+        if (right_mode(setting.edit) != edit::EditMode::Modify) {
+            const auto& held_out = setting.held_out.views;
+            const Camera& behind = held_out[opposite(held_out, camera)].camera;
+            for (const auto* set : {result != nullptr ? &result->set : nullptr, &setting.target.scene.gaussians}) {
+                cells.emplace_back();
+                if (set != nullptr) cells.back() = painter_.paint(set->spans(), behind, {}).colour;
+            }
+        }
         sheets_.add(cells, setting.edit.kind + ": " + setting.edit.prompt);
+    }
+
+    /// The view that looks most against the camera.
+    static std::size_t opposite(const std::vector<View>& views, const Camera& camera) {
+        std::size_t best = 0;
+        double least = 2;
+        for (std::size_t v = 0; v < views.size(); ++v)
+            if (const double along = dot(views[v].camera.forward(), camera.forward()); along < least) {
+                least = along;
+                best = v;
+            }
+        return best;
     }
 
     /// Existing things: the label as seen; added ones: their place.

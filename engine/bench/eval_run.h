@@ -15,8 +15,8 @@ namespace gse::bench {
 /// What is evaluated.
 struct EvalParameters {
     std::uint64_t seed = 1;
-    int edits = 24;
-    std::string kinds = "recolour material add ground";
+    int edits = 30;
+    std::string kinds = "recolour material add ground replace";
     std::string mode = "auto";
     int held_out_views = 12;
     bool oracle_views = false;
@@ -29,8 +29,8 @@ struct EvalParameters {
     static void visit_fields(Self& self, F&& f) {
         f("seed", self.seed, "Seed of the suite: which edits, and the scenes' shapes.");
         f("edits", self.edits, "Synthetic edits with ground truth.", Range{0, 10000});
-        f("kinds", self.kinds, "Kinds of edits, in turn: recolour material add ground.");
-        f("mode", self.mode, "Mode the edits are asked for: auto, or right (modify or add, as each needs).");
+        f("kinds", self.kinds, "Kinds of edits, in turn: recolour material add ground replace.");
+        f("mode", self.mode, "Mode the edits are asked for: auto, or right (modify, replace or add, as each needs).");
         f("held_out_views", self.held_out_views,
           "Views between those of the edit, on which the result is compared.", Range{1, 512});
         f("oracle_views", self.oracle_views,

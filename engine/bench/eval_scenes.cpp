@@ -148,7 +148,7 @@ Json run_real_edit(const RealEdit& edit, pipeline::EditRecipe recipe, const std:
         entry["splats"] = job.scene().gaussians.size();
         entry["labelled"] =
             std::count(job.located().label.bits->begin(), job.located().label.bits->end(), std::uint8_t{1});
-        entry["mode"] = job.located().mode == edit::EditMode::Add ? "add" : "modify";
+        entry["mode"] = edit::mode_name(job.located().mode);
         entry["failed_views"] = job.located().failed_views;
         add_preservation(job, entry);
         entry["nonfinite"] = job.result().nonfinite;

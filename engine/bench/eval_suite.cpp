@@ -26,7 +26,8 @@ std::vector<std::string> accessories_and_none() {
 struct Combination {
     SceneSpec source, target;
     std::string key() const {
-        return source.object + ' ' + source.material + ' ' + target.material + ' ' + target.accessory;
+        const auto words = source.object + ' ' + source.material + ' ' + target.material + ' ' + target.accessory;
+        return source.object == target.object ? words : words + ' ' + target.object;
     }
 };
 
@@ -78,6 +79,23 @@ std::vector<Combination> ground_changes() {
     return list;
 }
 
+/// Another object in the place of one; the new one's combination is held out.
+std::vector<Combination> replacements(bool same_material) {
+    std::vector<Combination> list;
+    for_each_spec([&](const SceneSpec& target) {
+        if (!target.accessory.empty() || !synth::held_out(target)) return;
+        for (const auto& object : synth::object_words())
+            for (const auto& material : synth::material_words()) {
+                if (object == target.object || (material == target.material) != same_material) continue;
+                SceneSpec source = target;
+                source.object = object;
+                source.material = material;
+                list.push_back({source, target});
+            }
+    });
+    return list;
+}
+
 const std::string& pick(const std::vector<std::string>& words, Random& random) {
     return words[random.below(words.size())];
 }
@@ -108,6 +126,7 @@ Combination choose(std::vector<Combination> list, std::set<std::string>& used, R
 std::vector<Combination> combinations_of(const std::string& kind, Random& random) {
     if (kind == "add") return additions();
     if (kind == "ground") return ground_changes();
+    if (kind == "replace") return replacements(random.uniform() < 0.5);
     const bool with_accessory = random.uniform() < 0.5;
     return material_changes(kind == "material", with_accessory);
 }
@@ -132,16 +151,24 @@ EvalCase make_case(const std::string& kind, std::set<std::string>& used, Random 
         edit.target_word = words.target.ground;
         edit.part = synth::Part::Ground;
     } else {
-        edit.target_word = kind == "add" ? words.target.accessory : words.target.material;
+        edit.target_word = kind == "add"       ? words.target.accessory
+                           : kind == "replace" ? words.target.object
+                                               : words.target.material;
         edit.part = kind == "add" ? synth::Part::Accessory : synth::Part::Object;
     }
     return edit;
 }
 
+std::string list_of(const std::vector<std::string>& words) {
+    std::string list;
+    for (const auto& word : words) list += (list.empty() ? "" : ", ") + word;
+    return list;
+}
+
 }  // namespace
 
 const std::vector<std::string>& eval_kinds() {
-    static const std::vector<std::string> kinds{"recolour", "material", "add", "ground"};
+    static const std::vector<std::string> kinds{"recolour", "material", "add", "ground", "replace"};
     return kinds;
 }
 
@@ -150,15 +177,18 @@ std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vecto
     for (const auto& kind : kinds)
         if (std::find(known.begin(), known.end(), kind) == known.end())
             throw Error(ErrorCode::InvalidArgument, "there is no kind of edit named \"" + kind + "\"",
-                        "use recolour, material, add, ground");
+                        "use " + list_of(known));
     if (kinds.empty())
-        throw Error(ErrorCode::InvalidArgument, "no kind of edit is named",
-                    "use recolour, material, add, ground");
+        throw Error(ErrorCode::InvalidArgument, "no kind of edit is named", "use " + list_of(known));
+    constexpr std::uint64_t OfWhatStays = 40000, OfReplacements = 50000;   // random streams
     std::vector<EvalCase> suite;
-    std::set<std::string> used;
+    std::set<std::string> used, used_to_replace;
+    std::uint64_t others = 0, replacements = 0;
     for (int i = 0; i < count; ++i) {
-        const auto index = static_cast<std::size_t>(i);
-        suite.push_back(make_case(kinds[index % kinds.size()], used, Random::stream(seed, 40000 + index)));
+        const auto& kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
+        suite.push_back(kind == "replace"
+                            ? make_case(kind, used_to_replace, Random::stream(seed, OfReplacements + replacements++))
+                            : make_case(kind, used, Random::stream(seed, OfWhatStays + others++)));
     }
     return suite;
 }

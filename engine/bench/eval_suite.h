@@ -11,7 +11,7 @@ namespace gse::bench {
 
 /// One edit with its ground truth.
 struct EvalCase {
-    std::string kind;  // "recolour", "material", "add" or "ground"
+    std::string kind;  // "recolour", "material", "add", "ground" or "replace"
     synth::SceneSpec source;
     synth::SceneSpec target;                 // same seed: the same scene but for what the sentence changes
     std::string prompt;                      // describes the target
@@ -25,8 +25,9 @@ const std::vector<std::string>& eval_kinds();
 
 /// `count` edits, the kinds in turn. The target's combination of object, material and accessory is always one
 /// that training never saw; for recolour and material edits of scenes with an accessory (half of them) the
-/// source's is too. Scene seeds are drawn from `seed`. Combinations repeat only when there are no others.
-/// Throws Error for an unknown kind.
+/// source's is too. "replace" puts another object, of the same material or another, in the place of one without an
+/// accessory. Scene seeds are drawn from `seed`. Combinations repeat only when there are no others. Edits that replace are
+/// drawn apart: the others are the same with and without them. Throws Error for an unknown kind.
 std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vector<std::string>& kinds);
 
 }  // namespace gse::bench

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <set>
 #include <vector>
 
 namespace gse::bench {
@@ -107,6 +108,9 @@ Json success_share(const Edits& edits, const Json& report) {
     return static_cast<double>(count) / static_cast<double>(edits.size());
 }
 
+/// Kinds whose figures have been published as means over all of them; what replaces has figures of its own.
+const std::vector<std::string> OfWhatStays{"recolour", "material", "add", "ground"};
+
 void add_localization(const Json& edits, Json& summary) {
     const Edits existing = of_kinds(edits, {"recolour", "material", "ground"}), added = of_kinds(edits, {"add"});
     summary["existing_weighted_iou"] = figure(mean(existing, "weighted_iou"), {">=", 0.85});
@@ -115,7 +119,7 @@ void add_localization(const Json& edits, Json& summary) {
     summary["added_place_recall"] = figure(mean(added, "place_recall"), {">=", 0.7});
     summary["added_place_precision"] = figure(mean(added, "place_precision"), {">=", 0.4});
     summary["added_place_boundary_f"] = figure(mean(added, "place_boundary_f"), {});
-    summary["mode_right"] = figure(mean(of_kinds(edits, {}), "mode_right_number"), {});
+    summary["mode_right"] = figure(mean(of_kinds(edits, OfWhatStays), "mode_right_number"), {});
 }
 
 void add_edits(const Json& report, const Json& edits, Json& summary) {
@@ -134,10 +138,11 @@ void add_edits(const Json& report, const Json& edits, Json& summary) {
     summary["added_changed_precision"] = figure(mean(added, "changed_precision"), {});
     summary["change_success"] = figure(success_share(changed, report), {">=", 0.8});
     summary["added_visible"] = figure(success_share(added, report), {">=", 0.6});
+    summary["added_silhouette_iou"] = figure(mean(added, "silhouette_iou"), {});
 }
 
 void add_preservation(const Json& edits, Json& summary) {
-    const Edits all = finished(of_kinds(edits, {}));
+    const Edits all = finished(of_kinds(edits, OfWhatStays)), every = finished(of_kinds(edits, {}));
     summary["psnr_outside_db"] = figure(mean(all, "psnr_outside_db"), {">=", 38});
     summary["psnr_outside_pooled_db"] = figure(pooled_psnr(all, "psnr_outside_db"), {});
     summary["psnr_outside_lowest_db"] = figure(lowest(all, "psnr_outside_db"), {});
@@ -145,10 +150,44 @@ void add_preservation(const Json& edits, Json& summary) {
     summary["leak_rate"] = figure(mean(all, "leak_rate"), {"<=", 0.01});
     summary["own_psnr_outside_db"] = figure(mean(all, "own_psnr_outside_db"), {});
     summary["own_leak_rate"] = figure(mean(all, "own_leak_rate"), {});
-    summary["drift"] = figure(total(all, "drift"), {"==", 0});
-    summary["nonfinite"] = figure(total(all, "nonfinite"), {"==", 0});
+    summary["drift"] = figure(total(every, "drift"), {"==", 0});
+    summary["nonfinite"] = figure(total(every, "nonfinite"), {"==", 0});
     summary["inconsistency"] = figure(mean(all, "inconsistency"), {});
     summary["inconsistency_of_truth"] = figure(mean(all, "inconsistency_of_truth"), {});
+}
+
+/// What another thing took the place of.
+void add_replacements(const Json& report, const Json& edits, Json& summary) {
+    const Edits replaced = of_kinds(edits, {"replace"}), done = finished(replaced);
+    if (replaced.empty()) return;
+    summary["replace_silhouette_iou"] = figure(mean(replaced, "silhouette_iou"), {">=", 0.8});
+    summary["replace_l1_reduction"] = figure(mean(replaced, "l1_reduction"), {">=", 0.5});
+    summary["replace_old_left"] = figure(mean(done, "old_left"), {"<=", 0.05});
+    summary["replace_success"] = figure(success_share(replaced, report), {">=", 0.8});
+    summary["replace_psnr_outside_db"] = figure(mean(done, "psnr_outside_db"), {">=", 38});
+    summary["replace_leak_rate"] = figure(mean(done, "leak_rate"), {});
+    summary["replace_mode_right"] = figure(mean(replaced, "mode_right_number"), {});
+    summary["replace_weighted_iou"] = figure(mean(replaced, "weighted_iou"), {});
+}
+
+/// Means over the edits that add the same thing, a line per thing.
+Json added_means(const Json& edits) {
+    Json table = Json::array();
+    const Edits added = of_kinds(edits, {"add"});
+    std::set<std::string> things;
+    for (const auto* edit : added) things.insert((*edit)["target"].get<std::string>());
+    for (const auto& thing : things) {
+        Edits same;
+        for (const auto* edit : added)
+            if ((*edit)["target"] == thing) same.push_back(edit);
+        const Edits done = finished(same);
+        Json entry{{"thing", thing}, {"edits", same.size()}, {"failed", same.size() - done.size()}};
+        for (const char* key : {"silhouette_iou", "l1_reduction", "place_recall", "place_precision"})
+            entry[key] = mean(same, key);
+        for (const char* key : {"direction", "psnr_outside_db", "leak_rate"}) entry[key] = mean(done, key);
+        table.push_back(std::move(entry));
+    }
+    return table;
 }
 
 /// Means of the whole method ("full", on the same edits) and of every ablation.
@@ -219,6 +258,8 @@ std::string edit_line(const Json& edit) {
                             number(edit, "psnr_inside_db", 1), number(edit, "psnr_outside_db", 1),
                             number(edit, "leak_rate", 4), number(edit, "drift", 0),
                             number(edit, "direction", 2), number(edit["seconds"], "total", 1));
+        if (edit.contains("silhouette_iou")) line += "  outline " + number(edit, "silhouette_iou", 2);
+        if (edit.contains("old_left")) line += ", old left " + number(edit, "old_left", 2);
     }
     return fmt::format("{}  {}  [{} -> {}]\n", line, edit["prompt"].get<std::string>(),
                        edit["word"].get<std::string>(), edit["target"].get<std::string>());
@@ -234,6 +275,19 @@ std::string ablation_lines(const Json& table) {
                             number(entry, "psnr_outside_db", 1), number(entry, "psnr_outside_pooled_db", 1),
                             number(entry, "ssim_outside", 4), number(entry, "leak_rate", 4),
                             number(entry, "drift", 0));
+    return text;
+}
+
+std::string added_lines(const Json& table) {
+    if (table.empty()) return {};
+    std::string text = fmt::format("\n{:<12}{:>6}{:>9}{:>9}{:>8}{:>8}{:>7}{:>9}{:>9}\n", "added", "edits", "outline", "L1 red.",
+                                   "recall", "prec.", "CLIP", "PSNR out", "leak");
+    for (const auto& entry : table)
+        text += fmt::format("{:<12}{:>6}{:>9}{:>9}{:>8}{:>8}{:>7}{:>9}{:>9}\n", entry["thing"].get<std::string>(),
+                            entry["edits"].get<std::size_t>(), number(entry, "silhouette_iou", 2),
+                            number(entry, "l1_reduction", 2), number(entry, "place_recall", 2),
+                            number(entry, "place_precision", 2), number(entry, "direction", 2),
+                            number(entry, "psnr_outside_db", 1), number(entry, "leak_rate", 4));
     return text;
 }
 
@@ -284,6 +338,8 @@ Json eval_summary(const Json& report) {
     add_localization(edits, summary);
     add_edits(report, edits, summary);
     add_preservation(edits, summary);
+    add_replacements(report, edits, summary);
+    summary["added_means"] = added_means(edits);
     const Json table = ablation_means(report);
     if (!table.empty()) add_order(table, summary);
     summary["ablation_means"] = table;
@@ -296,6 +352,7 @@ std::string eval_table(const Json& report) {
         "outline F of the place)\n",
         "#", "kind", "wIoU", "IoU", "mIoU", "mF", "L1 red.", "PSNR in", "out", "leak", "drift", "CLIP", "s");
     for (const auto& edit : report["edits"]) text += edit_line(edit);
+    text += added_lines(report["summary"]["added_means"]);
     text += ablation_lines(report["summary"]["ablation_means"]);
     text += scene_lines(report["scenes"]);
     return text + summary_lines(report["summary"]);

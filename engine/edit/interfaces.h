@@ -50,6 +50,8 @@ struct RoundView {
     Mask mask;                     // where the picture may change
     View view;
     std::string view_words = {};   // as in GuidanceInput
+    Image backdrop = {};           // [H,W,3] in [0,1], the scene without what may change; empty unless the round draws anew
+    Image backdrop_depth = {};     // [H,W,1] as `depth`, of the backdrop
 };
 
 /// What a round is asked to be.
@@ -58,6 +60,7 @@ struct RoundInput {
     int steps = 6;                 // of the sampler
     double strength = 0.75;        // where it begins: 0 = the picture itself, 1 = pure noise
     std::uint64_t seed = 0;        // already mixed with the round: the only source of randomness
+    bool anew = false;             // the inside of the masks becomes something else: nothing of it is to be kept
 };
 
 /// The pictures as the model would have them, and numbers for the log.

@@ -81,13 +81,16 @@ public:
         LocateResult result;
         render_all();
         std::tie(result.mode, result.reason) = decide_mode(input_.request, found_share());
-        log::info("{} \"{}\": {}", result.mode == EditMode::Add ? "adding" : "changing",
+        log::info("{} \"{}\": {}",
+                  result.mode == EditMode::Add       ? "adding"
+                  : result.mode == EditMode::Replace ? "replacing"
+                                                     : "changing",
                   result.mode == EditMode::Add ? input_.request.target : input_.request.source,
                   result.reason);
-        if (result.mode == EditMode::Modify)
-            modify(result);
-        else
+        if (result.mode == EditMode::Add)
             add(result);
+        else
+            modify(result);
         result.failed_views = static_cast<int>(std::count_if(
             result.views.begin(), result.views.end(), [](const ViewEvidence& view) { return view.failed; }));
         return result;

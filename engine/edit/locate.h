@@ -69,11 +69,11 @@ struct ViewEvidence {
 
 struct LocateResult {
     EditMode mode = EditMode::Modify;
-    std::string reason;  // why this mode, for the log
+    std::string reason;  // why this mode, for the log and the report
     std::string word;    // the word that was looked for
     std::vector<ViewEvidence> views;
     localize::LabelWeights weights;  // of the thing the edit is about (in add mode: of the source)
-    Label label;                     // modify: rows that may change; add: all zero
+    Label label;                     // modify, replace: rows that may change; add: all zero
     Label source_label;              // rows of the source word
     AddRegion region;                // add mode: where the new thing goes
     GaussianData seeds;              // add mode: new rows

@@ -7,6 +7,7 @@
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
+
 EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster::Rasterizer& rasterizer) {
     GSE_CHECK_EQ(located.views.size(), input.views.size());
     EditPlan plan;
@@ -15,6 +16,7 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
     plan.label = *located.label.bits;
     plan.seeds = located.seeds;
     plan.settings = input.settings;
+    plan.mode = located.mode;
     const std::vector<float> values(plan.label.begin(), plan.label.end());
     const bool any = std::find(plan.label.begin(), plan.label.end(), std::uint8_t{1}) != plan.label.end();
     Image seen;
@@ -26,8 +28,7 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
             for (std::size_t i = 0; i < mask.data.size(); ++i)
                 if (seen.data[i] > 0.5f) mask.data[i] = 1;
         }
-        const double grow = input.request.dilate_px * (located.mode == EditMode::Add ? 2 : 1);
-        plan.masks.push_back(localize::dilate(mask, grow * camera.width / ReferenceSide));
+        plan.masks.push_back(localize::dilate(mask, mask_growth_px(input.request, located.mode) * camera.width / ReferenceSide));
     }
     if (!input.request.localize) std::fill(plan.label.begin(), plan.label.end(), std::uint8_t{1});
     return plan;

@@ -2,6 +2,7 @@
 #include "engine/edit/request.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/error.h"
 #include "engine/edit/add_region.h"
@@ -219,8 +220,9 @@ EditRequest validated(EditRequest request) {
     check_fields(request);
     if (words_of(request.prompt).empty())
         throw Error(ErrorCode::InvalidArgument, "the edit has no prompt", "describe the scene after the edit in one sentence");
-    if (request.mode != "auto" && request.mode != "modify" && request.mode != "add")
-        throw Error(ErrorCode::InvalidArgument, "\"" + request.mode + "\" is not an edit mode", "use auto, modify or add");
+    if (request.mode != "auto" && !mode_named(request.mode))
+        throw Error(ErrorCode::InvalidArgument, "\"" + request.mode + "\" is not an edit mode",
+                    "use auto, modify, replace or add");
     if (request.method != "auto" && request.method != "views" && request.method != "sds")
         throw Error(ErrorCode::InvalidArgument, "\"" + request.method + "\" is not a method", "use auto, views or sds");
     if (!request.source.empty()) request.source = phrase_of(request.source, "source");
@@ -240,17 +242,33 @@ EditRequest validated(EditRequest request) {
 }
 
 bool edits_by_views(const LoopSettings& settings, EditMode mode) {
-    return settings.method == "views" || (settings.method == "auto" && mode == EditMode::Modify);
+    return settings.method == "views" || (settings.method == "auto" && mode != EditMode::Add);
 }
 
-int loop_steps(const LoopSettings& settings, bool by_views) {
-    return by_views ? settings.rounds * settings.fit_steps : settings.iterations;
+int RoundPlan::steps_of(int round) const {
+    return std::max(1, static_cast<int>(std::ceil(view_steps * strength_of(round) / strength - 1e-9)));
 }
 
-EditMode chosen_mode(const EditRequest& request, bool target_exists) {
-    if (request.mode == "add") return EditMode::Add;
-    if (request.mode == "modify") return EditMode::Modify;
-    return target_exists ? EditMode::Modify : EditMode::Add;
+int RoundPlan::view_steps_within(int steps) const {
+    int sum = 0;
+    for (int round = 0; round * fit_steps < steps; ++round) sum += steps_of(round);
+    return sum;
+}
+
+RoundPlan round_plan(const LoopSettings& settings, EditMode mode) {
+    if (mode == EditMode::Modify)
+        return {settings.rounds, settings.fit_steps, false, settings.view_steps, settings.view_strength, settings.view_strength};
+    return {settings.shape_rounds, settings.shape_fit_steps, true,
+            settings.shape_steps,  settings.shape_strength,  settings.shape_again_strength};
+}
+
+double mask_growth_px(const LoopSettings& settings, EditMode mode) {
+    return mode == EditMode::Replace ? settings.shape_dilate_px : settings.dilate_px * (mode == EditMode::Add ? 2 : 1);
+}
+
+int loop_steps(const LoopSettings& settings, EditMode mode) {
+    const auto plan = round_plan(settings, mode);
+    return edits_by_views(settings, mode) ? plan.rounds * plan.fit_steps : settings.iterations;
 }
 
 }  // namespace gse::edit

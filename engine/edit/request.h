@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct EditWords {
         f("source", self.source, "What in the scene the edit is about (\"bear\", \"teddy bear\"); empty = the target word.");
         f("prompt", self.prompt, "A sentence that describes the scene after the edit (\"a golden statue\").");
         f("target", self.target, "What in the prompt is new (\"golden\", \"top hat\"); empty = what the pictures show least, where the model compares pictures with words, else what the sentence says of the source.");
-        f("mode", self.mode, "modify (change what is there), add (put something new there) or auto.");
+        f("mode", self.mode, "modify (change what is there), replace (put something else in its place), add (put something new beside it) or auto.");
     }
 };
 
@@ -107,6 +108,13 @@ struct LoopSettings {
     int view_steps = 6;
     int fit_steps = 40;
     double view_strength = 0.75;
+    // Shapes by views: a thing that becomes another, or is new
+    int shape_rounds = 2;
+    int shape_steps = 6;
+    int shape_fit_steps = 240;
+    double shape_strength = 0.95;
+    double shape_again_strength = 0.6;
+    double shape_dilate_px = 60;
     double guidance_weight = 1;
     double strength = 1;
     bool gate_guidance = true;
@@ -180,6 +188,7 @@ private:
         f("view_steps", self.view_steps, "Denoising steps of a redrawn view.", Range{1, 100});
         f("fit_steps", self.fit_steps, "Optimisation steps after each round.", Range{1, 1e5});
         f("view_strength", self.view_strength, "How far from the render a view is redrawn: 0 = not at all, 1 = from nothing.", Range{0.02, 1});
+        visit_shapes(self, f);
         f("guidance_weight", self.guidance_weight, "How hard the model pulls, against keeping the rest.", Range{0, 1e6});
         f("strength", self.strength,
           "How much of the result is kept: 0 = none, below 1 = between before and after, above 1 = colours go beyond it.",
@@ -209,6 +218,17 @@ private:
         f("anchor_opacity", self.anchor_opacity, "Anchor loss weight of opacities.", Range{0, 1e6});
         f("anchor_scale", self.anchor_scale, "Anchor loss weight of scales.", Range{0, 1e6});
         f("anchor_colour", self.anchor_colour, "Anchor loss weight of colours.", Range{0, 1e6});
+    }
+    template <class Self, class F>
+    static void visit_shapes(Self& self, F&& f) {
+        f("shape_rounds", self.shape_rounds, "The same as rounds, where a thing becomes another or is new.", Range{1, 20});
+        f("shape_steps", self.shape_steps, "Denoising steps of a view in its first round there; later rounds take fewer, by their strength.",
+          Range{1, 100});
+        f("shape_fit_steps", self.shape_fit_steps, "Optimisation steps after each round there.", Range{1, 1e5});
+        f("shape_strength", self.shape_strength, "How far from the render the first round redraws there.", Range{0.02, 1});
+        f("shape_again_strength", self.shape_again_strength, "How far the later rounds do.", Range{0.02, 1});
+        f("shape_dilate_px", self.shape_dilate_px,
+          "Room around the old thing for one that takes its place, in pixels of a 512-pixel picture.", Range{0, 256});
     }
     template <class Self, class F>
     static void visit_rates(Self& self, F&& f) {
@@ -259,13 +279,45 @@ struct EditRequest : EditWords, SearchSettings, LabelThresholds, LoopSettings {
     }
 };
 
-enum class EditMode { Modify, Add };
+/// What an edit does with what is there: changes its colour, material or style; puts something beside it; or puts something
+/// else in its place.
+enum class EditMode { Modify, Add, Replace };
+
+/// "modify", "add" or "replace", as `EditWords::mode` has it.
+const char* mode_name(EditMode mode);
+/// The mode of that name; nothing for others, "auto" among them.
+std::optional<EditMode> mode_named(const std::string& name);
+
+/// The thing of the sentence that is to be in the source's place ("cat" of "a red cat on the grass" for a bear); empty where the
+/// sentence keeps the source, or changes what things stand on. The words of a validated request.
+std::string thing_in_place(const EditRequest& request);
 
 /// Whether the views method is what `method` means for an edit of that mode.
 bool edits_by_views(const LoopSettings& settings, EditMode mode);
+
+/// Rounds of redrawn views as an edit of a mode needs them: what has a new shape needs more than what is recoloured.
+struct RoundPlan {
+    int rounds = 1;
+    int fit_steps = 40;      // after each round
+    bool anew = false;       // the inside of the masks becomes something else
+    int view_steps = 6;      // of the first round
+    double strength = 0.75, again_strength = 0.75;   // of the first round and of the later ones
+
+    double strength_of(int round) const { return round == 0 ? strength : again_strength; }
+    /// Denoising steps of a round: as many per strength as the first has.
+    int steps_of(int round) const;
+    /// Denoising steps of a view in the rounds that begin within the first `steps` steps of the loop.
+    int view_steps_within(int steps) const;
+};
+RoundPlan round_plan(const LoopSettings& settings, EditMode mode);
+
 /// Optimisation steps of an edit.
-int loop_steps(const LoopSettings& settings, bool by_views);
-/// Both as the words and the mode of the request say, before anything was looked for.
+int loop_steps(const LoopSettings& settings, EditMode mode);
+
+/// How far masks are grown, in pixels of a 512-pixel picture: what is new or takes a place needs room.
+double mask_growth_px(const LoopSettings& settings, EditMode mode);
+/// All as the words and the mode of the request say, before anything was looked for.
+EditMode planned_mode(const EditRequest& request);
 bool planned_by_views(const EditRequest& request);
 int planned_steps(const EditRequest& request);
 
@@ -313,8 +365,5 @@ std::string instance_sentence(const EditRequest& request);
 /// Fills what the request leaves open (target and source) and checks it; both may be phrases of several words. Throws Error
 /// with one sentence: an empty prompt, a target that is not in the prompt, an unknown mode.
 EditRequest validated(EditRequest request);
-
-/// The mode of the request; `target_exists` decides "auto": what the scene shows already is modified, what is absent added.
-EditMode chosen_mode(const EditRequest& request, bool target_exists);
 
 }  // namespace gse::edit

@@ -7,7 +7,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <new>
 #include <numeric>
@@ -18,9 +17,11 @@
 #include "engine/base/memory.h"
 #include "engine/base/random.h"
 #include "engine/edit/dynamic_mask.h"
+#include "engine/edit/edit_checks.h"
 #include "engine/edit/edit_strength.h"
 #include "engine/edit/preservation.h"
 #include "engine/edit/scales.h"
+#include "engine/edit/shape_round.h"
 #include "engine/edit/stage_timer.h"
 #include "engine/edit/view_phase.h"
 #include "engine/edit/working_set.h"
@@ -34,6 +35,7 @@ constexpr float SeenLabel = 0.5f;              // share of a pixel that the labe
 constexpr std::size_t CalibrationSteps = 20;        // method 2.5
 constexpr std::array LooksAgain{0.5, 0.75};    // shares of the iterations after which new splats are looked for
 constexpr double LeastLeft = 0.15;             // of the new splats; fewer: the model does not see the new thing yet
+constexpr double FadedLogit = -6;              // opacity of what another thing takes the place of: it may come back (views.md 17)
 // A guidance that is not finite is broken for good, not only now and then, when so many steps in a row were left out and
 // all that were are more than this share of the steps.
 constexpr std::size_t SkippedInARow = 10;
@@ -108,7 +110,7 @@ public:
         : base_(base),
           plan_(plan),
           label_(base.editable(plan.label)),
-          request_(loop_request(request, tools.views != nullptr)),
+          request_(loop_request(request, plan.mode, tools.views != nullptr)),
           tools_(tools),
           set_(base.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
           preservation_(tools.views != nullptr ? FitWeights : PreservationWeights{request.l1, request.ssim, request.preserve}),
@@ -120,7 +122,10 @@ public:
         if (tools.start != nullptr) set_.resume(base.drawn, *tools.start);
         render_originals();
         settings_.negative_colour_slope = TrainingColourSlope;
-        if (tools.views != nullptr) phase_.emplace(plan_, request_, tools, originals_, masks_);
+        if (tools.views == nullptr) return;
+        if (round_plan(request_, plan.mode).anew && tools.attention != nullptr)
+            shapes_.emplace(plan_, request_, tools.word, *tools.attention, tools.segmenter);
+        phase_.emplace(plan_, request_, tools, originals_, masks_, shapes_ ? &*shapes_ : nullptr);
     }
 
     const std::vector<std::uint8_t>& label() const { return label_; }
@@ -229,6 +234,18 @@ private:
         draw_only(phase_ ? phase_->fitted() : visible);
     }
 
+    /// Has views redrawn where a round begins, and does what the artist says of them; a new shape grows from the first round.
+    void begin_round(int iteration, IterationRecord& record) {
+        const int before = phase_->round();
+        if (phase_->ready(iteration, spans(set_.rows()), set_.unlabelled(), settings_, record.guidance)) draw_only(phase_->fitted());
+        if (!shapes_ || iteration > 0 || phase_->round() == before) return;
+        const auto seeds = shapes_->seeds(phase_->found(), room_for(base_.drawn, label_, plan_.seeds), set_.rows().sh_degree);
+        if (seeds.size() == 0)
+            throw Error(ErrorCode::Model, "the redrawn views agree on no shape of \"" + tools_.word + "\"",
+                        "try another seed, or more views (edited_views)");
+        set_.plant(seeds, FadedLogit);
+    }
+
     /// From here on only these views are drawn, and have to come to rest.
     void draw_only(const std::vector<std::size_t>& views) {
         rest_ = RestDetector(plan_.views.size(), request_.early_stop_change);
@@ -248,7 +265,7 @@ private:
         IterationRecord record;
         record.iteration = iteration;
         try {
-            if (phase_ && phase_->ready(iteration, spans(set_.rows()), settings_, record.guidance)) draw_only(phase_->fitted());
+            if (phase_) begin_round(iteration, record);
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Cancelled) {
                 if (result.history.empty()) throw;   // nothing was reached yet
@@ -337,7 +354,7 @@ private:
             if (plan_.seeds.size() > 0)   // what is added needs its room as before
                 for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] |= plan_.masks[v].data[i];
             else
-                mask = localize::dilate(mask, request_.dilate_px * camera.width / ReferenceSide);
+                mask = localize::dilate(mask, mask_growth_px(request_, plan_.mode) * camera.width / ReferenceSide);
             masks.push_back(std::move(mask));
         }
         return views;
@@ -466,6 +483,7 @@ private:
     WorkingSet set_;
     Preservation preservation_;
     DynamicMasks masks_;
+    std::optional<ShapeFinder> shapes_;  // of view guidance that draws a thing anew
     Mask no_mask_;
     ViewCycle cycle_;
     RestDetector rest_;
@@ -483,45 +501,6 @@ private:
     StageSeconds seconds_;
     std::chrono::steady_clock::time_point last_snapshot_ = std::chrono::steady_clock::now();
 };
-
-bool same_row(std::span<const float> a, std::size_t row_a, std::span<const float> b, std::size_t row_b, std::size_t stride) {
-    return std::memcmp(a.data() + row_a * stride, b.data() + row_b * stride, stride * sizeof(float)) == 0;
-}
-
-/// Rows outside the label that are gone or differ in any bit.
-std::size_t count_changed_outside(const GaussianSet& base, const std::vector<std::uint8_t>& label, const EditResult& result) {
-    const auto sh = static_cast<std::size_t>(sh_coefficient_count(base.sh_degree())) * 3;
-    std::size_t changed = 0;
-    for (std::size_t row = 0; row < base.size(); ++row) {
-        if (label[row] != 0) continue;
-        const std::int64_t now = result.base_to_new[row];
-        const auto to = static_cast<std::size_t>(now);
-        const bool same = now >= 0 && same_row(base.position(), row, result.set.position(), to, 3) &&
-                          same_row(base.log_scale(), row, result.set.log_scale(), to, 3) &&
-                          same_row(base.rotation(), row, result.set.rotation(), to, 4) &&
-                          same_row(base.opacity_logit(), row, result.set.opacity_logit(), to, 1) &&
-                          same_row(base.sh(), row, result.set.sh(), to, sh);
-        changed += same ? 0 : 1;
-    }
-    return changed;
-}
-
-std::size_t count_nonfinite(const EditResult& result) {
-    const auto sh = static_cast<std::size_t>(sh_coefficient_count(result.set.sh_degree())) * 3;
-    const auto bad = [](std::span<const float> values, std::size_t row, std::size_t stride) {
-        return std::any_of(values.begin() + static_cast<std::ptrdiff_t>(row * stride),
-                           values.begin() + static_cast<std::ptrdiff_t>((row + 1) * stride),
-                           [](float value) { return !std::isfinite(value); });
-    };
-    std::size_t count = 0;
-    for (std::size_t row = 0; row < result.set.size(); ++row)
-        if (result.label[row] != 0 &&
-            (bad(result.set.position(), row, 3) || bad(result.set.log_scale(), row, 3) ||
-             bad(result.set.rotation(), row, 4) || bad(result.set.opacity_logit(), row, 1) ||
-             bad(result.set.sh(), row, sh)))
-            ++count;
-    return count;
-}
 
 }  // namespace
 

@@ -28,6 +28,7 @@ struct EditPlan {
     std::vector<std::uint8_t> label;       // [N] 1 = the row may change
     GaussianData seeds;                    // new rows (add mode), may be empty
     raster::Settings settings;
+    EditMode mode = EditMode::Modify;
 };
 
 /// One line of the loss history.
@@ -77,7 +78,7 @@ struct EditTools {
     IterationCallback iteration = {};   // may be empty
     AttentionSource* attention = nullptr;   // for the dynamic mask; null = the masks stay as they are
     Segmenter* segmenter = nullptr;
-    std::string word = {};                // what the dynamic mask looks for
+    std::string word = {};                // what the dynamic mask looks for, and what has a new shape
     /// Asked before every iteration: another label ([N] 0 or 1) that the artist has drawn meanwhile, or nothing.
     std::function<std::optional<std::vector<std::uint8_t>>()> new_label = {};
     /// Goes on from this state of an earlier run over the same base, at its iteration; what it says of rows outside the

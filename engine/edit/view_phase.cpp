@@ -15,9 +15,10 @@ namespace gse::edit {
 namespace {
 
 /// Every setting that the redrawn pictures follow from.
-std::string redraw_key(const EditRequest& request, const std::string& of_model) {
-    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, request.seed, request.rounds, request.edited_views,
-                       request.view_steps, request.view_strength, of_model);
+std::string redraw_key(const EditRequest& request, EditMode mode, const std::string& of_model) {
+    const auto plan = round_plan(request, mode);
+    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, request.seed, plan.rounds, request.edited_views,
+                       plan.view_steps, plan.strength, plan.again_strength, of_model);
 }
 
 bool same_camera(const Camera& a, const Camera& b) {
@@ -40,14 +41,15 @@ std::ptrdiff_t index_of(const std::vector<std::size_t>& views, std::size_t view)
 }  // namespace
 
 ViewPhase::ViewPhase(const EditPlan& plan, const EditRequest& request, const EditTools& tools, const std::vector<Image>& originals,
-                     const DynamicMasks& masks)
+                     const DynamicMasks& masks, ShapeFinder* shapes)
     : plan_(plan),
       request_(request),
       tools_(tools),
       originals_(originals),
       masks_(masks),
-      rounds_(plan, request, *tools.views),
-      key_(redraw_key(request, tools.redraw_key)) {}
+      anew_(shapes != nullptr),
+      rounds_(plan, request, *tools.views, shapes),
+      key_(redraw_key(request, plan.mode, tools.redraw_key)) {}
 
 /// Whether the edit goes on in the middle of this round, with the same settings from the same cameras.
 bool ViewPhase::resumes(const RoundState& start, const std::vector<std::size_t>& visible) const {
@@ -84,19 +86,31 @@ std::vector<std::size_t> ViewPhase::fitted() const {
     return views;
 }
 
-std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpans& rows, const raster::Settings& settings) {
+/// Picture and depth of the surface; 0 where hardly anything is.
+void ViewPhase::draw(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings, Image& colour, Image& depth) {
+    tools_.rasterizer.forward(rows, camera, settings, output_);
+    colour = output_.colour;
+    for (auto& value : colour.data) value = std::clamp(value, 0.0f, 1.0f);
+    depth = output_.depth;
+    for (std::size_t i = 0; i < depth.data.size(); ++i)
+        depth.data[i] = output_.alpha.data[i] > 0.5f ? depth.data[i] / output_.alpha.data[i] : 0.0f;
+}
+
+RoundView ViewPhase::begin_view(std::size_t v, const GaussianSpans& rows, const GaussianSpans& unlabelled,
+                                const raster::Settings& settings) {
+    RoundView view{{}, originals_[v], {}, masks_.mask(v), plan_.views[v],
+                   plan_.view_words.empty() ? std::string() : plan_.view_words[v]};
+    draw(rows, view.view.camera, settings, view.rendered, view.depth);
+    for (auto& value : view.original.data) value = std::clamp(value, 0.0f, 1.0f);
+    if (anew_) draw(unlabelled, view.view.camera, settings, view.backdrop, view.backdrop_depth);
+    return view;
+}
+
+std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled,
+                                                const raster::Settings& settings) {
     const StageTimer timer(seconds_);
     auto begun = std::make_shared<std::vector<RoundView>>();
-    for (const auto v : rounds_.views()) {
-        tools_.rasterizer.forward(rows, plan_.views[v].camera, settings, output_);
-        RoundView view{output_.colour, originals_[v], output_.depth, masks_.mask(v), plan_.views[v],
-                       plan_.view_words.empty() ? std::string() : plan_.view_words[v]};
-        for (Image* picture : {&view.rendered, &view.original})
-            for (auto& value : picture->data) value = std::clamp(value, 0.0f, 1.0f);
-        for (std::size_t i = 0; i < view.depth.data.size(); ++i)
-            view.depth.data[i] = output_.alpha.data[i] > 0.5f ? view.depth.data[i] / output_.alpha.data[i] : 0.0f;
-        begun->push_back(std::move(view));
-    }
+    for (const auto v : rounds_.views()) begun->push_back(begin_view(v, rows, unlabelled, settings));
     auto scalars = rounds_.redraw(iteration, *begun, originals_, tools_.job);
     std::erase_if(scalars, [](const auto& scalar) { return !std::isfinite(scalar.second); });
     auto state = std::make_shared<RoundState>();
@@ -106,17 +120,19 @@ std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpa
     state->begun = begun;
     for (const auto view : state->views) state->edited.push_back(std::make_shared<const Image>(rounds_.edited(view)));
     state->attempts.assign(state->views.size(), 0);
-    state->dropped.assign(state->views.size(), false);
+    state->dropped.assign(state->views.size(), anew_);
+    if (anew_)   // only views that show the new thing are fitted to
+        for (const auto i : rounds_.found().usable) state->dropped[i] = false;
     state_ = std::move(state);
     redrawn_ += state_->views.size();
     begin_sheet();
     return scalars;
 }
 
-bool ViewPhase::ready(int iteration, const GaussianSpans& rows, const raster::Settings& settings,
+bool ViewPhase::ready(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled, const raster::Settings& settings,
                       std::map<std::string, double>& scalars) {
     const auto before = state_;
-    if (rounds_.begins(iteration)) scalars = redraw(iteration, rows, settings);
+    if (rounds_.begins(iteration)) scalars = redraw(iteration, rows, unlabelled, settings);
     if (tools_.target_orders) take_orders();
     if (state_ == before) return false;
     const std::vector<bool> none(state_->views.size(), false);
@@ -181,7 +197,7 @@ void ViewPhase::take_masks() {
 }
 
 void ViewPhase::begin_sheet() {
-    sheet_ = {state_->round, request_.rounds, {}};
+    sheet_ = {state_->round, round_plan(request_, plan_.mode).rounds, {}};
     for (std::size_t i = 0; i < state_->views.size(); ++i) {
         sheet_.views.push_back(
             {state_->views[i], shown_copy((*state_->begun)[i].rendered), {}, state_->attempts[i], state_->dropped[i]});

@@ -18,8 +18,9 @@ namespace gse::edit {
 /// The rounds of one edit. Refers to all it is given; `originals` and `masks` are of all views of the plan.
 class ViewPhase {
 public:
+    /// `shapes` cuts out of the redrawn views what has a new shape; null where nothing has.
     ViewPhase(const EditPlan& plan, const EditRequest& request, const EditTools& tools, const std::vector<Image>& originals,
-              const DynamicMasks& masks);
+              const DynamicMasks& masks, ShapeFinder* shapes = nullptr);
 
     /// Picks the views to redraw from those in which the edit is seen. An edit that starts in the middle of a round goes on
     /// with what was redrawn in it, where nothing has changed that the pictures follow from.
@@ -27,9 +28,12 @@ public:
     /// Views of the plan that the fit uses, ascending; at least one.
     std::vector<std::size_t> fitted() const;
     /// Before an iteration: has the views redrawn where a round begins, as the rows show them now (`scalars` gets what the
-    /// model tells), and does what the artist says. The last view that is used is not dropped, and one that cannot be redrawn
+    /// model tells; a new thing is laid over what the rows of `unlabelled` show), and does what the artist says. The last view that is used is not dropped, and one that cannot be redrawn
     /// once more stays as it is. True when the fit uses other views than before. Throws Error (Cancelled, Model).
-    bool ready(int iteration, const GaussianSpans& rows, const raster::Settings& settings, std::map<std::string, double>& scalars);
+    bool ready(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled, const raster::Settings& settings,
+               std::map<std::string, double>& scalars);
+    int round() const { return rounds_.round(); }               // -1 = none has begun
+    const CutOut& found() const { return rounds_.found(); }     // of the new shape, in the last round
     /// The masks have changed: what was redrawn counts inside them.
     void take_masks();
     /// What the scene is fitted to: redrawn inside the mask, the original outside.
@@ -41,7 +45,10 @@ public:
     double seconds() const { return seconds_; }        // that redrawing took
 
 private:
-    std::map<std::string, double> redraw(int iteration, const GaussianSpans& rows, const raster::Settings& settings);
+    std::map<std::string, double> redraw(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled,
+                                         const raster::Settings& settings);
+    RoundView begin_view(std::size_t view, const GaussianSpans& rows, const GaussianSpans& unlabelled, const raster::Settings& settings);
+    void draw(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings, Image& colour, Image& depth);
     void take_orders();
     bool resumes(const RoundState& start, const std::vector<std::size_t>& visible) const;
     bool follow(const TargetOrder& order, RoundState& next);
@@ -55,6 +62,7 @@ private:
     const EditTools& tools_;
     const std::vector<Image>& originals_;
     const DynamicMasks& masks_;
+    const bool anew_;   // a thing of a new shape
     ViewRounds rounds_;
     const std::string key_;
     std::shared_ptr<const RoundState> state_;

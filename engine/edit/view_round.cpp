@@ -25,12 +25,49 @@ constexpr double LeastCover = 0.01;   // of the picture: smaller things are not 
 
 }  // namespace
 
-EditRequest loop_request(EditRequest request, bool by_views) {
+namespace {
+
+/// Gives a field the value that suits, unless it was set.
+template <class T>
+void suit(T& field, const T& otherwise, const T& value) {
+    if (field == otherwise) field = value;
+}
+
+/// What gets another shape is no longer bound to the old one.
+void free_geometry(EditRequest& request) {
+    const EditRequest usual;
+    suit(request.geometry_share, usual.geometry_share, 1.0);
+    suit(request.colour_coupling, usual.colour_coupling, 0.0);
+    for (const auto anchor : {&EditRequest::anchor_position, &EditRequest::anchor_rotation, &EditRequest::anchor_opacity,
+                              &EditRequest::anchor_scale})
+        suit(request.*anchor, usual.*anchor, 0.0);
+}
+
+void grow_often(EditRequest& request, int fit_steps) {
+    constexpr int GrowthsPerRound = 6;
+    const EditRequest usual;
+    suit(request.densify_percent, usual.densify_percent, 0.1);
+    suit(request.max_growth, usual.max_growth, 4.0);
+    suit(request.max_aspect, usual.max_aspect, 6.0);
+    if (request.densify_every > 0) request.densify_every = request.densify_from = std::max(1, fit_steps / GrowthsPerRound);
+}
+
+}  // namespace
+
+EditRequest loop_request(EditRequest request, EditMode mode, bool by_views) {
+    const auto plan = round_plan(request, mode);
+    if (mode == EditMode::Replace || (by_views && plan.anew)) free_geometry(request);
     if (!by_views) return request;
-    request.iterations = loop_steps(request, true);
+    request.iterations = plan.rounds * plan.fit_steps;
+    request.rounds = plan.rounds;
+    request.fit_steps = plan.fit_steps;
     request.dynamic_mask = request.look_again = false;
-    if (request.densify_every > 0) request.densify_every = request.densify_from = std::max(1, request.fit_steps / 2);
-    request.densify_until = 1 - 0.5 / request.rounds;
+    if (plan.anew) {
+        grow_often(request, plan.fit_steps);
+    } else if (request.densify_every > 0) {
+        request.densify_every = request.densify_from = std::max(1, plan.fit_steps / 2);
+    }
+    request.densify_until = 1 - 0.5 / plan.rounds;
     return request;
 }
 
@@ -78,8 +115,8 @@ Image blend_inside(const Image& edited, const Image& original, const Mask& mask,
     return result;
 }
 
-ViewRounds::ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance)
-    : plan_(plan), request_(request), guidance_(guidance), targets_(plan.views.size()), edited_(plan.views.size()) {}
+ViewRounds::ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance, ShapeFinder* shapes)
+    : plan_(plan), request_(request), guidance_(guidance), shapes_(shapes), targets_(plan.views.size()), edited_(plan.views.size()) {}
 
 void ViewRounds::choose(const std::vector<std::size_t>& visible, const std::vector<Mask>& masks) {
     std::vector<View> views;
@@ -97,7 +134,9 @@ bool ViewRounds::begins(int iteration) const { return round_ < 0 || iteration / 
 
 /// What this round is asked to be; `stream` of the request's seed.
 RoundInput ViewRounds::input(std::uint64_t stream) const {
-    return {round_, request_.rounds, request_.view_steps, request_.view_strength, Random::stream(request_.seed, stream).next()};
+    const auto plan = round_plan(request_, plan_.mode);
+    return {round_,          plan.rounds, plan.steps_of(round_), plan.strength_of(round_), Random::stream(request_.seed, stream).next(),
+            shapes_ != nullptr};
 }
 
 std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vector<RoundView>& views,
@@ -106,6 +145,10 @@ std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vecto
     round_ = iteration / request_.fit_steps;
     auto drawn = guidance_.edit(views, input(40000 + static_cast<std::uint64_t>(round_)), job);
     GSE_CHECK_EQ(drawn.images.size(), views.size());
+    if (shapes_ != nullptr) {
+        found_ = shapes_->cut_out(views, drawn.images, round_, job);
+        drawn.scalars.merge(found_.scalars);
+    }
     for (std::size_t i = 0; i < views.size(); ++i)
         replace(views_[i], std::move(drawn.images[i]), originals[views_[i]], views[i].mask);
     return std::move(drawn.scalars);
@@ -116,6 +159,7 @@ void ViewRounds::redo(std::size_t view, const RoundView& begun, int attempt, con
     const auto stream = first + (static_cast<std::uint64_t>(attempt) * most_rounds + static_cast<std::uint64_t>(round_)) * most_views + view;
     auto drawn = guidance_.edit({begun}, input(stream), job);
     GSE_CHECK_EQ(drawn.images.size(), std::size_t{1});
+    if (shapes_ != nullptr) shapes_->take_out(begun, drawn.images.front(), Random::stream(request_.seed, stream + 1).next());
     replace(view, std::move(drawn.images.front()), original, begun.mask);
 }
 

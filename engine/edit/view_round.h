@@ -10,15 +10,18 @@
 #include "engine/edit/preservation.h"
 #include "engine/edit/request.h"
 #include "engine/edit/session.h"
+#include "engine/edit/shape_round.h"
 
 namespace gse::edit {
 
 /// Of fits to redrawn views, which do not agree: the absolute difference alone is the median over them.
 constexpr PreservationWeights FitWeights{1, 0, 10};
 
-/// The request as the loop goes by it: with view guidance the steps are those of the fits, what is fitted has no mask to follow,
-/// and growth comes once in the middle of each round (views.md 8).
-EditRequest loop_request(EditRequest request, bool by_views);
+/// The request as the loop goes by it, with what suits the kind of edit. With view guidance the steps are those of the fits, what
+/// is fitted has no mask to follow, and growth comes once in the middle of each round (views.md 8). What gets another shape may
+/// move, every splat for itself and without anchors, and grows often (views.md 17); settings that differ from the program's
+/// defaults stay as they are.
+EditRequest loop_request(EditRequest request, EditMode mode, bool by_views);
 
 /// Indices of the views to redraw, ascending: farthest-point sample of the cameras among those of which what may change covers
 /// a share of the picture, starting with the view that shows most of it. `covered`: share of each view's picture.
@@ -31,7 +34,8 @@ Image blend_inside(const Image& edited, const Image& original, const Mask& mask,
 /// The rounds of an edit: which views are redrawn, and what the scene is fitted to meanwhile.
 class ViewRounds {
 public:
-    ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance);
+    /// `shapes` cuts out of the redrawn views what has a new shape; null where nothing has.
+    ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance, ShapeFinder* shapes = nullptr);
 
     /// Picks the views to redraw from those in which the edit is seen.
     void choose(const std::vector<std::size_t>& visible, const std::vector<Mask>& masks);
@@ -48,6 +52,8 @@ public:
     void replace(std::size_t view, Image edited, const Image& original, const Mask& mask);
     /// Goes on in the middle of a round in which these views were redrawn; their pictures come by replace().
     void resume(int round, std::vector<std::size_t> views);
+    /// What the last round found of the new shape.
+    const CutOut& found() const { return found_; }
     /// Another mask: what was redrawn counts inside it.
     void blend(std::size_t view, const Image& original, const Mask& mask);
     /// What the scene is fitted to: redrawn inside the mask, the original outside.
@@ -61,6 +67,8 @@ private:
     const EditPlan& plan_;
     const EditRequest& request_;
     ViewGuidance& guidance_;
+    ShapeFinder* shapes_;
+    CutOut found_;
     std::vector<std::size_t> views_;
     std::vector<Image> targets_, edited_;   // of the plan's views; empty for those that are not redrawn
     int round_ = -1;

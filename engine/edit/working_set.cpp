@@ -249,6 +249,34 @@ void WorkingSet::collect(const raster::Gradients& gradients) {
     }
 }
 
+GaussianSpans WorkingSet::unlabelled() const {
+    GaussianSpans rows = spans(table_.rows);
+    rows.size = first_row();
+    rows.position = rows.position.first(first_row() * 3);
+    rows.log_scale = rows.log_scale.first(first_row() * 3);
+    rows.rotation = rows.rotation.first(first_row() * 4);
+    rows.opacity_logit = rows.opacity_logit.first(first_row());
+    rows.sh = rows.sh.first(first_row() * table_.rows.sh_stride());
+    return rows;
+}
+
+void WorkingSet::plant(const GaussianData& seeds, double logit) {
+    most_opaque_ = static_cast<float>(logit);
+    std::vector<std::uint8_t> keep(labelled(), 1);
+    for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = table_.ancestor[i] >= 0 ? 1 : 0;
+    table_.keep(keep);
+    for (auto& value : tail(table_.rows.opacity_logit, 1)) value = std::min(value, most_opaque_);
+    table_.reserve(seeds.size());
+    const int generation = schedule_.advance();
+    for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, generation, -1, -1);
+    for (auto* moments : {&table_.position, &table_.log_scale, &table_.rotation, &table_.opacity, &table_.sh}) *moments = {};
+    steps_ = 0;
+    start_count_ = labelled();
+    common_ = CommonColour(table_.birth_sh, rows().sh_stride());
+    table_.clear_working();
+    remember_anchor();
+}
+
 void WorkingSet::relabel(const GaussianSet& base, std::span<const std::uint8_t> label, const EditRequest& request) {
     constexpr std::int64_t Unlabelled = -2, Removed = -1;
     std::vector<std::int64_t> index_now(base_size_, Removed);
@@ -267,6 +295,8 @@ void WorkingSet::relabel(const GaussianSet& base, std::span<const std::uint8_t> 
         }
         fresh.append(data, row, 0, static_cast<std::int64_t>(row), static_cast<std::int64_t>(row));
         const std::size_t joined = fresh.labelled() - 1;   // takes on what the others have learned
+        float& logit = fresh.table_.rows.opacity_logit[fresh.first_row() + joined];
+        logit = std::min(logit, most_opaque_);
         const auto birth = std::span<const float>(fresh.table_.birth_sh).subspan(joined * sh, sh);
         if (!adding_) common_.apply(birth, fresh.tail(fresh.table_.rows.sh, sh).subspan(joined * sh, sh));
     }
@@ -278,6 +308,7 @@ void WorkingSet::relabel(const GaussianSet& base, std::span<const std::uint8_t> 
     fresh.schedule_ = schedule_;
     fresh.common_ = std::move(common_);
     fresh.adding_ = adding_;
+    fresh.most_opaque_ = most_opaque_;
     fresh.start_count_ = std::max(start_count_, fresh.labelled());
     fresh.skipped_rows_ = skipped_rows_;
     fresh.remember_anchor();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -44,6 +45,8 @@ public:
 
     const RowTable& table() const { return table_; }
     const GaussianData& rows() const { return table_.rows; }
+    /// The rows that never change, alone.
+    GaussianSpans unlabelled() const;
     std::size_t first_row() const { return table_.first_row; }
     std::size_t labelled() const { return table_.labelled(); }
 
@@ -58,6 +61,10 @@ public:
     /// Drops rows that grew from seeds and whose `weight` [rows] is below `tau`, where `evidence` [rows] says that they were
     /// seen at all. Drops nothing when less than `least_left` of them would be left. Returns how many were dropped.
     std::size_t keep_added(std::span<const float> weight, std::span<const double> evidence, double tau, double least_left);
+
+    /// Begins a thing of another shape: the rows of the base fade to `logit` where they are more opaque, and so do those that a
+    /// later label brings; rows that grew from seeds go, and `seeds` take their place. Momentum, statistics and anchors begin anew.
+    void plant(const GaussianData& seeds, double logit);
 
     /// Another label for the same base, in the middle of a run: rows that leave it become the base's again, rows that join it
     /// start as the base has them, with the change of colour that the label shares; rows that stay keep what they have
@@ -109,6 +116,7 @@ private:
     std::size_t base_size_ = 0;
     std::size_t start_count_ = 0;
     bool adding_ = false;
+    float most_opaque_ = std::numeric_limits<float>::infinity();   // logit that rows of the base have at most when they join
     RowTable table_;
     std::vector<std::uint32_t> unlabelled_;   // base row of each unlabelled row, ascending
     GenerationSchedule schedule_;

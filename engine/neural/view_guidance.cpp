@@ -121,7 +121,7 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
         return batch;   // it sees what it must not change
     }
     const auto& before = parameters_.before_prompt;
-    if (parameters_.delta > 0 && !before.empty() && before != prompt_) batch.before = contexts(views, before);
+    if (!input.anew && parameters_.delta > 0 && !before.empty() && before != prompt_) batch.before = contexts(views, before);
     return batch;
 }
 
@@ -193,7 +193,7 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
 edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<edit::RoundView>& views,
                                           const edit::RoundInput& input) const {
     const auto codec = input.round + 1 < input.rounds ? Codec::Quick : Codec::Full;
-    const bool anew = bundle_->kind == BundleKind::InstructPix2Pix ||
+    const bool anew = input.anew || bundle_->kind == BundleKind::InstructPix2Pix ||
                       (bundle_->kind == BundleKind::Lcm && input.strength >= LcmPlainDecode);
     edit::RoundTargets targets;
     double change = 0, pixels = 0;

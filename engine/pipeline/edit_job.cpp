@@ -190,8 +190,8 @@ void EditJob::locate() {
     times_.end();
     const auto& result = located();
     const auto labelled = std::count(result.label.bits->begin(), result.label.bits->end(), std::uint8_t{1});
-    log::info("mode {} ({}); {} of {} splats labelled, {} new", result.mode == edit::EditMode::Add ? "add" : "modify",
-              result.reason, labelled, scene().gaussians.size(), result.seeds.size());
+    log::info("mode {} ({}); {} of {} splats labelled, {} new", edit::mode_name(result.mode), result.reason,
+              labelled, scene().gaussians.size(), result.seeds.size());
 }
 
 /// The same from the views chosen already; the networks are asked only about pictures they have not seen.
@@ -281,9 +281,10 @@ void EditJob::probe(const ProbeSize& size) {
     plain.request.iterations = plain.request.fit_steps = size.steps;
     plain.request.dynamic_mask = plain.request.look_again = plain.request.early_stop = false;
     plain.request.densify_every = 0;
-    plain.request.rounds = 1;
+    plain.request.rounds = plain.request.shape_rounds = 1;
+    plain.request.shape_fit_steps = size.steps;
     plain.request.edited_views = size.edited_views;
-    plain.request.view_steps = size.view_steps;
+    plain.request.view_steps = plain.request.shape_steps = size.view_steps;
     JobControl quiet;
     quiet.stop = control_.stop;
     edit(plain, {}, quiet);

@@ -156,7 +156,7 @@ nlohmann::ordered_json history_json(const edit::EditResult& result) {
 void add_search(nlohmann::ordered_json& report, const EditJob& job) {
     const auto& located = job.located();
     const auto& confidence = located.confidence;
-    report["mode"] = located.mode == edit::EditMode::Add ? "add" : "modify";
+    report["mode"] = edit::mode_name(located.mode);
     report["mode_reason"] = located.reason;
     report["word"] = located.word;
     report["views"] = job.views().size();

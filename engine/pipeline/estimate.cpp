@@ -15,7 +15,7 @@ constexpr double UsualFollow = 0.6;
 constexpr int ProbeSteps = 5;
 constexpr double LibrariesMb = 300;   // of torch, until the first load was measured
 
-double words_of_search(bool adds) { return adds ? 2 : 1; }
+double words_of_search(edit::EditMode mode) { return mode == edit::EditMode::Add ? 2 : 1; }
 
 /// Masks that could follow the edit while the loop runs.
 double refreshes(const edit::EditRequest& request, int first_iteration) {
@@ -27,14 +27,23 @@ double refreshes(const edit::EditRequest& request, int first_iteration) {
 }
 
 /// Pictures searched to see where something added is.
-double looks_again(const edit::EditRequest& request, bool adds) {
-    return adds && request.look_again ? LookAgainRounds * request.views : 0;
+double looks_again(const edit::EditRequest& request, edit::EditMode mode) {
+    return mode == edit::EditMode::Add && request.look_again ? LookAgainRounds * request.views : 0;
 }
 
-/// Views that are redrawn from that iteration on; a round that was begun is not begun again.
-double redrawn_views(const edit::EditRequest& request, int first_iteration) {
-    const double begun = std::ceil(static_cast<double>(first_iteration) / request.fit_steps);
-    return std::max(0.0, request.rounds - begun) * request.edited_views;
+/// What the rounds that begin after an iteration ask of the model; one that was begun is not begun again.
+struct Redrawing {
+    double views = 0, steps = 0;   // pictures, and denoising steps of single pictures
+};
+
+Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, int first_iteration) {
+    const auto plan = edit::round_plan(request, mode);
+    Redrawing left;
+    for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds; ++round) {
+        left.views += request.edited_views;
+        left.steps += static_cast<double>(request.edited_views) * plan.steps_of(round);
+    }
+    return left;
 }
 
 bool led_by_views(const EditJob& job) { return edit::edits_by_views(job.recipe().request, job.located().mode); }
@@ -81,21 +90,21 @@ Cost estimated_cost(const Measured& measured, const edit::EditRequest& request, 
     sum.add(work.loaded ? 0 : 1, measured.load);
     sum.add(work.tune_steps, measured.tune_step, measured.tune_step_tflop);
     const double rounds = measured.rounds > 0 ? measured.rounds : 1;
-    const double search = rounds * request.views * words_of_search(work.adds);
+    const double search = rounds * request.views * words_of_search(work.mode);
     sum.add(work.located ? 0 : search, measured.question, measured.question_tflop);
     if (work.shows_idea) add_idea(sum, measured);
-    const bool by_views = edit::edits_by_views(request, work.adds ? edit::EditMode::Add : edit::EditMode::Modify);
-    const int steps = std::max(0, edit::loop_steps(request, by_views) - work.first_iteration);
+    const bool by_views = edit::edits_by_views(request, work.mode);
+    const int steps = std::max(0, edit::loop_steps(request, work.mode) - work.first_iteration);
     const double size = static_cast<double>(work.rows) / measured.rows;
     sum.add(size, std::max(0.0, measured.begin));
     if (by_views) {
-        const double views = redrawn_views(request, work.first_iteration);
-        sum.add(views, std::max(0.0, measured.redraw_view), std::max(0.0, measured.redraw_view_tflop));
-        sum.add(views * request.view_steps, measured.redraw, measured.redraw_tflop);
+        const auto left = redrawing_from(request, work.mode, work.first_iteration);
+        sum.add(left.views, std::max(0.0, measured.redraw_view), std::max(0.0, measured.redraw_view_tflop));
+        sum.add(left.steps, measured.redraw, measured.redraw_tflop);
     } else {
         sum.add(steps, measured.guidance, measured.guidance_tflop);
         const double follow = measured.follow >= 0 ? measured.follow : UsualFollow;
-        sum.add(follow * refreshes(request, work.first_iteration) + looks_again(request, work.adds),
+        sum.add(follow * refreshes(request, work.first_iteration) + looks_again(request, work.mode),
                 measured.refresh >= 0 ? measured.refresh : measured.question, measured.question_tflop);
     }
     sum.add(steps * size, measured.raster);
@@ -117,7 +126,7 @@ void measure_memory(Measured& measured, const PlannedMemory& memory, double afte
 void measure_search(Measured& measured, const EditJob& job, double seconds) {
     const auto asked = static_cast<double>(job.questions());
     if (asked <= 0) return;
-    const double words = words_of_search(job.located().mode == edit::EditMode::Add);
+    const double words = words_of_search(job.located().mode);
     const auto use = job.times().networks("locate");
     measured.question = seconds / asked;
     measured.question_tflop = tflop_of(use) / asked;
@@ -144,8 +153,10 @@ double raster_seconds(const edit::EditResult& result) {
 /// A whole run knows the sum of its parts, and keeps the proportion of what is known of them.
 void measure_redrawing(Measured& measured, const EditJob& job) {
     const auto& result = job.result();
-    const double views = static_cast<double>(result.redrawn_views), steps = job.recipe().request.view_steps;
-    if (views <= 0) return;
+    const double views = static_cast<double>(result.redrawn_views);
+    const auto all = redrawing_from(job.recipe().request, job.located().mode, 0);
+    if (views <= 0 || all.views <= 0) return;
+    const double steps = all.steps / all.views;
     const double seconds = stage_seconds(result, "guidance") / views;
     if (measured.redraw < 0 || measured.redraw_view < 0) {
         measured.redraw = seconds / steps;
@@ -165,14 +176,14 @@ void measure_pulling(Measured& measured, const EditJob& job, int steps) {
     const auto& request = job.recipe().request;
     measured.guidance = stage_seconds(result, "guidance") / steps;
     const auto refreshed = static_cast<double>(result.masks_refreshed);
-    const bool adds = job.located().mode == edit::EditMode::Add;
-    const double looks = stage_seconds(result, "dynamic_mask") > 0 ? refreshed + looks_again(request, adds) : 0;
+    const auto mode = job.located().mode;
+    const double looks = stage_seconds(result, "dynamic_mask") > 0 ? refreshed + looks_again(request, mode) : 0;
     const double masks = looks * std::max(0.0, measured.question_tflop);
     if (looks <= 0 || measured.question_tflop >= 0) measured.guidance_tflop = std::max(0.0, tflop_of(job.edited().use) - masks) / steps;
     const double could = refreshes(request, request.iterations - steps);
     if (refreshed <= 0 || could <= 0 || result.stopped) return;
     measured.follow = refreshed / could;
-    measured.refresh = stage_seconds(result, "dynamic_mask") / (refreshed + looks_again(request, adds));
+    measured.refresh = stage_seconds(result, "dynamic_mask") / (refreshed + looks_again(request, mode));
 }
 
 }  // namespace

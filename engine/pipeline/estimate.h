@@ -62,7 +62,7 @@ struct Measured {
 struct PlannedWork {
     bool loaded = false;           // the model is in memory
     bool located = false;          // the search is done
-    bool adds = false;
+    edit::EditMode mode = edit::EditMode::Modify;
     bool shows_idea = true;
     int tune_steps = 0;
     std::size_t rows = 1;

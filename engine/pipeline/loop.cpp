@@ -13,6 +13,10 @@ namespace {
 /// What the dynamic mask looks for in the changing pictures: the new thing, or the thing that changes by its new name.
 std::string dynamic_word(const Located& located, const edit::EditRequest& request) {
     const auto& result = located.result;
+    if (result.mode == edit::EditMode::Replace) {
+        const auto thing = edit::thing_in_place(request);
+        return thing.empty() ? request.target : thing;
+    }
     const bool named = edit::has_word(request.prompt, result.word);
     return result.mode == edit::EditMode::Modify && named ? result.word : request.target;
 }
@@ -35,7 +39,10 @@ std::string told_to_editor(const edit::EditRequest& request) { return edit::as_t
 
 edit::EditPlan plan_of(Workplace& workplace, const Located& located, const EditRecipe& recipe) {
     const auto* label = located.by_label() ? &located.label : nullptr;
-    return edit::make_plan(question(workplace, recipe, located.views, label), located.result, workplace.painter().rasterizer());
+    auto plan = edit::make_plan(question(workplace, recipe, located.views, label), located.result, workplace.painter().rasterizer());
+    // A thing that is drawn anew needs to know its sides; where none was said, its front is where the views begin.
+    if (plan.mode == edit::EditMode::Replace && plan.view_words.empty()) plan.view_words = words_around(located.views);
+    return plan;
 }
 
 Edited edit_scene(Workplace& workplace, const Located& located, const edit::EditPlan& plan, const EditRecipe& recipe,

@@ -97,6 +97,16 @@ std::vector<View> farthest_views(const std::vector<View>& views, std::size_t cou
     return result;
 }
 
+std::vector<std::string> words_around(const Views& views) {
+    const Vec3 side = cross(normalized(views.orbit.up), views.front);
+    std::vector<std::string> words;
+    for (const auto& view : views.views) {
+        const Vec3 direction = view.camera.centre() - views.orbit.centre;
+        words.push_back(words_for_azimuth(std::atan2(dot(direction, side), dot(direction, views.front))));
+    }
+    return words;
+}
+
 double parse_front(const std::string& text) {
     std::size_t used = 0;
     double value = 0;

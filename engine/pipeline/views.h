@@ -33,6 +33,9 @@ Views choose_views(const Scene& scene, const EditRecipe& recipe, const GivenCame
 /// As many views as the request asks for on another orbit.
 Views views_on(const OrbitParameters& orbit, const EditRecipe& recipe);
 
+/// "front view" and so on of every view, with the front where `views.front` looks.
+std::vector<std::string> words_around(const Views& views);
+
 /// The same orbit at a share of its radius.
 OrbitParameters nearer(OrbitParameters orbit, double share);
 

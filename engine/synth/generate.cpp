@@ -41,10 +41,10 @@ struct Pose {
     Vec3 shift{};
 };
 
-Pose make_pose(Random random) {
+Pose make_pose(Random random, const SceneSpec& spec) {
     Pose pose;
-    pose.turn = rotation_y(random.uniform(-0.22, 0.22));
-    pose.size = random.uniform(0.93, 1.05);
+    pose.turn = rotation_y(random.uniform(-0.22, 0.22) + spec.heading);
+    pose.size = random.uniform(0.93, 1.05) * spec.size;
     pose.shift = {random.uniform(-0.04, 0.04), 0, random.uniform(-0.04, 0.04)};
     return pose;
 }
@@ -146,7 +146,7 @@ SynthScene generate(const SceneSpec& spec) {
     };
     const std::uint64_t object_index = word_index(object_words(), spec.object);
     const Light light = make_light(stream(LightStream));
-    const Pose pose = make_pose(stream(PoseStream));
+    const Pose pose = make_pose(stream(PoseStream), spec);
     const Model model = make_object(spec.object, stream(ObjectStream + object_index));
     const Material material = make_material(spec.material, stream(TextureStream));
 

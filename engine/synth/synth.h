@@ -23,6 +23,8 @@ struct SceneSpec {
     std::string ground = "grass";    // see ground_words()
     std::uint64_t seed = 0;          // shape, pose, texture and light variation
     int gaussian_budget = 6000;      // about this many Gaussians in all
+    double heading = 0;              // radians about the vertical, beyond the seed's own pose; the ground stays
+    double size = 1;                 // factor of the object's and the accessory's size
 };
 
 /// A generated scene: up is -y as in COLMAP worlds, object standing on y = 0, front towards -z, about 1 unit

@@ -38,10 +38,11 @@ constexpr std::array<Group, 8> Groups{{{"views", "Views"},
                                        {"snapshot_every", "Running"}}};
 
 constexpr double LeastStrength = 0;
-constexpr std::array<const char*, 3> Modes{"auto", "modify", "add"};
+constexpr std::array<const char*, 4> Modes{"auto", "modify", "replace", "add"};
 constexpr std::array<const char*, 3> Methods{"auto", "views", "sds"};
-constexpr std::array<const char*, 3> ModeHelp{"Modify when the scene shows the target already, else add it.",
-                                              "Change what is there: colours, material, shape of the source.",
+constexpr std::array<const char*, 4> ModeHelp{"As the sentence says: what describes the source modifies it, what stands in its place replaces it.",
+                                              "Change what is there: colours and material of the source.",
+                                              "Put something else in the source's place: a cat for the bear.",
                                               "Put something new there, such as a hat on the bear."};
 
 /// What can be done about a source that the model does not know.
@@ -133,7 +134,7 @@ void draw_instruction(Context& context) {
 
 void draw_mode(Context& context) {
     int mode = static_cast<int>(std::find(Modes.begin(), Modes.end(), context.request.mode) - Modes.begin());
-    row_label(context, "Mode", "auto: modify when the scene shows the target already, else add it.");
+    row_label(context, "Mode", ModeHelp.front());
     if (segmented(context, "prompt.mode", Modes, mode)) {
         context.request.mode = Modes[static_cast<std::size_t>(mode)];
         context.request_changed = true;
@@ -158,16 +159,18 @@ void draw_method(Context& context) {
 /// The steps that the method will run: of the loop, or of the fits to redrawn views.
 void draw_iterations(Context& context) {
     auto& request = context.request;
-    const bool by_views = edit::planned_by_views(request);
+    const auto mode = edit::planned_mode(request);
+    const bool by_views = edit::edits_by_views(request, mode);
+    const auto plan = edit::round_plan(request, mode);
     const std::string help =
         by_views ? fmt::format("Steps of fitting to the redrawn views: {} round{} of {}. Rounds and views are under \"All settings\".",
-                               request.rounds, request.rounds == 1 ? "" : "s", request.fit_steps)
+                               plan.rounds, plan.rounds == 1 ? "" : "s", plan.fit_steps)
                  : "Optimisation steps. More = closer to the sentence, and longer.";
     row_label(context, "Iterations", help);
     const int least = 1;
-    int steps = edit::loop_steps(request, by_views);
+    int steps = edit::loop_steps(request, mode);
     if (ImGui::DragInt("##prompt.iterations", &steps, by_views ? 1.0f : 5.0f, least, 100000, "%d", ImGuiSliderFlags_AlwaysClamp)) {
-        if (by_views) request.fit_steps = std::max(1, (steps + request.rounds - 1) / request.rounds);
+        if (by_views) (plan.anew ? request.shape_fit_steps : request.fit_steps) = std::max(1, (steps + plan.rounds - 1) / plan.rounds);
         else request.iterations = steps;
         context.request_changed = true;
     }

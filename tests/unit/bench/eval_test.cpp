@@ -2,11 +2,14 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
 
 #include "engine/base/error.h"
+#include "engine/bench/eval_figures.h"
 #include "engine/bench/eval_scenes.h"
 #include "engine/bench/eval_suite.h"
 #include "engine/bench/eval_summary.h"
@@ -84,6 +87,107 @@ DOCTEST_TEST_CASE("the suite is a function of its seed, and a shorter one is the
     DOCTEST_CHECK(eight != prompts(4, 8));
     DOCTEST_CHECK(std::equal(four.begin(), four.end(), eight.begin()));
     DOCTEST_CHECK_THROWS_AS(make_suite(3, 4, {"melt"}), Error);
+}
+
+DOCTEST_TEST_CASE("edits that replace are drawn apart: the others are the same with and without them") {
+    const auto lines = [](const std::vector<EvalCase>& suite, bool replaced) {
+        std::vector<std::string> list;
+        for (const auto& edit : suite)
+            if ((edit.kind == "replace") == replaced)
+                list.push_back(fmt::format("{} {} {}", edit.kind, edit.prompt, edit.source.seed));
+        return list;
+    };
+    const std::vector<std::string> first_four{"recolour", "material", "add", "ground"};
+    const auto all = make_suite(1, 30, eval_kinds());
+    DOCTEST_CHECK(lines(all, false) == lines(make_suite(1, 24, first_four), false));
+    DOCTEST_CHECK(lines(all, true) == lines(make_suite(1, 6, {"replace"}), true));
+    // A case of the suite as it was before edits that replace were in it.
+    DOCTEST_CHECK(lines(all, false).front() == "recolour a white duck with red wings on the grass 10220632845217208698");
+}
+
+DOCTEST_TEST_CASE("another object of a held-out combination takes the place, as the sentence says") {
+    std::size_t same_material = 0;
+    std::set<std::string> pairs;
+    for (const auto& edit : make_suite(3, 24, {"replace"})) {
+        DOCTEST_CAPTURE(edit.prompt);
+        DOCTEST_CHECK(synth::held_out(edit.target));
+        DOCTEST_CHECK(edit.source.object != edit.target.object);
+        DOCTEST_CHECK(edit.source.ground == edit.target.ground);
+        DOCTEST_CHECK(edit.source.accessory.empty());
+        DOCTEST_CHECK(edit.word == edit.source.object);
+        DOCTEST_CHECK(edit.target_word == edit.target.object);
+        DOCTEST_CHECK(edit.prompt.find(edit.target_word) != std::string::npos);
+        DOCTEST_CHECK(synth::apply_edit(edit.source, edit.prompt).object == edit.target.object);
+        DOCTEST_CHECK(synth::apply_edit(edit.source, edit.prompt).material == edit.target.material);
+        same_material += edit.source.material == edit.target.material ? 1 : 0;
+        pairs.insert(edit.source.object + edit.target.object);
+    }
+    DOCTEST_CHECK(same_material > 4);
+    DOCTEST_CHECK(same_material < 20);
+    DOCTEST_CHECK(pairs.size() > 12);
+}
+
+DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and size that the edit gave it") {
+    const auto edit = make_suite(2, 1, {"replace"}).front();
+    edit::EditRequest request;
+    request.image_size = 48;
+    request.views = 4;
+    auto setting = make_setting(edit, request, 6);
+    Painter painter(1);
+    auto turned = edit.target;
+    turned.heading = 3 * 2 * 3.14159265358979 / 8;
+    turned.size = 0.85;
+    const auto edited = synth::generate(turned);
+    settle_pose(setting, edited.scene.gaussians, {painter});
+    DOCTEST_CHECK(setting.target.spec.heading == doctest::Approx(turned.heading));
+    DOCTEST_CHECK(setting.target.spec.size == doctest::Approx(turned.size));
+    // The true result has the true outline and nothing of the old; the unedited scene has all of the old.
+    edit::EditPlan plan;
+    edit::EditResult result;
+    result.set = edited.scene.gaussians;
+    result.label = rows_of(edited, synth::Part::Object);
+    const auto perfect = edited_figures(setting, plan, result, {painter});
+    DOCTEST_CHECK(perfect["silhouette_iou"].get<double>() == doctest::Approx(1));
+    DOCTEST_CHECK(perfect["old_left"].get<double>() == doctest::Approx(0));
+    DOCTEST_CHECK(perfect["l1_reduction"].get<double>() == doctest::Approx(1).epsilon(1e-3));
+    result.set = setting.source.scene.gaussians;
+    result.label = rows_of(setting.source, synth::Part::Object);
+    const auto nothing = edited_figures(setting, plan, result, {painter});
+    DOCTEST_CHECK(nothing["silhouette_iou"].get<double>() < 0.9);
+    DOCTEST_CHECK(nothing["old_left"].get<double>() == doctest::Approx(1));
+    DOCTEST_CHECK(nothing["l1_reduction"].get<double>() == doctest::Approx(0));
+}
+
+DOCTEST_TEST_CASE("what replaces has figures of its own and leaves the others as they are; what is added has a line per thing") {
+    const Json plain = report_of(Json::array({changed_edit(0, 0.9, 0.8, 40)}));
+    Json replaced = changed_edit(1, 0.5, 0.25, 20);
+    replaced["kind"] = "replace";
+    replaced["silhouette_iou"] = 0.75;
+    replaced["old_left"] = 0.125;
+    Json hat = changed_edit(2, 0, 0.5, 40);
+    hat["kind"] = "add";
+    hat["target"] = "hat";
+    hat["silhouette_iou"] = 0.5;
+    Json crown = hat, failed = hat;
+    crown["target"] = "crown";
+    failed.erase("silhouette_iou");
+    failed["error"] = "no place";
+    const auto before = eval_summary(plain);
+    const auto with = eval_summary(report_of(Json::array({changed_edit(0, 0.9, 0.8, 40), replaced})));
+    for (const char* key : {"psnr_outside_db", "existing_weighted_iou", "change_l1_reduction", "mode_right", "leak_rate"})
+        DOCTEST_CHECK(before[key] == with[key]);
+    DOCTEST_CHECK(!before.contains("replace_silhouette_iou"));
+    DOCTEST_CHECK(with["replace_silhouette_iou"]["value"] == doctest::Approx(0.75));
+    DOCTEST_CHECK(with["replace_silhouette_iou"]["met"] == false);
+    DOCTEST_CHECK(with["replace_l1_reduction"]["value"] == doctest::Approx(0.25));
+    DOCTEST_CHECK(with["replace_old_left"]["value"] == doctest::Approx(0.125));
+    const auto table = eval_summary(report_of(Json::array({hat, crown, failed})))["added_means"];
+    DOCTEST_REQUIRE(table.size() == 2);
+    DOCTEST_CHECK(table[1]["thing"] == "hat");
+    DOCTEST_CHECK(table[1]["edits"] == 2);
+    DOCTEST_CHECK(table[1]["failed"] == 1);
+    DOCTEST_CHECK(table[1]["silhouette_iou"] == doctest::Approx(0.25));   // the failed one has no outline
+    DOCTEST_CHECK(table[1]["leak_rate"] == doctest::Approx(0));
 }
 
 DOCTEST_TEST_CASE("a failed edit counts as one that found and changed nothing") {

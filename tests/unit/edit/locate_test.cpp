@@ -451,7 +451,7 @@ DOCTEST_TEST_CASE("what the sentence replaces is looked for in the sentence as i
     Fixture fixture;
     const auto request = request_for("a red cube on the snow", "cube");
     const auto found = edit::locate(fixture.input(request), fixture.tools());
-    DOCTEST_CHECK(found.mode == edit::EditMode::Modify);
+    DOCTEST_CHECK(found.mode == edit::EditMode::Replace);
     DOCTEST_REQUIRE_FALSE(fixture.attention.queries.empty());
     for (const auto& query : fixture.attention.queries) {
         DOCTEST_CHECK(query.word == "ball");

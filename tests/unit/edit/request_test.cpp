@@ -2,13 +2,16 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <array>
 #include <limits>
 #include <set>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "engine/edit/locate.h"
 #include "engine/edit/request.h"
+#include "engine/edit/view_round.h"
 #include "engine/edit/vocabulary.h"
 
 namespace {
@@ -109,8 +112,10 @@ DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") 
     using edit::EditMode;
     DOCTEST_CHECK(mode_of("statue", "a golden statue", "golden") == EditMode::Modify);
     DOCTEST_CHECK(mode_of("bear", "a bear made of stone", "stone") == EditMode::Modify);
-    DOCTEST_CHECK(mode_of("bear", "turn the bear into a wooden dog", "dog") == EditMode::Modify);
-    DOCTEST_CHECK(mode_of("bear", "a blue dog on the grass", "dog") == EditMode::Modify);
+    DOCTEST_CHECK(mode_of("bear", "turn the bear into gold", "gold") == EditMode::Modify);
+    DOCTEST_CHECK(mode_of("grass", "a bear on the snow", "snow") == EditMode::Modify);
+    DOCTEST_CHECK(mode_of("grass", "a bear in a forest", "forest") == EditMode::Modify);
+    DOCTEST_CHECK(mode_of("bear", "a bear wearing a red hat", "red") == EditMode::Add);
     DOCTEST_CHECK(mode_of("bear", "a red bear wearing a blue hat", "hat") == EditMode::Add);
     DOCTEST_CHECK(mode_of("bear", "a bear with flames", "flames") == EditMode::Add);
     DOCTEST_CHECK(mode_of("statue", "a green statue in flames on the grass", "flames") == EditMode::Add);
@@ -127,6 +132,74 @@ DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") 
     request = bear("bear", "a blue bear", "blue");
     request.mode = "add";
     DOCTEST_CHECK(edit::decide_mode(request, 1.0).first == EditMode::Add);
+}
+
+DOCTEST_TEST_CASE("another thing in the source's place replaces it, whatever word of its phrase is the new one") {
+    using edit::EditMode;
+    const auto thing_of = [](const char* source, const char* prompt, const char* target) {
+        return edit::thing_in_place(edit::validated(bear(source, prompt, target)));
+    };
+    for (const auto& [source, prompt, target, thing] :
+         std::vector<std::array<const char*, 4>>{
+          {"bear", "a blue dog on the grass", "dog", "dog"}, {"bear", "a red cat on the grass", "red", "cat"},
+          {"bear", "a red cat on the grass", "grass", "cat"}, {"bear", "turn the bear into a wooden dog", "dog", "dog"},
+          {"chair", "a bear on a sofa", "sofa", "sofa"}, {"hat", "a bear wearing a crown", "crown", "crown"},
+          {"teddy bear", "a polar bear on the grass", "polar bear", "polar bear"}, {"car", "a small house", "small", "house"}}) {
+        DOCTEST_CAPTURE(prompt);
+        DOCTEST_CHECK(thing_of(source, prompt, target) == thing);
+        DOCTEST_CHECK(mode_of(source, prompt, target) == EditMode::Replace);
+    }
+    for (const auto& [source, prompt, target] :
+         std::vector<std::array<const char*, 3>>{
+          {"bear", "a blue bear on the grass", "blue"}, {"grass", "a bear on the snow", "snow"}, {"bear", "a bear made of gold", "gold"},
+          {"statue", "made of gold", "gold"}, {"bear", "turn the bear into stone", "stone"}, {"bear", "a bear wearing a hat", "hat"},
+          {"statue", "golden", "golden"}, {"bear", "a teddy bear on the grass", "teddy bear"}}) {
+        DOCTEST_CAPTURE(prompt);
+        DOCTEST_CHECK(thing_of(source, prompt, target).empty());
+        DOCTEST_CHECK(mode_of(source, prompt, target) != EditMode::Replace);
+    }
+    auto request = bear("bear", "a red cat on the grass", "cat");
+    for (const char* asked : {"modify", "replace", "add"}) {   // what the artist says wins
+        request.mode = asked;
+        DOCTEST_CHECK(std::string(edit::mode_name(edit::decide_mode(edit::validated(request), std::nullopt).first)) == asked);
+        DOCTEST_CHECK(edit::mode_name(*edit::mode_named(asked)) == std::string(asked));
+    }
+    DOCTEST_CHECK(!edit::mode_named("auto"));
+}
+
+DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wins") {
+    using edit::EditMode;
+    EditRequest request;
+    request.method = "auto";
+    const auto recolour = edit::round_plan(request, EditMode::Modify), shape = edit::round_plan(request, EditMode::Replace);
+    DOCTEST_CHECK(edit::edits_by_views(request, EditMode::Replace));
+    DOCTEST_CHECK(!recolour.anew);
+    DOCTEST_CHECK(shape.anew);
+    DOCTEST_CHECK(edit::loop_steps(request, EditMode::Modify) == request.rounds * request.fit_steps);
+    DOCTEST_CHECK(edit::loop_steps(request, EditMode::Replace) == request.shape_rounds * request.shape_fit_steps);
+    request.shape_strength = 0.9;
+    request.shape_again_strength = 0.45;
+    request.shape_steps = 8;
+    const auto half = edit::round_plan(request, EditMode::Replace);
+    DOCTEST_CHECK(half.steps_of(0) == 8);
+    DOCTEST_CHECK(half.steps_of(1) == 4);
+    DOCTEST_CHECK(half.view_steps_within(2 * request.shape_fit_steps) == 12);
+    DOCTEST_CHECK(half.view_steps_within(1) == 8);
+    const auto free = edit::loop_request(request, EditMode::Replace, true);
+    DOCTEST_CHECK(free.iterations == 2 * request.shape_fit_steps);
+    DOCTEST_CHECK(free.geometry_share == 1);
+    DOCTEST_CHECK(free.colour_coupling == 0);
+    DOCTEST_CHECK(free.anchor_position == 0);
+    request.geometry_share = 0.5;
+    request.max_aspect = 9;
+    const auto asked = edit::loop_request(request, EditMode::Replace, true);
+    DOCTEST_CHECK(asked.geometry_share == 0.5);
+    DOCTEST_CHECK(asked.max_aspect == 9);
+    const EditRequest usual;
+    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true).geometry_share == usual.geometry_share);
+    DOCTEST_CHECK(fields_to_json(edit::loop_request(usual, EditMode::Add, false)) == fields_to_json(usual));
+    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Replace, false).geometry_share == 1);   // by the paper's way, too
+    DOCTEST_CHECK(edit::mask_growth_px(usual, EditMode::Replace) > edit::mask_growth_px(usual, EditMode::Add));
 }
 
 DOCTEST_TEST_CASE("the sentence before an edit lacks what the edit brings") {

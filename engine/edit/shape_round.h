@@ -1,0 +1,54 @@
+// What a round of redrawn views says of a thing that becomes another, or is new: its outlines, what the scene is fitted to, and
+// the rows it grows from (views.md 17).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/edit/interfaces.h"
+#include "engine/edit/session.h"
+#include "engine/edit/visual_hull.h"
+
+namespace gse::edit {
+
+/// Redrawn pictures with everything but the new thing taken out of them.
+struct CutOut {
+    std::vector<std::size_t> usable;          // indices of the views that show the thing
+    std::vector<HullView> outlines;           // of those, with their pictures
+    std::map<std::string, double> scalars;    // for the log
+};
+
+class ShapeFinder {
+public:
+    /// `word` is what is looked for in the redrawn pictures; `segmenter` may be null.
+    ShapeFinder(const EditPlan& plan, const EditRequest& request, std::string word, AttentionSource& attention, Segmenter* segmenter);
+
+    /// Finds the thing in each picture and lays it over the view's backdrop: the pictures become what the scene is fitted to.
+    /// Throws Error (Model) when fewer than three views show it, (Cancelled) on a stop request.
+    CutOut cut_out(const std::vector<RoundView>& views, std::vector<Image>& pictures, int round, const JobControl& job);
+
+    /// The same for one picture. Whether it shows the thing.
+    bool take_out(const RoundView& view, Image& picture, std::uint64_t seed, Image* outline = nullptr) const;
+
+    /// The rows that the new thing grows from, carved out of the box; empty when the outlines enclose nothing there.
+    GaussianData seeds(const CutOut& found, const HullBox& box, int sh_degree) const;
+
+private:
+    /// Where a picture shows the thing; [H,W,1] in [0,1], all zero where it does not.
+    Image outline_of(const RoundView& view, const Image& picture, std::uint64_t seed) const;
+
+    const EditPlan& plan_;
+    const EditRequest& request_;
+    std::string word_;
+    AttentionSource& attention_;
+    Segmenter* segmenter_;
+};
+
+/// Bounds of what a new thing takes the place of, or of the place it is put, with room on every side; the outermost rows do
+/// not count. `bits` [N] of the rows; both may be empty of rows.
+HullBox room_for(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const GaussianData& place);
+
+}  // namespace gse::edit

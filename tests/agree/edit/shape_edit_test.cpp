@@ -1,0 +1,236 @@
+// A thing becomes another, and is added, by redrawn views that are true: what the three-dimensional part alone loses.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/edit/scales.h"
+#include "engine/edit/session.h"
+#include "engine/evaluate/metrics.h"
+#include "engine/localize/clusters.h"
+#include "engine/raster/rasterizer.h"
+#include "engine/synth/synth.h"
+
+namespace {
+
+using namespace gse;
+
+constexpr int Side = 96;
+
+synth::SynthScene scene_of(const std::string& object, const std::string& material, const std::string& accessory = {}) {
+    synth::SceneSpec spec;
+    spec.object = object;
+    spec.material = material;
+    spec.accessory = accessory;
+    spec.seed = 77;
+    return synth::generate(spec);
+}
+
+std::vector<std::uint8_t> rows_of(const synth::SynthScene& scene, synth::Part part) {
+    std::vector<std::uint8_t> bits;
+    for (const auto p : scene.parts) bits.push_back(p == part ? 1 : 0);
+    return bits;
+}
+
+std::vector<View> ring(const synth::SynthScene& scene, int count, double offset) {
+    std::vector<View> views;
+    for (int i = 0; i < count; ++i)
+        views.push_back({fmt::format("ring_{}", i), synth::scene_camera(scene, 2 * 3.14159265358979 * (i + offset) / count,
+                                                                        offset > 0 ? 0.35 : i % 2 == 0 ? 0.2 : 0.55, 1, Side, Side)});
+    return views;
+}
+
+Mask mask_of(raster::Rasterizer& rasterizer, const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Camera& camera) {
+    const std::vector<float> values(bits.begin(), bits.end());
+    Image seen;
+    rasterizer.forward_values(set.spans(), camera, {}, values, seen);
+    return localize::threshold_map(seen, 0.5);
+}
+
+Image picture(raster::Rasterizer& rasterizer, const GaussianSet& set, const Camera& camera) {
+    raster::ForwardOutput output;
+    rasterizer.forward(set.spans(), camera, {}, output);
+    for (auto& value : output.colour.data) value = std::clamp(value, 0.0f, 1.0f);
+    return output.colour;
+}
+
+/// Draws the true scene, and knows where the new thing is in it; some outlines may be wrong.
+struct TrueViews : edit::ViewGuidance, edit::AttentionSource {
+    TrueViews(const synth::SynthScene& scene, synth::Part shown, raster::Rasterizer& r) : truth(scene), part(shown), rasterizer(r) {}
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl&) override {
+        inputs.push_back(input);
+        cameras.clear();
+        asked = 0;
+        edit::RoundTargets targets;
+        for (const auto& view : views) {
+            cameras.push_back(view.view.camera);
+            targets.images.push_back(picture(rasterizer, truth.scene.gaussians, view.view.camera));
+        }
+        return targets;
+    }
+    std::vector<Image> locate(const edit::AttentionQuery& query) override {
+        words.push_back(query.words.front());
+        const Mask mask = mask_of(rasterizer, truth.scene.gaussians, rows_of(truth, part), cameras.at(asked++));
+        Image map(mask.width, mask.height, 1);
+        std::copy(mask.data.begin(), mask.data.end(), map.data.begin());
+        if (blind_views > 0 && asked <= static_cast<std::size_t>(blind_views)) map = Image(mask.width, mask.height, 1);
+        return {map};
+    }
+    int image_size() const override { return Side; }
+
+    const synth::SynthScene& truth;
+    synth::Part part;
+    raster::Rasterizer& rasterizer;
+    std::vector<edit::RoundInput> inputs;
+    std::vector<Camera> cameras;
+    std::vector<std::string> words;
+    std::size_t asked = 0;
+    int blind_views = 0;
+};
+
+struct NoGuidance : edit::Guidance {
+    edit::GuidanceOutput evaluate(const edit::GuidanceInput&) override { throw Error(ErrorCode::Model, "asked"); }
+};
+
+/// How near the truth an edited scene is, from views between those of the edit.
+struct Figures {
+    double outline_iou = 0, error_removed = 0, psnr_outside_db = 0;
+};
+
+struct ShapeEdit {
+    ShapeEdit(const synth::SynthScene& before, const synth::SynthScene& after, edit::EditMode edit_mode)
+        : source(before), target(after), mode(edit_mode), part(edit_mode == edit::EditMode::Add ? synth::Part::Accessory : synth::Part::Object) {
+        request.prompt = "a cat";
+        request.source = "bear";
+        request.target = "cat";
+        request.method = "views";
+        request = edit::validated(request);
+        plan.views = ring(source, 24, 0);
+        plan.mode = mode;
+        plan.label = rows_of(source, synth::Part::Object);
+        if (mode == edit::EditMode::Add) {
+            std::fill(plan.label.begin(), plan.label.end(), std::uint8_t{0});
+            const auto bits = rows_of(target, part);
+            plan.seeds.sh_degree = source.scene.gaussians.sh_degree();
+            const auto data = target.scene.gaussians.to_data();
+            for (std::size_t row = 0; row < bits.size(); row += 8)
+                if (bits[row] != 0) plan.seeds.append_row(data, row);
+            std::fill(plan.seeds.opacity_logit.begin(), plan.seeds.opacity_logit.end(), -2.0f);
+        }
+        for (const auto& view : plan.views) {
+            Mask mask = mask_of(*rasterizer, target.scene.gaussians, rows_of(target, part), view.camera);
+            if (mode == edit::EditMode::Replace) mask = mask_of(*rasterizer, source.scene.gaussians, plan.label, view.camera);
+            plan.masks.push_back(localize::dilate(mask, edit::mask_growth_px(request, mode) * Side / edit::ReferenceSide));
+        }
+    }
+
+    edit::EditResult run() {
+        edit::EditTools tools{*rasterizer, never, {}, {}};
+        tools.views = &views;
+        tools.attention = &views;
+        tools.word = "cat";
+        return edit::run_edit(source.scene.gaussians, plan, request, tools);
+    }
+
+    Figures figures(const edit::EditResult& result) {
+        double both = 0, either = 0, before = 0, after = 0, squared = 0, outside = 0;
+        for (const auto& view : ring(source, 12, 0.5)) {
+            const Mask wanted = mask_of(*rasterizer, target.scene.gaussians, rows_of(target, part), view.camera);
+            const Mask shown = mask_of(*rasterizer, result.set, result.label, view.camera);
+            const Mask old = mask_of(*rasterizer, source.scene.gaussians, rows_of(source, synth::Part::Object), view.camera);
+            Mask inside = wanted;
+            for (std::size_t p = 0; p < inside.data.size(); ++p) {
+                both += wanted.data[p] & shown.data[p];
+                either += wanted.data[p] | shown.data[p];
+                if (mode == edit::EditMode::Replace) inside.data[p] |= old.data[p];
+            }
+            inside = localize::dilate(inside, 3);
+            const Image was = picture(*rasterizer, source.scene.gaussians, view.camera), is = picture(*rasterizer, result.set, view.camera),
+                        should = picture(*rasterizer, target.scene.gaussians, view.camera);
+            const auto area = static_cast<double>(inside.count());
+            before += area * evaluate::mean_absolute_error(was, should, {&inside, true});
+            after += area * evaluate::mean_absolute_error(is, should, {&inside, true});
+            for (std::size_t i = 0; i < is.data.size(); ++i)
+                if (inside.data[i / 3] == 0) {
+                    squared += std::pow(static_cast<double>(is.data[i]) - was.data[i], 2);
+                    outside += 1;
+                }
+        }
+        return {both / either, 1 - after / before, -10 * std::log10(std::max(1e-10, squared / outside))};
+    }
+
+    synth::SynthScene source, target;
+    edit::EditMode mode;
+    synth::Part part;
+    ThreadPool threads{2};
+    std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(threads);
+    edit::EditRequest request;
+    edit::EditPlan plan;
+    TrueViews views{target, part, *rasterizer};
+    NoGuidance never;
+};
+
+void tell(const char* what, const Figures& figures) {
+    DOCTEST_MESSAGE(fmt::format("{}: outline IoU {:.3f}, error removed {:.3f}, {:.1f} dB outside", what, figures.outline_iou,
+                                figures.error_removed, figures.psnr_outside_db));
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a thing becomes another: the outline, the colours, and nothing else") {
+    for (const auto& [from, to] : std::vector<std::array<const char*, 2>>{{"bear", "cat"}, {"mushroom", "tree"}, {"cat", "house"}, {"statue", "chair"}}) {
+        ShapeEdit run(scene_of(from, "red"), scene_of(to, "blue"), edit::EditMode::Replace);
+        const auto result = run.run();
+        const auto figures = run.figures(result);
+        tell(to, figures);
+        DOCTEST_CAPTURE(to);
+        DOCTEST_CHECK(figures.outline_iou > 0.85);
+        DOCTEST_CHECK(figures.error_removed > 0.7);
+        DOCTEST_CHECK(figures.psnr_outside_db > 35);
+        DOCTEST_CHECK(result.changed_outside_label == 0);
+        DOCTEST_CHECK(result.nonfinite == 0);
+        DOCTEST_REQUIRE(run.views.inputs.size() == static_cast<std::size_t>(run.request.shape_rounds));
+        DOCTEST_CHECK(run.views.inputs[0].anew);
+        DOCTEST_CHECK(run.views.inputs[1].strength == run.request.shape_again_strength);
+        DOCTEST_CHECK(run.views.words.front() == "cat");
+    }
+}
+
+DOCTEST_TEST_CASE("what is added grows from the same hull, and hides nothing that is before it") {
+    for (const char* thing : {"hat", "crown", "scarf", "sunglasses", "wings"}) {
+        ShapeEdit run(scene_of("bear", "red"), scene_of("bear", "red", thing), edit::EditMode::Add);
+        const auto result = run.run();
+        const auto figures = run.figures(result);
+        tell(thing, figures);
+        DOCTEST_CAPTURE(thing);
+        DOCTEST_CHECK(figures.error_removed > 0.5);
+        DOCTEST_CHECK(result.changed_outside_label == 0);
+    }
+}
+
+DOCTEST_TEST_CASE("views that do not show the new thing are left out; too few are said") {
+    ShapeEdit run(scene_of("bear", "red"), scene_of("cat", "blue"), edit::EditMode::Replace);
+    run.request.shape_fit_steps = 60;
+    run.views.blind_views = 2;
+    const auto result = run.run();
+    std::vector<std::size_t> drawn;
+    for (const auto& line : result.history)
+        if (std::find(drawn.begin(), drawn.end(), line.view) == drawn.end()) drawn.push_back(line.view);
+    DOCTEST_CHECK(drawn.size() == 6);
+    DOCTEST_CHECK(run.figures(result).outline_iou > 0.7);
+    run.views.blind_views = 6;
+    DOCTEST_CHECK_THROWS_WITH_AS(run.run(), doctest::Contains("only 2 of 8 views"), Error);
+}
+
+DOCTEST_TEST_CASE("the same request gives the same bytes; a snapshot goes on from where it was") {
+    ShapeEdit run(scene_of("bear", "red"), scene_of("cat", "blue"), edit::EditMode::Replace);
+    run.request.shape_fit_steps = 20;
+    const auto first = run.run(), second = run.run();
+    DOCTEST_CHECK(std::equal(first.set.sh().begin(), first.set.sh().end(), second.set.sh().begin(), second.set.sh().end()));
+    DOCTEST_CHECK(std::equal(first.set.position().begin(), first.set.position().end(), second.set.position().begin(), second.set.position().end()));
+}
