@@ -71,7 +71,13 @@ DOCTEST_TEST_CASE("prompt: every setting of a recipe is found by a word of its n
         DOCTEST_CHECK_MESSAGE(harness.find(field) != nullptr, text);
         DOCTEST_CHECK_MESSAGE(harness.find("request.tau") == nullptr, text);
     }
-    search("front");
+    search("shows its front");
+    const auto over = harness.middle("prompt.filter");
+    harness.move(over.x, over.y);
+    for (int turn = 0; turn < 40 && !harness.rect("model_settings.front").visible; ++turn) {
+        harness.wheel(-1);
+        harness.frame(2);
+    }
     harness.click("model_settings.front");
     harness.type("90");
     DOCTEST_CHECK(model.model_settings.front == "90");
