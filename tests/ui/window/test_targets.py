@@ -9,8 +9,8 @@ class Targets(WindowTest):
     def test_one_view_is_dropped_and_another_redrawn(self):
         window = self.open("--sample")
         window.wait(lambda s: s["splats"] > 0 and not s["busy"], "the sample did not open")
-        self.says(window, "source", "bear")
-        self.says(window, "sentence", "a blue bear on the grass")
+        window.write("prompt.source", "bear")
+        window.write("prompt.sentence", "a blue bear on the grass")
         window.press("prompt.method.views", lambda s: s["method"] == "views", "the method was not chosen", 20)
         window.click("tab.Targets")
         window.press("targets.review", lambda s: s["targets"]["review"], "the edit will not wait", 20, pause=3)
@@ -38,14 +38,6 @@ class Targets(WindowTest):
         window.picture("targets_3_result")
         window.press("result.apply", lambda s: s["stack"] == 1, "the edit was not applied", 20)
         self.assertEqual(window.close(), 0)
-
-    def says(self, window, field, text):
-        """Types until it has arrived: on a busy machine a click may fall between frames."""
-        for _ in range(4):
-            window.write("prompt." + field, text)
-            if window.steady(field) == text:
-                return
-        self.fail(f"\"{text}\" did not arrive: {window.state()[field]}")
 
 
 if __name__ == "__main__":

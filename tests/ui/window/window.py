@@ -160,11 +160,17 @@ class Window:
             time.sleep(0.25)
 
     def write(self, name, text):
-        """Replaces the text of a field."""
-        self.click(name)
-        self.key("ctrl+a")
-        self.xdotool("type", "--delay", "40", text)
-        time.sleep(0.3)
+        """Replaces the text of a field; the prompt's are typed until it has arrived: on a busy machine a click may fall between
+        frames."""
+        field = name.removeprefix("prompt.")
+        for _ in range(4):
+            self.click(name)
+            self.key("ctrl+a")
+            self.xdotool("type", "--delay", "40", text)
+            time.sleep(0.3)
+            if field not in ("source", "sentence") or self.steady(field, 0.5) == text:
+                return
+        raise AssertionError(f"\"{text}\" arrived as \"{self.state()[field]}\"")
 
     def type(self, field, text):
         """Replaces the text of the field of the prompt ("source", "sentence") that the keys are in."""
