@@ -47,7 +47,7 @@ class Recovery(WindowTest):
             window.click("tool.orbit")
             window.write("prompt.source", "bear")
             window.write("prompt.sentence", "a blue bear")
-            window.click("prompt.method.sds")   # takes long enough
+            window.press("prompt.method.sds", lambda s: s["method"] == "sds", "the method was not chosen", 20)   # takes long enough
             window.click("prompt.edit")
             window.wait(lambda s: s["snapshots"] >= 1 or not s["job"]["running"], "no snapshot came")
         pause = generator.uniform(0, 2 * LOST_SECONDS)

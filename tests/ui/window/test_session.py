@@ -64,7 +64,7 @@ class Session(WindowTest):
 
     def edits(self, window):
         window.click("tab.Progress")
-        window.click("prompt.method.sds")   # takes long enough to be paused and cancelled
+        window.press("prompt.method.sds", lambda s: s["method"] == "sds", "the method was not chosen", 20)   # takes long enough to be paused and cancelled
         window.click("prompt.edit")
         window.wait(lambda s: s["snapshots"] >= 2, "no snapshot came")
         window.picture("08_editing")
@@ -81,7 +81,7 @@ class Session(WindowTest):
         self.assertTrue(window.state()["result_waiting"])
         window.click("result.discard")
         window.wait(lambda s: not s["result_waiting"], "discard did nothing", 10)
-        window.click("prompt.method.auto")
+        window.press("prompt.method.auto", lambda s: s["method"] == "auto", "the method was not chosen", 20)
         window.click("prompt.edit")
         window.wait(lambda s: s["job"]["running"], "the second edit did not start", 20)
         window.idle(300)

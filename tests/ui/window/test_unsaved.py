@@ -26,7 +26,7 @@ class Unsaved(WindowTest):
     def begin_edit(self, window):
         window.write("prompt.source", "bear")
         window.write("prompt.sentence", "a blue bear")
-        window.click("prompt.method.sds")   # takes long enough
+        window.press("prompt.method.sds", lambda s: s["method"] == "sds", "the method was not chosen", 20)   # takes long enough
         window.press("prompt.edit", lambda s: s["job"]["running"] or s["result_waiting"], "the edit did not start")
         window.wait(lambda s: s["snapshots"] >= 1, "no snapshot came", 300)
 
