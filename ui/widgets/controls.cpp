@@ -191,12 +191,14 @@ bool checkbox(Context& context, std::string_view name, std::string_view label, b
 
 bool segmented(Context& context, std::string_view name, std::span<const char* const> choices, int& chosen) {
     bool changed = false;
+    const float left = ImGui::GetCursorScreenPos().x;   // also of a second row, where the first has no room
     ImGui::PushID(name.data(), name.data() + name.size());
     for (int index = 0; index < static_cast<int>(choices.size()); ++index) {
         const char* text = choices[static_cast<std::size_t>(index)];
         if (index > 0) {
             const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
             if (ImGui::GetItemRectMax().x + 1 + button_width(text) <= right) ImGui::SameLine(0, 1);
+            else ImGui::SetCursorScreenPos({left, ImGui::GetCursorScreenPos().y});
         }
         push_look(index == chosen ? Look::Primary : Look::Normal);
         if (ImGui::Button(text) && index != chosen) {
