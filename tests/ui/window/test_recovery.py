@@ -42,7 +42,10 @@ class Recovery(WindowTest):
         """Brush strokes, sometimes an edit, then a moment of any length up to the kill."""
         window.click("tool.brush")
         x = generator.uniform(0.4, 0.6)
-        window.drag("viewport", [(x, 0.5), (x + 0.03, 0.55), (x, 0.6)])
+        for _ in range(4):   # until a stroke has arrived
+            window.drag("viewport", [(x, 0.5), (x + 0.03, 0.55), (x, 0.6)])
+            if window.steady("labelled") > 0:
+                break
         if kill % 3 == 1:
             window.click("tool.orbit")
             window.write("prompt.source", "bear")
@@ -50,7 +53,7 @@ class Recovery(WindowTest):
             window.press("prompt.method.sds", lambda s: s["method"] == "sds", "the method was not chosen", 20)   # takes long enough
             window.click("prompt.edit")
             window.wait(lambda s: s["snapshots"] >= 1 or not s["job"]["running"], "no snapshot came")
-        pause = generator.uniform(0, 2 * LOST_SECONDS)
+        pause = generator.uniform(0, 2 * LOST_SECONDS) + (LOST_SECONDS if kill == 0 else 0)   # later ones have the first's to fall back on
         time.sleep(pause)
         if pause > LOST_SECONDS:
             self.expects_label = True

@@ -97,9 +97,10 @@ class Unsaved(WindowTest):
         window.wait(lambda s: not s["busy"], "no picture", 60)
         self.assertEqual([t for t in window.state()["toasts"] if "cannot" in t], [])
         for number in range(3):
-            window.key("F12")
             name = "screenshot.png" if number == 0 else f"screenshot-{number + 1}.png"
-            window.wait(lambda s: (scene.parent / name).exists() and not s["file_job"]["running"], f"no {name}", 60)
+            window.key("F12")
+            window.wait(lambda s: s["file_job"]["title"] == f"Screenshot {name}" and not s["file_job"]["running"], f"no {name}", 60)
+            self.assertTrue((scene.parent / name).exists(), name)
         widgets = window.widgets()
         toasts = {n: r for n, r in widgets.items() if n.startswith("toast.") and n.count(".") == 1}
         self.assertGreaterEqual(len(toasts), 1)

@@ -105,17 +105,25 @@ class Window:
         rect = self.widgets()[name]
         return round(rect["x"] + x * rect["width"]), round(rect["y"] + y * rect["height"])
 
+    def settle(self, seconds=0.25):
+        """Until what was sent was seen: a moment, and on a busy machine as long as three frames take."""
+        frames = self.state()["frames"]
+        time.sleep(seconds)
+        end = time.monotonic() + 10 * PATIENCE
+        while self.process.poll() is None and self.state()["frames"] < frames + 3 and time.monotonic() < end:
+            time.sleep(0.05)
+
     def click(self, name, x=0.5, y=0.5, count=1):
         self.wait_widget(name)
         px, py = self.place(name, x, y)
         self.xdotool("mousemove", px, py)
-        time.sleep(0.25)
+        self.settle()
         for _ in range(count):
             self.xdotool("mousedown", 1)
             time.sleep(0.1)
             self.xdotool("mouseup", 1)
             time.sleep(0.1)
-        time.sleep(0.25)
+        self.settle()
 
     def press(self, name, condition, message, seconds=120, pause=1):
         """Clicks until condition(state) holds, or the program has ended: on a busy machine a click may fall between frames.
@@ -143,7 +151,7 @@ class Window:
         for key in keys:
             self.xdotool("keydown", key)
         self.xdotool("mousemove", *points[0])
-        time.sleep(0.25)
+        self.settle()
         self.xdotool("mousedown", button)
         for point in points[1:]:
             time.sleep(0.15)
@@ -152,12 +160,12 @@ class Window:
         self.xdotool("mouseup", button)
         for key in keys:
             self.xdotool("keyup", key)
-        time.sleep(0.3)
+        self.settle()
 
     def key(self, *keys):
         for key in keys:
             self.xdotool("key", key)
-            time.sleep(0.25)
+            self.settle()
 
     def write(self, name, text):
         """Replaces the text of a field; the prompt's are typed until it has arrived: on a busy machine a click may fall between
