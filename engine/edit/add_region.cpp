@@ -314,9 +314,12 @@ Mask region_mask(const AddRegion& region, const Camera& camera) {
         const auto limit = [](double value, int size) {
             return static_cast<int>(std::clamp(value, 0.0, size + 0.0));
         };
+        const double reach = std::max(radius, 0.71) * std::max(radius, 0.71);
         for (int v = limit(y - radius, mask.height); v < limit(y + radius + 1, mask.height); ++v)
-            for (int u = limit(x - radius, mask.width); u < limit(x + radius + 1, mask.width); ++u)
-                if (std::hypot(u + 0.5 - x, v + 0.5 - y) <= std::max(radius, 0.71)) mask.at(u, v) = 1;
+            for (int u = limit(x - radius, mask.width); u < limit(x + radius + 1, mask.width); ++u) {
+                const double dx = u + 0.5 - x, dy = v + 0.5 - y;
+                if (dx * dx + dy * dy <= reach) mask.at(u, v) = 1;
+            }
     }
     return mask;
 }

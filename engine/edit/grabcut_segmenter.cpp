@@ -22,10 +22,13 @@ namespace {
 /// Calls visit(x, y) for the pixels of a disc around a click, at least the click's own pixel.
 template <class F>
 void for_disc(const Image& image, const PointPrompt& point, double radius_px, F&& visit) {
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
+    const auto from = [&](double centre, int size) { return static_cast<int>(std::clamp(centre - radius_px - 1, 0.0, static_cast<double>(size))); };
+    const auto to = [&](double centre, int size) { return static_cast<int>(std::clamp(centre + radius_px + 1, 0.0, static_cast<double>(size))); };
+    for (int y = from(point.y, image.height); y < to(point.y, image.height); ++y)
+        for (int x = from(point.x, image.width); x < to(point.x, image.width); ++x) {
             const bool own = x == static_cast<int>(point.x) && y == static_cast<int>(point.y);
-            if (own || std::hypot(x + 0.5 - point.x, y + 0.5 - point.y) <= radius_px) visit(x, y);
+            const double dx = x + 0.5 - point.x, dy = y + 0.5 - point.y;
+            if (own || dx * dx + dy * dy <= radius_px * radius_px) visit(x, y);
         }
 }
 

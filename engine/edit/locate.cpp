@@ -114,7 +114,7 @@ private:
             return;
         }
         render_views();
-        if (tools_.memory != nullptr) *tools_.memory = {renders_, depths_};
+        if (tools_.memory != nullptr) tools_.memory->renders = renders_, tools_.memory->depths = depths_;
     }
 
     void render_views() {
@@ -236,8 +236,8 @@ private:
         views = look(search);
         Found found = fuse(search, views);
         if (found.problem != SearchProblem::None || request().second_look < 1) return found;
-        const auto odd = at_odds(found.label, views);
-        if (odd.empty() || odd.size() * 2 > views.size()) return found;
+        const auto odd = to_ask_again(search, found.label, views);
+        if (odd.empty()) return found;
         std::vector<ViewEvidence> again;
         const auto first = static_cast<float>(request().attention_repeats), more = static_cast<float>(request().second_look);
         for (const auto v : odd) {
@@ -256,6 +256,17 @@ private:
         for (std::size_t i = 0; i < odd.size(); ++i) views[odd[i]] = std::move(again[i]);
         log::debug("{} of {} views were asked again", odd.size(), views.size());
         return fuse(search, views);
+    }
+
+    /// As at the first threshold that was tried, where that is remembered.
+    std::vector<std::size_t> to_ask_again(const Search& search, const Label& label, const std::vector<ViewEvidence>& views) {
+        const std::string key = fmt::format("{}\n{}", search.prompt, search.word);
+        if (tools_.memory != nullptr)
+            if (const auto known = tools_.memory->asked_again.find(key); known != tools_.memory->asked_again.end()) return known->second;
+        auto odd = at_odds(label, views);
+        if (odd.size() * 2 > views.size()) odd.clear();
+        if (tools_.memory != nullptr) tools_.memory->asked_again[key] = odd;
+        return odd;
     }
 
     std::vector<std::size_t> at_odds(const Label& label, const std::vector<ViewEvidence>& views) {

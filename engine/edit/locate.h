@@ -2,6 +2,7 @@
 // S5).
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +39,8 @@ struct LocateInput {
 struct ViewMemory {
     std::vector<Image> renders;  // [H,W,3] in [0,1]
     std::vector<Image> depths;   // [H,W,1], 0 = nothing there
+    /// Views that were asked a second time, by sentence and word: at another threshold the same, so that no network is asked.
+    std::map<std::string, std::vector<std::size_t>> asked_again = {};
 };
 
 /// The parts it calls. Both segmenters may be null: then the attention regions themselves are the masks.

@@ -33,6 +33,7 @@ void Workplace::take_model(std::shared_ptr<neural::TextToImage> model) {
 void Workplace::ask_anew(const neural::AttentionParameters& attention) {
     attention_ = std::make_unique<edit::CachedAttention>(model_->attention(attention));
     recognition_ = std::make_unique<edit::Recognition>(model_->text_image_score(), model_->known_words());
+    renders_.asked_again.clear();
 }
 
 void Workplace::ask(const neural::AttentionParameters& attention) {

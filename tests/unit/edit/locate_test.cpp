@@ -488,6 +488,45 @@ DOCTEST_TEST_CASE("another threshold asks no network, and remembered views and t
     DOCTEST_CHECK(cached.asked() == asked);
 }
 
+/// One view has much attention beside the thing: at a low threshold its mask is at odds with the others'.
+class DistractedAttention : public ColourAttention {
+public:
+    std::vector<Image> locate(const edit::AttentionQuery& query) override {
+        auto maps = ColourAttention::locate(query);
+        if (queries.size() % 12 == 1)
+            for (int y = 0; y < maps[0].height; ++y)
+                for (int x = 0; x < maps[0].width / 3; ++x) maps[0].at(x, y, 0) = std::max(maps[0].at(x, y, 0), Beside * maximum(maps[0]));
+        return maps;
+    }
+
+private:
+    static constexpr float Beside = 0.45f;
+    static float maximum(const Image& map) { return *std::max_element(map.data.begin(), map.data.end()); }
+};
+
+DOCTEST_TEST_CASE("a threshold at which another view is at odds with the rest asks no network either") {
+    const Quiet quiet;
+    auto request = request_for("a blue ball", "blue");
+    Fixture fixture;
+    const auto asked_at = [&](double first, double then) {
+        edit::CachedAttention cached(std::make_unique<DistractedAttention>());
+        edit::ViewMemory memory;
+        edit::LocateTools tools{*fixture.rasterizer, cached, nullptr, nullptr, {}};
+        tools.memory = &memory;
+        std::vector<std::size_t> asked;
+        for (const double threshold : {first, then}) {
+            request.attention_threshold = threshold;
+            edit::locate(fixture.input(request), tools);
+            asked.push_back(cached.asked());
+        }
+        return asked;
+    };
+    const auto low = asked_at(0.3, 0.6), high = asked_at(0.6, 0.3);
+    DOCTEST_CHECK(low[0] > high[0]);   // the view is asked again
+    DOCTEST_CHECK(low[1] == low[0]);
+    DOCTEST_CHECK(high[1] == high[0]);
+}
+
 DOCTEST_TEST_CASE("attention is asked about whole phrases, in the sentence as every part of the model is told it") {
     const Quiet quiet;
     auto request = request_for("A Blue, * beach ball on Grass!", "blue");
