@@ -61,6 +61,7 @@ struct RoundInput {
     double strength = 0.75;        // where it begins: 0 = the picture itself, 1 = pure noise
     std::uint64_t seed = 0;        // already mixed with the round: the only source of randomness
     bool anew = false;             // the inside of the masks becomes something else: nothing of it is to be kept
+    std::string sentence = {};     // that the model is told; empty = the one that the guidance was made for
 };
 
 /// The pictures as the model would have them, and numbers for the log.

@@ -240,10 +240,10 @@ private:
         if (phase_->ready(iteration, spans(set_.rows()), set_.unlabelled(), settings_, record.guidance)) draw_only(phase_->fitted());
         if (!shapes_ || iteration > 0 || phase_->round() == before) return;
         const auto seeds = shapes_->seeds(phase_->found(), room_for(base_.drawn, label_, plan_.seeds), set_.rows().sh_degree);
-        if (seeds.size() == 0)
-            throw Error(ErrorCode::Model, "the redrawn views agree on no shape of \"" + tools_.word + "\"",
-                        "try another seed, or more views (edited_views)");
-        set_.plant(seeds, FadedLogit);
+        if (seeds.size() > 0) return set_.plant(seeds, FadedLogit);
+        const std::string nothing = "the redrawn views agree on no shape of \"" + tools_.word + "\"";
+        if (plan_.seeds.size() == 0) throw Error(ErrorCode::Model, nothing, "try another seed, or more views (edited_views)");
+        log::warning("{}; it grows from the place that was found for it", nothing);
     }
 
     /// From here on only these views are drawn, and have to come to rest.

@@ -91,6 +91,7 @@ struct EditTools {
     /// Asked when a round was redrawn, before every iteration, and again after orders: what the artist says meanwhile, or
     /// nothing. May wait for an answer; a stop request has to end that.
     std::function<std::vector<TargetOrder>()> target_orders = {};
+    std::vector<std::string> known = {};   // words of the model; empty = it takes any
     std::string redraw_key = {};        // of what `views` is made from: a round begun with another key is redrawn
 };
 

@@ -10,6 +10,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/random.h"
+#include "engine/edit/colour_word.h"
 #include "engine/edit/word_mask.h"
 #include "engine/localize/clusters.h"
 
@@ -63,6 +64,11 @@ bool ShapeFinder::take_out(const RoundView& view, Image& picture, std::uint64_t 
     picture = over(picture, share, view.backdrop);
     if (outline != nullptr) *outline = std::move(share);
     return shows;
+}
+
+std::string ShapeFinder::colour_in(const RoundView& view, const Image& picture, std::uint64_t seed,
+                                   const std::vector<std::string>& known) const {
+    return colour_shown(picture, outline_of(view, picture, seed), known);
 }
 
 CutOut ShapeFinder::cut_out(const std::vector<RoundView>& views, std::vector<Image>& pictures, int round, const JobControl& job) {

@@ -33,6 +33,10 @@ public:
     /// The same for one picture. Whether it shows the thing.
     bool take_out(const RoundView& view, Image& picture, std::uint64_t seed, Image* outline = nullptr) const;
 
+    /// The word for the colour of the thing in a redrawn picture; empty where the picture does not show it.
+    std::string colour_in(const RoundView& view, const Image& picture, std::uint64_t seed, const std::vector<std::string>& known) const;
+    const std::string& word() const { return word_; }
+
     /// The rows that the new thing grows from, carved out of the box; empty when the outlines enclose nothing there.
     GaussianData seeds(const CutOut& found, const HullBox& box, int sh_degree) const;
 

@@ -48,7 +48,7 @@ ViewPhase::ViewPhase(const EditPlan& plan, const EditRequest& request, const Edi
       originals_(originals),
       masks_(masks),
       anew_(shapes != nullptr),
-      rounds_(plan, request, *tools.views, shapes),
+      rounds_(plan, request, *tools.views, shapes, tools.known),
       key_(redraw_key(request, plan.mode, tools.redraw_key)) {}
 
 /// Whether the edit goes on in the middle of this round, with the same settings from the same cameras.
@@ -69,7 +69,7 @@ void ViewPhase::choose(const std::vector<std::size_t>& visible) {
         for (std::size_t v = 0; v < plan_.views.size(); ++v) masks.push_back(masks_.mask(v));
         return rounds_.choose(visible, masks);
     }
-    rounds_.resume(start->round, start->views);
+    rounds_.resume(start->round, start->views, start->sentence);
     for (std::size_t i = 0; i < start->views.size(); ++i) {
         const auto view = start->views[i];
         rounds_.replace(view, *start->edited[i], originals_[view], masks_.mask(view));
@@ -117,6 +117,7 @@ std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpa
     state->round = rounds_.round();
     state->key = key_;
     state->views = rounds_.views();
+    state->sentence = rounds_.sentence();
     state->begun = begun;
     for (const auto view : state->views) state->edited.push_back(std::make_shared<const Image>(rounds_.edited(view)));
     state->attempts.assign(state->views.size(), 0);
@@ -197,7 +198,7 @@ void ViewPhase::take_masks() {
 }
 
 void ViewPhase::begin_sheet() {
-    sheet_ = {state_->round, round_plan(request_, plan_.mode).rounds, {}};
+    sheet_ = {state_->round, round_plan(request_, plan_.mode).rounds, {}, state_->sentence};
     for (std::size_t i = 0; i < state_->views.size(); ++i) {
         sheet_.views.push_back(
             {state_->views[i], shown_copy((*state_->begun)[i].rendered), {}, state_->attempts[i], state_->dropped[i]});

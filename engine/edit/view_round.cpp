@@ -6,7 +6,9 @@
 #include <limits>
 
 #include "engine/base/check.h"
+#include "engine/base/log.h"
 #include "engine/base/random.h"
+#include "engine/edit/colour_word.h"
 #include "engine/edit/scales.h"
 #include "engine/localize/clusters.h"
 
@@ -21,6 +23,7 @@ Mask eroded(Mask mask, double radius_px) {
 }
 
 constexpr double FeatherPx = 3;       // of a picture of ReferenceSide (views.md 8.6)
+constexpr std::uint64_t ColourStream = 39000;   // of the request's seed
 constexpr double LeastCover = 0.01;   // of the picture: smaller things are not worth a redrawn view (views.md 8)
 
 }  // namespace
@@ -115,8 +118,15 @@ Image blend_inside(const Image& edited, const Image& original, const Mask& mask,
     return result;
 }
 
-ViewRounds::ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance, ShapeFinder* shapes)
-    : plan_(plan), request_(request), guidance_(guidance), shapes_(shapes), targets_(plan.views.size()), edited_(plan.views.size()) {}
+ViewRounds::ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance, ShapeFinder* shapes,
+                       std::vector<std::string> known)
+    : plan_(plan),
+      request_(request),
+      guidance_(guidance),
+      shapes_(shapes),
+      known_(std::move(known)),
+      targets_(plan.views.size()),
+      edited_(plan.views.size()) {}
 
 void ViewRounds::choose(const std::vector<std::size_t>& visible, const std::vector<Mask>& masks) {
     std::vector<View> views;
@@ -136,13 +146,29 @@ bool ViewRounds::begins(int iteration) const { return round_ < 0 || iteration / 
 RoundInput ViewRounds::input(std::uint64_t stream) const {
     const auto plan = round_plan(request_, plan_.mode);
     return {round_,          plan.rounds, plan.steps_of(round_), plan.strength_of(round_), Random::stream(request_.seed, stream).next(),
-            shapes_ != nullptr};
+            shapes_ != nullptr, sentence_};
+}
+
+/// Where the sentence leaves open what colour the new thing has, the view with most room for it is drawn first, and its colour
+/// is told to all.
+void ViewRounds::name_colour(const std::vector<RoundView>& views, const JobControl& job) {
+    const auto told = as_told(request_.prompt);
+    if (shapes_ == nullptr || views.empty() || is_described(told, shapes_->word())) return;
+    const auto key = std::max_element(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.mask.count() < b.mask.count(); });
+    const auto drawn = guidance_.edit({*key}, input(ColourStream), job);
+    GSE_CHECK_EQ(drawn.images.size(), std::size_t{1});
+    const auto colour = shapes_->colour_in(*key, drawn.images.front(), Random::stream(request_.seed, ColourStream + 1).next(), known_);
+    if (colour.empty()) return;
+    sentence_ = described_as(told, shapes_->word(), colour);
+    log::info("the sentence names no colour for \"{}\"; {} shows {}: all views are drawn as \"{}\"", shapes_->word(), key->view.name,
+              colour, sentence_);
 }
 
 std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vector<RoundView>& views,
                                                  const std::vector<Image>& originals, const JobControl& job) {
     GSE_CHECK_EQ(views.size(), views_.size());
     round_ = iteration / request_.fit_steps;
+    if (round_ == 0) name_colour(views, job);
     auto drawn = guidance_.edit(views, input(40000 + static_cast<std::uint64_t>(round_)), job);
     GSE_CHECK_EQ(drawn.images.size(), views.size());
     if (shapes_ != nullptr) {
@@ -168,8 +194,9 @@ void ViewRounds::replace(std::size_t view, Image edited, const Image& original, 
     blend(view, original, mask);
 }
 
-void ViewRounds::resume(int round, std::vector<std::size_t> views) {
+void ViewRounds::resume(int round, std::vector<std::size_t> views, std::string sentence) {
     round_ = round;
+    sentence_ = std::move(sentence);
     views_ = std::move(views);
 }
 

@@ -35,7 +35,9 @@ Image blend_inside(const Image& edited, const Image& original, const Mask& mask,
 class ViewRounds {
 public:
     /// `shapes` cuts out of the redrawn views what has a new shape; null where nothing has.
-    ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance, ShapeFinder* shapes = nullptr);
+    /// `known`: words of the model; empty = it takes any.
+    ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance, ShapeFinder* shapes = nullptr,
+               std::vector<std::string> known = {});
 
     /// Picks the views to redraw from those in which the edit is seen.
     void choose(const std::vector<std::size_t>& visible, const std::vector<Mask>& masks);
@@ -51,7 +53,9 @@ public:
     /// Another picture for a view of this round.
     void replace(std::size_t view, Image edited, const Image& original, const Mask& mask);
     /// Goes on in the middle of a round in which these views were redrawn; their pictures come by replace().
-    void resume(int round, std::vector<std::size_t> views);
+    void resume(int round, std::vector<std::size_t> views, std::string sentence);
+    /// What the model is told where the artist's sentence leaves the new thing's colour open; else empty.
+    const std::string& sentence() const { return sentence_; }
     /// What the last round found of the new shape.
     const CutOut& found() const { return found_; }
     /// Another mask: what was redrawn counts inside it.
@@ -63,11 +67,14 @@ public:
 
 private:
     RoundInput input(std::uint64_t stream) const;
+    void name_colour(const std::vector<RoundView>& views, const JobControl& job);
 
     const EditPlan& plan_;
     const EditRequest& request_;
     ViewGuidance& guidance_;
     ShapeFinder* shapes_;
+    std::vector<std::string> known_;
+    std::string sentence_;
     CutOut found_;
     std::vector<std::size_t> views_;
     std::vector<Image> targets_, edited_;   // of the plan's views; empty for those that are not redrawn

@@ -25,6 +25,7 @@ struct ViewTarget {
 struct ViewTargets {
     int round = 0, rounds = 1;
     std::vector<ViewTarget> views;   // ascending by view
+    std::string sentence = {};       // that the model was told, where it is not the artist's own
 };
 
 /// Used by the fit (all are at first), not used, or redrawn from another seed and used.
@@ -46,6 +47,7 @@ struct RoundState {
     std::vector<std::shared_ptr<const Image>> edited;      // per view: as the model would have it, [H,W,3]
     std::vector<int> attempts;                       // per view
     std::vector<bool> dropped;                       // per view
+    std::string sentence = {};                       // that the model was told; empty = the edit's
 };
 
 }  // namespace gse::edit

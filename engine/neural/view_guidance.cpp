@@ -115,8 +115,9 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
     batch.original = torch::cat(original);
     batch.noise = noise(views, input.seed);
     batch.mask = torch::cat(masks);
-    batch.contexts = contexts(views, prompt_);
-    if (takes_picture(bundle_->unet->config())) {
+    const bool edits = takes_picture(bundle_->unet->config());   // such a model is told what to do, not what there is
+    batch.contexts = contexts(views, edits || input.sentence.empty() ? prompt_ : input.sentence);
+    if (edits) {
         batch.picture = batch.original / bundle_->scaling_factor();   // as the model is used to it: not scaled
         return batch;   // it sees what it must not change
     }

@@ -67,6 +67,7 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
     tools.segmenter = segmenter.get();
     tools.word = dynamic_word(located, request);
     tools.views = views.get();
+    tools.known = model.known_words();
     tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings).dump();
     Edited edited;
     tools.targets = [&](const edit::ViewTargets& sheet) {

@@ -64,6 +64,7 @@ struct TrueViews : edit::ViewGuidance, edit::AttentionSource {
     TrueViews(const synth::SynthScene& scene, synth::Part shown, raster::Rasterizer& r) : truth(scene), part(shown), rasterizer(r) {}
     edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl&) override {
         inputs.push_back(input);
+        counts.push_back(views.size());
         cameras.clear();
         asked = 0;
         edit::RoundTargets targets;
@@ -87,6 +88,7 @@ struct TrueViews : edit::ViewGuidance, edit::AttentionSource {
     synth::Part part;
     raster::Rasterizer& rasterizer;
     std::vector<edit::RoundInput> inputs;
+    std::vector<std::size_t> counts;   // of views, per input
     std::vector<Camera> cameras;
     std::vector<std::string> words;
     std::size_t asked = 0;
@@ -105,7 +107,7 @@ struct Figures {
 struct ShapeEdit {
     ShapeEdit(const synth::SynthScene& before, const synth::SynthScene& after, edit::EditMode edit_mode)
         : source(before), target(after), mode(edit_mode), part(edit_mode == edit::EditMode::Add ? synth::Part::Accessory : synth::Part::Object) {
-        request.prompt = "a cat";
+        request.prompt = "a blue cat";
         request.source = "bear";
         request.target = "cat";
         request.method = "views";
@@ -134,6 +136,7 @@ struct ShapeEdit {
         tools.views = &views;
         tools.attention = &views;
         tools.word = "cat";
+        tools_changed(tools);
         return edit::run_edit(source.scene.gaussians, plan, request, tools);
     }
 
@@ -173,6 +176,7 @@ struct ShapeEdit {
     edit::EditPlan plan;
     TrueViews views{target, part, *rasterizer};
     NoGuidance never;
+    std::function<void(edit::EditTools&)> tools_changed = [](edit::EditTools&) {};
 };
 
 void tell(const char* what, const Figures& figures) {
@@ -233,4 +237,28 @@ DOCTEST_TEST_CASE("the same request gives the same bytes; a snapshot goes on fro
     const auto first = run.run(), second = run.run();
     DOCTEST_CHECK(std::equal(first.set.sh().begin(), first.set.sh().end(), second.set.sh().begin(), second.set.sh().end()));
     DOCTEST_CHECK(std::equal(first.set.position().begin(), first.set.position().end(), second.set.position().begin(), second.set.position().end()));
+}
+
+DOCTEST_TEST_CASE("a colour that the sentence leaves open is the one that the first view shows, for all views and rounds") {
+    ShapeEdit run(scene_of("bear", "red"), scene_of("cat", "orange"), edit::EditMode::Replace);
+    run.request.prompt = "a cat on the grass";
+    run.request.shape_fit_steps = 10;
+    edit::ViewTargets shown;
+    run.tools_changed = [&](edit::EditTools& tools) {
+        tools.targets = [&](const edit::ViewTargets& sheet) { shown = sheet; };
+    };
+    run.run();
+    const auto& inputs = run.views.inputs;
+    DOCTEST_REQUIRE(inputs.size() == static_cast<std::size_t>(run.request.shape_rounds) + 1);
+    DOCTEST_CHECK(inputs[0].sentence.empty());   // one view, as the artist says it
+    DOCTEST_CHECK(run.views.counts[0] == 1);
+    for (std::size_t i = 1; i < inputs.size(); ++i) {
+        DOCTEST_CHECK(inputs[i].sentence == "an orange cat on the grass");
+        DOCTEST_CHECK(run.views.counts[i] == 8);
+    }
+    DOCTEST_CHECK(shown.sentence == "an orange cat on the grass");
+    run.views.inputs.clear();
+    run.tools_changed = [](edit::EditTools& tools) { tools.known = {"a", "cat", "on", "the", "grass"}; };   // no colours
+    run.run();
+    for (const auto& input : run.views.inputs) DOCTEST_CHECK(input.sentence.empty());
 }

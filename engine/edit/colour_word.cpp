@@ -1,0 +1,98 @@
+// Pixels to basic colour terms; a word into a sentence.
+#include "engine/edit/colour_word.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/check.h"
+#include "engine/edit/request.h"
+#include "engine/edit/vocabulary.h"
+#include "engine/edit/words.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr float Counts = 0.5f;           // of a pixel's share
+constexpr double LightnessWeight = 0.5;   // of its difference, beside those of a and b
+
+using Colour = std::array<double, 3>;
+
+struct Term {
+    const char* word;
+    Colour srgb;   // a typical sample
+};
+
+constexpr std::array<Term, 11> Terms{{{"red", {0.80, 0.10, 0.10}},
+                                      {"blue", {0.10, 0.22, 0.80}},
+                                      {"green", {0.15, 0.58, 0.18}},
+                                      {"yellow", {0.93, 0.83, 0.15}},
+                                      {"purple", {0.50, 0.15, 0.65}},
+                                      {"orange", {0.93, 0.48, 0.08}},
+                                      {"black", {0.07, 0.07, 0.07}},
+                                      {"white", {0.90, 0.90, 0.90}},
+                                      {"brown", {0.42, 0.26, 0.13}},
+                                      {"grey", {0.50, 0.50, 0.50}},
+                                      {"pink", {0.95, 0.60, 0.70}}}};
+
+/// CIE 1976 L*a*b* of sRGB under D65 (IEC 61966-2-1, CIE 15).
+Colour lab(const Colour& srgb) {
+    const auto linear = [](double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); };
+    const double r = linear(srgb[0]), g = linear(srgb[1]), b = linear(srgb[2]);
+    const auto f = [](double t) {
+        constexpr double Edge = 6.0 / 29;
+        return t > Edge * Edge * Edge ? std::cbrt(t) : t / (3 * Edge * Edge) + 4.0 / 29;
+    };
+    const double x = f((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505), y = f(0.2126 * r + 0.7152 * g + 0.0722 * b),
+                 z = f((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089);
+    return {116 * y - 16, 500 * (x - y), 200 * (y - z)};
+}
+
+double distance(const Colour& a, const Colour& b) {
+    const double l = LightnessWeight * (a[0] - b[0]);
+    return l * l + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]);
+}
+
+bool is_vowel(char letter) { return std::string("aeiou").find(letter) != std::string::npos; }
+
+}  // namespace
+
+std::string colour_shown(const Image& picture, const Image& share, const std::vector<std::string>& known) {
+    GSE_CHECK_EQ(picture.data.size(), share.data.size() * 3);
+    std::vector<std::pair<std::string, Colour>> terms;
+    for (const auto& term : Terms)
+        if (knows(known, term.word)) terms.emplace_back(term.word, lab(term.srgb));
+    if (terms.empty()) return {};
+    std::vector<std::size_t> votes(terms.size());
+    for (std::size_t i = 0; i < share.data.size(); ++i) {
+        if (!(share.data[i] > Counts)) continue;
+        const Colour pixel = lab({picture.data[i * 3], picture.data[i * 3 + 1], picture.data[i * 3 + 2]});
+        const auto nearest = std::min_element(terms.begin(), terms.end(), [&](const auto& a, const auto& b) {
+            return distance(pixel, a.second) < distance(pixel, b.second);
+        });
+        ++votes[static_cast<std::size_t>(nearest - terms.begin())];
+    }
+    const auto most = std::max_element(votes.begin(), votes.end());
+    return *most == 0 ? std::string() : terms[static_cast<std::size_t>(most - votes.begin())].first;
+}
+
+bool is_described(const std::string& sentence, const std::string& thing) {
+    const auto words = words_of(sentence);
+    const auto at = first_word(sentence, thing);
+    if (at >= words.size()) return true;
+    if (at > 0 && says_something(words[at - 1])) return true;
+    const auto after = at + words_of(thing).size();   // "wings of gold", "a hat made of wood"
+    return after < words.size() && (words[after] == "of" || words[after] == "made");
+}
+
+std::string described_as(const std::string& sentence, const std::string& thing, const std::string& colour) {
+    auto words = words_of(sentence);
+    const auto at = first_word(sentence, thing);
+    if (at >= words.size() || colour.empty()) return sentence;
+    if (at > 0 && (words[at - 1] == "a" || words[at - 1] == "an")) words[at - 1] = is_vowel(colour.front()) ? "an" : "a";
+    words.insert(words.begin() + static_cast<std::ptrdiff_t>(at), colour);
+    return joined(words);
+}
+
+}  // namespace gse::edit

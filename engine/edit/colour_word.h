@@ -1,0 +1,23 @@
+// A colour for a new thing of which the sentence names none: each redrawn view would invent its own, and a scene fitted to all of
+// them is speckled. One view is drawn first; the word for what it shows joins the sentence for all.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/base/image.h"
+
+namespace gse::edit {
+
+/// The basic colour term (Berlin and Kay 1969) nearest to most of the pixels, in CIELAB with lightness at half weight: shading
+/// changes it most. `picture` [H,W,3] sRGB in [0,1]; `share` [H,W,1]: pixels above one half count. Only words of `known` where
+/// it is not empty. Empty when no pixel counts or no such word is known.
+std::string colour_shown(const Image& picture, const Image& share, const std::vector<std::string>& known);
+
+/// Whether the sentence says what the thing is like ("white wings"), or does not name it.
+bool is_described(const std::string& sentence, const std::string& thing);
+
+/// "a bear with wings" with "white" wings; the article before it follows ("a hat", "an orange hat"). Words as as_told() has them.
+std::string described_as(const std::string& sentence, const std::string& thing, const std::string& colour);
+
+}  // namespace gse::edit

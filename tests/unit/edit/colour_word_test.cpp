@@ -1,0 +1,74 @@
+// A colour for what the sentence leaves open.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/edit/colour_word.h"
+
+namespace {
+
+using namespace gse;
+
+/// Left half of one colour in light and shade, right half of another.
+Image halves(std::array<float, 3> left, std::array<float, 3> right) {
+    constexpr int Side = 16;
+    Image image(Side, Side, 3);
+    for (int y = 0; y < Side; ++y)
+        for (int x = 0; x < Side; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const float shade = 0.6f + 0.4f * static_cast<float>(y) / Side;
+                image.at(x, y, c) = shade * (x < Side / 2 ? left : right)[static_cast<std::size_t>(c)];
+            }
+    return image;
+}
+
+Image share_of(int from, int to) {
+    Image share(16, 16, 1);
+    for (int y = 0; y < 16; ++y)
+        for (int x = from; x < to; ++x) share.at(x, y, 0) = 1;
+    return share;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("the colour of what is inside the outline, in light and shade") {
+    const std::vector<std::pair<const char*, std::array<float, 3>>> samples{
+        {"red", {0.85f, 0.07f, 0.07f}},    {"blue", {0.10f, 0.22f, 0.88f}},  {"green", {0.1f, 0.6f, 0.15f}}, {"yellow", {0.95f, 0.85f, 0.1f}},
+        {"purple", {0.55f, 0.15f, 0.7f}},  {"orange", {0.95f, 0.5f, 0.05f}}, {"black", {0.06f, 0.06f, 0.07f}}, {"white", {0.95f, 0.95f, 0.95f}},
+    };
+    std::vector<std::string> known;
+    for (const auto& sample : samples) known.emplace_back(sample.first);
+    for (const auto& [word, colour] : samples) {
+        DOCTEST_CAPTURE(word);
+        const auto image = halves(colour, {0.3f, 0.7f, 0.2f});
+        DOCTEST_CHECK(edit::colour_shown(image, share_of(0, 8), known) == word);
+        DOCTEST_CHECK(edit::colour_shown(image, share_of(8, 16), known) == "green");
+    }
+    const auto grey = halves({0.5f, 0.5f, 0.5f}, {0, 0, 0});
+    DOCTEST_CHECK(edit::colour_shown(grey, share_of(0, 8), {}) == "grey");   // a model that takes any word
+    DOCTEST_CHECK(edit::colour_shown(grey, share_of(0, 0), {}).empty());     // no outline
+    DOCTEST_CHECK(edit::colour_shown(grey, share_of(0, 8), {"bear", "hat"}).empty());
+}
+
+DOCTEST_TEST_CASE("a thing is described by the words beside it only") {
+    DOCTEST_CHECK_FALSE(edit::is_described("a bear with wings on the grass", "wings"));
+    DOCTEST_CHECK_FALSE(edit::is_described("a red bear wearing a hat", "hat"));
+    DOCTEST_CHECK_FALSE(edit::is_described("cat", "cat"));
+    DOCTEST_CHECK(edit::is_described("a bear with white wings", "wings"));
+    DOCTEST_CHECK(edit::is_described("a bear wearing a straw hat", "hat"));
+    DOCTEST_CHECK(edit::is_described("a bear with wings of gold", "wings"));
+    DOCTEST_CHECK(edit::is_described("a bear with a hat made of wood", "hat"));
+    DOCTEST_CHECK(edit::is_described("a bear on the grass", "hat"));   // nothing to describe
+}
+
+DOCTEST_TEST_CASE("the colour stands before the thing, and the article follows it") {
+    DOCTEST_CHECK(edit::described_as("a bear with wings on the grass", "wings", "white") == "a bear with white wings on the grass");
+    DOCTEST_CHECK(edit::described_as("a bear wearing a hat", "hat", "orange") == "a bear wearing an orange hat");
+    DOCTEST_CHECK(edit::described_as("an owl on the sand", "owl", "red") == "a red owl on the sand");
+    DOCTEST_CHECK(edit::described_as("a bear with a top hat", "top hat", "black") == "a bear with a black top hat");
+    DOCTEST_CHECK(edit::described_as("the cat", "cat", "") == "the cat");
+}
