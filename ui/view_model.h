@@ -254,6 +254,7 @@ struct TargetView {
 struct TargetRound {
     int round = 0, rounds = 1;
     std::vector<TargetView> targets;
+    std::string sentence = {};   // that the model was told, where it is not the artist's own
 };
 
 /// What the networks were asked for by the running or last job.

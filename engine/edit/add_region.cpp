@@ -26,7 +26,7 @@ std::vector<Vec3> slice(const std::vector<Vec3>& points, double low, double high
 
 /// What the views say about one point.
 struct Vote {
-    int counted = 0, covered = 0, seen = 0;
+    int counted = 0, seen = 0, covered = 0;   // in the picture; of those not hidden; of those inside the mask
 };
 
 Vote vote_at(const RegionSearch& search, const Vec3& world, double side) {
@@ -41,9 +41,10 @@ Vote vote_at(const RegionSearch& search, const Vec3& world, double side) {
         if (!(px >= 0 && py >= 0 && px < mask.width && py < mask.height)) continue;
         const int x = static_cast<int>(px), y = static_cast<int>(py);
         ++vote.counted;
-        vote.covered += mask.at(x, y) != 0 ? 1 : 0;
         const double surface = search.depths.empty() ? 0 : search.depths[v].at(x, y, 0);
-        vote.seen += surface <= 0 || p.z <= surface + side ? 1 : 0;
+        if (surface > 0 && p.z > surface + side) continue;   // hidden
+        ++vote.seen;
+        vote.covered += mask.at(x, y) != 0 ? 1 : 0;
     }
     return vote;
 }
@@ -229,7 +230,7 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
         if (related && !place.allows(grid.centre(cell))) continue;
         const Vote vote = vote_at(search, frame.to_world(grid.centre(cell)), grid.side);
         if (vote.counted * 2 < voters || vote.seen < parameters.least_seen * vote.counted) continue;
-        agreement[cell] = static_cast<double>(vote.covered) / vote.counted;
+        agreement[cell] = vote.seen > 0 ? static_cast<double>(vote.covered) / vote.seen : 0;
         best = std::max(best, agreement[cell]);
     }
     if (best < parameters.least_agreement) return {};

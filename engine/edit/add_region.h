@@ -17,7 +17,7 @@ namespace gse::edit {
 struct AddRegion {
     std::vector<Vec3> centres;    // world
     double side = 0;              // of a cube, world units
-    double agreement = 0;         // mean share of the views whose mask covers the cubes
+    double agreement = 0;         // mean share, of the views that see the cubes, whose mask covers them
     std::string origin = "none";  // "attention" or the place: "top", "front", "neck", "around", "beside", "left", ...
     bool empty() const { return centres.empty(); }
 };
@@ -37,7 +37,7 @@ struct RegionSearch {
 
 struct RegionParameters {
     int cells = 28;                // along the longest side of the searched box
-    double least_agreement = 0.5;  // share of the views that must cover the best cube
+    double least_agreement = 0.5;  // share of the views that see the best cube that must cover it
     double lowest_agreement = 0.4;  // of all regions above which the one is taken that matches the masks best
     double level_step = 0.05;
     double least_seen = 0.2;       // share of the views in which the cube is not hidden behind the surface

@@ -151,7 +151,9 @@ std::string summary(const TargetRound& round) {
     const auto dropped = std::count_if(round.targets.begin(), round.targets.end(), [](const TargetView& target) { return target.dropped; });
     std::string text = fmt::format("Round {} of {}: {} views redrawn", round.round + 1, round.rounds, round.targets.size());
     if (dropped > 0) text += fmt::format(", {} dropped", dropped);
-    return text + ". Left the scene, right what it is fitted to.";
+    text += ". Left the scene, right what it is fitted to.";
+    if (!round.sentence.empty()) text += fmt::format(" Your sentence names no colour: drawn as \"{}\".", round.sentence);
+    return text;
 }
 
 }  // namespace

@@ -192,7 +192,8 @@ DOCTEST_TEST_CASE("a thing becomes another: the outline, the colours, and nothin
         const auto result = run.run();
         const auto figures = run.figures(result);
         tell(to, figures);
-        DOCTEST_CAPTURE(to);
+        const std::string becomes = to;
+        DOCTEST_CAPTURE(becomes);
         DOCTEST_CHECK(figures.outline_iou > 0.85);
         DOCTEST_CHECK(figures.error_removed > 0.7);
         DOCTEST_CHECK(figures.psnr_outside_db > 35);

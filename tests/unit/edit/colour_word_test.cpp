@@ -42,9 +42,10 @@ DOCTEST_TEST_CASE("the colour of what is inside the outline, in light and shade"
     };
     std::vector<std::string> known;
     for (const auto& sample : samples) known.emplace_back(sample.first);
-    for (const auto& [word, colour] : samples) {
+    for (const auto& sample : samples) {
+        const std::string word = sample.first;
         DOCTEST_CAPTURE(word);
-        const auto image = halves(colour, {0.3f, 0.7f, 0.2f});
+        const auto image = halves(sample.second, {0.3f, 0.7f, 0.2f});
         DOCTEST_CHECK(edit::colour_shown(image, share_of(0, 8), known) == word);
         DOCTEST_CHECK(edit::colour_shown(image, share_of(8, 16), known) == "green");
     }
