@@ -230,7 +230,8 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
         if (related && !place.allows(grid.centre(cell))) continue;
         const Vote vote = vote_at(search, frame.to_world(grid.centre(cell)), grid.side);
         if (vote.counted * 2 < voters || vote.seen < parameters.least_seen * vote.counted) continue;
-        agreement[cell] = vote.seen > 0 ? static_cast<double>(vote.covered) / vote.seen : 0;
+        if (vote.seen == 0 || vote.covered < parameters.least_covered * vote.counted) continue;
+        agreement[cell] = static_cast<double>(vote.covered) / vote.seen;
         best = std::max(best, agreement[cell]);
     }
     if (best < parameters.least_agreement) return {};

@@ -11,6 +11,7 @@
 
 #include "engine/base/image.h"
 #include "engine/base/progress.h"
+#include "engine/edit/backdrop.h"
 #include "engine/scene/scene.h"
 
 namespace gse::edit {
@@ -50,8 +51,7 @@ struct RoundView {
     Mask mask;                     // where the picture may change
     View view;
     std::string view_words = {};   // as in GuidanceInput
-    Image backdrop = {};           // [H,W,3] in [0,1], the scene without what may change; empty unless the round draws anew
-    Image backdrop_depth = {};     // [H,W,1] as `depth`, of the backdrop
+    Backdrop backdrop = {};        // the scene without what may change, its holes filled; empty unless the round draws anew
 };
 
 /// What a round is asked to be.

@@ -4,6 +4,7 @@
 #include "engine/base/check.h"
 #include "engine/edit/locate.h"
 #include "engine/edit/scales.h"
+#include "engine/edit/shape_room.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -19,6 +20,8 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
     plan.mode = located.mode;
     const std::vector<float> values(plan.label.begin(), plan.label.end());
     const bool any = std::find(plan.label.begin(), plan.label.end(), std::uint8_t{1}) != plan.label.end();
+    if (located.mode == EditMode::Replace)
+        plan.room = room_around(input.gaussians, plan.label, input.up, input.front, input.request.shape_room);
     Image seen;
     for (std::size_t v = 0; v < input.views.size(); ++v) {
         const Camera& camera = input.views[v].camera;
@@ -28,7 +31,12 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
             for (std::size_t i = 0; i < mask.data.size(); ++i)
                 if (seen.data[i] > 0.5f) mask.data[i] = 1;
         }
-        plan.masks.push_back(localize::dilate(mask, mask_growth_px(input.request, located.mode) * camera.width / ReferenceSide));
+        mask = localize::dilate(mask, mask_growth_px(input.request, located.mode) * camera.width / ReferenceSide);
+        if (!plan.room.empty() && mask.count() > 0) {
+            const Mask room = region_mask(plan.room, camera);
+            for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] |= room.data[i];
+        }
+        plan.masks.push_back(std::move(mask));
     }
     if (!input.request.localize) std::fill(plan.label.begin(), plan.label.end(), std::uint8_t{1});
     return plan;

@@ -192,6 +192,9 @@ std::string sentence_before(const EditRequest& request) {
     const std::size_t target = place(request.target), source = place(request.source);
     if (target < words.size() && (source == words.size() || source == target)) {
         words[target] = request.source;
+        std::size_t first = target;   // what describes the new thing says nothing of the old one
+        while (source == words.size() && first > 0 && !ends_phrase(words[first - 1]) && !contains(Articles, words[first - 1])) --first;
+        words.erase(words.begin() + static_cast<std::ptrdiff_t>(first), words.begin() + static_cast<std::ptrdiff_t>(target));
     } else if (target < words.size()) {
         const auto [first, last] = bringing(words, source, target);
         words.erase(words.begin() + static_cast<std::ptrdiff_t>(first), words.begin() + static_cast<std::ptrdiff_t>(last));
@@ -263,7 +266,7 @@ RoundPlan round_plan(const LoopSettings& settings, EditMode mode) {
 }
 
 double mask_growth_px(const LoopSettings& settings, EditMode mode) {
-    return mode == EditMode::Replace ? settings.shape_dilate_px : settings.dilate_px * (mode == EditMode::Add ? 2 : 1);
+    return settings.dilate_px * (mode == EditMode::Add ? 2 : 1);
 }
 
 int loop_steps(const LoopSettings& settings, EditMode mode) {

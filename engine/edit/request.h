@@ -114,7 +114,7 @@ struct LoopSettings {
     int shape_fit_steps = 240;
     double shape_strength = 0.95;
     double shape_again_strength = 0.6;
-    double shape_dilate_px = 60;
+    double shape_room = 0.2;
     double guidance_weight = 1;
     double strength = 1;
     bool gate_guidance = true;
@@ -227,8 +227,7 @@ private:
         f("shape_fit_steps", self.shape_fit_steps, "Optimisation steps after each round there.", Range{1, 1e5});
         f("shape_strength", self.shape_strength, "How far from the render the first round redraws there.", Range{0.02, 1});
         f("shape_again_strength", self.shape_again_strength, "How far the later rounds do.", Range{0.02, 1});
-        f("shape_dilate_px", self.shape_dilate_px,
-          "Room around the old thing for one that takes its place, in pixels of a 512-pixel picture.", Range{0, 256});
+        f("shape_room", self.shape_room, "Room around the old thing for one that takes its place, as a share of its size.", Range{0, 2});
     }
     template <class Self, class F>
     static void visit_rates(Self& self, F&& f) {
@@ -314,7 +313,7 @@ RoundPlan round_plan(const LoopSettings& settings, EditMode mode);
 /// Optimisation steps of an edit.
 int loop_steps(const LoopSettings& settings, EditMode mode);
 
-/// How far masks are grown, in pixels of a 512-pixel picture: what is new or takes a place needs room.
+/// How far masks are grown, in pixels of a 512-pixel picture: what is new needs room.
 double mask_growth_px(const LoopSettings& settings, EditMode mode);
 /// All as the words and the mode of the request say, before anything was looked for.
 EditMode planned_mode(const EditRequest& request);

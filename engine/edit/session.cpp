@@ -21,6 +21,7 @@
 #include "engine/edit/edit_strength.h"
 #include "engine/edit/preservation.h"
 #include "engine/edit/scales.h"
+#include "engine/edit/shape_room.h"
 #include "engine/edit/shape_round.h"
 #include "engine/edit/stage_timer.h"
 #include "engine/edit/view_phase.h"
@@ -239,7 +240,7 @@ private:
         const int before = phase_->round();
         if (phase_->ready(iteration, spans(set_.rows()), set_.unlabelled(), settings_, record.guidance)) draw_only(phase_->fitted());
         if (!shapes_ || iteration > 0 || phase_->round() == before) return;
-        const auto seeds = shapes_->seeds(phase_->found(), room_for(base_.drawn, label_, plan_.seeds), set_.rows().sh_degree);
+        const auto seeds = shapes_->seeds(phase_->found(), bounds_of(plan_.room, plan_.seeds), set_.rows().sh_degree);
         if (seeds.size() > 0) return set_.plant(seeds, FadedLogit);
         const std::string nothing = "the redrawn views agree on no shape of \"" + tools_.word + "\"";
         if (plan_.seeds.size() == 0) throw Error(ErrorCode::Model, nothing, "try another seed, or more views (edited_views)");
@@ -351,7 +352,7 @@ private:
             tools_.rasterizer.forward_values(base_.drawn.spans(), camera, settings_, values, label_seen_);
             if (shows_any(label_seen_)) views.push_back(v);
             Mask mask = localize::threshold_map(label_seen_, SeenLabel);
-            if (plan_.seeds.size() > 0)   // what is added needs its room as before
+            if (plan_.seeds.size() > 0 || plan_.mode == EditMode::Replace)   // what is new needs its room as before
                 for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] |= plan_.masks[v].data[i];
             else
                 mask = localize::dilate(mask, mask_growth_px(request_, plan_.mode) * camera.width / ReferenceSide);

@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/base/memory.h"
 #include "engine/base/progress.h"
+#include "engine/edit/add_region.h"
 #include "engine/edit/interfaces.h"
 #include "engine/edit/request.h"
 #include "engine/edit/snapshot.h"
@@ -29,6 +30,7 @@ struct EditPlan {
     GaussianData seeds;                    // new rows (add mode), may be empty
     raster::Settings settings;
     EditMode mode = EditMode::Modify;
+    AddRegion room;                        // replace mode: where the new thing may be
 };
 
 /// One line of the loss history.

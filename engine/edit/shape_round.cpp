@@ -18,8 +18,9 @@ namespace gse::edit {
 namespace {
 
 constexpr std::size_t LeastViews = 3;   // fewer do not enclose a space
-constexpr double RoomAround = 0.3;      // of the box (views.md 17)
-constexpr double TrimmedRows = 0.01;    // at either end of every axis
+// Attention above the first share of the threshold is the thing, whatever the segmenter leaves out of it for its colour; what the
+// segmenter adds counts above the second. Shares of the threshold.
+constexpr double SureShare = 0.8, LooseShare = 0.4;
 
 /// Mean over the pixel and its eight neighbours: the rim of a thing is part of a pixel.
 Image softened(const Mask& mask) {
@@ -54,14 +55,19 @@ Image ShapeFinder::outline_of(const RoundView& view, const Image& picture, std::
     normalise_maximum(maps.front());
     const double level = request_.attention_threshold > 0 ? request_.attention_threshold : attention_.threshold();
     WordMask found = find_word_mask(picture, maps.front(), level, word_, request_, {segmenter_, nullptr});
-    for (std::size_t i = 0; i < found.mask.data.size(); ++i) found.mask.data[i] &= view.mask.data[i] != 0 ? 1 : 0;
-    return found.found() ? softened(found.mask) : Image(picture.width, picture.height, 1);
+    if (!found.found()) return Image(picture.width, picture.height, 1);
+    for (std::size_t i = 0; i < found.mask.data.size(); ++i) {
+        const double attention = maps.front().data[i];
+        const bool inside = attention >= SureShare * level || (found.mask.data[i] != 0 && attention >= LooseShare * level);
+        found.mask.data[i] = inside && view.mask.data[i] != 0 ? 1 : 0;
+    }
+    return softened(found.mask);
 }
 
 bool ShapeFinder::take_out(const RoundView& view, Image& picture, std::uint64_t seed, Image* outline) const {
     Image share = outline_of(view, picture, seed);
     const bool shows = std::any_of(share.data.begin(), share.data.end(), [](float value) { return value > 0.5f; });
-    picture = over(picture, share, view.backdrop);
+    picture = over(picture, share, view.backdrop.picture);
     if (outline != nullptr) *outline = std::move(share);
     return shows;
 }
@@ -81,7 +87,7 @@ CutOut ShapeFinder::cut_out(const std::vector<RoundView>& views, std::vector<Ima
         Image outline;
         if (take_out(views[v], pictures[v], seed, &outline)) {
             found.usable.push_back(v);
-            found.outlines.push_back({views[v].view.camera, std::move(outline), views[v].backdrop_depth, drawn});
+            found.outlines.push_back({views[v].view.camera, std::move(outline), views[v].backdrop.depth, drawn});
         }
         job.report("cutting out the new thing", static_cast<int>(v + 1), static_cast<int>(views.size()));
     }
@@ -94,28 +100,9 @@ CutOut ShapeFinder::cut_out(const std::vector<RoundView>& views, std::vector<Ima
 }
 
 GaussianData ShapeFinder::seeds(const CutOut& found, const HullBox& box, int sh_degree) const {
-    const auto hull = carve_hull(found.outlines, box);
+    const auto hull = best_hull(found.outlines, box);
     log::info("\"{}\" takes {} cubes of {:.4g} in what {} views enclose", word_, hull.centres.size(), hull.side, found.usable.size());
     return hull_seeds(hull, found.outlines, sh_degree);
-}
-
-HullBox room_for(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const GaussianData& place) {
-    GSE_CHECK_EQ(bits.size(), set.size());
-    HullBox box;
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto k = static_cast<std::size_t>(axis);
-        std::vector<float> values;
-        for (std::size_t row = 0; row < bits.size(); ++row)
-            if (bits[row] != 0) values.push_back(set.position()[row * 3 + k]);
-        for (std::size_t row = 0; row < place.size(); ++row) values.push_back(place.position[row * 3 + k]);
-        if (values.empty()) return {};
-        std::sort(values.begin(), values.end());
-        const auto cut = static_cast<std::size_t>(TrimmedRows * static_cast<double>(values.size() - 1));
-        const double low = values[cut], high = values[values.size() - 1 - cut];
-        box.low[axis] = low - RoomAround * (high - low);
-        box.high[axis] = high + RoomAround * (high - low);
-    }
-    return box;
 }
 
 }  // namespace gse::edit

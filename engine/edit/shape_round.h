@@ -51,8 +51,4 @@ private:
     Segmenter* segmenter_;
 };
 
-/// Bounds of what a new thing takes the place of, or of the place it is put, with room on every side; the outermost rows do
-/// not count. `bits` [N] of the rows; both may be empty of rows.
-HullBox room_for(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const GaussianData& place);
-
 }  // namespace gse::edit

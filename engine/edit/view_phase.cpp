@@ -102,7 +102,10 @@ RoundView ViewPhase::begin_view(std::size_t v, const GaussianSpans& rows, const 
                    plan_.view_words.empty() ? std::string() : plan_.view_words[v]};
     draw(rows, view.view.camera, settings, view.rendered, view.depth);
     for (auto& value : view.original.data) value = std::clamp(value, 0.0f, 1.0f);
-    if (anew_) draw(unlabelled, view.view.camera, settings, view.backdrop, view.backdrop_depth);
+    if (anew_) {
+        draw(unlabelled, view.view.camera, settings, view.backdrop.picture, view.backdrop.depth);
+        fill_holes(view.backdrop, view.mask);
+    }
     return view;
 }
 

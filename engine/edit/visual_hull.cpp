@@ -18,6 +18,9 @@ constexpr double LeastPart = 0.1;      // of the largest connected part
 constexpr double HiddenSlack = 1.5;    // sides of a cube behind a surface: it may lie on it
 constexpr double Footprint = 0.75;     // half of a cube's width as it is seen, over its side: between face and corner
 
+constexpr float OutlineLevel = 0.5f;
+constexpr std::array TriedShares{0.95, 0.85, 0.75, 0.65, 0.55, 0.45};   // from strict to loose
+
 struct Pixel {
     double x = 0, y = 0, z = 0;
 };
@@ -223,6 +226,35 @@ VisualHull carve_hull(std::span<const HullView> views, const HullBox& box, const
         hull.normals.push_back(outwards(cubes, cube));
     }
     return hull;
+}
+
+double hull_fit(std::span<const HullView> views, const VisualHull& hull) {
+    double sum = 0;
+    for (const auto& view : views) {
+        const Image depth = depth_of(hull, view.camera);
+        double both = 0, either = 0;
+        for (std::size_t i = 0; i < depth.data.size(); ++i) {
+            const float surface = view.surface.data.empty() ? 0 : view.surface.data[i];
+            const bool seen = depth.data[i] > 0 && (surface <= 0 || depth.data[i] <= surface + HiddenSlack * hull.side);
+            const bool inside = view.inside.data[i] >= OutlineLevel;
+            both += seen && inside ? 1 : 0;
+            either += seen || inside ? 1 : 0;
+        }
+        sum += either > 0 ? both / either : 0;
+    }
+    return views.empty() ? 0 : sum / static_cast<double>(views.size());
+}
+
+VisualHull best_hull(std::span<const HullView> views, const HullBox& box, HullParameters parameters) {
+    VisualHull best;
+    double most = 0;
+    for (const double share : TriedShares) {
+        parameters.least_share = share;
+        auto hull = carve_hull(views, box, parameters);
+        const double fit = hull_fit(views, hull);
+        if (fit > most) most = fit, best = std::move(hull);
+    }
+    return best;
 }
 
 Mask hull_mask(const VisualHull& hull, const Camera& camera) {

@@ -47,6 +47,13 @@ double hull_share(std::span<const HullView> views, const Vec3& point, double sla
 /// The part of the box that the outlines enclose; of several parts that do not touch, those of at least a tenth of the largest.
 VisualHull carve_hull(std::span<const HullView> views, const HullBox& box, const HullParameters& parameters = {});
 
+/// How well a hull fits the outlines: mean IoU, over the views, of the outline with where the hull is seen before what else is there.
+double hull_fit(std::span<const HullView> views, const VisualHull& hull);
+
+/// Of the hulls with different `least_share`, the one that fits the outlines best: where outlines agree little, a strict hull is
+/// smaller than all of them, and a loose one is larger where they agree.
+VisualHull best_hull(std::span<const HullView> views, const HullBox& box, HullParameters parameters = {});
+
 /// Where the hull is seen in a view.
 Mask hull_mask(const VisualHull& hull, const Camera& camera);
 

@@ -19,12 +19,12 @@ constexpr std::uint64_t FreshNoiseStream = 1;   // of a round's seed: noise betw
 /// Above it an LCM's picture has little to do with the render, and what the decoder loses of that says nothing (views.md 8.5).
 constexpr double LcmPlainDecode = 0.9;
 
-/// Share of each latent cell that may change, grown by one cell: [1,1,h,w].
-torch::Tensor latent_mask(const Mask& mask, std::int64_t cells, const torch::Device& device) {
+/// Share of each latent cell that may change, [1,1,h,w]; grown by one cell, but for what is drawn anew: its surroundings are not its.
+torch::Tensor latent_mask(const Mask& mask, std::int64_t cells, const torch::Device& device, bool anew) {
     Image image(mask.width, mask.height, 1);
     for (std::size_t i = 0; i < mask.data.size(); ++i) image.data[i] = mask.data[i] != 0 ? 1.0f : 0.0f;
     const auto small = resize_square(to_tensor(image, device), cells);
-    return torch::max_pool2d(small, 3, 1, 1);
+    return anew ? small : torch::max_pool2d(small, 3, 1, 1);
 }
 
 }  // namespace
@@ -109,7 +109,7 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
         const auto& view = views[v];
         clean.push_back(latents(view.rendered));
         original.push_back(view.rendered.data == view.original.data ? clean.back() : latents(view.original));
-        masks.push_back(latent_mask(view.mask, cells, bundle_->device));
+        masks.push_back(latent_mask(view.mask, cells, bundle_->device, input.anew));
     }
     batch.clean = torch::cat(clean);
     batch.original = torch::cat(original);

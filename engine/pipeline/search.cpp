@@ -84,6 +84,7 @@ private:
         }
         std::vector<std::string> targets{request.target};
         if (hints_.target_open) targets = edit::possible_targets(request.prompt, request.source, hints_.said);
+        if (const auto thing = edit::thing_in_place(request); hints_.target_open && !thing.empty()) targets = {thing};
         std::erase_if(targets, [&](const auto& word) { return !edit::knows(workplace_.model().known_words(), word); });
         const auto reading = edit::read_scene(recognition, request, targets, pictures);
         if (hints_.target_open)

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "engine/base/error.h"
-#include "engine/edit/scales.h"
+#include "engine/edit/locate.h"
 #include "engine/edit/session.h"
 #include "engine/evaluate/metrics.h"
 #include "engine/localize/clusters.h"
@@ -113,7 +113,7 @@ struct ShapeEdit {
         request.method = "views";
         request = edit::validated(request);
         plan.views = ring(source, 24, 0);
-        plan.mode = mode;
+        edit::LocateResult located;
         plan.label = rows_of(source, synth::Part::Object);
         if (mode == edit::EditMode::Add) {
             std::fill(plan.label.begin(), plan.label.end(), std::uint8_t{0});
@@ -127,8 +127,15 @@ struct ShapeEdit {
         for (const auto& view : plan.views) {
             Mask mask = mask_of(*rasterizer, target.scene.gaussians, rows_of(target, part), view.camera);
             if (mode == edit::EditMode::Replace) mask = mask_of(*rasterizer, source.scene.gaussians, plan.label, view.camera);
-            plan.masks.push_back(localize::dilate(mask, edit::mask_growth_px(request, mode) * Side / edit::ReferenceSide));
+            located.views.push_back({});
+            located.views.back().mask = mask;
         }
+        const std::vector<std::string> no_words;
+        located.mode = mode;
+        located.label.bits = std::make_shared<const std::vector<std::uint8_t>>(plan.label);
+        located.seeds = plan.seeds;
+        const auto cameras = plan.views;
+        plan = edit::make_plan({source.scene.gaussians, cameras, no_words, request}, located, *rasterizer);
     }
 
     edit::EditResult run() {

@@ -161,6 +161,33 @@ DOCTEST_TEST_CASE("where nothing is enclosed there is no hull, and specks are dr
     DOCTEST_CHECK(std::any_of(both.centres.begin(), both.centres.end(), [](const Vec3& p) { return p.x > 0.4; }));
 }
 
+DOCTEST_TEST_CASE("of strict and loose hulls the one is taken that fits the outlines") {
+    const auto truth = outlines(slab);
+    DOCTEST_CHECK(edit::hull_fit(truth, edit::best_hull(truth, Room)) > 0.9);
+    DOCTEST_CHECK(edit::hull_fit(truth, {}) == 0);
+    // Half of the outlines are cut off at different places: a strict hull lacks all of that.
+    auto views = truth;
+    for (std::size_t v = 0; v < views.size(); v += 2)
+        for (int y = 0; y < Side; ++y)
+            for (int x = 0; x < Side; ++x)
+                if (v % 4 == 0 ? x < Side / 2 : x >= Side / 2) views[v].inside.at(x, y, 0) = 0;
+    const auto strict = edit::carve_hull(views, Room, {.least_share = 0.95}), best = edit::best_hull(views, Room);
+    DOCTEST_CHECK(edit::hull_fit(views, best) > edit::hull_fit(views, strict));
+    DOCTEST_CHECK(edit::hull_fit(truth, best) > edit::hull_fit(truth, strict));
+    // What is hidden behind something else is not asked of an outline.
+    views = truth;
+    for (auto& view : views) {
+        view.surface = Image(Side, Side, 1);
+        for (int y = 0; y < Side; ++y)
+            for (int x = 0; x < Side / 2; ++x) {
+                view.surface.at(x, y, 0) = 1;
+                view.inside.at(x, y, 0) = 0;
+            }
+    }
+    const auto whole = edit::carve_hull(truth, Room);
+    DOCTEST_CHECK(edit::hull_fit(views, whole) > edit::hull_fit(truth, whole) - 0.1);
+}
+
 DOCTEST_TEST_CASE("normals of a hull look away from it") {
     const auto hull = edit::carve_hull(outlines(ball), Room);
     std::size_t outside = 0, right = 0;

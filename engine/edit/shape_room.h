@@ -1,0 +1,20 @@
+// Where a thing may be that takes the place of another, or is new: the space that hulls are carved out of (views.md 17).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/edit/add_region.h"
+#include "engine/edit/visual_hull.h"
+
+namespace gse::edit {
+
+/// Room for a thing in the place of the labelled one, the same from every side, as it is not known which way the new one faces: an
+/// upright cylinder around what `bits` [N] label, which stands where that stands and is `share` of its size wider and higher. The
+/// outermost rows and those too faint to be seen do not count. Empty when nothing is left.
+AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share);
+
+/// Bounds of a room with a cell more on every side; without a room, of the rows of `place`, grown.
+HullBox bounds_of(const AddRegion& room, const GaussianData& place);
+
+}  // namespace gse::edit
