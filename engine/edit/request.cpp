@@ -260,9 +260,9 @@ int RoundPlan::view_steps_within(int steps) const {
 
 RoundPlan round_plan(const LoopSettings& settings, EditMode mode) {
     if (mode == EditMode::Modify)
-        return {settings.rounds, settings.fit_steps, false, settings.view_steps, settings.view_strength, settings.view_strength};
+        return {settings.rounds, settings.fit_steps, false, settings.view_steps, settings.view_strength, settings.view_strength, settings.edited_views};
     return {settings.shape_rounds, settings.shape_fit_steps, true,
-            settings.shape_steps,  settings.shape_strength,  settings.shape_again_strength};
+            settings.shape_steps,  settings.shape_strength,  settings.shape_again_strength, settings.shape_views};
 }
 
 double mask_growth_px(const LoopSettings& settings, EditMode mode) {

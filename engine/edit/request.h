@@ -109,9 +109,10 @@ struct LoopSettings {
     int fit_steps = 40;
     double view_strength = 0.75;
     // Shapes by views: a thing that becomes another, or is new
+    int shape_views = 12;
     int shape_rounds = 2;
-    int shape_steps = 6;
-    int shape_fit_steps = 240;
+    int shape_steps = 4;
+    int shape_fit_steps = 144;
     double shape_strength = 0.95;
     double shape_again_strength = 0.6;
     double shape_room = 0.2;
@@ -221,6 +222,7 @@ private:
     }
     template <class Self, class F>
     static void visit_shapes(Self& self, F&& f) {
+        f("shape_views", self.shape_views, "Views that the model redraws in a round, where a thing becomes another or is new.", Range{1, 64});
         f("shape_rounds", self.shape_rounds, "The same as rounds, where a thing becomes another or is new.", Range{1, 20});
         f("shape_steps", self.shape_steps, "Denoising steps of a view in its first round there; later rounds take fewer, by their strength.",
           Range{1, 100});
@@ -301,6 +303,7 @@ struct RoundPlan {
     bool anew = false;       // the inside of the masks becomes something else
     int view_steps = 6;      // of the first round
     double strength = 0.75, again_strength = 0.75;   // of the first round and of the later ones
+    int views = 8;           // redrawn in a round
 
     double strength_of(int round) const { return round == 0 ? strength : again_strength; }
     /// Denoising steps of a round: as many per strength as the first has.

@@ -243,7 +243,7 @@ private:
         const auto seeds = shapes_->seeds(phase_->found(), bounds_of(plan_.room, plan_.seeds), set_.rows().sh_degree);
         if (seeds.size() > 0) return set_.plant(seeds, FadedLogit);
         const std::string nothing = "the redrawn views agree on no shape of \"" + tools_.word + "\"";
-        if (plan_.seeds.size() == 0) throw Error(ErrorCode::Model, nothing, "try another seed, or more views (edited_views)");
+        if (plan_.seeds.size() == 0) throw Error(ErrorCode::Model, nothing, "try another seed, or more views (shape_views)");
         log::warning("{}; it grows from the place that was found for it", nothing);
     }
 

@@ -17,7 +17,7 @@ namespace {
 /// Every setting that the redrawn pictures follow from.
 std::string redraw_key(const EditRequest& request, EditMode mode, const std::string& of_model) {
     const auto plan = round_plan(request, mode);
-    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, request.seed, plan.rounds, request.edited_views,
+    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, request.seed, plan.rounds, plan.views,
                        plan.view_steps, plan.strength, plan.again_strength, of_model);
 }
 

@@ -52,6 +52,7 @@ void grow_often(EditRequest& request, int fit_steps) {
     suit(request.densify_percent, usual.densify_percent, 0.1);
     suit(request.max_growth, usual.max_growth, 4.0);
     suit(request.max_aspect, usual.max_aspect, 6.0);
+    suit(request.rate_colour, usual.rate_colour, 0.012);   // the hull's colours are near; faster ones follow single views
     if (request.densify_every > 0) request.densify_every = request.densify_from = std::max(1, fit_steps / GrowthsPerRound);
 }
 
@@ -136,7 +137,7 @@ void ViewRounds::choose(const std::vector<std::size_t>& visible, const std::vect
         covered.push_back(static_cast<double>(masks[v].count()) / static_cast<double>(masks[v].data.size()));
     }
     views_.clear();
-    for (const auto index : views_to_redraw(views, covered, static_cast<std::size_t>(request_.edited_views)))
+    for (const auto index : views_to_redraw(views, covered, static_cast<std::size_t>(round_plan(request_, plan_.mode).views)))
         views_.push_back(visible[index]);
 }
 

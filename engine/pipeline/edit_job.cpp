@@ -283,7 +283,7 @@ void EditJob::probe(const ProbeSize& size) {
     plain.request.densify_every = 0;
     plain.request.rounds = plain.request.shape_rounds = 1;
     plain.request.shape_fit_steps = size.steps;
-    plain.request.edited_views = size.edited_views;
+    plain.request.edited_views = plain.request.shape_views = size.edited_views;
     plain.request.view_steps = plain.request.shape_steps = size.view_steps;
     JobControl quiet;
     quiet.stop = control_.stop;

@@ -40,8 +40,8 @@ Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, 
     const auto plan = edit::round_plan(request, mode);
     Redrawing left;
     for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds; ++round) {
-        left.views += request.edited_views;
-        left.steps += static_cast<double>(request.edited_views) * plan.steps_of(round);
+        left.views += plan.views;
+        left.steps += static_cast<double>(plan.views) * plan.steps_of(round);
     }
     return left;
 }
@@ -209,7 +209,8 @@ void probe_views(Measured& measured, EditJob& job) {
     constexpr double pixels_at_once = 8 * 64 * 64;   // as many as the model takes in one piece
     constexpr int more_steps = 3;
     const double side = job.model().image_size();
-    const int views = std::clamp(static_cast<int>(pixels_at_once / (side * side)), 1, job.recipe().request.edited_views);
+    const int views = std::clamp(static_cast<int>(pixels_at_once / (side * side)), 1,
+                                 edit::round_plan(job.recipe().request, job.located().mode).views);
     struct Probe {
         double seconds, tflop, count;
     };

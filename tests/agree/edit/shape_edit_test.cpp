@@ -228,6 +228,7 @@ DOCTEST_TEST_CASE("what is added grows from the same hull, and hides nothing tha
 DOCTEST_TEST_CASE("views that do not show the new thing are left out; too few are said") {
     ShapeEdit run(scene_of("bear", "red"), scene_of("cat", "blue"), edit::EditMode::Replace);
     run.request.shape_fit_steps = 60;
+    run.request.shape_views = 8;
     run.views.blind_views = 2;
     const auto result = run.run();
     std::vector<std::size_t> drawn;
@@ -262,7 +263,7 @@ DOCTEST_TEST_CASE("a colour that the sentence leaves open is the one that the fi
     DOCTEST_CHECK(run.views.counts[0] == 1);
     for (std::size_t i = 1; i < inputs.size(); ++i) {
         DOCTEST_CHECK(inputs[i].sentence == "an orange cat on the grass");
-        DOCTEST_CHECK(run.views.counts[i] == 8);
+        DOCTEST_CHECK(run.views.counts[i] == static_cast<std::size_t>(run.request.shape_views));
     }
     DOCTEST_CHECK(shown.sentence == "an orange cat on the grass");
     run.views.inputs.clear();

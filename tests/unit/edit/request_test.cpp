@@ -179,6 +179,8 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     DOCTEST_CHECK(edit::loop_steps(request, EditMode::Replace) == request.shape_rounds * request.shape_fit_steps);
     request.shape_strength = 0.9;
     request.shape_again_strength = 0.45;
+    DOCTEST_CHECK(recolour.views == request.edited_views);
+    DOCTEST_CHECK(shape.views == request.shape_views);
     request.shape_steps = 8;
     const auto half = edit::round_plan(request, EditMode::Replace);
     DOCTEST_CHECK(half.steps_of(0) == 8);
