@@ -71,7 +71,7 @@ void Application::branch_from_snapshot(int iteration) {
     if (work_.running() && !edit_running()) return toast("An edit can go on when the job is done.");
     const edit::EditSnapshot* snapshot = usable_snapshot(iteration);
     if (snapshot == nullptr) return;
-    if (const int steps = edit::planned_steps(model_.request); steps <= snapshot->iteration)
+    if (const int steps = edit::planned_steps(current_recipe().request); steps <= snapshot->iteration)
         return toast(fmt::format("The edit has {} iterations: set more than {} to go on from there.", steps, snapshot->iteration));
     branch_ = *snapshot;
     if (work_.running()) work_.cancel();   // it ends after its step, and then the branch begins

@@ -117,6 +117,12 @@ std::string why_not_save(const Context& context) {
     return context.scene_open() ? std::string() : std::string("Nothing is open");
 }
 
+edit::EditRequest as_planned(const Context& context) {
+    auto request = context.request;
+    if (request.target.empty()) request.target = context.state.prompt.guessed_target;
+    return request;
+}
+
 std::string why_not_export(const Context& context, const std::string& path) {
     if (!context.scene_open()) return "Open a scene first";
     if (path.empty()) return "Type where it should be written";

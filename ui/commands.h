@@ -14,6 +14,8 @@ std::string why_not_locate(const Context& context);
 std::string why_not_edit(const Context& context);
 std::string why_not_label(const Context& context);  // there is no label, or a job runs
 std::string why_not_save(const Context& context);
+/// The request with the word that is taken to be new where none is chosen: what an edit will be.
+edit::EditRequest as_planned(const Context& context);
 std::string why_not_export(const Context& context, const std::string& path);
 
 /// How many views an edit will look from, of those there are: "24 of 63 views", "24 automatic views".

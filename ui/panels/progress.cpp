@@ -78,7 +78,7 @@ void draw_cost(Context& context) {
 }
 
 std::string why_not_branch(const Context& context, int iteration) {
-    if (const int steps = edit::planned_steps(context.request); steps <= iteration)
+    if (const int steps = edit::planned_steps(as_planned(context)); steps <= iteration)
         return fmt::format("The edit has {} iterations: set more than {} to go on from here", steps, iteration);
     return {};
 }
@@ -94,7 +94,7 @@ void ask_branch(Context& context, int iteration) {
     question.text = fmt::format("{} What came after iteration {} is given up; from there the edit goes on to iteration {} "
                                 "with the settings as they are now.",
                                 running ? "The running edit is stopped." : "The finished edit has not been applied.",
-                                iteration, edit::planned_steps(context.request));
+                                iteration, edit::planned_steps(as_planned(context)));
     question.answers = {{running ? "Stop and branch" : "Branch", true, branch},
                         {running ? "Let it work" : "Keep the result", false, {}}};
     question.pending = true;
@@ -130,7 +130,7 @@ void draw_snapshots(Context& context) {
     const std::string why = why_not_branch(context, snapshot.iteration);
     const std::string help =
         fmt::format("Goes on from iteration {} to {} with the settings as they are now.", snapshot.iteration,
-                    edit::planned_steps(context.request));
+                    edit::planned_steps(as_planned(context)));
     if (button(context, {.name = "progress.branch", .text = "Branch from here", .why_off = why, .tooltip = help}))
         ask_branch(context, snapshot.iteration);
 }

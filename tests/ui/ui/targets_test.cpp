@@ -107,6 +107,7 @@ DOCTEST_TEST_CASE("iterations are those of the method that leads the edit") {
     Harness harness({Wide, High, 1, Situation::Scene, false});
     auto& request = harness.application.model().request;
     request.method = "views";
+    request.mode = "modify";
     request.rounds = 2;
     request.fit_steps = 40;
     const int pulled = request.iterations;
@@ -120,6 +121,21 @@ DOCTEST_TEST_CASE("iterations are those of the method that leads the edit") {
     harness.frame(60);   // else two presses are a double click
     harness.drag(place, {place.x + 120, place.y});
     DOCTEST_CHECK(harness.application.model().request.iterations > pulled);
+}
+
+DOCTEST_TEST_CASE("what a sentence that nobody has clicked a word of will do says whose iterations are shown") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& request = harness.application.model().request;
+    request.source = "bear";
+    request.prompt = "a cat on the grass";   // another thing in its place
+    request.target.clear();
+    const int fit_steps = request.fit_steps, shape_fit_steps = request.shape_fit_steps;
+    harness.frame(3);
+    const auto place = harness.middle("prompt.iterations");
+    harness.drag(place, {place.x + 120, place.y});
+    const auto& now = harness.application.model().request;
+    DOCTEST_CHECK(now.shape_fit_steps > shape_fit_steps);
+    DOCTEST_CHECK(now.fit_steps == fit_steps);
 }
 
 DOCTEST_TEST_CASE("what the job has asked of the networks stands beside its time") {
