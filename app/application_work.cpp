@@ -50,12 +50,7 @@ EditRecipe Application::current_recipe() const {
     set_by_user.merge(changed_fields("attention", recipe.attention, defaults_.attention));
     if (recipe.job.threads != defaults_.job.threads) set_by_user.insert("job.threads");
     apply_profile(profile_, recipe, set_by_user);
-    auto& request = recipe.request;
-    const auto source = edit::as_told(request.source);
-    if (request.target.empty() && !source.empty()) {
-        const auto read = read_target();
-        request.target = read.empty() ? edit::guessed_target(request.prompt, source, model_.said_words) : read;
-    }
+    recipe.request = ui::with_target(std::move(recipe.request), model_.said_words, read_target());
     return recipe;
 }
 

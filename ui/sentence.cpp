@@ -18,14 +18,6 @@ std::string first_letter_up(std::string text) {
     return text;
 }
 
-/// The request with the target that the sentence implies where none is chosen.
-edit::EditRequest with_target(edit::EditRequest request, const SentenceGround& ground) {
-    const auto source = edit::as_told(request.source);
-    if (request.target.empty() && !source.empty())
-        request.target = ground.read_target.empty() ? edit::guessed_target(request.prompt, source, ground.said) : ground.read_target;
-    return request;
-}
-
 /// Words that stand, in part at least, where the text encoder has stopped reading.
 bool unread(const std::string& sentence, const std::string& phrase, const SentenceGround& ground) {
     return ground.words_read > 0 && edit::has_word(sentence, phrase) &&
@@ -52,7 +44,7 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
         return "Type what in the scene the edit is about, or click the word of the sentence that is new";
     edit::EditRequest valid;
     try {
-        valid = edit::validated(with_target(request, ground));
+        valid = edit::validated(with_target(request, ground.said, ground.read_target));
     } catch (const Error& error) {
         if (!request.source.empty() && request.target.empty())
             return "Click the word of the sentence that is new";
@@ -82,6 +74,13 @@ std::string locate_problem_of(const std::string& source, const SentenceGround& g
 }
 
 }  // namespace
+
+edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::string>& said, const std::string& read_target) {
+    const auto source = edit::as_told(request.source);
+    if (request.target.empty() && !source.empty())
+        request.target = read_target.empty() ? edit::guessed_target(request.prompt, source, said) : read_target;
+    return request;
+}
 
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground) {
     SentenceFacts facts;

@@ -30,6 +30,10 @@ struct SentenceFacts {
     std::string cut_at;          // first word that the text encoder does not read; empty = it reads all
 };
 
+/// The request with a target: the chosen one, else the one that a search has read off the scene, else the one that the
+/// sentence implies against what the scene shows already. Without a source it stays open.
+edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::string>& said, const std::string& read_target);
+
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground);
 
 /// The request that Locate runs: with a sentence that cannot be run (`problem`), the source alone is looked for.

@@ -36,27 +36,27 @@ Vec3 middle_of(const GaussianSet& set) {
     return count > 0 ? sum / count : sum;
 }
 
-/// Bytes that come back from the device some time after a frame.
-struct Readback {
-    vulkan::Buffer buffer;
-    vulkan::Device::Ticket ticket;  // null = nothing on its way
-
-    void copy(vulkan::Device& device, vk::CommandBuffer commands, const vulkan::Buffer& from,
-              std::uint64_t bytes) {
-        if (buffer.size() < bytes)
-            buffer = vulkan::Buffer(device, {.size = bytes,
-                                             .usage = vk::BufferUsageFlagBits::eTransferDst,
-                                             .home = vulkan::BufferHome::Readback,
-                                             .name = "read back"});
-        commands.copyBuffer(from.handle(), buffer.handle(), vk::BufferCopy(0, 0, bytes));
-        vulkan::full_barrier(commands);
-        ticket = device.ticket();
-    }
-};
-
 }  // namespace
 
 struct SplatRenderer::State {
+    /// Bytes that come back from the device some time after a frame.
+    struct Readback {
+        vulkan::Buffer buffer;
+        vulkan::Device::Ticket ticket;  // null = nothing on its way
+
+        void copy(vulkan::Device& device, vk::CommandBuffer commands, const vulkan::Buffer& from,
+                  std::uint64_t bytes) {
+            if (buffer.size() < bytes)
+                buffer = vulkan::Buffer(device, {.size = bytes,
+                                                 .usage = vk::BufferUsageFlagBits::eTransferDst,
+                                                 .home = vulkan::BufferHome::Readback,
+                                                 .name = "read back"});
+            commands.copyBuffer(from.handle(), buffer.handle(), vk::BufferCopy(0, 0, bytes));
+            vulkan::full_barrier(commands);
+            ticket = device.ticket();
+        }
+    };
+
     State(vulkan::Device& on, const RendererOptions& wanted)
         : device(on),
           options(wanted),

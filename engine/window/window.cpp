@@ -34,21 +34,21 @@ constexpr int UsualWidth = 1600, UsualHeight = 900;  // at scale 1
                 "work without one");
 }
 
-/// Initialises GLFW once for all windows.
-class Glfw {
-public:
-    Glfw() {
-        glfwSetErrorCallback(on_glfw_error);
-        if (glfwInit() == GLFW_FALSE) fail("the window system cannot be reached");
-    }
-    ~Glfw() { glfwTerminate(); }
-    Glfw(const Glfw&) = delete;
-    Glfw& operator=(const Glfw&) = delete;
-};
-
 }  // namespace
 
 struct Window::State {
+    /// Initialises GLFW once for all windows.
+    class Glfw {
+    public:
+        Glfw() {
+            glfwSetErrorCallback(on_glfw_error);
+            if (glfwInit() == GLFW_FALSE) fail("the window system cannot be reached");
+        }
+        ~Glfw() { glfwTerminate(); }
+        Glfw(const Glfw&) = delete;
+        Glfw& operator=(const Glfw&) = delete;
+    };
+
     /// What a frame in flight owns.
     struct Slot {
         std::uint64_t serial = 0;
