@@ -21,6 +21,7 @@
 #include "engine/pipeline/neural_loader.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/scene/label_ops.h"
+#include "ui/sentence.h"
 
 namespace gse::app {
 namespace {

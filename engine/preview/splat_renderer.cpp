@@ -319,7 +319,7 @@ Image SplatRenderer::draw_light(const FrameRequest& request) {
 std::optional<Pick> SplatRenderer::pick(int x, int y) {
     State& state = *state_;
     if (!state.shown || x < 0 || y < 0 || x >= width() || y >= height()) return std::nullopt;
-    Readback back;
+    State::Readback back;
     state.device.run([&](vk::raii::CommandBuffer& commands) {
         state.recorder.record_pick(*commands, state.plan, static_cast<std::uint32_t>(x),
                                    static_cast<std::uint32_t>(y));

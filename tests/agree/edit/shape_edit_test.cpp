@@ -135,7 +135,7 @@ struct ShapeEdit {
         located.label.bits = std::make_shared<const std::vector<std::uint8_t>>(plan.label);
         located.seeds = plan.seeds;
         const auto cameras = plan.views;
-        plan = edit::make_plan({source.scene.gaussians, cameras, no_words, request}, located, *rasterizer);
+        plan = edit::make_plan({source.scene.gaussians, cameras, no_words, request, {}}, located, *rasterizer);
     }
 
     edit::EditResult run() {

@@ -131,6 +131,7 @@ DOCTEST_TEST_CASE("a scene is learned once for the same words and settings, and 
         auto settings = app.model().model_settings;
         settings.learn_scene = learns;
         settings.learning.steps = 1;
+        settings.learning.class_images = 2;
         app.set_model_settings(settings);
         auto request = app.model().request;
         change(request);

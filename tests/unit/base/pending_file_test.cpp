@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <string>
+#include <vector>
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
@@ -128,7 +129,8 @@ DOCTEST_TEST_CASE("read-only files, folders and pipes are refused") {
 
 DOCTEST_TEST_CASE("names of 255 bytes and names that are not UTF-8 work") {
     const test::ScratchFolder folder;
-    for (const std::string& name : {std::string(251, 'n') + ".bin", std::string("b\xe4r\xff.bin")}) {
+    const std::vector<std::string> names{fmt::format("{:n>255}", ".bin"), "b\xe4r\xff.bin"};
+    for (const auto& name : names) {
         write_file(folder.path() / name, name);
         DOCTEST_CHECK(read_file(folder.path() / name) == name);
     }
