@@ -73,7 +73,18 @@ TwinBatch TwinBatchMaker::make(Random& random) const {
     const auto rows = draw_rows(random);
     TwinBatch batch;
     batch.pictures = pictures_of(rows, random);
-    batch.ids = ids_of(rows);
+    std::vector<std::string> texts, false_texts;
+    std::vector<std::int64_t> false_of;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        texts.push_back(rows[i].claim.text);
+        for (const auto& text : rows[i].false_texts) {
+            false_texts.push_back(text);
+            false_of.push_back(static_cast<std::int64_t>(i));
+        }
+    }
+    batch.ids = ids_of(texts);
+    batch.false_ids = ids_of(false_texts);
+    batch.false_of = torch::tensor(false_of, torch::kLong);
     add_relations(rows, batch);
     return batch;
 }
@@ -88,8 +99,10 @@ std::vector<TwinBatchMaker::Row> TwinBatchMaker::draw_rows(Random& random) const
         for (std::uint64_t m = 0; m < members_; ++m) {
             const std::uint64_t picture = group * members_ + m;
             // Full sentences of a group differ in nothing but what differs in the pictures.
-            rows.push_back(
-                {picture, training_.twins.claim(picture, full ? wording : random.next(), full), full});
+            const std::uint64_t seed = full ? wording : random.next();
+            rows.push_back({picture, training_.twins.claim(picture, seed, full), full, {}});
+            if (training_.parameters.false_weight > 0)
+                rows.back().false_texts = training_.twins.false_claims(picture, seed, full);
         }
     }
     return rows;
@@ -111,15 +124,15 @@ torch::Tensor TwinBatchMaker::pictures_of(const std::vector<Row>& rows, Random& 
     return torch::cat(groups);
 }
 
-torch::Tensor TwinBatchMaker::ids_of(const std::vector<Row>& rows) const {
+torch::Tensor TwinBatchMaker::ids_of(const std::vector<std::string>& texts) const {
     auto ids =
-        torch::full({static_cast<std::int64_t>(rows.size()), StarterTokenCount}, table_.eos(), torch::kLong);
+        torch::full({static_cast<std::int64_t>(texts.size()), StarterTokenCount}, table_.eos(), torch::kLong);
     auto cells = ids.accessor<std::int64_t, 2>();
-    for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t i = 0; i < texts.size(); ++i) {
         const auto row = static_cast<std::int64_t>(i);
         cells[row][0] = table_.bos();
         std::int64_t position = 1;
-        for (const auto& word : split_caption(rows[i].claim.text))
+        for (const auto& word : split_caption(texts[i]))
             if (position < StarterTokenCount - 1) cells[row][position++] = table_.id(word);
     }
     return ids;

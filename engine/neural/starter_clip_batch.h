@@ -17,6 +17,8 @@ struct TwinBatch {
     torch::Tensor ids;       // [N,T] long
     torch::Tensor
         blocked;  // [N,N] bool: sentence [column] also holds for picture [row], so is no counter-example
+    torch::Tensor false_ids;   // [M,T] long: sentences that are not true of their picture
+    torch::Tensor false_of;    // [M] long: the picture of each
     /// Changes of one picture and sentence to another of the group that can be seen.
     torch::Tensor from, to;     // [K] long
     torch::Tensor same_change;  // [K,K] bool, false on the diagonal: the two change the same words
@@ -33,10 +35,11 @@ private:
         std::uint64_t picture = 0;
         StarterClaim claim;
         bool full = false;
+        std::vector<std::string> false_texts;
     };
     std::vector<Row> draw_rows(Random& random) const;
     torch::Tensor pictures_of(const std::vector<Row>& rows, Random& random) const;
-    torch::Tensor ids_of(const std::vector<Row>& rows) const;
+    torch::Tensor ids_of(const std::vector<std::string>& texts) const;
     void add_relations(const std::vector<Row>& rows, TwinBatch& batch) const;
     bool look_alike(std::uint64_t a, std::uint64_t b) const;
 

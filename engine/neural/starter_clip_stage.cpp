@@ -1,7 +1,8 @@
 // Trains the image-text encoder: symmetric InfoNCE over pictures and sentences (Radford et al. 2021) in which
 // sentences that are true of another picture do not count against it, and the same over changes: the
 // difference of two twins' pictures must point where the difference of their sentences points (directional
-// CLIP loss, Gal et al. 2022), at right angles to changes of other things.
+// CLIP loss, Gal et al. 2022), at right angles to changes of other things. Sentences with one word replaced count against
+// a picture's own (hard negative captions, Yuksekgonul et al. 2023).
 #include <cmath>
 #include <limits>
 
@@ -27,9 +28,24 @@ double share_right(const torch::Tensor& scores, const torch::Tensor& blocked) {
     return best.eq(torch::arange(best.size(0), best.options())).to(torch::kFloat).mean().item<double>();
 }
 
+/// What the sentences with a word replaced cost, and the share of them that fit their picture less than its own.
+struct Told {
+    torch::Tensor loss;
+    double right = 0;
+};
+
+/// Cross-entropy of a picture's sentence beside each of its false ones; `own` [N] cosines of the true pairs.
+Told tell_false(const torch::Tensor& pictures, const torch::Tensor& own, const torch::Tensor& sentences,
+                const torch::Tensor& of, const torch::Tensor& scale) {
+    const auto theirs = (pictures.index_select(0, of) * sentences).sum(1);
+    const auto gap = theirs - own.index_select(0, of);
+    return {torch::softplus(scale * gap).mean(), gap.detach().lt(0).to(torch::kFloat).mean().item<double>()};
+}
+
 std::pair<torch::Tensor, std::vector<double>> batch_loss(const ClipModel& clip,
                                                          const ClipPreprocessing& preprocessing,
-                                                         const TwinBatch& batch, double direction_weight) {
+                                                         const TwinBatch& batch, const StarterTrainParameters& weights) {
+    const double direction_weight = weights.direction_weight;
     const auto device = clip->logit_scale.device();
     const auto pictures = clip->image_vectors(preprocessing.pixels(batch.pictures.to(device)));
     const auto sentences = clip->text_vectors(batch.ids.to(device));
@@ -38,6 +54,12 @@ std::pair<torch::Tensor, std::vector<double>> batch_loss(const ClipModel& clip,
     const auto blocked = batch.blocked.to(device);
     const auto agreement = contrast(scale * cosines, blocked);
     auto loss = agreement;
+    Told told{torch::Tensor(), 1};
+    if (batch.false_of.numel() > 0 && weights.false_weight > 0) {
+        told = tell_false(pictures, cosines.diagonal(), clip->text_vectors(batch.false_ids.to(device)),
+                          batch.false_of.to(device), scale);
+        loss = loss + weights.false_weight * told.loss;
+    }
     double direction = 0;
     if (batch.from.numel() > 0 && direction_weight > 0) {
         const auto from = batch.from.to(device), to = batch.to.to(device);
@@ -54,7 +76,7 @@ std::pair<torch::Tensor, std::vector<double>> batch_loss(const ClipModel& clip,
     }
     return {
         loss,
-        {loss.item<double>(), agreement.item<double>(), share_right(cosines.detach(), blocked), direction}};
+        {loss.item<double>(), agreement.item<double>(), share_right(cosines.detach(), blocked), direction, told.right}};
 }
 
 }  // namespace
@@ -71,7 +93,7 @@ void train_clip(ClipModel& clip, const ClipTraining& training, const std::filesy
     Stage stage;
     stage.name = "clip";
     stage.peak_lr = parameters.clip_lr;
-    stage.columns = {"loss", "contrast", "right", "direction"};
+    stage.columns = {"loss", "contrast", "right", "direction", "told"};
     for (auto& replica : replicas) {
         replica->to(device);
         stage.replicas.push_back(replica->parameters());
@@ -79,7 +101,7 @@ void train_clip(ClipModel& clip, const ClipTraining& training, const std::filesy
     stage.loss = [&](std::size_t r, std::int64_t step) {
         Random random =
             Random::stream(parameters.seed * 3 + 4, static_cast<std::uint64_t>(step) * replicas.size() + r);
-        return batch_loss(replicas[r], preprocessing, batches.make(random), parameters.direction_weight);
+        return batch_loss(replicas[r], preprocessing, batches.make(random), parameters);
     };
     ClipModel averaged(clip->config());
     auto averaged_parameters = averaged->parameters();

@@ -68,6 +68,8 @@ public:
     /// A true sentence. `full`: it states nearly every fact, in one form for equal seeds, so that the sentences of a
     /// group differ in nothing but what they state.
     virtual StarterClaim claim(std::uint64_t index, std::uint64_t seed, bool full) const = 0;
+    /// Sentences that are false of the picture: claim() of the same arguments with one word replaced. May be empty.
+    virtual std::vector<std::string> false_claims(std::uint64_t index, std::uint64_t seed, bool full) const = 0;
 };
 
 /// Everything that decides the result of a training run.
@@ -95,6 +97,7 @@ struct StarterTrainParameters {
     int text_width = 128;
     int clip_width = 128;
     double direction_weight = 0.5;
+    double false_weight = 1;
     double grounding_weight = 0.1;
     double spread_weight = 0.03;
     double insertion_share = 0.3;
@@ -136,6 +139,9 @@ struct StarterTrainParameters {
         f("clip_width", self.clip_width, "Width of the image encoder of the image-text encoder.", Range{32, 1024});
         f("direction_weight", self.direction_weight,
           "Weight of the loss that makes picture changes point where sentence changes point.", Range{0, 10});
+        f("false_weight", self.false_weight,
+          "Weight of the loss that tells a sentence from the same with one word replaced, in the image-text encoder.",
+          Range{0, 10});
         f("grounding_weight", self.grounding_weight,
           "Weight of the loss that makes the words of a part attend to that part.", Range{0, 10});
         f("spread_weight", self.spread_weight, "Weight of the loss that spreads each word evenly over its part.",

@@ -111,11 +111,11 @@ void change_accessory(SceneSpec& spec, Random& random) {
 void change_one_thing(SceneSpec& spec, Random& random) {
     const auto& colours = synth::accessory_colour_words(spec.accessory);
     const double kind = random.uniform();
-    if (!spec.accessory.empty() && kind < 0.3 && !colours.empty()) {
+    if (!spec.accessory.empty() && kind < 0.2 && !colours.empty()) {
         spec.accessory_colour = other(colours, spec.accessory_colour, random);
-    } else if (!spec.accessory.empty() && kind < 0.5) {
+    } else if (!spec.accessory.empty() && kind < 0.45) {
         change_accessory(spec, random);
-    } else if (kind < 0.75) {
+    } else if (kind < 0.55) {
         spec.ground = other(synth::ground_words(), spec.ground, random);
     } else {
         spec.object = other(synth::object_words(), spec.object, random);
@@ -161,6 +161,21 @@ TwinShot make_twin_shot(std::uint64_t seed, std::uint64_t index) {
     return shot;
 }
 
+neural::StarterClaim claim_of(const SceneSpec& spec, double azimuth, std::uint64_t seed, bool full) {
+    Random random(seed);
+    if (!full) {
+        const auto caption = synth::random_caption(spec, azimuth, random);
+        return {caption.text, claimed_by(caption)};
+    }
+    SceneSpec told = spec;
+    if (random.uniform() < PlainShare) told.accessory_colour.clear();
+    auto caption = synth::full_caption(told);
+    if (random.uniform() < ViewShare) caption.text += ", " + synth::view_words(azimuth);
+    // A full sentence that names no accessory says that there is none.
+    const std::uint64_t none = spec.accessory.empty() ? fact_table().bit("accessory", "") : 0;
+    return {caption.text, claimed_by(caption) | none};
+}
+
 class SyntheticTwins : public neural::StarterTwins {
 public:
     explicit SyntheticTwins(std::uint64_t seed) : seed_(seed) {}
@@ -187,7 +202,7 @@ public:
         return {claim(index, seed, false).text, {}};
     }
     std::vector<std::string> vocabulary() const override { return synth::vocabulary(); }
-    std::string identity() const override { return "synthetic-twins-1 " + std::to_string(seed_); }
+    std::string identity() const override { return "synthetic-twins-2 " + std::to_string(seed_); }
 
     int group_size() const override { return GroupSize; }
     std::uint64_t facts(std::uint64_t index) const override {
@@ -196,18 +211,27 @@ public:
     }
     neural::StarterClaim claim(std::uint64_t index, std::uint64_t seed, bool full) const override {
         const TwinShot shot = make_twin_shot(seed_, index);
-        Random random(seed);
-        if (!full) {
-            const auto caption = synth::random_caption(shot.spec, shot.azimuth, random);
-            return {caption.text, claimed_by(caption)};
-        }
-        SceneSpec told = shot.spec;
-        if (random.uniform() < PlainShare) told.accessory_colour.clear();
-        auto caption = synth::full_caption(told);
-        if (random.uniform() < ViewShare) caption.text += ", " + synth::view_words(shot.azimuth);
-        // A full sentence that names no accessory says that there is none.
-        const std::uint64_t none = shot.spec.accessory.empty() ? fact_table().bit("accessory", "") : 0;
-        return {caption.text, claimed_by(caption) | none};
+        return claim_of(shot.spec, shot.azimuth, seed, full);
+    }
+    std::vector<std::string> false_claims(std::uint64_t index, std::uint64_t seed, bool full) const override {
+        const TwinShot shot = make_twin_shot(seed_, index);
+        const std::uint64_t truth = facts_of(shot.spec, shot.azimuth);
+        const std::string own = claim_of(shot.spec, shot.azimuth, seed, full).text;
+        Random random = Random::stream(seed, index);
+        std::vector<std::string> texts;
+        const auto take = [&](const SceneSpec& spec, double azimuth) {
+            if (synth::held_out(spec)) return;   // never said to be false: it is to be known
+            auto claim = claim_of(spec, azimuth, seed, full);
+            if ((claim.facts & ~truth) != 0 && claim.text != own) texts.push_back(std::move(claim.text));
+        };
+        SceneSpec spec = shot.spec;
+        spec.object = other(synth::object_words(), shot.spec.object, random);
+        take(spec, shot.azimuth);
+        spec = shot.spec;
+        change_accessory(spec, random);
+        take(spec, shot.azimuth);
+        take(shot.spec, shot.azimuth + std::numbers::pi * random.uniform(0.4, 1.6));   // seen from another side
+        return texts;
     }
 
 private:

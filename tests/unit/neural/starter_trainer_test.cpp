@@ -46,6 +46,9 @@ public:
     StarterClaim claim(std::uint64_t index, std::uint64_t, bool) const override {
         return {std::string("a ") + ToyColours[colour_of(index)] + " square", facts(index)};
     }
+    std::vector<std::string> false_claims(std::uint64_t index, std::uint64_t, bool) const override {
+        return {std::string("a ") + ToyColours[(colour_of(index) + 1) % 3] + " square"};
+    }
 
 private:
     static int colour_of(std::uint64_t index) {
@@ -261,6 +264,7 @@ DOCTEST_TEST_CASE("training lowers every loss on the toy world") {
     const auto clip = scratch.path() / "work/clip.tsv";
     DOCTEST_CHECK(column(clip, 5).back() < column(clip, 5).front());   // contrast
     DOCTEST_CHECK(column(clip, 7).back() > 0.5);                       // direction
+    DOCTEST_CHECK(column(clip, 8).back() > 0.8);                       // a sentence told from the same with another word
 }
 
 DOCTEST_TEST_CASE("every word of a vocabulary becomes one token") {

@@ -1,0 +1,32 @@
+// Twin pictures of the image-text encoder: true and false sentences.
+#include <doctest/doctest.h>
+
+#include <set>
+#include <string>
+
+#include "engine/edit/words.h"
+#include "engine/training/starter_twins.h"
+
+using namespace gse;
+
+DOCTEST_TEST_CASE("false sentences of a twin differ from its true one, and are of its wording") {
+    const auto twins = training::make_starter_twins(3);
+    std::size_t told = 0;
+    for (std::uint64_t index = 0; index < 120; ++index) {
+        const auto own = twins->claim(index, index, true);
+        DOCTEST_CHECK((own.facts & ~twins->facts(index)) == 0);
+        const auto words = edit::words_of(own.text);
+        const std::set<std::string> mine(words.begin(), words.end());
+        for (const auto& text : twins->false_claims(index, index, true)) {
+            DOCTEST_CAPTURE(own.text);
+            DOCTEST_CAPTURE(text);
+            DOCTEST_CHECK(text != own.text);
+            std::size_t other = 0;
+            for (const auto& word : edit::words_of(text)) other += mine.contains(word) ? 0 : 1;
+            // Of what replaces an accessory: its name, its colour, "wearing a" or "with"; of another thing one word.
+            DOCTEST_CHECK(other <= 4);
+            ++told;
+        }
+    }
+    DOCTEST_CHECK(told > 120);   // an object at least, of every picture but where the pair is held out
+}
