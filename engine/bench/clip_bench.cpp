@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/base/error.h"
+#include "engine/edit/front_reading.h"
 #include "engine/evaluate/direction.h"
 #include "engine/synth/synth.h"
 
@@ -18,6 +19,7 @@ using synth::SceneSpec;
 using Vector = std::vector<float>;
 
 constexpr double FrontLimit = 1.2;  // radians: views on which faces and accessories are seen
+constexpr int FrontViews = 12;      // in which a front is looked for
 constexpr float NoiseOfNoChange = 2.0f / 255;
 
 const std::string& other(const std::vector<std::string>& words, const std::string& than, Random& random) {
@@ -54,10 +56,21 @@ struct Directions {
     }
 };
 
+/// The score for somebody who wants to own one.
+class Borrowed final : public edit::TextImageScore {
+public:
+    explicit Borrowed(edit::TextImageScore& score) : score_(score) {}
+    std::vector<float> image(const Image& image) override { return score_.image(image); }
+    std::vector<float> text(const std::string& sentence) override { return score_.text(sentence); }
+
+private:
+    edit::TextImageScore& score_;
+};
+
 class ClipBench {
 public:
     ClipBench(edit::TextImageScore& score, const ClipBenchParameters& parameters, const JobControl& job)
-        : score_(score), parameters_(parameters), job_(job) {}
+        : score_(score), recognition_(std::make_unique<Borrowed>(score), {}), parameters_(parameters), job_(job) {}
 
     Json run() {
         for (int i = 0; i < parameters_.scenes; ++i) {
@@ -65,11 +78,13 @@ public:
             Random random = Random::stream(parameters_.seed, static_cast<std::uint64_t>(i));
             ask_words(random);
             compare_changes(random);
+            ask_front(random);
             job_.report("measuring the encoder", i + 1, parameters_.scenes);
         }
         Json report;
         for (const auto& [kind, tally] : tallies_) report["retrieval"][kind] = tally.to_json();
         for (const auto& [kind, directions] : directions_) report["direction"][kind] = directions.to_json();
+        report["fronts"] = fronts_;
         return report;
     }
 
@@ -196,10 +211,30 @@ private:
         note("no change: noise, asked for an accessory", direction(seen, noisy, bare, worn));
     }
 
+    /// Which side of a scene is its front, from views all around that begin anywhere.
+    void ask_front(Random& random) {
+        const SceneSpec spec = synth::held_out_spec(random, 0.5);
+        const double begin = random.uniform(-std::numbers::pi, std::numbers::pi);
+        std::vector<Image> pictures;
+        std::vector<double> azimuths;
+        for (int v = 0; v < FrontViews; ++v) {
+            azimuths.push_back(2 * std::numbers::pi * v / FrontViews);
+            pictures.push_back(paint(spec, azimuths.back() - begin, 0.35));
+        }
+        const auto read = edit::read_front(recognition_, synth::full_caption(spec).text, pictures, azimuths);
+        const double error = std::abs(std::remainder(read.azimuth - begin, 2 * std::numbers::pi));
+        auto& tally = tallies_["front within 45 degrees"];
+        ++tally.asked;
+        tally.right += error < std::numbers::pi / 4 ? 1 : 0;
+        fronts_.push_back({{"sentence", synth::full_caption(spec).text}, {"off_degrees", error * 180 / std::numbers::pi}, {"lead", read.lead}});
+    }
+
     edit::TextImageScore& score_;
+    edit::Recognition recognition_;
     const ClipBenchParameters& parameters_;
     const JobControl& job_;
     pipeline::Painter painter_{1};
+    Json fronts_ = Json::array();
     std::map<std::string, Tally> tallies_;
     std::map<std::string, Directions> directions_;
 };

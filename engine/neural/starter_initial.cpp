@@ -27,6 +27,12 @@ Config read_config(const std::filesystem::path& path) {
     return Config::from_json(read_json_file(path), path);
 }
 
+void expect_words(const std::filesystem::path& folder, const StarterVocabulary& vocabulary) {
+    if (read_json_file(folder / "tokenizer/vocab.json") != parse_json<Json>(vocabulary.vocab_json, "the vocabulary"))
+        throw Error(ErrorCode::InvalidArgument, "the initial model knows other words than this run trains",
+                    StructureHint, folder / "tokenizer/vocab.json");
+}
+
 bool same_weights(torch::nn::Module& one, torch::nn::Module& other) {
     const auto a = one.parameters(), b = other.parameters();
     return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -54,6 +60,16 @@ StarterParts fresh_parts(const StarterConfigs& configs, std::uint64_t seed) {
     return parts;
 }
 
+ClipModel initial_clip(const std::filesystem::path& folder, const ClipConfig& config, const StarterVocabulary& vocabulary) {
+    ClipModel clip(config);
+    const auto weights = folder / "clip/model.safetensors";
+    if (folder.empty() || !std::filesystem::exists(weights)) return clip;
+    expect_same(read_config<ClipConfig>(folder / "clip/config.json").to_json(), config.to_json(), folder / "clip/config.json");
+    expect_words(folder, vocabulary);
+    fill(clip, weights, clip_plan());
+    return clip;
+}
+
 StarterParts initial_parts(const std::filesystem::path& folder, const StarterConfigs& configs,
                            const StarterVocabulary& vocabulary) {
     auto vae = read_config<VaeConfig>(folder / "vae/config.json");
@@ -63,9 +79,7 @@ StarterParts initial_parts(const std::filesystem::path& folder, const StarterCon
                 configs.text.to_json(), folder / "text_encoder/config.json");
     expect_same(read_config<UNetConfig>(folder / "unet/config.json").to_json(), configs.unet.to_json(),
                 folder / "unet/config.json");
-    if (read_json_file(folder / "tokenizer/vocab.json") != parse_json<Json>(vocabulary.vocab_json, "the vocabulary"))
-        throw Error(ErrorCode::InvalidArgument, "the initial model knows other words than this run trains",
-                    StructureHint, folder / "tokenizer/vocab.json");
+    expect_words(folder, vocabulary);
     StarterParts parts = fresh_parts(configs, 0);
     fill(parts.vae, folder / "vae/diffusion_pytorch_model.safetensors", vae_plan(false));
     fill(parts.networks.text, folder / "text_encoder/model.safetensors", text_encoder_plan());

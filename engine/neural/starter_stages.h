@@ -47,6 +47,9 @@ StarterParts fresh_parts(const StarterConfigs& configs, std::uint64_t seed);
 StarterParts initial_parts(const std::filesystem::path& folder, const StarterConfigs& configs,
                            const StarterVocabulary& vocabulary);
 
+/// The image-text encoder of a starter folder, or fresh weights where it has none. Throws Error as initial_parts() does.
+ClipModel initial_clip(const std::filesystem::path& folder, const ClipConfig& config, const StarterVocabulary& vocabulary);
+
 /// Replaces the text encoder and UNet by their mean with another's: the ends of two runs with falling learning rates lie on
 /// the rim of one basin, their mean within (stochastic weight averaging, Izmailov et al. 2018). Throws Error when the other's
 /// VAE is not the same: its UNet would speak of other latents.

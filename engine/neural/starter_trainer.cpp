@@ -96,7 +96,7 @@ void add_clip(const StarterTrainParameters& parameters, const StarterSource& sou
     const auto pictures = load_or_render_pictures(twin_parameters, *source.twins(), work, job);
     const auto vocabulary = build_vocabulary(source.vocabulary());
     torch::manual_seed(parameters.seed + 2);
-    ClipModel clip(starter_configs(parameters, vocabulary).clip);
+    ClipModel clip = initial_clip(parameters.initial, starter_configs(parameters, vocabulary).clip, vocabulary);
     train_clip(clip, {parameters, pictures, *source.twins(), vocabulary}, work, job);
     export_clip(clip, folder);
 }

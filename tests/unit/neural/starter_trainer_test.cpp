@@ -182,6 +182,13 @@ DOCTEST_TEST_CASE("a run goes on from a finished model and keeps the parts it ha
     DOCTEST_CHECK(unchanged(scratch.path() / "tuned", "vae/config.json"));
     DOCTEST_CHECK(!unchanged(scratch.path() / "tuned", "unet/diffusion_pytorch_model.safetensors"));
     DOCTEST_CHECK(!unchanged(scratch.path() / "tuned", "text_encoder/model.safetensors"));
+
+    // The image-text encoder too begins where it had come to.
+    parameters.unet_steps = 0;
+    parameters.clip_steps = 1;
+    parameters.clip_lr = 0;
+    train_starter(parameters, source, scratch.path() / "work4", scratch.path() / "same", {});
+    DOCTEST_CHECK(unchanged(scratch.path() / "same", "clip/model.safetensors"));
 }
 
 DOCTEST_TEST_CASE("two models trained from one another are averaged, weight by weight") {

@@ -1,0 +1,66 @@
+// Two-way centred cosines of pictures and side words, compared for fronts all around.
+#include "engine/edit/front_reading.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/check.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr double Pi = std::numbers::pi;
+constexpr int Fronts = 72;   // that are tried
+constexpr double FrontLimit = 50 * Pi / 180, BackLimit = 130 * Pi / 180;   // as far as one says "front view", from where "back view"
+const std::array<std::string, 3> Sides{"front view", "side view", "back view"};
+
+std::size_t side_at(double azimuth) {
+    const double turned = std::abs(std::remainder(azimuth, 2 * Pi));
+    return turned < FrontLimit ? 0 : turned > BackLimit ? 2 : 1;
+}
+
+/// [pictures][sides], with mean zero over each picture and over each side.
+std::vector<std::array<double, 3>> centred_fits(Recognition& recognition, const std::string& sentence, const std::vector<Image>& pictures) {
+    std::vector<std::array<double, 3>> fits(pictures.size());
+    std::array<double, 3> of_side{};
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        double mean = 0;
+        for (std::size_t s = 0; s < Sides.size(); ++s) mean += fits[i][s] = recognition.fit(sentence + ", " + Sides[s], {&pictures[i]});
+        for (std::size_t s = 0; s < Sides.size(); ++s) of_side[s] += fits[i][s] -= mean / 3;
+    }
+    for (auto& fit : fits)
+        for (std::size_t s = 0; s < Sides.size(); ++s) fit[s] -= of_side[s] / static_cast<double>(pictures.size());
+    return fits;
+}
+
+}  // namespace
+
+std::string view_words(double azimuth) { return Sides[side_at(azimuth)]; }
+
+FrontReading read_front(Recognition& recognition, const std::string& sentence, const std::vector<Image>& pictures,
+                        const std::vector<double>& azimuths) {
+    GSE_CHECK(pictures.size() >= 3);
+    GSE_CHECK_EQ(pictures.size(), azimuths.size());
+    const auto fits = centred_fits(recognition, sentence, pictures);
+    std::array<double, Fronts> total{};
+    for (int f = 0; f < Fronts; ++f) {
+        const double front = 2 * Pi * f / Fronts;
+        for (std::size_t i = 0; i < pictures.size(); ++i) total[static_cast<std::size_t>(f)] += fits[i][side_at(azimuths[i] - front)];
+        total[static_cast<std::size_t>(f)] /= static_cast<double>(pictures.size());
+    }
+    // Neighbours that fit alike have one front in their middle, where the sum over 60 degrees is largest.
+    FrontReading best;
+    double most = -1e300;
+    for (int f = 0; f < Fronts; ++f) {
+        double around = 0;
+        for (int d = -Fronts / 12; d <= Fronts / 12; ++d) around += total[static_cast<std::size_t>((f + d + Fronts) % Fronts)];
+        if (around <= most) continue;
+        most = around;
+        best.azimuth = std::remainder(2 * Pi * f / Fronts, 2 * Pi);
+        best.lead = total[static_cast<std::size_t>(f)] - total[static_cast<std::size_t>((f + Fronts / 2) % Fronts)];
+    }
+    return best;
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,25 @@
+// From where a scene shows its front, by the model's own picture encoder.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/edit/recognition.h"
+
+namespace gse::edit {
+
+/// "front view", "side view" or "back view" of a camera at an azimuth (radians, 0 = front).
+std::string view_words(double azimuth);
+
+struct FrontReading {
+    double azimuth = 0;   // of the cameras that see the front, radians in [-pi, pi)
+    double lead = 0;      // how much better the pictures fit it than its opposite: mean difference of cosines
+};
+
+/// The azimuth with which the words for the sides fit the pictures best. A picture may like all words more than another
+/// does, and a word all pictures: only what is left without either counts. `recognition` compares(); `sentence`: what the
+/// scene shows, without such words; `pictures`: three at least, all around, each seen at its entry of `azimuths` (radians).
+FrontReading read_front(Recognition& recognition, const std::string& sentence, const std::vector<Image>& pictures,
+                        const std::vector<double>& azimuths);
+
+}  // namespace gse::edit
