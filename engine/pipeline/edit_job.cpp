@@ -112,7 +112,7 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
     check_length();
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});
-    if (!recipe_.job.front.empty()) parse_front(recipe_.job.front);
+    parse_front(recipe_.job.front);
 }
 
 /// The text encoder has so many places; what stands behind them has no effect.

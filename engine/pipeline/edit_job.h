@@ -96,6 +96,8 @@ public:
     std::optional<neural::TunedModel> tuned() const;
     /// "front view" and so on per view, or empty.
     const std::vector<std::string>& view_words() const { return views_->words; }
+    /// Azimuth of the front, radians, where it was read off the pictures.
+    std::optional<double> front_read() const { return views_->front_read; }
     /// How views are rendered.
     raster::Settings render_settings() const { return pipeline::render_settings(scene(), recipe_.request); }
     /// The recipe's prompt as the model is told it.

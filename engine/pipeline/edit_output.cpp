@@ -160,6 +160,7 @@ void add_search(nlohmann::ordered_json& report, const EditJob& job) {
     report["mode_reason"] = located.reason;
     report["word"] = located.word;
     report["views"] = job.views().size();
+    if (job.front_read()) report["front_read"] = *job.front_read() / Degree;
     report["failed_views"] = located.failed_views;
     report["confidence"] = nullptr;   // nothing was looked for
     if (confidence.value >= 0) {

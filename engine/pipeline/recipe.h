@@ -49,7 +49,8 @@ struct JobParameters {
         f("threads", self.threads, "Threads of the networks; small ones gain nothing from more. Another number may round differently.", Range{1, 256});
         f("up", self.up, "World up: auto, x, y, z, -x, -y or -z.");
         f("front", self.front,
-          "Azimuth in degrees from which the scene shows its front; lets the model be told \"front view\" and so on.");
+          "Azimuth in degrees from which the scene shows its front; the model is told \"front view\" and so on. Empty = read off the "
+          "scene where the model's encoder can tell; \"none\" = not told.");
         f("use_label", self.use_label,
           "What the scene's label column marks may change; nothing is looked for, and the source may be any word.");
         f("turntable_size", self.turntable_size, "Side of each half of the before/after film in pixels.",

@@ -10,6 +10,7 @@
 #include "engine/base/check.h"
 #include "engine/base/hash.h"
 #include "engine/base/log.h"
+#include "engine/edit/front_reading.h"
 #include "engine/edit/relation.h"
 #include "engine/edit/scene_reading.h"
 #include "engine/edit/vocabulary.h"
@@ -20,6 +21,8 @@ namespace {
 
 constexpr std::array<double, 5> ScanDistances{1.0, 0.7, 0.45, 0.3, 0.22};   // of the fitted orbit's radius
 constexpr int ScanViews = 6;                // per distance
+constexpr double LeastLead = 0;             // of a front over its opposite, from which it is believed
+constexpr std::size_t FrontViews = 12;      // in which the front of a scene is looked for
 
 /// What is added needs room around what is there; beside it more than on it.
 double room_around(const edit::EditRequest& request) {
@@ -96,6 +99,22 @@ private:
         distances_ = std::move(worth);
     }
 
+    /// The views with the front that their pictures show, where the recipe leaves it open and the model's encoder can tell.
+    Views faced(Views views) {
+        auto& recognition = workplace_.recognition();
+        if (!recipe_.job.front.empty() || !views.words.empty() || !recognition.compares() ||
+            !edit::knows(workplace_.model().known_words(), "front side back view"))
+            return views;
+        const auto some = farthest_views(views.views, FrontViews);
+        if (some.size() < 3) return views;
+        std::vector<double> azimuths;
+        for (const auto& view : some) azimuths.push_back(azimuth_of(view.camera, views.orbit));
+        const auto pictures = workplace_.pictures(some, render_settings(workplace_.scene(), recipe_.request), control_);
+        const auto read = edit::read_front(recognition, edit::sentence_before(recipe_.request), pictures, azimuths);
+        log::info("the front is seen at {:.0f} degrees (lead {:.4f})", read.azimuth / Degree, read.lead);
+        return read.lead < LeastLead ? views : facing(std::move(views), read.azimuth, recipe_);
+    }
+
     edit::LocateResult look(const EditRecipe& recipe, const Views& views, const std::vector<std::uint8_t>& label) {
         return edit::locate(question(workplace_, recipe, views, label.empty() ? nullptr : &label), workplace_.tools(views, control_));
     }
@@ -143,19 +162,20 @@ private:
         const bool adds = edit::decide_mode(recipe_.request, std::nullopt).first == edit::EditMode::Add;
         const auto focused = focused_on(glance.result.label, adds, glance.orbit);
         const bool moves = localize::worth_refocusing(glance.orbit, focused);
-        const Views views = views_on(moves ? focused : glance.orbit, recipe_);
+        const Views views = faced(views_on(moves ? focused : glance.orbit, recipe_));
         return {views, recipe_, {}, look(recipe_, views, {}), target_read_, {}};
     }
 
     /// Looks from the views as they are, and once more from nearer where what was found is small.
-    Located moved_in(const Views& views, const std::vector<std::uint8_t>& by_hand) {
+    Located moved_in(const Views& from, const std::vector<std::uint8_t>& by_hand) {
+        const Views views = faced(from);
         Located located{views, recipe_, by_hand, look(recipe_, views, by_hand), target_read_, {}};
         const auto& result = located.result;
         const auto& label = result.mode == edit::EditMode::Add ? result.source_label : result.label;
         if (!moves() || std::find(label.bits->begin(), label.bits->end(), std::uint8_t{1}) == label.bits->end()) return located;
         const auto focused = focused_on(label, result.mode == edit::EditMode::Add, views.orbit);
         if (!localize::worth_refocusing(views.orbit, focused)) return located;
-        located.views = views_on(focused, recipe_);
+        located.views = faced(views_on(focused, recipe_));
         located.result = look(recipe_, located.views, by_hand);
         return located;
     }

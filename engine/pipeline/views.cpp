@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/hash.h"
+#include "engine/edit/front_reading.h"
 
 namespace gse::pipeline {
 namespace {
@@ -25,24 +26,11 @@ Camera square_camera(const Camera& camera, int side) {
     return result;
 }
 
-std::string words_for_azimuth(double azimuth) {
-    const double turned = std::abs(std::remainder(azimuth, 2 * std::numbers::pi));
-    return turned < 50 * Degree ? "front view" : turned > 130 * Degree ? "back view" : "side view";
-}
-
 /// Level unit direction from the orbit's centre to its camera at `azimuth`.
 Vec3 direction_at(const OrbitParameters& orbit, double azimuth) {
     OrbitParameters level = orbit;
     level.elevation = 0;
     return normalized(orbit_camera(level, azimuth, 8, 8).centre() - orbit.centre);
-}
-
-/// Azimuth from which a camera sees the orbit's centre, in the convention of orbit_camera.
-double azimuth_of(const Camera& camera, const OrbitParameters& orbit) {
-    const Vec3 front = direction_at(orbit, 0);
-    const Vec3 side = cross(normalized(orbit.up), front);
-    const Vec3 direction = camera.centre() - orbit.centre;
-    return std::atan2(dot(direction, side), dot(direction, front));
 }
 
 /// What the renders of the views follow from, beside the scene.
@@ -66,19 +54,34 @@ std::string key_of(const Views& views, const EditRecipe& recipe) {
 
 /// Fills in what follows from cameras and orbit.
 Views finished(Views views, const EditRecipe& recipe, const std::map<std::string, std::string>& words) {
-    const double front = recipe.job.front.empty() ? 0 : parse_front(recipe.job.front);
-    views.front = direction_at(views.orbit, front);
+    const auto front = parse_front(recipe.job.front);
+    views.front = direction_at(views.orbit, front.value_or(0));
     for (const auto& view : views.views) {
         if (!words.empty())
             views.words.push_back(words.at(view.name));
-        else if (!recipe.job.front.empty())
-            views.words.push_back(words_for_azimuth(azimuth_of(view.camera, views.orbit) - front));
+        else if (front)
+            views.words.push_back(edit::view_words(azimuth_of(view.camera, views.orbit) - *front));
     }
     views.key = key_of(views, recipe);
     return views;
 }
 
 }  // namespace
+
+double azimuth_of(const Camera& camera, const OrbitParameters& orbit) {
+    const Vec3 front = direction_at(orbit, 0);
+    const Vec3 side = cross(normalized(orbit.up), front);
+    const Vec3 direction = camera.centre() - orbit.centre;
+    return std::atan2(dot(direction, side), dot(direction, front));
+}
+
+Views facing(Views views, double front, const EditRecipe& recipe) {
+    views.front = direction_at(views.orbit, front);
+    views.front_read = front;
+    views.words = words_around(views);
+    views.key = key_of(views, recipe);
+    return views;
+}
 
 std::vector<View> farthest_views(const std::vector<View>& views, std::size_t count) {
     if (views.size() <= count) return views;
@@ -102,12 +105,13 @@ std::vector<std::string> words_around(const Views& views) {
     std::vector<std::string> words;
     for (const auto& view : views.views) {
         const Vec3 direction = view.camera.centre() - views.orbit.centre;
-        words.push_back(words_for_azimuth(std::atan2(dot(direction, side), dot(direction, views.front))));
+        words.push_back(edit::view_words(std::atan2(dot(direction, side), dot(direction, views.front))));
     }
     return words;
 }
 
-double parse_front(const std::string& text) {
+std::optional<double> parse_front(const std::string& text) {
+    if (text.empty() || text == "none") return std::nullopt;
     std::size_t used = 0;
     double value = 0;
     try {
@@ -116,7 +120,7 @@ double parse_front(const std::string& text) {
         used = 0;
     }
     if (used == 0 || used != text.size() || !std::isfinite(value))
-        throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not an angle", "give --front in degrees, for example 0");
+        throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not an angle", "give --front in degrees, for example 0, or none");
     return value * Degree;
 }
 

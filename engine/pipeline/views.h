@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct Views {
     std::vector<std::string> words;   // "front view" and so on per view, or empty
     OrbitParameters orbit;            // that they lie on; for given cameras, the one fitted to the scene
     Vec3 front;                       // where the scene's front looks, world, unit length
+    std::optional<double> front_read; // azimuth of the front on the orbit, radians, where the pictures said it
     bool automatic = false;           // on an orbit of the program's own choice: a search may move it
     std::string key;                  // of cameras, words, background and size: views with the same key show the same of a scene
 };
@@ -36,14 +38,20 @@ Views views_on(const OrbitParameters& orbit, const EditRecipe& recipe);
 /// "front view" and so on of every view, with the front where `views.front` looks.
 std::vector<std::string> words_around(const Views& views);
 
+/// The same views of a scene whose front is seen from an azimuth of their orbit (radians), with words for what each sees.
+Views facing(Views views, double front, const EditRecipe& recipe);
+
+/// Azimuth from which a camera sees the orbit's centre, radians in the convention of orbit_camera.
+double azimuth_of(const Camera& camera, const OrbitParameters& orbit);
+
 /// The same orbit at a share of its radius.
 OrbitParameters nearer(OrbitParameters orbit, double share);
 
 /// Farthest-point sample of the cameras (method X9), first camera first, in the order of the file.
 std::vector<View> farthest_views(const std::vector<View>& views, std::size_t count);
 
-/// --front in radians. Throws Error (InvalidArgument).
-double parse_front(const std::string& text);
+/// --front in radians; nothing where it is left open or "none". Throws Error (InvalidArgument).
+std::optional<double> parse_front(const std::string& text);
 
 /// How views of a scene are rendered for a run.
 raster::Settings render_settings(const Scene& scene, const edit::EditRequest& request);
