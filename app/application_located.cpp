@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/application.h"
 #include "engine/base/error.h"
@@ -104,7 +105,8 @@ void Application::show_located(const EditJob& job) {
     model_.attention = std::move(views);
     model_.attention_word = located.word;
     model_.attention_mode = fmt::format("{}: {}", edit::mode_name(located.mode), located.reason);
-    model_.search = {model_.search.number + 1, located.confidence, located.problem, located.message, located.remedy};
+    model_.search = {model_.search.number + 1, located.confidence, located.problem, located.message, located.remedy, {}};
+    if (const auto front = job.front_read()) model_.search.front = std::fmod(std::round(*front / pipeline::Degree) + 360, 360);
     model_.attention_threshold = job.attention_threshold();
     relabelled_threshold_ = job.recipe().request.attention_threshold;
     ++content_;

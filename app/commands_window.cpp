@@ -190,6 +190,7 @@ private:
         state["method"] = model.request.method;
         state["search"] = {{"number", model.search.number},   {"confidence", model.search.confidence.value},
                            {"message", model.search.message}, {"remedy", model.search.remedy}};
+        if (model.search.front) state["search"]["front"] = *model.search.front;
         state["job"] = {{"running", model.job.running}, {"paused", model.job.paused},   {"title", model.job.title},
                         {"stage", model.job.stage},     {"step", model.job.step},       {"outcome", model.job.outcome},
                         {"error", model.job.error}};

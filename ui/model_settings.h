@@ -32,7 +32,7 @@ struct ModelSettings {
         f("device", self.device, "Where the networks run: cpu, or cuda where there is one.");
         f("precision", self.precision, "Numbers the UNet computes in: fp32, bf16, or auto: bf16 where a large model was measured to be faster with it.");
         f("threads", self.threads, "Threads of the networks; small ones gain nothing from more. Another number may round differently.", Range{1, 256});
-        f("front", self.front, "Direction in degrees from which the scene shows its front (0, 90, -45.5); the model is then told which view is the front. Empty = not known.");
+        f("front", self.front, "Direction in degrees from which the scene shows its front (0, 90, -45.5); the model is then told which view is the front. Empty = read off the scene where the model can tell; none = not told.");
     }
     /// Calls f(name, part) for the parts with fields of their own.
     template <class Self, class F>

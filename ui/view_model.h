@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -124,6 +125,7 @@ struct SearchView {
     edit::Confidence confidence;
     edit::SearchProblem problem = edit::SearchProblem::None;
     std::string message, remedy;                 // of the problem
+    std::optional<double> front;                 // azimuth in degrees, [0, 360), where the pictures said it
 };
 
 /// A place where a model was looked for.

@@ -211,6 +211,18 @@ void draw_confidence(Context& context) {
     tooltip(parts);
 }
 
+/// Which side of the scene the model takes for its front, where it was read off the scene.
+void draw_front(Context& context) {
+    const auto& front = context.model.search.front;
+    if (!front) return;
+    const std::string text = fmt::format("front at {:.0f}°", *front);
+    flow(ImGui::CalcTextSize(text.c_str()).x + context.em);
+    badge(context, text, palette::TextDim);
+    note(context, "attention.front");
+    tooltip("The side from which the scene shows its front, as the pictures have it: the model is told which view is a front, side or "
+            "back view.\nWhere that is wrong, set Front in Settings, in degrees, or none.");
+}
+
 /// Word, mode and how many views vote.
 void draw_summary(Context& context) {
     const auto& views = context.model.attention;
@@ -222,6 +234,7 @@ void draw_summary(Context& context) {
     ImGui::TextUnformatted(shortened(votes, ImGui::GetContentRegionAvail().x).c_str());
     tooltip(context.model.attention_mode);
     draw_confidence(context);
+    draw_front(context);
     draw_problem(context);
 }
 

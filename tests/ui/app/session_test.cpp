@@ -59,6 +59,8 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         const auto active = static_cast<std::size_t>(app.document().state().active_label);
         DOCTEST_REQUIRE(active < app.document().state().labels.size());
         DOCTEST_CHECK(app.document().state().labels[active].name == "bear");
+        DOCTEST_REQUIRE(app.model().search.front);
+        DOCTEST_CHECK(std::abs(std::remainder(*app.model().search.front, 360)) < 45);   // the bear looks at the first view
         DOCTEST_CHECK(*app.document().state().labels[active].bits == *same.located().label.bits);
         const auto searches = app.model().search.number;
         const auto found = count_labelled(app.document().state().labels[active]);

@@ -107,6 +107,7 @@ FakeApplication::FakeApplication(Situation situation)
     if (situation != Situation::Scene) {
         model_.search.number = 1;
         model_.search.confidence = {0.74, 0.81, 0.68, 0.22};
+        model_.search.front = 345;
     }
     if (situation == Situation::Failed) {
         model_.search.confidence.value = 0.21;

@@ -150,6 +150,7 @@ DOCTEST_TEST_CASE("a search that labelled nothing shows its pictures and the way
     DOCTEST_REQUIRE(harness.find("panel.Attention") != nullptr);   // it came to the front by itself
     DOCTEST_CHECK(harness.find("attention.view.1") != nullptr);
     DOCTEST_CHECK(harness.find("attention.confidence") != nullptr);
+    DOCTEST_CHECK(harness.find("attention.front") != nullptr);
     DOCTEST_CHECK(asks(harness, "attention.anyway", "label_anyway"));
     harness.shell.show(ui::PanelId::Log);
     harness.frame(3);

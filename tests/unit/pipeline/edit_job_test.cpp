@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "engine/io/scene_io.h"
@@ -100,6 +101,26 @@ DOCTEST_TEST_CASE("edit job: the word that is new is read off the scene, which i
     DOCTEST_CHECK(read("bear", "a red bear wearing a hat on the snow", {"a", "bear", "hat"}) == "red");
     // A word that an earlier edit brought along is no news, whether the model knows it or not.
     DOCTEST_CHECK(read("bear", "a golden shiny bear", {"a", "shiny", "red", "bear"}) == "golden");
+}
+
+DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it open") {
+    EditRecipe recipe = bear_recipe(false);
+    recipe.request.views = 8;
+    recipe.request = edit::validated(recipe.request);
+    Workplace workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}), recipe.job);
+    const auto found = [&](const std::string& front) {
+        recipe.job.front = front;
+        return locate(workplace, recipe, choose_views(workplace.scene(), recipe, {}), {}, {}).views;
+    };
+    const Views read = found("");
+    DOCTEST_REQUIRE(read.front_read);
+    DOCTEST_CHECK(std::abs(std::remainder(*read.front_read, 360 * Degree)) < 45 * Degree);   // the bear looks at the first view
+    DOCTEST_CHECK(read.words.size() == read.views.size());
+    const Views said = found("90");
+    DOCTEST_CHECK(!said.front_read);
+    DOCTEST_CHECK(said.words.size() == said.views.size());
+    DOCTEST_CHECK(said.words != read.words);
+    DOCTEST_CHECK(found("none").words.empty());
 }
 
 DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and only that") {
