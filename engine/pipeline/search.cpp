@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::array<double, 5> ScanDistances{1.0, 0.7, 0.45, 0.3, 0.22};   // of the fitted orbit's radius
 constexpr int ScanViews = 6;                // per distance
-constexpr double LeastLead = 0;             // of a front over its opposite, from which it is believed
+constexpr double LeastLead = 0.005;         // of a front over its opposite, from which it is believed: below, fronts are anywhere (`bench clip`)
 constexpr std::size_t FrontViews = 12;      // in which the front of a scene is looked for
 
 /// What is added needs room around what is there; beside it more than on it.
