@@ -37,6 +37,7 @@ endif()
 if(GSE_FUZZ)
   target_compile_options(gse_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all)
   target_link_options(gse_flags INTERFACE -fsanitize=address,undefined)
+  target_compile_definitions(gse_flags INTERFACE GSE_SANITIZED=1)
 endif()
 
 find_package(Threads REQUIRED)

@@ -64,12 +64,12 @@ DOCTEST_TEST_CASE("prompt: every setting of a recipe is found by a word of its n
         harness.type(text);
         harness.frame();
     };
-    for (const auto& [text, field] : {std::pair{"GUIDANCE SC", "guidance.guidance_scale"}, std::pair{"img2img", "attention.method"},
+    for (const auto& wanted : {std::pair{"GUIDANCE SC", "guidance.guidance_scale"}, std::pair{"img2img", "attention.method"},
                                       std::pair{"prior", "learning.prior_weight"}, std::pair{"shows its front", "model_settings.front"},
                                       std::pair{"where the networks", "model_settings.device"}, std::pair{"dbscan", "request.dbscan_eps"}}) {
-        search(text);
-        DOCTEST_CHECK_MESSAGE(harness.find(field) != nullptr, text);
-        DOCTEST_CHECK_MESSAGE(harness.find("request.tau") == nullptr, text);
+        search(wanted.first);
+        DOCTEST_CHECK_MESSAGE(harness.find(wanted.second) != nullptr, wanted.first);
+        DOCTEST_CHECK_MESSAGE(harness.find("request.tau") == nullptr, wanted.first);
     }
     search("shows its front");
     const auto over = harness.middle("prompt.filter");

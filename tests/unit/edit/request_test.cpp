@@ -145,7 +145,8 @@ DOCTEST_TEST_CASE("another thing in the source's place replaces it, whatever wor
           {"bear", "a red cat on the grass", "grass", "cat"}, {"bear", "turn the bear into a wooden dog", "dog", "dog"},
           {"chair", "a bear on a sofa", "sofa", "sofa"}, {"hat", "a bear wearing a crown", "crown", "crown"},
           {"teddy bear", "a polar bear on the grass", "polar bear", "polar bear"}, {"car", "a small house", "small", "house"}}) {
-        DOCTEST_CAPTURE(prompt);
+        const char* sentence = prompt;
+        DOCTEST_CAPTURE(sentence);
         DOCTEST_CHECK(thing_of(source, prompt, target) == thing);
         DOCTEST_CHECK(mode_of(source, prompt, target) == EditMode::Replace);
     }
@@ -154,7 +155,8 @@ DOCTEST_TEST_CASE("another thing in the source's place replaces it, whatever wor
           {"bear", "a blue bear on the grass", "blue"}, {"grass", "a bear on the snow", "snow"}, {"bear", "a bear made of gold", "gold"},
           {"statue", "made of gold", "gold"}, {"bear", "turn the bear into stone", "stone"}, {"bear", "a bear wearing a hat", "hat"},
           {"statue", "golden", "golden"}, {"bear", "a teddy bear on the grass", "teddy bear"}}) {
-        DOCTEST_CAPTURE(prompt);
+        const char* sentence = prompt;
+        DOCTEST_CAPTURE(sentence);
         DOCTEST_CHECK(thing_of(source, prompt, target).empty());
         DOCTEST_CHECK(mode_of(source, prompt, target) != EditMode::Replace);
     }
