@@ -396,7 +396,4 @@ void fill_pending(EditJob& job, PendingResult& pending);
 /// The texts of a list in settings or projects; what is no text is passed over.
 std::vector<std::string> texts_of(const nlohmann::json& json, const char* key);
 
-/// Where models were found and what they are, those of `also` with them; reads headers only.
-std::vector<ui::ModelView> scan_models(const std::string& chosen, const std::vector<std::string>& also);
-
 }  // namespace gse::app

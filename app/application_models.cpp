@@ -6,6 +6,7 @@
 #include "app/application.h"
 #include "engine/base/error.h"
 #include "engine/neural/lora_spec.h"
+#include "engine/pipeline/model_catalogue.h"
 #include "engine/pipeline/model_settings.h"
 
 namespace gse::app {
@@ -32,8 +33,11 @@ std::string Application::model_in_use() const {
 void Application::list_models() {
     std::vector<std::string> tried;
     for (const auto& [path, problem] : model_problems_) tried.push_back(path);
-    model_.models = scan_models(model_in_use(), tried);
-    for (auto& row : model_.models) {
+    tried.push_back(model_in_use());
+    model_.models.clear();
+    for (const auto& [name, path, structure, bytes, usable, problem] : find_models(tried)) {
+        auto& row = model_.models.emplace_back(ui::ModelView{name, path, structure, bytes, usable, problem});
+        row.chosen = row.path == model_in_use();
         row.checking = row.path == model_tried_;
         const auto found = model_problems_.find(row.path);
         if (found == model_problems_.end() || found->second.empty()) continue;
@@ -113,7 +117,7 @@ void Application::try_model(const std::string& path, std::vector<std::string> lo
     const std::string wanted = path.empty() ? starter_model_path().string() : path;
     if (wanted == model_in_use()) return loras == loras_ ? list_models() : try_loras(std::move(loras));
     if (work_.running()) return toast("Another model can be chosen when the job is done.");
-    const auto rows = scan_models(wanted, {});
+    const auto rows = find_models({wanted});
     const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& model) { return model.path == wanted; });
     if (row != rows.end() && !row->usable) return refuse_model(wanted, row->problem);
     // Headers can be right where weights are not: only what has been loaded is in use.

@@ -7,9 +7,8 @@
 #include <memory>
 
 #ifdef GSE_WINDOW
-#include "app/bench_preview.h"
+#include "app/bench_moving.h"
 #endif
-#include "app/bench_speed.h"
 #include "app/cli.h"
 #include "app/engine_names.h"
 #include "app/eval_settings.h"
@@ -21,8 +20,12 @@
 #include "engine/base/staged_folder.h"
 #include "engine/bench/clip_bench.h"
 #include "engine/bench/edit_bench.h"
+#ifdef GSE_WINDOW
+#include "engine/bench/preview_bench.h"
+#endif
 #include "engine/bench/raster_report.h"
 #include "engine/bench/search_bench.h"
+#include "engine/bench/speed_bench.h"
 #include "engine/io/cameras.h"
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/neural_loader.h"
@@ -202,7 +205,9 @@ void add_preview_bench(CLI::App& bench) {
     command->add_option("--out", options->output, "Also write the JSON to this file");
     command->callback([options] {
         parse_size(options->size, options->bench.width, options->bench.height);
-        const auto json = bench_preview(load_scene(options->scene), options->bench);
+        const Scene scene = load_scene(options->scene);
+        auto json = bench_preview(scene, options->bench);
+        if (json.contains("native")) json["native"]["moving"] = bench_moving(scene, options->bench.width, options->bench.height);
         if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
         print_json(json, 2);
     });

@@ -1,9 +1,6 @@
 // Times the preview's two ways of making a picture and measures how far they are from each other and from the
 // truth.
-#include "app/bench_preview.h"
-
-#include "app/bench_moving.h"
-#include "app/engine_names.h"
+#include "engine/bench/preview_bench.h"
 
 #include <sys/resource.h>
 
@@ -14,14 +11,14 @@
 #include <memory>
 #include <optional>
 
+#include "engine/base/process_memory.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/preview/resolve.h"
 #include "engine/preview/splat_renderer.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/vulkan/device.h"
-#include "engine/base/process_memory.h"
 
-namespace gse::app {
+namespace gse::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -152,7 +149,7 @@ preview::FrameRequest frame_request(const Camera& camera) {
 }
 
 Json bench_vulkan(const Scene& scene, const PreviewBenchOptions& options, const std::vector<Camera>& views,
-                  Painter& painter, std::optional<Image>& first_light) {
+                  pipeline::Painter& painter, std::optional<Image>& first_light) {
     VulkanBench bench(scene, options.validation);
     bench.draw(frame_request(views.back()));
     Times times;
@@ -173,7 +170,7 @@ Json bench_vulkan(const Scene& scene, const PreviewBenchOptions& options, const 
     return json;
 }
 
-Json bench_native(const Scene& scene, const std::vector<Camera>& views, Painter& painter) {
+Json bench_native(const Scene& scene, const std::vector<Camera>& views, pipeline::Painter& painter) {
     Times times;
     std::vector<std::uint8_t> rgba;
     const preview::Display display;
@@ -193,7 +190,7 @@ Json bench_native(const Scene& scene, const std::vector<Camera>& views, Painter&
 Json bench_preview(const Scene& scene, const PreviewBenchOptions& options) {
     auto views = options.cameras;
     if (views.empty())
-        for (const auto& view : orbit_views(scene_orbit(scene, {}), options.frames, options.width, options.height))
+        for (const auto& view : orbit_views(pipeline::scene_orbit(scene, {}), options.frames, options.width, options.height))
             views.push_back(view.camera);
     Json json;
     json["splats"] = scene.gaussians.size();
@@ -201,14 +198,11 @@ Json bench_preview(const Scene& scene, const PreviewBenchOptions& options) {
     json["width"] = options.width;
     json["height"] = options.height;
     json["frames"] = views.size();
-    Painter painter;
+    pipeline::Painter painter;
     std::optional<Image> vulkan_light;
     if (options.backend != "native")
         json["vulkan"] = bench_vulkan(scene, options, views, painter, vulkan_light);
-    if (options.backend != "vulkan") {
-        json["native"] = bench_native(scene, views, painter);
-        if (options.moving) json["native"]["moving"] = bench_moving(scene, options.width, options.height);
-    }
+    if (options.backend != "vulkan") json["native"] = bench_native(scene, views, painter);
     if (options.compare_plain) {
         raster::ForwardOutput truth;
         raster::make_plain_rasterizer()->forward(scene.gaussians.spans(), views[0], {}, truth);
@@ -222,4 +216,4 @@ Json bench_preview(const Scene& scene, const PreviewBenchOptions& options) {
     return json;
 }
 
-}  // namespace gse::app
+}  // namespace gse::bench

@@ -1,36 +1,39 @@
 // Finds models in the places where artists keep them and tells what they are from their headers, without loading networks.
+#include "engine/pipeline/model_catalogue.h"
+
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
 
-#include "app/application.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/safetensors_header.h"
+#include "engine/pipeline/installed.h"
 
-namespace gse::app {
+namespace gse::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-using HeaderJson = nlohmann::json;
 
-constexpr std::uint64_t LongestHeader = 64u << 20;
+constexpr std::uint64_t LongestModelHeader = 64u << 20;
 constexpr std::size_t MostModels = 200;
 
-HeaderJson read_json(const fs::path& path) {
-    return fs::exists(path) ? try_parse_json(read_start(path, LongestHeader)) : HeaderJson();
+nlohmann::json read_json(const fs::path& path) {
+    return fs::exists(path) ? try_parse_json(read_start(path, LongestModelHeader)) : nlohmann::json();
 }
 
-std::uint64_t shape_at(const HeaderJson& header, const char* key, std::size_t from_end, std::uint64_t fallback) {
+std::uint64_t shape_at(const nlohmann::json& header, const char* key, std::size_t from_end, std::uint64_t fallback) {
     if (!header.contains(key) || !header[key].contains("shape") || header[key]["shape"].size() <= from_end) return fallback;
     return header[key]["shape"][header[key]["shape"].size() - 1 - from_end].get<std::uint64_t>();
 }
 
 /// What a UNet takes beside the four channels of the latents.
-void describe_channels(std::uint64_t channels, ui::ModelView& model) {
+void describe_channels(std::uint64_t channels, FoundModel& model) {
     if (channels == 8) model.structure += ", InstructPix2Pix";
     for (const auto& [others, what] : {std::pair{5u, "depth-to-image"}, std::pair{7u, "upscaler"}, std::pair{9u, "inpainting"}}) {
         if (channels != others) continue;
@@ -40,8 +43,8 @@ void describe_channels(std::uint64_t channels, ui::ModelView& model) {
 }
 
 /// ux.md: told apart by keys and by the width of the cross-attention.
-void describe_checkpoint(const fs::path& path, ui::ModelView& model) {
-    const HeaderJson header = safetensors_header(path);
+void describe_checkpoint(const fs::path& path, FoundModel& model) {
+    const nlohmann::json header = safetensors_header(path);
     if (!header.is_object()) {
         model.problem = "this is not a safetensors file";
         return;
@@ -66,14 +69,14 @@ void describe_checkpoint(const fs::path& path, ui::ModelView& model) {
     model.usable = model.problem.empty();
 }
 
-void describe_folder(const fs::path& path, ui::ModelView& model) {
-    const HeaderJson own = read_json(path / "gseditpro.json");
-    const HeaderJson text = read_json(path / "text_encoder/config.json");
+void describe_folder(const fs::path& path, FoundModel& model) {
+    const nlohmann::json own = read_json(path / "gseditpro.json");
+    const nlohmann::json text = read_json(path / "text_encoder/config.json");
     model.structure = own.is_object()                                             ? "starter"
                       : text.is_object() && text.value("hidden_size", 768) >= 1024 ? "Stable Diffusion 2.x"
                                                                                    : "Stable Diffusion 1.x";
     if (own.is_object() && own.contains("name") && own["name"].is_string()) model.name = own["name"].get<std::string>();
-    const HeaderJson unet = read_json(path / "unet/config.json"), scheduler = read_json(path / "scheduler/scheduler_config.json");
+    const nlohmann::json unet = read_json(path / "unet/config.json"), scheduler = read_json(path / "scheduler/scheduler_config.json");
     if (unet.is_object() && unet.contains("in_channels") && unet["in_channels"].is_number_unsigned())
         describe_channels(unet["in_channels"].get<std::uint64_t>(), model);
     if (scheduler.is_object() && scheduler.value("_class_name", "") == std::string("LCMScheduler")) model.structure += ", LCM";
@@ -85,8 +88,8 @@ void describe_folder(const fs::path& path, ui::ModelView& model) {
     model.usable = model.problem.empty();
 }
 
-ui::ModelView describe(const fs::path& path) {
-    ui::ModelView model;
+FoundModel describe(const fs::path& path) {
+    FoundModel model;
     model.path = path.string();
     model.name = path.stem().string();
     std::error_code failure;
@@ -126,8 +129,8 @@ std::vector<fs::path> model_folders() {
 
 }  // namespace
 
-std::vector<ui::ModelView> scan_models(const std::string& chosen, const std::vector<std::string>& also) {
-    std::vector<ui::ModelView> models{describe(starter_model_path())};
+std::vector<FoundModel> find_models(const std::vector<std::string>& also) {
+    std::vector<FoundModel> models{describe(starter_model_path())};
     const auto add = [&](const fs::path& path) {
         const auto known = [&](const auto& model) { return model.path == path.string(); };
         if (models.size() < MostModels && std::none_of(models.begin(), models.end(), known)) models.push_back(describe(path));
@@ -141,9 +144,7 @@ std::vector<ui::ModelView> scan_models(const std::string& chosen, const std::vec
         }
     }
     for (const auto& path : also) add(path);
-    if (!chosen.empty()) add(chosen);
-    for (auto& model : models) model.chosen = model.path == chosen;
     return models;
 }
 
-}  // namespace gse::app
+}  // namespace gse::pipeline

@@ -1,5 +1,5 @@
 // The scenes of engine/synth/timing_scene.h through the rasterizer's and the preview's benches.
-#include "app/bench_speed.h"
+#include "engine/bench/speed_bench.h"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@
 #include "engine/raster/bench.h"
 #include "engine/synth/timing_scene.h"
 #ifdef GSE_WINDOW
-#include "app/bench_preview.h"
+#include "engine/bench/preview_bench.h"
 #endif
 
-namespace gse::app {
+namespace gse::bench {
 namespace {
 
 /// 100000 -> "100,000".
@@ -65,7 +65,6 @@ std::string preview_lines(const SpeedBenchOptions& options, const Scene& scene) 
     PreviewBenchOptions preview;
     preview.width = options.preview_width;
     preview.height = options.preview_height;
-    preview.moving = false;
     preview.cameras = synth::timing_cameras(options.views, preview.width, preview.height);
     const auto json = bench_preview(scene, preview);
     const auto row = [&](const char* renderer, const std::string& name) {
@@ -95,4 +94,4 @@ std::string speed_table(const SpeedBenchOptions& options) {
                        options.seed, options.views, kernels, rows);
 }
 
-}  // namespace gse::app
+}  // namespace gse::bench

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace gse::app {
+namespace gse::bench {
 
 struct SpeedBenchOptions {
     std::vector<std::size_t> splats{100000, 500000};
@@ -22,4 +22,4 @@ struct SpeedBenchOptions {
 /// time, because wall time says what else the machine does.
 std::string speed_table(const SpeedBenchOptions& options);
 
-}  // namespace gse::app
+}  // namespace gse::bench

@@ -7,7 +7,7 @@
 
 #include "engine/scene/scene.h"
 
-namespace gse::app {
+namespace gse::bench {
 
 struct PreviewBenchOptions {
     std::string backend = "both";  // "vulkan", "native", "both"
@@ -15,7 +15,6 @@ struct PreviewBenchOptions {
     int frames = 16;            // one turn
     bool compare_plain = true;  // the first frame against the double version; takes seconds on large scenes
     bool validation = false;
-    bool moving = true;           // also the native preview's pictures a second while the camera moves
     std::vector<Camera> cameras;  // at this size; an orbit fitted to the scene when empty
 };
 
@@ -24,4 +23,4 @@ struct PreviewBenchOptions {
 /// device's too).
 nlohmann::ordered_json bench_preview(const Scene& scene, const PreviewBenchOptions& options);
 
-}  // namespace gse::app
+}  // namespace gse::bench

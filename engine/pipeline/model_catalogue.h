@@ -1,0 +1,24 @@
+// The models that are to be had on this machine.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace gse::pipeline {
+
+/// What a file or folder says of itself by its headers; networks are not loaded.
+struct FoundModel {
+    std::string name;
+    std::string path;
+    std::string structure;     // "Stable Diffusion 1.x", "starter", ...
+    std::uint64_t bytes = 0;
+    bool usable = false;
+    std::string problem;       // what is missing or not supported, and what to do; empty where nothing is
+};
+
+/// The starter model first, then what lies in GSE_MODELS (folders, separated by colons), in the usual folders of other programs and
+/// at `also`. Throws nothing: what cannot be read says so in its `problem`.
+std::vector<FoundModel> find_models(const std::vector<std::string>& also);
+
+}  // namespace gse::pipeline

@@ -1,0 +1,99 @@
+// What the headers of files and folders say of the models in them.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "engine/base/file.h"
+#include "engine/pipeline/installed.h"
+#include "engine/pipeline/model_catalogue.h"
+#include "tests/test_paths.h"
+
+namespace {
+
+using namespace gse;
+using namespace gse::pipeline;
+namespace fs = std::filesystem;
+using HeaderJson = nlohmann::json;
+
+/// Tensors of these shapes, none of their numbers: only the header counts.
+void write_checkpoint(const fs::path& path, const std::vector<std::pair<std::string, std::vector<int>>>& tensors) {
+    HeaderJson header;
+    for (const auto& [name, shape] : tensors) header[name] = {{"dtype", "F16"}, {"shape", shape}, {"data_offsets", {0, 0}}};
+    const std::string text = header.dump();
+    std::string bytes;
+    for (int i = 0; i < 8; ++i) bytes.push_back(static_cast<char>((text.size() >> (8 * i)) & 255));
+    write_file(path, bytes + text);
+}
+
+std::vector<std::pair<std::string, std::vector<int>>> whole_model(int channels, int width) {
+    return {{"model.diffusion_model.input_blocks.0.0.weight", {320, channels, 3, 3}},
+            {"model.diffusion_model.input_blocks.2.1.transformer_blocks.0.attn2.to_k.weight", {320, width}}};
+}
+
+FoundModel found_at(const std::vector<FoundModel>& models, const fs::path& path) {
+    const auto row = std::find_if(models.begin(), models.end(), [&](const auto& model) { return model.path == path.string(); });
+    DOCTEST_REQUIRE_MESSAGE(row != models.end(), path.string());
+    return *row;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("model catalogue: checkpoints are told apart by their headers, and say why they cannot be used") {
+    const test::ScratchFolder folder;
+    const auto file = [&](const char* name) { return folder.path() / name; };
+    write_checkpoint(file("one.safetensors"), whole_model(4, 768));
+    write_checkpoint(file("two.safetensors"), whole_model(4, 1024));
+    write_checkpoint(file("told.safetensors"), whole_model(8, 768));
+    write_checkpoint(file("inpaint.safetensors"), whole_model(9, 768));
+    write_checkpoint(file("lora.safetensors"), {{"lora_unet_mid.lora_up.weight", {4, 4}}});
+    write_checkpoint(file("xl.safetensors"), {{"conditioner.embedders.1.model.x", {4, 4}}});
+    write_file(file("noise.safetensors"), "not a header");
+    write_file(file("old.ckpt"), "pickled");
+    write_file(file("readme.txt"), "nothing");
+    setenv("GSE_MODELS", (folder.path().string() + ":/nowhere/at/all").c_str(), 1);
+    const auto models = find_models({(folder.path() / "gone").string()});
+    unsetenv("GSE_MODELS");
+
+    DOCTEST_CHECK(models.front().path == starter_model_path().string());
+    DOCTEST_CHECK(models.front().structure == "starter");
+    DOCTEST_CHECK(models.front().usable);
+    struct Expected {
+        const char* name;
+        const char* structure;
+        const char* problem;   // part of it; "" = usable
+    };
+    for (const auto& [name, structure, problem] :
+         {Expected{"one.safetensors", "Stable Diffusion 1.x", ""}, Expected{"two.safetensors", "Stable Diffusion 2.x", ""},
+          Expected{"told.safetensors", "Stable Diffusion 1.x, InstructPix2Pix", ""},
+          Expected{"inpaint.safetensors", "Stable Diffusion 1.x inpainting", "inpainting models are not supported"},
+          Expected{"lora.safetensors", "LoRA", "no whole model"}, Expected{"xl.safetensors", "Stable Diffusion XL", "SDXL is not"},
+          Expected{"noise.safetensors", "", "not a safetensors file"}, Expected{"old.ckpt", "", "pickled"},
+          Expected{"gone", "", "not there any more"}}) {
+        const FoundModel model = found_at(models, file(name));
+        const std::string wanted = problem;
+        DOCTEST_CHECK(model.structure == structure);
+        DOCTEST_CHECK(model.usable == wanted.empty());
+        DOCTEST_CHECK(model.problem.find(wanted) != std::string::npos);
+        DOCTEST_CHECK(model.problem.empty() == wanted.empty());
+    }
+    DOCTEST_CHECK(std::none_of(models.begin(), models.end(), [](const auto& model) { return model.path.ends_with("readme.txt"); }));
+}
+
+DOCTEST_TEST_CASE("model catalogue: a folder names itself and the parts that it lacks") {
+    const test::ScratchFolder folder;
+    const auto model = folder.path() / "mine";
+    fs::create_directories(model / "unet");
+    fs::create_directories(model / "text_encoder");
+    write_file(model / "gseditpro.json", R"({"name": "my own"})");
+    write_file(model / "unet/config.json", R"({"in_channels": 4})");
+    const auto listed = found_at(find_models({model.string()}), model);
+    DOCTEST_CHECK(listed.name == "my own");
+    DOCTEST_CHECK_FALSE(listed.usable);
+    DOCTEST_CHECK(listed.problem == "missing: vae, tokenizer");
+    DOCTEST_CHECK(listed.bytes > 0);
+    for (const char* part : {"vae", "tokenizer"}) fs::create_directories(model / part);
+    DOCTEST_CHECK(found_at(find_models({model.string()}), model).usable);
+}
