@@ -119,7 +119,6 @@ std::pair<EditMode, std::string> decide_mode(const EditRequest& request,
 
 EditMode planned_mode(const EditRequest& request) { return decide_mode(request, std::nullopt).first; }
 
-bool planned_by_views(const EditRequest& request) { return edits_by_views(request, planned_mode(request)); }
 
 int planned_steps(const EditRequest& request) { return loop_steps(request, planned_mode(request)); }
 

@@ -244,9 +244,7 @@ EditRequest validated(EditRequest request) {
     return request;
 }
 
-bool edits_by_views(const LoopSettings& settings, EditMode mode) {
-    return settings.method == "views" || (settings.method == "auto" && mode != EditMode::Add);
-}
+bool edits_by_views(const LoopSettings& settings) { return settings.method != "sds"; }
 
 int RoundPlan::steps_of(int round) const {
     return std::max(1, static_cast<int>(std::ceil(view_steps * strength_of(round) / strength - 1e-9)));
@@ -271,7 +269,7 @@ double mask_growth_px(const LoopSettings& settings, EditMode mode) {
 
 int loop_steps(const LoopSettings& settings, EditMode mode) {
     const auto plan = round_plan(settings, mode);
-    return edits_by_views(settings, mode) ? plan.rounds * plan.fit_steps : settings.iterations;
+    return edits_by_views(settings) ? plan.rounds * plan.fit_steps : settings.iterations;
 }
 
 }  // namespace gse::edit

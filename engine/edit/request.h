@@ -179,7 +179,7 @@ private:
           "Let only the splats that were found change; off = every splat may (an ablation of the paper).");
         f("method", self.method,
           "How the model leads the edit: views (it redraws some views, the scene is fitted to them), sds (it pulls at every step, the "
-          "paper's way) or auto (views where something changes, sds where something is added).");
+          "paper's way) or auto (views, which come closer in less time).");
         f("iterations", self.iterations, "Optimisation steps of method sds.", Range{0, 1e6});
         f("instruction", self.instruction,
           "What a model that edits pictures by instructions (InstructPix2Pix) is told to do (\"make the bear golden\"); empty = to turn "
@@ -293,8 +293,8 @@ std::optional<EditMode> mode_named(const std::string& name);
 /// sentence keeps the source, or changes what things stand on. The words of a validated request.
 std::string thing_in_place(const EditRequest& request);
 
-/// Whether the views method is what `method` means for an edit of that mode.
-bool edits_by_views(const LoopSettings& settings, EditMode mode);
+/// Whether the views method is what `method` means: it is, unless score distillation is asked for.
+bool edits_by_views(const LoopSettings& settings);
 
 /// Rounds of redrawn views as an edit of a mode needs them: what has a new shape needs more than what is recoloured.
 struct RoundPlan {
@@ -320,7 +320,6 @@ int loop_steps(const LoopSettings& settings, EditMode mode);
 double mask_growth_px(const LoopSettings& settings, EditMode mode);
 /// All as the words and the mode of the request say, before anything was looked for.
 EditMode planned_mode(const EditRequest& request);
-bool planned_by_views(const EditRequest& request);
 int planned_steps(const EditRequest& request);
 
 /// The sentence's terms, with compound prepositions ("next to") as one: what a reader of noun phrases goes through.

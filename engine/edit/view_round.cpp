@@ -157,6 +157,7 @@ void ViewRounds::name_colour(const std::vector<RoundView>& views, const JobContr
     if (shapes_ == nullptr || views.empty() || is_described(told, shapes_->word())) return;
     const auto key = std::max_element(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.mask.count() < b.mask.count(); });
     const auto drawn = guidance_.edit({*key}, input(ColourStream), job);
+    ++key_views_;
     GSE_CHECK_EQ(drawn.images.size(), std::size_t{1});
     const auto colour = shapes_->colour_in(*key, drawn.images.front(), Random::stream(request_.seed, ColourStream + 1).next(), known_);
     if (colour.empty()) return;

@@ -56,6 +56,8 @@ public:
     void resume(int round, std::vector<std::size_t> views, std::string sentence);
     /// What the model is told where the artist's sentence leaves the new thing's colour open; else empty.
     const std::string& sentence() const { return sentence_; }
+    /// Views that were drawn for its colour, beside views().
+    std::size_t key_views() const { return key_views_; }
     /// What the last round found of the new shape.
     const CutOut& found() const { return found_; }
     /// Another mask: what was redrawn counts inside it.
@@ -78,6 +80,7 @@ private:
     CutOut found_;
     std::vector<std::size_t> views_;
     std::vector<Image> targets_, edited_;   // of the plan's views; empty for those that are not redrawn
+    std::size_t key_views_ = 0;
     int round_ = -1;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/edit/colour_word.h"
 #include "engine/pipeline/gate.h"
 
 namespace gse::pipeline {
@@ -31,6 +32,13 @@ double looks_again(const edit::EditRequest& request, edit::EditMode mode) {
     return mode == edit::EditMode::Add && request.look_again ? LookAgainRounds * request.views : 0;
 }
 
+/// Whether one view is drawn before all others, for the colour of a new thing that the sentence leaves open.
+bool draws_key_view(const edit::EditRequest& request, edit::EditMode mode) {
+    if (!edit::round_plan(request, mode).anew) return false;
+    const auto thing = mode == edit::EditMode::Replace ? edit::thing_in_place(request) : request.target;
+    return !thing.empty() && !edit::is_described(edit::as_told(request.prompt), thing);
+}
+
 /// What the rounds that begin after an iteration ask of the model; one that was begun is not begun again.
 struct Redrawing {
     double views = 0, steps = 0;   // pictures, and denoising steps of single pictures
@@ -39,6 +47,7 @@ struct Redrawing {
 Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, int first_iteration) {
     const auto plan = edit::round_plan(request, mode);
     Redrawing left;
+    if (first_iteration == 0 && draws_key_view(request, mode)) left = {1, static_cast<double>(plan.steps_of(0))};
     for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds; ++round) {
         left.views += plan.views;
         left.steps += static_cast<double>(plan.views) * plan.steps_of(round);
@@ -46,7 +55,7 @@ Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, 
     return left;
 }
 
-bool led_by_views(const EditJob& job) { return edit::edits_by_views(job.recipe().request, job.located().mode); }
+bool led_by_views(const EditJob& job) { return edit::edits_by_views(job.recipe().request); }
 
 double tflop_of(const neural::NetworkUse& use) { return use.flop * 1e-12; }
 
@@ -93,7 +102,7 @@ Cost estimated_cost(const Measured& measured, const edit::EditRequest& request, 
     const double search = rounds * request.views * words_of_search(work.mode);
     sum.add(work.located ? 0 : search, measured.question, measured.question_tflop);
     if (work.shows_idea) add_idea(sum, measured);
-    const bool by_views = edit::edits_by_views(request, work.mode);
+    const bool by_views = edit::edits_by_views(request);
     const int steps = std::max(0, edit::loop_steps(request, work.mode) - work.first_iteration);
     const double size = static_cast<double>(work.rows) / measured.rows;
     sum.add(size, std::max(0.0, measured.begin));

@@ -54,7 +54,7 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
     const auto prompt = editor ? told_to_editor(request) : edit::as_told(request.prompt);
     const auto settings = with_sentence_before(recipe.guidance, request);
     const auto guidance = model.guidance(prompt, settings);
-    const auto views = edit::edits_by_views(request, located.result.mode) ? model.views(prompt, settings) : nullptr;
+    const auto views = edit::edits_by_views(request) ? model.views(prompt, settings) : nullptr;
     edit::EditTools tools{workplace.painter().rasterizer(), *guidance, observer.snapshot, control, observer.iteration};
     tools.snapshot_seconds = observer.snapshot_seconds;
     tools.new_label = observer.new_label;

@@ -145,7 +145,7 @@ void draw_mode(Context& context) {
 
 void draw_method(Context& context) {
     constexpr const char* help =
-        "auto: views where something changes, sds where something is added.\nviews: the model redraws some views, the scene is fitted to "
+        "auto: views, which come closer in less time.\nviews: the model redraws some views, the scene is fitted to "
         "them.\nsds: the model pulls at every step, the paper's way.";
     int method = static_cast<int>(std::find(Methods.begin(), Methods.end(), context.request.method) - Methods.begin());
     row_label(context, "Method", help);
@@ -160,7 +160,7 @@ void draw_method(Context& context) {
 void draw_iterations(Context& context) {
     auto& request = context.request;
     const auto mode = edit::planned_mode(as_planned(context));
-    const bool by_views = edit::edits_by_views(request, mode);
+    const bool by_views = edit::edits_by_views(request);
     const auto plan = edit::round_plan(request, mode);
     const std::string help =
         by_views ? fmt::format("Steps of fitting to the redrawn views: {} round{} of {}. Rounds and views are under \"All settings\".",
@@ -296,7 +296,7 @@ void nothing_before(const char*, bool&) {}
 
 /// Which settings count for nothing with the method that the edit is led by.
 UnusedField unused_by_method(const Context& context) {
-    return [by_views = edit::planned_by_views(as_planned(context))](const char* name) { return edit::why_unused(name, by_views); };
+    return [by_views = edit::edits_by_views(context.request)](const char* name) { return edit::why_unused(name, by_views); };
 }
 
 /// Fields of the request under the headers of their groups.
@@ -375,7 +375,7 @@ void draw_advanced(Context& context) {
                          .tooltip = "All settings below; words and seed stay"}))
         back_to_defaults(context);
     dim_text(fmt::format("In brackets: no effect while the edit is led by {}.",
-                         edit::planned_by_views(as_planned(context)) ? "redrawn views" : "the model's pull (method sds)"));
+                         edit::edits_by_views(context.request) ? "redrawn views" : "the model's pull (method sds)"));
     if (!wanted.empty()) return draw_found_settings(context, wanted);
     draw_request_groups(context);
     draw_model_groups(context, true, [](const char*, const char*) { return true; });

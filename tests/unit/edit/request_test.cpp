@@ -174,7 +174,7 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     EditRequest request;
     request.method = "auto";
     const auto recolour = edit::round_plan(request, EditMode::Modify), shape = edit::round_plan(request, EditMode::Replace);
-    DOCTEST_CHECK(edit::edits_by_views(request, EditMode::Replace));
+    DOCTEST_CHECK(edit::edits_by_views(request));
     DOCTEST_CHECK(!recolour.anew);
     DOCTEST_CHECK(shape.anew);
     DOCTEST_CHECK(edit::loop_steps(request, EditMode::Modify) == request.rounds * request.fit_steps);

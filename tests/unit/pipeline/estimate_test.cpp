@@ -99,6 +99,28 @@ DOCTEST_TEST_CASE("an estimate of redrawn views: what a view takes, and each of 
     DOCTEST_CHECK(seconds(known, request, work) < 0);
 }
 
+DOCTEST_TEST_CASE("an estimate counts the view that is drawn first for the colour of a new thing") {
+    edit::EditRequest request;
+    request.prompt = "a bear with white wings on the grass";
+    request.source = "bear";
+    request.target = "wings";
+    pipeline::Measured known = measured();
+    known.redraw = 0.02;
+    known.redraw_view = 0.05;
+    auto work = located();
+    work.mode = edit::EditMode::Add;
+    const auto plan = edit::round_plan(request, work.mode);
+    const double told = seconds(known, request, work);
+    request.prompt = "a bear with wings on the grass";
+    const double key = 0.05 + plan.steps_of(0) * 0.02;
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(told + key));
+    work.first_iteration = 1;   // it is drawn already
+    request.prompt = "a bear with white wings on the grass";
+    const double branch = seconds(known, request, work);
+    request.prompt = "a bear with wings on the grass";
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(branch));
+}
+
 DOCTEST_TEST_CASE("an estimate of memory: the process without the model, the model, the work, and what follows from the scene") {
     pipeline::PlannedMemory memory;
     memory.process = 100;
