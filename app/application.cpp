@@ -130,11 +130,10 @@ void Application::take_found() {
     auto attention = std::move(live_->attention);
     const bool relabel = live_->relabel;
     lock.unlock();
-    job_ = job;
-    live_recipe_.request.target = job->recipe().request.target;
+    remember_search(job);
+    live_recipe_.request.target = searched_.words.target;
     describe(*live_, live_recipe_);
     job_key_ = search_key(live_recipe_);
-    job_set_ = job->scene().gaussians;
     take_located(job, std::move(attention));
     const auto& located = job->located();
     if (!job->found()) report_error(Error(ErrorCode::NotFound, located.message, located.remedy));

@@ -241,6 +241,7 @@ private:
     EditRecipe current_recipe() const;
     EditRecipe open_recipe(EditRecipe recipe) const;
     std::string read_target() const;
+    void remember_search(std::shared_ptr<EditJob> job);
     std::string model_key() const;
     Scene working_scene() const;
     void take_located(std::shared_ptr<EditJob> job, std::vector<float> attention);
@@ -337,6 +338,14 @@ private:
     EditRecipe defaults_;            // what settings are that nobody chose
     std::map<std::string, std::string> model_problems_;   // by path, of models that were tried; empty = none yet
     std::shared_ptr<EditJob> job_;
+    /// What every frame asks of the last search: what runs may be changing job_ itself.
+    struct Searched {
+        edit::EditWords words;
+        bool target_read = false;
+        std::string tuning_key;
+        std::optional<neural::TunedModel> tuned = {};
+    };
+    Searched searched_;
     std::string job_key_;
     EditRecipe live_recipe_;   // of the edit that runs
     GaussianSet job_set_;

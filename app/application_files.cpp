@@ -156,6 +156,7 @@ void Application::take_loaded(Loaded loaded) {
     ++opened_;
     kept_edit_ = {};
     job_.reset();
+    searched_ = {};
     pending_ = std::move(loaded.pending);
     forget_snapshots();
     model_.attention.clear();

@@ -57,11 +57,18 @@ EditRecipe Application::current_recipe() const {
 
 /// What the last search saw to be new, where it was of this sentence and of the scene as it is now.
 std::string Application::read_target() const {
-    if (job_ == nullptr || !job_->target_read() || !job_set_.shares_all_with(document_.state().current)) return {};
-    const auto& searched = job_->recipe().request;
-    const bool same = edit::as_told(searched.source) == edit::as_told(model_.request.source) &&
-                      edit::as_told(searched.prompt) == edit::as_told(model_.request.prompt);
-    return same ? searched.target : std::string();
+    if (!searched_.target_read || !job_set_.shares_all_with(document_.state().current)) return {};
+    const auto& words = searched_.words;
+    const bool same = edit::as_told(words.source) == edit::as_told(model_.request.source) &&
+                      edit::as_told(words.prompt) == edit::as_told(model_.request.prompt);
+    return same ? words.target : std::string();
+}
+
+/// A search is the last one. Nothing may be changing the job meanwhile.
+void Application::remember_search(std::shared_ptr<EditJob> job) {
+    job_ = std::move(job);
+    job_set_ = job_->scene().gaussians;
+    searched_ = {job_->recipe().request, job_->target_read(), tuning_key(job_->recipe()), job_->tuned()};
 }
 
 /// The recipe for a job: a target that nobody has chosen is left to the pictures.
@@ -102,9 +109,9 @@ bool Application::job_fits() const {
 
 /// What the last search's model learned, where it is what this recipe's would learn.
 std::optional<neural::TunedModel> Application::known_tuning(const EditRecipe& recipe) const {
-    const bool same = recipe.use_dreambooth && job_ != nullptr && job_set_.shares_all_with(document_.state().current) &&
-                      tuning_key(job_->recipe()) == tuning_key(recipe);
-    return same ? job_->tuned() : std::nullopt;
+    const bool same = recipe.use_dreambooth && job_set_.shares_all_with(document_.state().current) &&
+                      searched_.tuning_key == tuning_key(recipe);
+    return same ? searched_.tuned : std::nullopt;
 }
 
 namespace {
@@ -188,12 +195,11 @@ void Application::locate() {
         if (search->model) text_model_ = search->model, text_model_key_ = key;
         else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu) drop_model(model, *error);
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
-        job_ = search->job;
+        remember_search(search->job);
         model_.cost = cost_of(search->use);
         EditRecipe searched = recipe;
-        searched.request.target = job_->recipe().request.target;
+        searched.request.target = searched_.words.target;
         job_key_ = search_key(searched);
-        job_set_ = search->job->scene().gaussians;
         remember_measured(recipe_key, search->measured);
         take_located(search->job, std::move(search->attention));
         const auto& located = search->job->located();
