@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "app/application.h"
+#include "tests/test_paths.h"
 
 namespace gse::test {
 
@@ -46,10 +47,11 @@ struct Session {
     explicit Session(bool autosave = true) : app({.autosave = autosave, .autosave_seconds = 0.2}) {
         app.set_viewport_size(320, 240);
     }
-    /// Frames until the condition holds; false after `seconds`.
+    /// Frames until the condition holds; false after `seconds`, times GSE_PATIENCE: instrumented builds are that much slower.
     template <class F>
     bool until(F condition, double seconds = 600) {
-        const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+        const double patience = std::atof(from_environment("GSE_PATIENCE", "1").c_str());
+        const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds * patience);
         while (std::chrono::steady_clock::now() < end) {
             app.update(preview);
             if (condition()) return true;
