@@ -114,9 +114,7 @@ std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpa
     const StageTimer timer(seconds_);
     auto begun = std::make_shared<std::vector<RoundView>>();
     for (const auto v : rounds_.views()) begun->push_back(begin_view(v, rows, unlabelled, settings));
-    const auto key_views = rounds_.key_views();
     auto scalars = rounds_.redraw(iteration, *begun, originals_, tools_.job);
-    redrawn_ += rounds_.key_views() - key_views;
     std::erase_if(scalars, [](const auto& scalar) { return !std::isfinite(scalar.second); });
     auto state = std::make_shared<RoundState>();
     state->round = rounds_.round();

@@ -41,7 +41,7 @@ public:
 
     /// For snapshots; null before the first round.
     const std::shared_ptr<const RoundState>& state() const { return state_; }
-    std::size_t redrawn() const { return redrawn_; }   // pictures so far
+    std::size_t redrawn() const { return redrawn_ + rounds_.key_views(); }   // pictures so far
     double seconds() const { return seconds_; }        // that redrawing took
 
 private:

@@ -35,7 +35,7 @@ double looks_again(const edit::EditRequest& request, edit::EditMode mode) {
 /// Whether one view is drawn before all others, for the colour of a new thing that the sentence leaves open.
 bool draws_key_view(const edit::EditRequest& request, edit::EditMode mode) {
     if (!edit::round_plan(request, mode).anew) return false;
-    const auto thing = mode == edit::EditMode::Replace ? edit::thing_in_place(request) : request.target;
+    const auto thing = new_thing(request, mode);
     return !thing.empty() && !edit::is_described(edit::as_told(request.prompt), thing);
 }
 

@@ -13,12 +13,8 @@ namespace {
 /// What the dynamic mask looks for in the changing pictures: the new thing, or the thing that changes by its new name.
 std::string dynamic_word(const Located& located, const edit::EditRequest& request) {
     const auto& result = located.result;
-    if (result.mode == edit::EditMode::Replace) {
-        const auto thing = edit::thing_in_place(request);
-        return thing.empty() ? request.target : thing;
-    }
-    const bool named = edit::has_word(request.prompt, result.word);
-    return result.mode == edit::EditMode::Modify && named ? result.word : request.target;
+    const bool keeps_name = result.mode == edit::EditMode::Modify && edit::has_word(request.prompt, result.word);
+    return keeps_name ? result.word : new_thing(request, result.mode);
 }
 
 /// A sheet takes the place of the one of its round.
@@ -33,6 +29,11 @@ void keep(std::vector<edit::ViewTargets>& rounds, const edit::ViewTargets& sheet
 neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request) {
     if (guidance.before_prompt.empty()) guidance.before_prompt = edit::sentence_before(request);
     return guidance;
+}
+
+std::string new_thing(const edit::EditRequest& request, edit::EditMode mode) {
+    const auto thing = mode == edit::EditMode::Replace ? edit::thing_in_place(request) : std::string();
+    return thing.empty() ? request.target : thing;
 }
 
 std::string told_to_editor(const edit::EditRequest& request) { return edit::as_told(edit::instruction_of(request)); }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "engine/base/error.h"
 #include "engine/edit/locate.h"
@@ -256,7 +257,8 @@ DOCTEST_TEST_CASE("a colour that the sentence leaves open is the one that the fi
     run.tools_changed = [&](edit::EditTools& tools) {
         tools.targets = [&](const edit::ViewTargets& sheet) { shown = sheet; };
     };
-    run.run();
+    const auto result = run.run();
+    DOCTEST_CHECK(result.redrawn_views == std::accumulate(run.views.counts.begin(), run.views.counts.end(), std::size_t{0}));
     const auto& inputs = run.views.inputs;
     DOCTEST_REQUIRE(inputs.size() == static_cast<std::size_t>(run.request.shape_rounds) + 1);
     DOCTEST_CHECK(inputs[0].sentence.empty());   // one view, as the artist says it
