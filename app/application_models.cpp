@@ -35,8 +35,9 @@ void Application::list_models() {
     for (const auto& [path, problem] : model_problems_) tried.push_back(path);
     tried.push_back(model_in_use());
     model_.models.clear();
-    for (const auto& [name, path, structure, bytes, usable, problem] : find_models(tried)) {
-        auto& row = model_.models.emplace_back(ui::ModelView{name, path, structure, bytes, usable, problem});
+    for (const auto& model : find_models(tried)) {
+        auto& row = model_.models.emplace_back(ui::ModelView{.name = model.name, .path = model.path, .structure = model.structure,
+                                                             .bytes = model.bytes, .usable = model.usable, .problem = model.problem});
         row.chosen = row.path == model_in_use();
         row.checking = row.path == model_tried_;
         const auto found = model_problems_.find(row.path);

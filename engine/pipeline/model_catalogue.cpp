@@ -10,22 +10,16 @@
 #include <utility>
 
 #include "engine/base/error.h"
-#include "engine/base/file.h"
-#include "engine/base/json.h"
 #include "engine/base/safetensors_header.h"
 #include "engine/pipeline/installed.h"
+#include "engine/pipeline/model_words.h"
 
 namespace gse::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t LongestModelHeader = 64u << 20;
 constexpr std::size_t MostModels = 200;
-
-nlohmann::json read_json(const fs::path& path) {
-    return fs::exists(path) ? try_parse_json(read_start(path, LongestModelHeader)) : nlohmann::json();
-}
 
 std::uint64_t shape_at(const nlohmann::json& header, const char* key, std::size_t from_end, std::uint64_t fallback) {
     if (!header.contains(key) || !header[key].contains("shape") || header[key]["shape"].size() <= from_end) return fallback;
@@ -70,13 +64,13 @@ void describe_checkpoint(const fs::path& path, FoundModel& model) {
 }
 
 void describe_folder(const fs::path& path, FoundModel& model) {
-    const nlohmann::json own = read_json(path / "gseditpro.json");
-    const nlohmann::json text = read_json(path / "text_encoder/config.json");
+    const nlohmann::json own = model_json(path / "gseditpro.json");
+    const nlohmann::json text = model_json(path / "text_encoder/config.json");
     model.structure = own.is_object()                                             ? "starter"
                       : text.is_object() && text.value("hidden_size", 768) >= 1024 ? "Stable Diffusion 2.x"
                                                                                    : "Stable Diffusion 1.x";
     if (own.is_object() && own.contains("name") && own["name"].is_string()) model.name = own["name"].get<std::string>();
-    const nlohmann::json unet = read_json(path / "unet/config.json"), scheduler = read_json(path / "scheduler/scheduler_config.json");
+    const nlohmann::json unet = model_json(path / "unet/config.json"), scheduler = model_json(path / "scheduler/scheduler_config.json");
     if (unet.is_object() && unet.contains("in_channels") && unet["in_channels"].is_number_unsigned())
         describe_channels(unet["in_channels"].get<std::uint64_t>(), model);
     if (scheduler.is_object() && scheduler.value("_class_name", "") == std::string("LCMScheduler")) model.structure += ", LCM";

@@ -48,10 +48,13 @@ std::size_t words_read(const fs::path& model, const std::vector<std::string>& wo
 std::size_t words_read(const fs::path&, const std::vector<std::string>& words) { return words.size(); }
 #endif
 
+nlohmann::json model_json(const fs::path& path) {
+    return fs::exists(path) ? try_parse_json(read_start(path, LongestHeader)) : nlohmann::json();
+}
+
 std::vector<std::string> model_words(const fs::path& folder) {
     std::vector<std::string> words;
-    const auto path = folder / "gseditpro.json";
-    const auto own = fs::exists(path) ? try_parse_json(read_start(path, LongestHeader)) : nlohmann::json();
+    const auto own = model_json(folder / "gseditpro.json");
     if (!own.is_object() || !own.contains("vocabulary") || !own["vocabulary"].is_array()) return words;
     for (const auto& word : own["vocabulary"])
         if (word.is_string()) words.push_back(word.get<std::string>());

@@ -1,11 +1,15 @@
-// What a model's files say about words; no network is loaded.
+// What a model's files say about it, above all about words; no network is loaded.
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 namespace gse::pipeline {
+
+/// A small JSON file of a model (gseditpro.json, unet/config.json); null where there is none, discarded where it is damaged.
+nlohmann::json model_json(const std::filesystem::path& path);
 
 /// Words of the model in `folder` (gseditpro.json), empty for an open vocabulary; no network is loaded.
 std::vector<std::string> model_words(const std::filesystem::path& folder);
