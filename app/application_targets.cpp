@@ -9,7 +9,7 @@ namespace gse::app {
 namespace {
 
 ui::TargetRound shown_round(const EditJob& job, const edit::ViewTargets& sheet) {
-    ui::TargetRound round{sheet.round, sheet.rounds, {}, sheet.sentence};
+    ui::TargetRound round{sheet.round, sheet.rounds, {}, sheet.sentence, sheet.warnings};
     for (const auto& target : sheet.views) {
         const View& view = job.views()[target.view];
         round.targets.push_back({target.view, view.name.empty() ? fmt::format("view {}", target.view) : view.name, target.before,

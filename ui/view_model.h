@@ -257,6 +257,7 @@ struct TargetRound {
     int round = 0, rounds = 1;
     std::vector<TargetView> targets;
     std::string sentence = {};   // that the model was told, where it is not the artist's own
+    std::vector<std::string> warnings = {};
 };
 
 /// What the networks were asked for by the running or last job.

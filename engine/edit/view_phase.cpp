@@ -121,6 +121,7 @@ std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpa
     state->key = key_;
     state->views = rounds_.views();
     state->sentence = rounds_.sentence();
+    state->warnings = rounds_.warnings();
     state->begun = begun;
     for (const auto view : state->views) state->edited.push_back(std::make_shared<const Image>(rounds_.edited(view)));
     state->attempts.assign(state->views.size(), 0);
@@ -201,7 +202,7 @@ void ViewPhase::take_masks() {
 }
 
 void ViewPhase::begin_sheet() {
-    sheet_ = {state_->round, round_plan(request_, plan_.mode).rounds, {}, state_->sentence};
+    sheet_ = {state_->round, round_plan(request_, plan_.mode).rounds, {}, state_->sentence, state_->warnings};
     for (std::size_t i = 0; i < state_->views.size(); ++i) {
         sheet_.views.push_back(
             {state_->views[i], shown_copy((*state_->begun)[i].rendered), {}, state_->attempts[i], state_->dropped[i]});

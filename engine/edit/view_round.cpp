@@ -10,6 +10,7 @@
 #include "engine/base/random.h"
 #include "engine/edit/colour_word.h"
 #include "engine/edit/scales.h"
+#include "engine/edit/view_agreement.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -166,6 +167,14 @@ void ViewRounds::name_colour(const std::vector<RoundView>& views, const JobContr
               colour, sentence_);
 }
 
+/// Says what is suspicious about the pictures as the model drew them.
+void ViewRounds::judge(const std::vector<RoundView>& views, RoundTargets& drawn) {
+    const auto agreement = view_agreement(views, drawn.images);
+    drawn.scalars.merge(agreement.scalars());
+    warnings_ = warnings_of(agreement, shapes_ != nullptr);
+    for (const auto& warning : warnings_) log::warning("{}", warning);
+}
+
 std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vector<RoundView>& views,
                                                  const std::vector<Image>& originals, const JobControl& job) {
     GSE_CHECK_EQ(views.size(), views_.size());
@@ -173,6 +182,7 @@ std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vecto
     if (round_ == 0) name_colour(views, job);
     auto drawn = guidance_.edit(views, input(40000 + static_cast<std::uint64_t>(round_)), job);
     GSE_CHECK_EQ(drawn.images.size(), views.size());
+    judge(views, drawn);
     if (shapes_ != nullptr) {
         found_ = shapes_->cut_out(views, drawn.images, round_, job);
         drawn.scalars.merge(found_.scalars);

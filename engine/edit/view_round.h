@@ -58,6 +58,8 @@ public:
     const std::string& sentence() const { return sentence_; }
     /// Views that were drawn for its colour, beside views().
     std::size_t key_views() const { return key_views_; }
+    /// What is suspicious about the pictures of the last round.
+    const std::vector<std::string>& warnings() const { return warnings_; }
     /// What the last round found of the new shape.
     const CutOut& found() const { return found_; }
     /// Another mask: what was redrawn counts inside it.
@@ -69,6 +71,7 @@ public:
 
 private:
     RoundInput input(std::uint64_t stream) const;
+    void judge(const std::vector<RoundView>& views, RoundTargets& drawn);
     void name_colour(const std::vector<RoundView>& views, const JobControl& job);
 
     const EditPlan& plan_;
@@ -78,6 +81,7 @@ private:
     std::vector<std::string> known_;
     std::string sentence_;
     CutOut found_;
+    std::vector<std::string> warnings_;
     std::vector<std::size_t> views_;
     std::vector<Image> targets_, edited_;   // of the plan's views; empty for those that are not redrawn
     std::size_t key_views_ = 0;

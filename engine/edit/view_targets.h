@@ -26,6 +26,7 @@ struct ViewTargets {
     int round = 0, rounds = 1;
     std::vector<ViewTarget> views;   // ascending by view
     std::string sentence = {};       // that the model was told, where it is not the artist's own
+    std::vector<std::string> warnings = {};   // what is suspicious about the pictures, and what would help
 };
 
 /// Used by the fit (all are at first), not used, or redrawn from another seed and used.
@@ -48,6 +49,7 @@ struct RoundState {
     std::vector<int> attempts;                       // per view
     std::vector<bool> dropped;                       // per view
     std::string sentence = {};                       // that the model was told; empty = the edit's
+    std::vector<std::string> warnings = {};          // of the round as it was redrawn
 };
 
 }  // namespace gse::edit

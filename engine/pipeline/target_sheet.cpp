@@ -68,6 +68,7 @@ nlohmann::ordered_json targets_to_json(const std::vector<edit::ViewTargets>& rou
     for (const auto& round : rounds) {
         nlohmann::ordered_json entry{{"round", round.round}, {"file", "evidence/" + file_name(round)}};
         if (!round.sentence.empty()) entry["sentence"] = round.sentence;   // it says more than the artist's
+        if (!round.warnings.empty()) entry["warnings"] = round.warnings;
         entry["views"] = nlohmann::ordered_json::array();
         for (const auto& target : round.views)
             entry["views"].push_back(

@@ -147,6 +147,15 @@ void draw_wait(Context& context) {
     end_notice();
 }
 
+/// What is suspicious about the shown round.
+void draw_warnings(Context& context) {
+    for (std::size_t i = 0; const auto& warning : shown_round(context).warnings) {
+        begin_notice(context, fmt::format("targets.warning.{}", i++), palette::Warning);
+        wrapped_text(warning);
+        end_notice();
+    }
+}
+
 std::string summary(const TargetRound& round) {
     const auto dropped = std::count_if(round.targets.begin(), round.targets.end(), [](const TargetView& target) { return target.dropped; });
     std::string text = fmt::format("Round {} of {}: {} views redrawn", round.round + 1, round.rounds, round.targets.size());
@@ -173,6 +182,7 @@ void draw_targets_panel(Context& context) {
     draw_wait(context);
     draw_rounds(context);
     dim_text(summary(shown_round(context)));
+    draw_warnings(context);
     review();
     if (beside) {
         ImGui::EndChild();

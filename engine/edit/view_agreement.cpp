@@ -1,0 +1,163 @@
+// Points of one view are looked up in the others by depth.
+#include "engine/edit/view_agreement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/base/check.h"
+#include "engine/localize/clusters.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr double SameDepth = 0.02;          // relative difference of two depths of one point: VICA-NeRF's 1 % of the width, twice
+constexpr std::size_t LeastSeen = 3;        // views of a point: of two, none is the odd one
+constexpr double HardlyAnything = 4.0 / 255;
+constexpr double MostUnchanged = 0.5;       // the limits of views.md 12
+constexpr double MostDisagreement = 0.2;
+constexpr double RimCells = 2, CellsPerSide = 64;   // of Stable Diffusion's latents; the same share of smaller pictures
+
+struct Sample {
+    std::size_t view = 0;
+    std::array<float, 3> colour{};
+};
+
+/// Pixel of a view that shows the point, or -1.
+std::ptrdiff_t pixel_that_shows(const RoundView& view, const Vec3& point) {
+    const Camera& camera = view.view.camera;
+    const Vec3 seen = camera.to_camera(point);
+    if (!(seen.z > 0)) return -1;
+    const double x = std::floor(camera.fx * seen.x / seen.z + camera.cx), y = std::floor(camera.fy * seen.y / seen.z + camera.cy);
+    if (!(x >= 0 && y >= 0 && x < view.depth.width && y < view.depth.height)) return -1;
+    const auto pixel = static_cast<std::ptrdiff_t>(y) * view.depth.width + static_cast<std::ptrdiff_t>(x);
+    const double depth = view.depth.data[static_cast<std::size_t>(pixel)];
+    return depth > 0 && std::abs(depth - seen.z) <= SameDepth * seen.z ? pixel : -1;
+}
+
+Vec3 point_of(const RoundView& view, int x, int y) {
+    const Camera& camera = view.view.camera;
+    const double z = view.depth.at(x, y, 0);
+    return camera.rotation.transposed() * Vec3{(x + 0.5 - camera.cx) / camera.fx * z, (y + 0.5 - camera.cy) / camera.fy * z, z} +
+           camera.centre();
+}
+
+float median_of(std::vector<float>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Colours of one point in all views that show it.
+class PointColours {
+public:
+    PointColours(const std::vector<RoundView>& views, const std::vector<Image>& pictures) : views_(views), pictures_(pictures) {}
+
+    std::size_t look(const Vec3& point) {
+        for (auto& channel : values_) channel.clear();
+        for (std::size_t v = 0; v < views_.size(); ++v) {
+            const auto pixel = pixel_that_shows(views_[v], point);
+            if (pixel < 0) continue;
+            for (std::size_t c = 0; c < 3; ++c) values_[c].push_back(pictures_[v].data[static_cast<std::size_t>(pixel) * 3 + c]);
+        }
+        return values_[0].size();
+    }
+    /// Of the point looked up last, from its median: mean over the channels.
+    double distance(const float* colour) {
+        double sum = 0;
+        for (std::size_t c = 0; c < 3; ++c) sum += std::abs(colour[c] - median_of(values_[c]));
+        return sum / 3;
+    }
+
+private:
+    const std::vector<RoundView>& views_;
+    const std::vector<Image>& pictures_;
+    std::array<std::vector<float>, 3> values_;
+};
+
+double disagreement_of(const std::vector<RoundView>& views, const std::vector<Image>& pictures) {
+    PointColours colours(views, pictures);
+    double sum = 0;
+    std::size_t points = 0;
+    for (std::size_t v = 0; v < views.size(); ++v)
+        for (int y = 0; y < views[v].depth.height; ++y)
+            for (int x = 0; x < views[v].depth.width; ++x) {
+                if (views[v].mask.at(x, y) == 0 || !(views[v].depth.at(x, y, 0) > 0)) continue;
+                if (colours.look(point_of(views[v], x, y)) < LeastSeen) continue;
+                const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(views[v].depth.width) + static_cast<std::size_t>(x);
+                sum += colours.distance(pictures[v].data.data() + pixel * 3);
+                ++points;
+            }
+    return points > 0 ? sum / static_cast<double>(points) : 0;
+}
+
+/// Of pixels inside the mask; mean over the channels.
+double change_at(const RoundView& view, const Image& picture, std::size_t pixel) {
+    double sum = 0;
+    for (std::size_t c = 0; c < 3; ++c) sum += std::abs(picture.data[pixel * 3 + c] - view.rendered.data[pixel * 3 + c]);
+    return sum / 3;
+}
+
+Mask inverse(Mask mask) {
+    for (auto& bit : mask.data) bit = bit != 0 ? 0 : 1;
+    return mask;
+}
+
+struct Change {
+    double all = 0, at_rim = 0;
+    std::size_t pixels = 0;
+};
+
+Change change_of(const RoundView& view, const Image& picture) {
+    Change change;
+    const Mask near_rim = localize::dilate(inverse(view.mask), RimCells * view.mask.width / CellsPerSide);
+    for (std::size_t i = 0; i < view.mask.data.size(); ++i) {
+        if (view.mask.data[i] == 0) continue;
+        const double here = change_at(view, picture, i);
+        change.all += here;
+        if (near_rim.data[i] != 0) change.at_rim += here;
+        ++change.pixels;
+    }
+    return change;
+}
+
+}  // namespace
+
+std::map<std::string, double> ViewAgreement::scalars() const {
+    return {{"disagreement", disagreement}, {"unchanged_views", unchanged}, {"change_at_rim", at_rim}};
+}
+
+ViewAgreement view_agreement(const std::vector<RoundView>& views, const std::vector<Image>& pictures) {
+    GSE_CHECK_EQ(views.size(), pictures.size());
+    ViewAgreement agreement;
+    if (views.empty()) return agreement;
+    double all = 0, at_rim = 0;
+    std::size_t unchanged = 0;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        const auto change = change_of(views[v], pictures[v]);
+        all += change.all;
+        at_rim += change.at_rim;
+        unchanged += change.all <= HardlyAnything * static_cast<double>(change.pixels) ? 1 : 0;
+    }
+    agreement.unchanged = static_cast<double>(unchanged) / static_cast<double>(views.size());
+    agreement.at_rim = all > 0 ? at_rim / all : 0;
+    agreement.disagreement = disagreement_of(views, pictures);
+    return agreement;
+}
+
+std::vector<std::string> warnings_of(const ViewAgreement& agreement, bool anew) {
+    std::vector<std::string> warnings;
+    if (agreement.unchanged > MostUnchanged)
+        warnings.push_back(fmt::format("{:.0f} % of the redrawn views hardly differ from the scene: raise the strength of redrawing "
+                                       "(view_strength), or use words the model knows better",
+                                       100 * agreement.unchanged));
+    if (!anew && agreement.disagreement > MostDisagreement)
+        warnings.push_back(fmt::format("the redrawn views disagree (by {:.2f} of the colour range): drop those that differ in the panel "
+                                       "Targets, or try another seed",
+                                       agreement.disagreement));
+    return warnings;
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,112 @@
+// Redrawn views that show a change or none, agree on it or not.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "engine/edit/view_agreement.h"
+#include "tests/unit/edit/view_oracle.h"
+
+using namespace gse;
+
+namespace {
+
+/// Renders of the red ball from all sides, with the depth of the surface.
+std::vector<edit::RoundView> rendered_views(const test::BallScene& scene, raster::Rasterizer& rasterizer, int count = 8) {
+    std::vector<edit::RoundView> views;
+    raster::ForwardOutput output;
+    for (const auto& view : test::ball_views(count, 48)) {
+        rasterizer.forward(scene.set.spans(), view.camera, {}, output);
+        edit::RoundView shown{output.colour, output.colour, output.depth, {}, view};
+        for (std::size_t i = 0; i < shown.depth.data.size(); ++i) {
+            const float alpha = output.alpha.data[i];
+            shown.depth.data[i] = alpha > 0.5f ? output.depth.data[i] / alpha : 0.0f;
+        }
+        shown.mask = test::true_mask(scene.set, scene.first, view.camera, rasterizer);
+        views.push_back(std::move(shown));
+    }
+    return views;
+}
+
+/// The ball in a flat grey of its own in every view.
+std::vector<Image> painted(const std::vector<edit::RoundView>& views, const std::vector<float>& greys) {
+    std::vector<Image> pictures;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        pictures.push_back(views[v].rendered);
+        for (std::size_t i = 0; i < pictures[v].data.size(); ++i)
+            if (views[v].mask.data[i / 3] != 0) pictures[v].data[i] = greys[v];
+    }
+    return pictures;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("views that show one colour agree, and one that differs from all others is noticed") {
+    ThreadPool pool(1);
+    const auto rasterizer = raster::make_fast_rasterizer(pool);
+    const auto views = rendered_views(test::ball_scene(), *rasterizer);
+    const auto same = edit::view_agreement(views, painted(views, std::vector<float>(views.size(), 0.5f)));
+    DOCTEST_CHECK(same.disagreement == doctest::Approx(0).epsilon(1e-6));
+    DOCTEST_CHECK(same.unchanged == 0);
+    DOCTEST_CHECK(edit::warnings_of(same, false).empty());
+
+    auto greys = std::vector<float>(views.size(), 0.5f);
+    greys[3] = 0.9f;
+    const auto odd = edit::view_agreement(views, painted(views, greys));
+    DOCTEST_CHECK(odd.disagreement > 0);
+    DOCTEST_CHECK(odd.disagreement < 0.4 / 2);   // most points are as in most views
+
+    for (std::size_t v = 0; v < views.size(); ++v) greys[v] = v % 2 == 0 ? 0.1f : 0.9f;
+    const auto split = edit::view_agreement(views, painted(views, greys));
+    DOCTEST_CHECK(split.disagreement > odd.disagreement);
+    DOCTEST_CHECK(edit::warnings_of(split, false).size() == 1);
+    DOCTEST_CHECK(edit::warnings_of(split, true).empty());   // the depths are of another shape
+    DOCTEST_CHECK(split.scalars().at("disagreement") == split.disagreement);
+}
+
+DOCTEST_TEST_CASE("what two views show says nothing about agreement, and no view says nothing at all") {
+    ThreadPool pool(1);
+    const auto rasterizer = raster::make_fast_rasterizer(pool);
+    const auto two = rendered_views(test::ball_scene(), *rasterizer, 2);
+    DOCTEST_CHECK(edit::view_agreement(two, painted(two, {0.1f, 0.9f})).disagreement == 0);
+    DOCTEST_CHECK(edit::warnings_of(edit::view_agreement({}, {}), false).empty());
+}
+
+DOCTEST_TEST_CASE("a change at the mask's rim is told from one in its middle") {
+    ThreadPool pool(1);
+    const auto rasterizer = raster::make_fast_rasterizer(pool);
+    const auto views = rendered_views(test::ball_scene(), *rasterizer, 3);
+    auto middle = views;
+    std::vector<Image> pictures;
+    for (auto& view : middle) {
+        pictures.push_back(view.rendered);
+        for (int y = 20; y < 28; ++y)
+            for (int x = 20; x < 28; ++x) pictures.back().data[static_cast<std::size_t>(y * 48 + x) * 3] += 0.5f;
+        view.mask = Mask(48, 48);
+        for (auto& bit : view.mask.data) bit = 1;
+        for (int x = 0; x < 48; ++x) view.mask.data[static_cast<std::size_t>(x)] = 0;   // the rim is far above
+    }
+    DOCTEST_CHECK(edit::view_agreement(middle, pictures).at_rim == 0);
+    for (auto& view : middle)
+        for (int y = 0; y < 20; ++y)
+            for (int x = 0; x < 48; ++x) view.mask.data[static_cast<std::size_t>(y * 48 + x)] = 0;   // now it cuts into the change
+    const auto cut = edit::view_agreement(middle, pictures);
+    DOCTEST_CHECK(cut.at_rim > 0);
+    DOCTEST_CHECK(cut.at_rim < 1);
+}
+
+DOCTEST_TEST_CASE("an artist is told when the model left the views as they were") {
+    test::Redrawing run;
+    const auto request = test::view_request(1, 4);
+    std::vector<edit::ViewTargets> sheets;
+    run.tools.targets = [&](const edit::ViewTargets& sheet) { sheets.push_back(sheet); };
+    run.edited(request);
+    DOCTEST_REQUIRE(!sheets.empty());
+    DOCTEST_CHECK(sheets.back().warnings.empty());   // the ball turns blue
+
+    sheets.clear();
+    test::OracleViews idle(run.scene.set, *run.rasterizer);
+    run.tools.views = &idle;
+    run.edited(request);
+    DOCTEST_REQUIRE(!sheets.empty());
+    DOCTEST_REQUIRE(sheets.front().warnings.size() == 1);
+    DOCTEST_CHECK(sheets.front().warnings.front().find("100 % of the redrawn views hardly differ") == 0);
+}
