@@ -6,6 +6,7 @@
 
 #include "engine/edit/interfaces.h"
 #include "engine/neural/attention_parameters.h"
+#include "engine/neural/buffer_cache.h"
 #include "engine/neural/pipelines.h"
 
 namespace gse::neural {
@@ -50,6 +51,7 @@ private:
                      const torch::Tensor& context, AttentionCapture& capture,
                      AttentionAccumulator& sum) const;
 
+    BufferHolder buffers_;   // goes last
     std::shared_ptr<const ModelBundle> bundle_;
     AttentionParameters parameters_;
 };

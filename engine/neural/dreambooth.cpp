@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string_view>
 
 #include "engine/base/random.h"
@@ -12,16 +13,16 @@
 namespace gse::neural {
 namespace {
 
-/// A network of the same structure in fp32 whose parameters are those of `source`: shared memory where they are fp32 already and
-/// no copy is asked for.
+/// A network of the same structure whose parameters are those of `source`, in fp32, another type, or each as it is (nullopt):
+/// shared memory where the type stays and no copy is asked for.
 template <class Holder>
-Holder twin_of(const Holder& source, bool copy) {
+Holder twin_of(const Holder& source, bool copy, std::optional<torch::Dtype> dtype = torch::kFloat32) {
     const torch::NoGradGuard no_grad;
     Holder twin(source->config(), WeightOptions{torch::kCPU, torch::kFloat32, false});
     auto to = twin->parameters();
     const auto from = source->parameters();
     for (std::size_t i = 0; i < to.size(); ++i) {
-        to[i].set_data(from[i].detach().to(torch::kFloat32, /*non_blocking=*/false, copy));
+        to[i].set_data(from[i].detach().to(dtype.value_or(from[i].scalar_type()), /*non_blocking=*/false, copy));
         to[i].set_requires_grad(false);
     }
     twin->eval();
@@ -195,8 +196,8 @@ std::optional<LoraWeights> DreamBoothTrainer::lora() const {
 
 ModelBundle with_lora(const ModelBundle& bundle, const LoraWeights& weights, double strength) {
     ModelBundle result = bundle;
-    result.unet = twin_of(bundle.unet, false);
-    result.text_encoder = twin_of(bundle.text_encoder, false);
+    result.unet = twin_of(bundle.unet, false, std::nullopt);
+    result.text_encoder = twin_of(bundle.text_encoder, false, std::nullopt);
     merge_lora(*result.unet, weights.unet, strength);
     merge_lora(*result.text_encoder, weights.text, strength);
     return result;

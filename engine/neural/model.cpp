@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/neural/attention_source.h"
+#include "engine/neural/buffer_cache.h"
 #include "engine/neural/clip_score.h"
 #include "engine/neural/dreambooth.h"
 #include "engine/neural/images.h"
@@ -156,6 +157,7 @@ void set_threads(int count) {
 }
 
 std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const ModelOptions& options) {
+    keep_buffers();
     const auto device = parse_device(options.device);
     std::vector<LoraWeights> weights;
     for (const auto& lora : options.loras) {

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "engine/edit/interfaces.h"
+#include "engine/neural/buffer_cache.h"
 #include "engine/neural/pipelines.h"
 #include "engine/neural/sds_parameters.h"
 
@@ -33,6 +34,7 @@ private:
     /// Latent gradient of the unedited view with the same noise, under the sentence before the edit.
     torch::Tensor pull_on_original(const edit::GuidanceInput& input, const torch::Tensor& deviation, SdsStep step);
 
+    BufferHolder buffers_;   // goes last
     std::shared_ptr<const ModelBundle> bundle_;
     std::string prompt_;
     SdsParameters parameters_;

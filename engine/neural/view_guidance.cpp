@@ -200,9 +200,8 @@ edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<
     double change = 0, pixels = 0;
     for (std::size_t v = 0; v < views.size(); ++v) {
         const auto row = static_cast<std::int64_t>(v);
-        auto decoded = latents_to_image(
-            *bundle_, anew ? batch.x.narrow(0, row, 1) : torch::cat({batch.x.narrow(0, row, 1), batch.clean.narrow(0, row, 1)}), codec);
-        if (!anew) decoded = decoded.narrow(0, 0, 1) - decoded.narrow(0, 1, 1);
+        auto decoded = latents_to_image(*bundle_, batch.x.narrow(0, row, 1), codec);
+        if (!anew) decoded = decoded - latents_to_image(*bundle_, batch.clean.narrow(0, row, 1), codec);
         const Image& rendered = views[v].rendered;
         auto enlarged = torch::upsample_bilinear2d(decoded, {rendered.height, rendered.width}, false);
         if (!anew) enlarged = to_tensor(rendered, bundle_->device) + enlarged;

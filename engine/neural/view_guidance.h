@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "engine/edit/interfaces.h"
+#include "engine/neural/buffer_cache.h"
 #include "engine/neural/pipelines.h"
 #include "engine/neural/sds_parameters.h"
 
@@ -37,6 +38,7 @@ private:
     /// Guided output of the UNet for latents [K,C,h,w], in pieces that fit into memory.
     torch::Tensor output(const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning) const;
 
+    BufferHolder buffers_;   // goes last
     std::shared_ptr<const ModelBundle> bundle_;
     std::string prompt_;
     SdsParameters parameters_;

@@ -317,3 +317,22 @@ DOCTEST_TEST_CASE("lora: a convolution's change is the composition of its two") 
     const auto actual = torch::conv2d(x, weight + factor.change_of(weight), {}, 1, 1);
     DOCTEST_CHECK((actual - expected).abs().max().item<double>() <= Tolerance);
 }
+
+DOCTEST_TEST_CASE("lora: merged weights are of the type that they were loaded in, and what does not change is not stored twice") {
+    const TinyModel model;
+    auto bundle = load_bundle(model.path());
+    bundle.unet->to(torch::kBFloat16);
+    const auto targets = lora_targets(*bundle.unet);
+    auto factors = new_lora({targets.front()}, 2, 3);
+    for (auto& factor : factors) factor.up.fill_(0.5);
+    const auto merged = with_lora(bundle, {factors, {}}, 1);
+    const auto before = bundle.unet->named_parameters(), after = merged.unet->named_parameters();
+    std::size_t changed = 0;
+    for (const auto& item : before) {
+        const auto& now = after[item.key()];
+        DOCTEST_CHECK((now.scalar_type() == torch::kBFloat16));
+        if (now.data_ptr() != item.value().data_ptr()) ++changed;
+    }
+    DOCTEST_CHECK(changed == 1);
+    DOCTEST_CHECK(merged.text_encoder->parameters().front().data_ptr() == bundle.text_encoder->parameters().front().data_ptr());
+}
