@@ -74,10 +74,10 @@ std::string shape_text(const torch::Tensor& tensor) { return fmt::format("[{}]",
 }  // namespace
 
 torch::Tensor LoraFactor::change_of(const torch::Tensor& weight) const {
-    const auto left = up.flatten(1), right = down.flatten(1);
+    const auto left = up.to(torch::kFloat32).flatten(1), right = down.to(torch::kFloat32).flatten(1);
     if (!mid.defined()) return (left.mm(right) * scale()).view(weight.sizes());
     // out x rank, rank x rank x kernel, rank x in: one matrix product on either side of the middle.
-    const auto rows = left.mm(mid.flatten(1)).view({left.size(0), mid.size(1), -1});              // [out,r,kk]
+    const auto rows = left.mm(mid.to(torch::kFloat32).flatten(1)).view({left.size(0), mid.size(1), -1});              // [out,r,kk]
     return (rows.transpose(1, 2).matmul(right).transpose(1, 2) * scale()).reshape(weight.sizes());   // [out,in,kk]
 }
 
@@ -143,7 +143,7 @@ void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& facto
         auto& weight = weights.at(factor.layer);
         auto here = factor;
         for (auto* part : {&here.down, &here.up, &here.mid})
-            if (part->defined()) *part = part->to(weight.device(), torch::kFloat32);
+            if (part->defined()) *part = part->to(weight.device());
         const auto changed = weight.to(torch::kFloat32) + here.change_of(weight) * strength;
         weight.set_data(changed.to(weight.scalar_type()));
     }

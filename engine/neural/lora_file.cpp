@@ -178,8 +178,8 @@ LoraFactor factor_of(const std::string& layer, const LoraModule& module, const s
         if (tensor->dim() < 2 || tensor->numel() == 0) refuse("is empty, or of rank 0");
         if (!torch::isfinite(tensor->to(torch::kFloat32)).all().item<bool>()) refuse("holds values that are not finite");
     }
-    LoraFactor factor{layer, module.down.to(torch::kFloat32), module.up.to(torch::kFloat32), 1, {}, module.key};
-    if (module.mid.defined()) factor.mid = module.mid.to(torch::kFloat32);
+    LoraFactor factor{layer, module.down, module.up, 1, {}, module.key};
+    factor.mid = module.mid;
     if (factor.up.size(1) != factor.rank())
         refuse(fmt::format("has a down matrix of rank {} and an up matrix of rank {}", factor.rank(), factor.up.size(1)));
     factor.alpha = static_cast<double>(factor.rank());
