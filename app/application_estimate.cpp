@@ -61,7 +61,7 @@ void Application::refresh_estimate() {
     PlannedWork work;
     work.loaded = text_model_ != nullptr && text_model_key_ == model_key();
     work.located = job_fits();
-    work.shows_idea = model_.model_settings.gate;
+    work.shows_idea = model_.model_settings.gate && !edit::edits_by_views(model_.request);
     const bool learns = model_.model_settings.learn_scene && !work.located && !known_tuning(current_recipe());
     work.tune_steps = learns ? model_.model_settings.learning.steps : 0;
     work.rows = document_.state().current.size();

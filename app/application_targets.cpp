@@ -30,6 +30,16 @@ void watch_targets(const EditJob& job, LiveEdit& live, EditObserver& observer) {
         if (!known) live.waits = live.reviews;
         ++live.version;
     };
+    observer.judged = [&live](const Verdict& verdict, const edit::ViewTargets& sheet) {
+        ui::GateView view;
+        for (std::size_t i = 0; i < sheet.views.size(); i += std::max<std::size_t>(1, sheet.views.size() / 4))
+            if (view.pictures.size() < 4) view.pictures.push_back(sheet.views[i].after);
+        view.verdict = verdict.verdict;
+        view.warns = verdict.warns;
+        const std::lock_guard lock(live.mutex);
+        live.gate = std::move(view);
+        ++live.version;
+    };
     observer.target_orders = [&job, &live] {
         std::unique_lock lock(live.mutex);
         if (live.waits && live.orders.empty()) {

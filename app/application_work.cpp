@@ -303,7 +303,7 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     const auto& state = document_.state();
     const auto label = label_drives_edit() ? *state.labels[static_cast<std::size_t>(state.active_label)].bits : std::vector<std::uint8_t>{};
     live_ = std::make_shared<LiveEdit>();
-    live_->wants_gate = model_.model_settings.gate && !start;
+    live_->wants_gate = model_.model_settings.gate && !start && !edit::edits_by_views(recipe.request);
     live_->reviews = model_.model_settings.review;
     describe(*live_, recipe);
     live_->snapshots = snapshots_;

@@ -193,7 +193,7 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
     job.locate();
     require_search(job, options.output);
     std::optional<Gate> gate;
-    if (options.gate) gate = look_through_gate(job);
+    if (options.gate && !edit::edits_by_views(job.recipe().request)) gate = look_through_gate(job);   // redrawn views are judged anyway
     job.run();
     job.times().begin("export");
     Scene edited = job.scene();
@@ -209,6 +209,7 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
     job.times().end();
     auto report = make_report(job);
     add_optional_parts(report, folder.path(), job, gate);
+    if (const auto& verdict = job.edited().verdict) report["gate"] = verdict_to_json(*verdict);
     report["files"] = folder.listing();
     write_file(folder.path() / "report.json", json_text(report, 1) + "\n");
     folder.commit();
@@ -265,8 +266,8 @@ void add_edit_commands(CLI::App& app, CommandContext& context) {
     auto* edit_command = app.add_subcommand("edit", "Change a scene by one sentence");
     add_options(*edit_command, edit);
     edit_command->add_flag("--gate,!--no-gate", edit->gate,
-                           "First show what the model makes of four views, in evidence/gate_*.png, and warn when they do not "
-                           "show the edit");
+                           "Method sds: first show what the model makes of four views, in evidence/gate_*.png, and warn when "
+                           "they do not show the edit; redrawn views are judged as they are");
     edit_command->callback([edit, &context] { run_edit_command(*edit, context); });
 }
 

@@ -26,7 +26,7 @@ struct ModelSettings {
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
-        f("gate", self.gate, "Before the edit, show what the model itself makes of four views, and warn when that is not what was asked.");
+        f("gate", self.gate, "Method sds: before the edit, show what the model itself makes of four views, and warn when that is not what was asked. Redrawn views are judged as they are.");
         f("review", self.review, "Method views: before the scene is fitted to redrawn views, wait until you have looked at them.");
         f("learn_scene", self.learn_scene, "DreamBooth: the model learns this scene from renders of it first.");
         f("device", self.device, "Where the networks run: cpu, or cuda where there is one.");

@@ -218,6 +218,7 @@ private:
         const auto& use = job.edited().use;
         figures["cost"] = {{"seconds", job.edited().seconds}, {"unet", use.unet}, {"tflop", use.flop * 1e-12}};
         figures["edit_seconds"] = result.seconds;
+        if (const auto& verdict = job.edited().verdict) figures["gate"] = pipeline::verdict_to_json(*verdict);
         job.times().end();
         return figures;
     }

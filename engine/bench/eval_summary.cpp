@@ -170,6 +170,20 @@ void add_replacements(const Json& report, const Json& edits, Json& summary) {
     summary["replace_weighted_iou"] = figure(mean(replaced, "weighted_iou"), {});
 }
 
+/// How often the verdict on the redrawn views warns of an edit that brings the scene no nearer to the truth, and of the others.
+void add_verdicts(const Json& edits, Json& summary) {
+    std::size_t judged[2] = {0, 0}, warned[2] = {0, 0};
+    for (const auto& edit : edits) {
+        if (!edit.contains("gate") || !edit["gate"]["score"].is_number() || failed(edit)) continue;
+        const std::size_t worked = value_of(edit, "l1_reduction", 0) > 0 ? 1 : 0;
+        ++judged[worked];
+        if (edit["gate"]["warns"].get<bool>()) ++warned[worked];
+    }
+    const char* const names[2] = {"gate_warned_of_failures", "gate_warned_of_successes"};
+    for (std::size_t i = 0; i < 2; ++i)
+        if (judged[i] > 0) summary[names[i]] = figure(static_cast<double>(warned[i]) / static_cast<double>(judged[i]), {});
+}
+
 /// Means over the edits that add the same thing, a line per thing.
 Json added_means(const Json& edits) {
     Json table = Json::array();
@@ -339,6 +353,7 @@ Json eval_summary(const Json& report) {
     add_edits(report, edits, summary);
     add_preservation(edits, summary);
     add_replacements(report, edits, summary);
+    add_verdicts(edits, summary);
     summary["added_means"] = added_means(edits);
     const Json table = ablation_means(report);
     if (!table.empty()) add_order(table, summary);

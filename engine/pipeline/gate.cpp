@@ -6,16 +6,11 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
-#include "engine/base/log.h"
-#include "engine/evaluate/direction.h"
 #include "engine/io/image_file.h"
 
 namespace gse::pipeline {
 namespace {
 
-/// Below it the pictures count as not showing the edit: pictures in which something else has changed score about 0.2 with
-/// the starter's encoder, unchanged ones about 0, those of true edits 0.4 to 0.95 (`bench clip`).
-constexpr double LeastGateScore = 0.25;
 constexpr int WrittenSide = 256;   // pictures of small models are enlarged to about this, pixel by pixel
 
 /// The same view at another size.
@@ -36,27 +31,6 @@ Image enlarged(const Image& image, int factor) {
         for (int x = 0; x < result.width; ++x)
             for (int c = 0; c < image.channels; ++c) result.at(x, y, c) = image.at(x / factor, y / factor, c);
     return result;
-}
-
-/// How far the pictures change the way the sentences do; none when the model has no encoder to tell.
-void judge(EditJob& job, Gate& gate) {
-    const auto encoder = job.model().text_image_score();
-    if (!encoder || gate.pictures.empty()) return;
-    const auto words_before = encoder->text(edit::sentence_before(job.recipe().request));
-    const auto words_after = encoder->text(job.model_prompt());
-    if (words_before == words_after) return;   // nothing the encoder knows is new
-    double sum = 0;
-    for (const auto& picture : gate.pictures) {
-        const auto before = encoder->image(picture.before), after = encoder->image(picture.after);
-        sum += evaluate::direction_score({before, after, words_before, words_after});
-    }
-    gate.score = sum / static_cast<double>(gate.pictures.size());
-    gate.warns = *gate.score < LeastGateScore;
-    gate.verdict = gate.warns
-                       ? fmt::format("The model's pictures hardly show \"{}\" (score {:.2f}): the edit may not either.",
-                                     job.model_prompt(), *gate.score)
-                       : fmt::format("The model's pictures show the edit (score {:.2f}).", *gate.score);
-    if (gate.warns) log::warning("{}", gate.verdict);
 }
 
 /// A model that has a way of its own to redraw pictures is asked as the edit will ask it.
@@ -95,7 +69,9 @@ Gate look_through_gate(EditJob& job, const GateParameters& parameters) {
         gate.pictures.push_back({view, before, job.model().img2img(before, request)});
         job.control().report("asking the model", static_cast<int>(i + 1), static_cast<int>(count));
     }
-    judge(job, gate);
+    std::vector<PicturePair> pairs;
+    for (const auto& picture : gate.pictures) pairs.emplace_back(&picture.before, &picture.after);
+    static_cast<Verdict&>(gate) = judge(job.model(), job.recipe().request, job.model_prompt(), pairs);
     job.times().end();
     return gate;
 }
@@ -110,11 +86,7 @@ void write_gate(const std::filesystem::path& folder, const Gate& gate) {
 }
 
 nlohmann::ordered_json gate_to_json(const Gate& gate) {
-    nlohmann::ordered_json json;
-    if (gate.score) json["score"] = *gate.score;
-    else json["score"] = nullptr;
-    json["verdict"] = gate.verdict;
-    json["warns"] = gate.warns;
+    auto json = verdict_to_json(gate);
     json["views"] = nlohmann::ordered_json::array();
     for (const auto& picture : gate.pictures) json["views"].push_back(picture.view);
     return json;

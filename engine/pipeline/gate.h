@@ -1,11 +1,12 @@
-// The gate (method F25): before the long loop, pictures of what the model makes of the scene under the edit's prompt.
+// The gate (method F25): before the long loop of score distillation, pictures of what the model makes of the scene under the
+// edit's prompt. Redrawn views are judged as they are (verdict.h).
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <vector>
 
 #include "engine/pipeline/edit_job.h"
+#include "engine/pipeline/verdict.h"
 
 namespace gse::pipeline {
 
@@ -22,12 +23,8 @@ struct GatePicture {
     Image before, after;
 };
 
-struct Gate {
+struct Gate : Verdict {
     std::vector<GatePicture> pictures;
-    /// Mean cosine of the pictures' and the sentences' change; none when the model has no encoder to tell.
-    std::optional<double> score;
-    std::string verdict;   // the score in a sentence; empty without one
-    bool warns = false;    // the pictures do not show the edit
 };
 
 /// Views spread over the job's, each painted over by the model (tuned, if it is). Throws Error (Cancelled) on a stop request.

@@ -72,6 +72,10 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
     tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings).dump();
     Edited edited;
     tools.targets = [&](const edit::ViewTargets& sheet) {
+        if (!edited.verdict) {
+            edited.verdict = judge_targets(model, request, edit::as_told(request.prompt), sheet);
+            if (observer.judged) observer.judged(*edited.verdict, sheet);
+        }
         keep(edited.targets, sheet);
         if (observer.targets) observer.targets(sheet);
     };

@@ -8,6 +8,7 @@
 
 #include "engine/edit/session.h"
 #include "engine/pipeline/search.h"
+#include "engine/pipeline/verdict.h"
 
 namespace gse::pipeline {
 
@@ -20,6 +21,7 @@ struct EditObserver {
     std::function<std::optional<std::vector<std::uint8_t>>()> new_label = {};   // these three: see edit::EditTools
     std::function<void(const edit::ViewTargets&)> targets = {};
     std::function<std::vector<edit::TargetOrder>()> target_orders = {};
+    std::function<void(const Verdict&, const edit::ViewTargets&)> judged = {};   // once, of the first views that were redrawn
 };
 
 /// What became of the scene. A value.
@@ -27,6 +29,7 @@ struct Edited {
     edit::EditResult result;
     GaussianSet drawn;         // the result without what cannot be drawn
     std::vector<edit::ViewTargets> targets;   // of view guidance: every round that was fitted, as it was in the end
+    std::optional<Verdict> verdict;           // of view guidance: whether the first redrawn views show the edit
     std::string key;           // of all that it follows from, beside scene, model and what the artist did meanwhile
     neural::NetworkUse use;    // what the loop has asked for
     double seconds = 0;        // that it took, with what the artist was waited for

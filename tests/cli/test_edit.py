@@ -88,13 +88,23 @@ class Edits(ProgramTest):
     @unittest.skipUnless((MODEL / "clip/config.json").exists(), "[skip] the starter model has no image-text encoder")
     def test_the_gate_scores_its_pictures(self):
         out = self.folder / "gated"
-        self.edit(out, "--gate")
+        self.edit(out, "--gate", "--method", "sds")
         gate = json.loads((out / "report.json").read_text())["gate"]
         self.assertEqual(len(gate["views"]), 4)
         self.assertTrue(-1 <= gate["score"] <= 1)
         self.assertIn("blue bear" if gate["warns"] else "show the edit", gate["verdict"])
         for i in range(4):
             self.assertTrue((out / f"evidence/gate_{i}.png").is_file())
+
+    @unittest.skipUnless((MODEL / "clip/config.json").exists(), "[skip] the starter model has no image-text encoder")
+    def test_redrawn_views_are_judged_as_they_are(self):
+        out = self.folder / "judged"
+        self.edit(out, "--gate")
+        report = json.loads((out / "report.json").read_text())
+        self.assertTrue(-1 <= report["gate"]["score"] <= 1)
+        self.assertIn("blue bear" if report["gate"]["warns"] else "show the edit", report["gate"]["verdict"])
+        self.assertFalse((out / "evidence/gate_0.png").exists())   # no pictures were drawn for it alone
+        self.assertTrue((out / "evidence/targets_0.png").is_file())
 
     def test_redrawn_views_are_part_of_the_evidence(self):
         out = self.folder / "views"

@@ -48,7 +48,7 @@ void draw_gate(Context& context) {
     const auto& gate = context.model.gate;
     if (gate.pictures.empty()) return;
     dim_text("What the model makes of it");
-    tooltip("Pictures painted by the model alone, before the edit: when they do not show it, the edit can hardly succeed.");
+    tooltip("Pictures painted by the model alone: when they do not show the edit, it can hardly succeed.");
     const float gap = ImGui::GetStyle().ItemSpacing.x, count = static_cast<float>(gate.pictures.size());
     const float side = std::min(context.em * 5, (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count);
     for (std::size_t i = 0; i < gate.pictures.size(); ++i) {

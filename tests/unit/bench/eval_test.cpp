@@ -50,6 +50,21 @@ Json report_of(Json edits) {
 
 }  // namespace
 
+DOCTEST_TEST_CASE("how often the verdict on redrawn views warns is counted apart for edits that help and those that do not") {
+    const auto judged = [](int index, double l1_reduction, bool warns) {
+        Json edit = changed_edit(index, 0.9, l1_reduction, 40);
+        edit["gate"] = {{"score", warns ? 0.1 : 0.6}, {"verdict", ""}, {"warns", warns}};
+        return edit;
+    };
+    Json edits = Json::array({judged(0, -0.1, true), judged(1, -0.2, false), judged(2, 0.5, false), judged(3, 0.6, false),
+                              judged(4, 0.4, false), judged(5, 0.3, true)});
+    const auto summary = eval_summary(report_of(edits));
+    DOCTEST_CHECK(summary["gate_warned_of_failures"]["value"] == 0.5);
+    DOCTEST_CHECK(summary["gate_warned_of_successes"]["value"] == 0.25);
+    edits[2]["gate"]["score"] = nullptr;   // the model has no encoder
+    DOCTEST_CHECK(eval_summary(report_of(Json::array({edits[2]}))).contains("gate_warned_of_successes") == false);
+}
+
 DOCTEST_TEST_CASE("every edit of the suite ends in a combination that training never saw") {
     const auto suite = make_suite(7, 48, {"recolour", "material", "add"});
     std::map<std::string, int> kinds;

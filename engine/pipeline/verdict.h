@@ -1,0 +1,37 @@
+// Whether pictures that the model drew show what the sentence says, by the model's own image-text encoder.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/edit/request.h"
+#include "engine/edit/view_targets.h"
+#include "engine/neural/api.h"
+
+namespace gse::pipeline {
+
+struct Verdict {
+    /// Mean cosine of the pictures' and the sentences' change; none when the model has no encoder to tell.
+    std::optional<double> score;
+    std::string verdict;   // the score in a sentence; empty without one
+    bool warns = false;    // the pictures do not show the edit
+};
+
+/// A picture before and after.
+using PicturePair = std::pair<const Image*, const Image*>;
+
+/// Of a validated request; `told`: the sentence as the model is told it. Pictures [H,W,3] in [0,1].
+Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
+              const std::vector<PicturePair>& pictures);
+
+/// Of the redrawn views of a round that the fit uses, against the scene as they were drawn from.
+Verdict judge_targets(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
+                      const edit::ViewTargets& round);
+
+/// {"score", "verdict", "warns"}.
+nlohmann::ordered_json verdict_to_json(const Verdict& verdict);
+
+}  // namespace gse::pipeline
