@@ -6,6 +6,7 @@
 #include "engine/base/check.h"
 #include "engine/raster/fast_frame.h"
 #include "engine/raster/fast_tiles.h"
+#include "engine/raster/fast_view_session.h"
 #include "engine/raster/kernels.h"
 #include "engine/raster/rasterizer.h"
 
@@ -87,6 +88,10 @@ public:
         side_frame_.blend([](void* self, std::size_t tile,
                              const BlendScratch&) { static_cast<FastRasterizer*>(self)->write_values(tile); },
                           this);
+    }
+
+    std::unique_ptr<ViewSession> view_session(std::size_t views, std::size_t budget_bytes) override {
+        return std::make_unique<FastViewSession>(FastParts{*this, kernels_, pool_, side_frame_}, views, budget_bytes);
     }
 
     std::string name() const override { return kernels_.name; }
