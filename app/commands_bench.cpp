@@ -41,6 +41,8 @@ struct RasterBenchOptions {
     std::filesystem::path output;
     int views = 4;
     raster::BenchSettings settings;
+    std::vector<double> labelled_shares{0.01, 0.05, 0.25, 1};
+    bool skips = true;
 };
 
 /// Up to `count` cameras, evenly spread over those named; an orbit when there are none.
@@ -70,11 +72,18 @@ void add_raster_bench(CLI::App& bench) {
         ->capture_default_str()
         ->check(CLI::Range(0, 256));
     command->add_flag("--compare,!--no-compare", options->settings.compare_plain, "Measure the error against the plain version");
+    command->add_flag("--skips,!--no-skips", options->skips, "Also time an edit's iterations with and without what may be skipped");
+    command->add_option("--labelled-shares", options->labelled_shares, "Shares of the splats that those iterations change")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 1.0));
     command->add_option("--out", options->output, "Also write the JSON to this file");
     command->callback([options] {
         const Scene scene = load_scene(options->scene);
-        const auto json = raster_report(
-            raster::bench_raster(scene.gaussians.spans(), bench_cameras(scene, *options), options->settings));
+        const auto cameras = bench_cameras(scene, *options);
+        auto json = raster_report(raster::bench_raster(scene.gaussians.spans(), cameras, options->settings));
+        if (options->skips)
+            json["skips"] = skip_report(
+                raster::bench_skips(scene.gaussians.spans(), cameras, options->settings, options->labelled_shares));
         if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
         print_json(json, 2);
     });

@@ -13,6 +13,10 @@ Json times_json(const raster::BenchTimes& times) {
             {"cpu_min_ms", times.cpu_min_ms}};
 }
 
+Json skip_times_json(const raster::SkipTimes& times, std::size_t pairs) {
+    return {{"forward_cpu_ms", times.forward_ms}, {"backward_cpu_ms", times.backward_ms}, {"tile_pairs", pairs}};
+}
+
 }  // namespace
 
 Json raster_report(const raster::RasterBench& bench) {
@@ -36,6 +40,22 @@ Json raster_report(const raster::RasterBench& bench) {
     json["error"] = {{"max_abs", bench.max_abs_error},
                      {"psnr_db", bench.psnr_db},
                      {"gradient_relative_l2", bench.gradient_error}};
+    return json;
+}
+
+Json skip_report(const std::vector<raster::SkipBench>& shares) {
+    Json json;
+    json["labelled"] = "the rows nearest to the one in the middle of the scene, as the rows of an edit lie together";
+    for (const auto& bench : shares)
+        json["shares"].push_back({{"share", bench.share},
+                                  {"rows", bench.labelled},
+                                  {"full", skip_times_json(bench.full, bench.full_pairs)},
+                                  {"skipping", skip_times_json(bench.skipping, bench.pairs)},
+                                  {"ratio", bench.ratio},
+                                  {"prepare_cpu_ms", bench.prepare_ms},
+                                  {"kept_mib_per_view", bench.kept_mib},
+                                  {"picture_difference", bench.picture_difference},
+                                  {"gradient_difference", bench.gradient_difference}});
     return json;
 }
 

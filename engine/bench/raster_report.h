@@ -2,12 +2,17 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "engine/raster/bench.h"
+#include "engine/raster/skip_bench.h"
 
 namespace gse::bench {
 
 /// Times in milliseconds, per pair of splat and tile in nanoseconds, memory in MiB, errors against the plain version.
 nlohmann::ordered_json raster_report(const raster::RasterBench& bench);
+
+/// Of an edit's iterations with and without skips: processor time in milliseconds, memory in MiB, and what they differ by.
+nlohmann::ordered_json skip_report(const std::vector<raster::SkipBench>& shares);
 
 }  // namespace gse::bench

@@ -28,6 +28,7 @@
 #include "engine/edit/working_set.h"
 #include "engine/localize/back_projection.h"
 #include "engine/localize/clusters.h"
+#include "engine/raster/view_session.h"
 
 namespace gse::edit {
 namespace {
@@ -118,6 +119,7 @@ public:
           masks_(plan, request_, tools.word, tools.attention, tools.segmenter),
           cycle_(request.seed),
           rest_(plan.views.size(), request.early_stop_change),
+          pictures_(tools.rasterizer.view_session(plan.views.size(), tools.view_bytes)),
           random_(Random::stream(request.seed, 17)) {
         GSE_CHECK_EQ(plan.masks.size(), plan.views.size());
         if (tools.start != nullptr) set_.resume(base.drawn, *tools.start);
@@ -187,6 +189,7 @@ private:
     void keep_reached(EditResult& result, const OutOfMemory& shortage) {
         if (result.iterations == 0) throw shortage;
         result.shortage = shortage;
+        pictures_->forget();
         originals_ = {};
         output_ = {};
         gradients_ = {};
@@ -277,7 +280,7 @@ private:
         const std::size_t view = record.view = cycle_.next();
         {
             const StageTimer timer(seconds_.render);
-            tools_.rasterizer.forward(spans(set_.rows()), plan_.views[view].camera, settings_, output_);
+            render(view);
         }
         show(shown_);
         if (masks_.due(view, iteration)) refresh_mask(view, iteration);
@@ -307,6 +310,11 @@ private:
         return true;
     }
 
+    /// The view as it is now, into output_; backward() of the session may follow.
+    void render(std::size_t view) {
+        pictures_->forward(view, spans(set_.rows()), set_.first_row(), plan_.views[view].camera, settings_, output_);
+    }
+
     const Mask& no_mask() {
         if (no_mask_.data.size() != output_.colour.pixel_count()) no_mask_ = Mask(output_.colour.width, output_.colour.height);
         return no_mask_;
@@ -316,7 +324,7 @@ private:
     double step(int iteration) {
         {
             const StageTimer timer(seconds_.backward);
-            tools_.rasterizer.backward(gradient_, {}, set_.first_row(), gradients_);
+            pictures_->backward(gradient_, {}, gradients_);
         }
         const StageTimer timer(seconds_.optimise);
         set_.collect(gradients_);
@@ -336,6 +344,7 @@ private:
             return log::warning("the corrected label is seen in no view of the edit and was not taken over");
         label_ = std::move(*label);
         set_.relabel(base_.drawn, label_, request_);
+        pictures_->forget();
         for (std::size_t v = 0; v < masks.size(); ++v) masks_.set_static(v, std::move(masks[v]));
         ++result.label_changes;
         if (phase_) return phase_->take_masks();
@@ -375,7 +384,7 @@ private:
         Image shown;   // shown_ stays what the step has seen
         for (std::size_t v = 0; v < plan_.views.size(); ++v) {
             const Camera& camera = plan_.views[v].camera;
-            tools_.rasterizer.forward(spans(set_.rows()), camera, settings_, output_);
+            render(v);
             show(shown);
             const Mask found = masks_.found_in(shown, v, iteration);
             Image share(camera.width, camera.height, 1);
@@ -398,7 +407,7 @@ private:
         const StageTimer timer(seconds_.dynamic_mask);
         tools_.rasterizer.forward_values(spans(set_.rows()), plan_.views[view].camera, settings_, label_values(), label_seen_);
         masks_.refresh(view, iteration, shown_, label_seen_);
-        tools_.rasterizer.forward(spans(set_.rows()), plan_.views[view].camera, settings_, output_);   // for backward()
+        render(view);   // for backward()
     }
 
     /// Adds the gated and calibrated guidance gradient; false when it is not finite, and then adds nothing.
@@ -474,6 +483,7 @@ private:
                           {"guidance", seconds_.guidance},   {"backward", seconds_.backward}, {"optimise", seconds_.optimise},
                           {"densify", seconds_.densify},     {"snapshot", seconds_.snapshot}, {"dynamic_mask", seconds_.dynamic_mask}};
         result.masks_refreshed = masks_.refreshed();
+        result.continued_pictures = pictures_->work().continued;
     }
 
     const EditBase& base_;
@@ -488,6 +498,7 @@ private:
     Mask no_mask_;
     ViewCycle cycle_;
     RestDetector rest_;
+    std::unique_ptr<raster::ViewSession> pictures_;
     Random random_;
     raster::Settings settings_;
     raster::ForwardOutput output_;

@@ -56,6 +56,7 @@ struct EditResult {
     std::size_t masks_refreshed = 0;         // by the dynamic mask
     std::size_t skipped_steps = 0;           // left out because the guidance was not finite
     std::size_t skipped_rows = 0;            // rows whose gradient was not finite, summed over the steps
+    std::size_t continued_pictures = 0;      // for which only the labelled rows were prepared
     std::size_t redrawn_views = 0;           // pictures that view guidance has asked for
     std::size_t cloned = 0, split = 0, pruned = 0;
     std::size_t changed_outside_label = 0;   // rows outside the label that differ from the base in any bit; always 0
@@ -94,6 +95,7 @@ struct EditTools {
     /// nothing. May wait for an answer; a stop request has to end that.
     std::function<std::vector<TargetOrder>()> target_orders = {};
     std::vector<std::string> known = {};   // words of the model; empty = it takes any
+    std::size_t view_bytes = std::size_t{512} << 20;   // memory that saves time where few rows are labelled; no result depends on it
     std::string redraw_key = {};        // of what `views` is made from: a round begun with another key is redrawn
 };
 

@@ -1,32 +1,18 @@
 // Benchmark of the rasterizer: wall and CPU time per view, work counts, error against the plain version.
 #include "engine/raster/bench.h"
 
-#include <time.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "engine/base/check.h"
 #include "engine/base/process_memory.h"
-#include "engine/base/random.h"
+#include "engine/raster/bench_tools.h"
 #include "engine/raster/plain.h"
 #include "engine/raster/rasterizer.h"
 
 namespace gse::raster {
 namespace {
-
-double cpu_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double wall_seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Sums of one repetition over its views.
 struct Round {
@@ -50,24 +36,6 @@ BenchTimes summarize(const std::vector<Round>& rounds, std::size_t views) {
     std::sort(wall.begin(), wall.end());
     std::sort(cpu.begin(), cpu.end());
     return {wall[wall.size() / 2], wall.front(), cpu[cpu.size() / 2], cpu.front()};
-}
-
-/// A gradient image like a loss would send: noise of unit size.
-Image noise_image(int width, int height) {
-    Image image(width, height, 3);
-    Random random(7);
-    for (float& value : image.data) value = static_cast<float>(random.uniform(-1.0, 1.0));
-    return image;
-}
-
-double relative_error(std::span<const float> found, std::span<const float> expected) {
-    double difference = 0, size = 0;
-    for (std::size_t i = 0; i < expected.size(); ++i) {
-        const double d = static_cast<double>(found[i]) - static_cast<double>(expected[i]);
-        difference += d * d;
-        size += static_cast<double>(expected[i]) * static_cast<double>(expected[i]);
-    }
-    return size > 0 ? std::sqrt(difference / size) : std::sqrt(difference);
 }
 
 struct Case {

@@ -198,9 +198,16 @@ void Frame::blend_tiles(std::size_t begin, std::size_t end, unsigned worker) {
     BlendScratch& scratch = scratch_[worker];
     for (std::size_t tile = begin; tile < end; ++tile) {
         const auto list = entries(tile);
-        const BlendJob job = {records_.data(), list.data(),    static_cast<std::uint32_t>(list.size()),
-                              tile_x(tile),    tile_y(tile),   view_.width,
-                              view_.height,    &lights_[tile], &scratch};
+        const BlendJob job = {{records_.data(), nullptr, NoSplit},
+                              list.data(),
+                              static_cast<std::uint32_t>(list.size()),
+                              AllBlocks,
+                              tile_x(tile),
+                              tile_y(tile),
+                              view_.width,
+                              view_.height,
+                              &lights_[tile],
+                              &scratch};
         kernels_.blend(job);
         finish_(finish_context_, tile, scratch);
     }

@@ -48,6 +48,8 @@ public:
     std::span<const TileEntry> entries(std::size_t tile) const {
         return {entries_.data() + offsets_[tile], offsets_[tile + 1] - offsets_[tile]};
     }
+    /// The drawn records, front to back.
+    std::span<const std::uint32_t> order() const { return {order_.data(), drawn_}; }
     std::size_t pair_count() const { return offsets_.empty() ? 0 : offsets_.back(); }
     std::size_t unusable_rows() const { return unusable_; }
     std::size_t drawn_rows() const { return drawn_; }

@@ -5,26 +5,13 @@
 
 #include "engine/base/check.h"
 #include "engine/raster/fast_frame.h"
+#include "engine/raster/fast_tiles.h"
+#include "engine/raster/fast_view_session.h"
 #include "engine/raster/kernels.h"
 #include "engine/raster/rasterizer.h"
 
 namespace gse::raster {
 namespace {
-
-/// Calls body(local, pixel) for the pixels of a tile that are inside the image; local is in block order.
-template <class Body>
-void for_pixels(const Frame& frame, std::size_t tile, Body&& body) {
-    const int x0 = frame.tile_x(tile), y0 = frame.tile_y(tile);
-    const int columns = std::min(TileSize, frame.width() - x0),
-              rows = std::min(TileSize, frame.height() - y0);
-    for (int y = 0; y < rows; ++y) {
-        const std::size_t line = static_cast<std::size_t>(y0 + y) * static_cast<std::size_t>(frame.width()) +
-                                 static_cast<std::size_t>(x0);
-        const int base = y / 4 * 64 + y % 4 * 4;
-        for (int x = 0; x < columns; ++x)
-            body(static_cast<std::size_t>(base + x / 4 * 16 + x % 4), line + static_cast<std::size_t>(x));
-    }
-}
 
 class FastRasterizer final : public Rasterizer {
 public:
@@ -34,11 +21,8 @@ public:
     void forward(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                  ForwardOutput& output) override {
         frame_.prepare(gaussians, camera, settings, {});
-        background_ = settings.background;
-        output.colour.resize(camera.width, camera.height, 3);
-        output.alpha.resize(camera.width, camera.height, 1);
-        output.depth.resize(camera.width, camera.height, 1);
-        output.blended.resize(output.alpha.pixel_count());
+        slope_.background = settings.background;
+        resize_output(camera.width, camera.height, output);
         output.pairs = frame_.pair_count();
         output.dropped_rows = frame_.unusable_rows();
         output_ = &output;
@@ -56,11 +40,11 @@ public:
             static_cast<std::size_t>(frame_.width()) * static_cast<std::size_t>(frame_.height());
         GSE_CHECK_EQ(d_colour.data.size(), pixels * 3);
         GSE_CHECK(d_alpha.data.empty() || d_alpha.data.size() == pixels);
-        d_colour_ = &d_colour;
-        d_alpha_ = d_alpha.data.empty() ? nullptr : &d_alpha;
+        slope_.colour = &d_colour;
+        slope_.alpha = d_alpha.data.empty() ? nullptr : &d_alpha;
         first_row_ = first_row;
         gradients_ = &output;
-        resize(output, frame_.row_count() - first_row);
+        resize_gradients(frame_.row_count() - first_row, frame_.source().sh_stride, output);
         frame_.assign_slots(first_row);
         grow_scratch();
         frame_.for_tiles([this](std::size_t begin, std::size_t end, unsigned worker) {
@@ -70,7 +54,8 @@ public:
         pool_.parallel_for(frame_.chunk_count() - std::min(first_chunk, frame_.chunk_count()), 2,
                            [this](std::size_t begin, std::size_t end, unsigned) {
                                const std::size_t skipped = first_row_ / Frame::ChunkRows;
-                               for (std::size_t i = begin; i < end; ++i) gradient_chunk(skipped + i);
+                               for (std::size_t i = begin; i < end; ++i)
+                                   write_gradients(kernels_, frame_, skipped + i, first_row_, *gradients_);
                            });
     }
 
@@ -105,6 +90,10 @@ public:
                           this);
     }
 
+    std::unique_ptr<ViewSession> view_session(std::size_t views, std::size_t budget_bytes) override {
+        return std::make_unique<FastViewSession>(FastParts{*this, kernels_, pool_, side_frame_}, views, budget_bytes);
+    }
+
     std::string name() const override { return kernels_.name; }
 
 private:
@@ -112,93 +101,33 @@ private:
         if (scratch_.size() < pool_.thread_count()) scratch_.resize(pool_.thread_count());
     }
 
-    void resize(Gradients& g, std::size_t rows) const {
-        g.position.resize(rows * 3);
-        g.log_scale.resize(rows * 3);
-        g.rotation.resize(rows * 4);
-        g.opacity_logit.resize(rows);
-        g.sh.resize(rows * frame_.source().sh_stride);
-        g.mean2d_norm.resize(rows);
-        g.visible.resize(rows);
-    }
-
     void write_tile(std::size_t tile, const BlendScratch& scratch) {
-        const TileLight& light = frame_.light(tile);
-        for_pixels(frame_, tile, [&](std::size_t local, std::size_t pixel) {
-            const float rest = light.transmittance[local];
-            for (std::size_t channel = 0; channel < 3; ++channel)
-                output_->colour.data[pixel * 3 + channel] =
-                    light.colour[channel][local] + rest * background_[channel];
-            output_->alpha.data[pixel] = 1.0f - rest;
-            output_->depth.data[pixel] = scratch.depth[local];
-            output_->blended[pixel] = scratch.blended[local];
-        });
+        raster::write_tile(tile_area(frame_, tile), AllBlocks, frame_.light(tile), scratch, slope_.background, *output_);
     }
 
     void write_values(std::size_t tile) {
         const TileLight& light = side_frame_.light(tile);
-        for_pixels(side_frame_, tile, [&](std::size_t local, std::size_t pixel) {
+        for_pixels(tile_area(side_frame_, tile), [&](std::size_t local, std::size_t pixel) {
             values_output_->data[pixel] = light.colour[0][local];
         });
     }
 
     BackwardJob tile_job(Frame& frame, std::size_t tile, BackwardScratch& scratch) const {
         const auto list = frame.entries(tile);
-        return {frame.records(),    list.data(),        static_cast<std::uint32_t>(list.size()),
+        return {{frame.records(), nullptr, NoSplit}, list.data(),        static_cast<std::uint32_t>(list.size()),
                 frame.tile_x(tile), frame.tile_y(tile), frame.width(),
                 frame.height(),     &scratch,           frame.first_active(),
                 frame.slots()->sums};
     }
 
     void backward_tile(std::size_t tile, BackwardScratch& scratch) {
-        const TileLight& light = frame_.light(tile);
-        std::memset(scratch.remaining, 0, sizeof scratch.remaining);
-        std::memset(scratch.d_colour, 0, sizeof scratch.d_colour);
-        for_pixels(frame_, tile, [&](std::size_t local, std::size_t pixel) {
-            const float rest = light.transmittance[local];
-            float remaining = d_alpha_ != nullptr ? -d_alpha_->data[pixel] * rest : 0.0f;
-            for (std::size_t channel = 0; channel < 3; ++channel) {
-                const float d = d_colour_->data[pixel * 3 + channel];
-                scratch.d_colour[channel][local] = d;
-                remaining += d * (light.colour[channel][local] + rest * background_[channel]);
-            }
-            scratch.remaining[local] = remaining;
-        });
+        load_slopes(tile_area(frame_, tile), frame_.light(tile), slope_, scratch);
         kernels_.backward(tile_job(frame_, tile, scratch));
-    }
-
-    void gradient_chunk(std::size_t chunk) {
-        Gradients& g = *gradients_;
-        const std::size_t stride = frame_.source().sh_stride;
-        const std::size_t begin = std::max(chunk * Frame::ChunkRows, first_row_) - first_row_;
-        const std::size_t end = std::min((chunk + 1) * Frame::ChunkRows, frame_.row_count()) - first_row_;
-        if (begin >= end) return;
-        const auto clear = [&](auto& values, std::size_t width) {
-            std::memset(values.data() + begin * width, 0, (end - begin) * width * sizeof values[0]);
-        };
-        clear(g.position, 3);
-        clear(g.log_scale, 3);
-        clear(g.rotation, 4);
-        clear(g.opacity_logit, 1);
-        clear(g.sh, stride);
-        clear(g.mean2d_norm, 1);
-        clear(g.visible, 1);
-        const auto records = frame_.active_records(chunk);
-        const GradientJob job = {
-            frame_.source(),
-            &frame_.view(),
-            records.data(),
-            records.data() + records.size(),
-            frame_.slots()->sums,
-            first_row_,
-            {g.position.data(), g.log_scale.data(), g.rotation.data(), g.opacity_logit.data(), g.sh.data(),
-             g.mean2d_norm.data(), g.visible.data()}};
-        kernels_.gradient(job);
     }
 
     void contribute_tile(std::size_t tile, BackwardScratch& scratch) {
         std::memset(scratch.mask, 0, sizeof scratch.mask);
-        for_pixels(side_frame_, tile,
+        for_pixels(tile_area(side_frame_, tile),
                    [&](std::size_t local, std::size_t pixel) { scratch.mask[local] = mask_->data[pixel]; });
         kernels_.contribute(tile_job(side_frame_, tile, scratch));
     }
@@ -221,14 +150,12 @@ private:
     Frame frame_;       // of the last forward(), for backward()
     Frame side_frame_;  // of contributions() and forward_values(), which leave forward's state alone
     std::vector<BackwardScratch> scratch_;  // per worker
-    std::array<float, 3> background_{};
 
     // Arguments of the call under way, here so that the loops' bodies capture one pointer and allocate
     // nothing.
     ForwardOutput* output_ = nullptr;
     Image* values_output_ = nullptr;
-    const Image* d_colour_ = nullptr;
-    const Image* d_alpha_ = nullptr;
+    PictureSlope slope_;
     const Image* mask_ = nullptr;
     std::span<double> masked_, total_;
     Gradients* gradients_ = nullptr;

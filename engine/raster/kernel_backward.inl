@@ -68,7 +68,7 @@ GSE_INLINE M weigh_pixels(const Record& r, int pixel, const PixelGrid& grid, Bac
 
 GSE_INLINE float* slot_of(const BackwardJob& job, const TileEntry& entry) {
     const std::size_t slot =
-        static_cast<std::size_t>(job.records[entry.record].partial_begin) + entry.ordinal;
+        static_cast<std::size_t>(record_at(job.records, entry.record).partial_begin) + entry.ordinal;
     return job.partials + slot * PartialStride;
 }
 
@@ -76,14 +76,14 @@ GSE_INLINE void clear_slot(float* slot) {
     for (int k = 0; k < PartialStride; k += F::W) store(slot + k, zero());
 }
 
-/// Slots of the active entries from `begin` on, which nothing reached.
-static void clear_rest(const BackwardJob& job, std::uint32_t begin) {
-    for (std::uint32_t i = begin; i < job.count; ++i)
+/// Slots of the active entries in [begin, end), which nothing reached.
+static void clear_rest(const BackwardJob& job, std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t i = begin; i < end; ++i)
         if (job.entries[i].record >= job.first_record) clear_slot(slot_of(job, job.entries[i]));
 }
 
 GSE_INLINE void prefetch_entry(const BackwardJob& job, std::uint32_t i) {
-    if (i < job.count) __builtin_prefetch(job.records + job.entries[i].record);
+    if (i < job.count) __builtin_prefetch(&record_at(job.records, job.entries[i].record));
 }
 
 /// Blocks of `blocks` in which light is left after the active record r.
@@ -119,38 +119,72 @@ static std::uint32_t pass_record(const Record& r, std::uint32_t blocks, const Pi
     return finished;
 }
 
+/// The last active entry of each block: what lies behind it, and blocks without one, have nothing to say.
+struct LastActive {
+    std::uint32_t entry[16];
+    std::uint32_t blocks;   // that have one
+    std::uint32_t soonest;  // smallest of entry[]
+    std::uint32_t end;      // behind the largest of them
+};
+
+GSE_INLINE LastActive find_last_active(const BackwardJob& job) {
+    LastActive last;
+    last.blocks = last.end = 0;
+    last.soonest = job.count;
+    for (std::uint32_t i = job.count; i > 0 && last.blocks != AllBlocks; --i) {
+        const TileEntry& entry = job.entries[i - 1];
+        if (entry.record < job.first_record) continue;
+        if (last.end == 0) last.end = i;
+        const std::uint32_t found = entry.blocks & ~last.blocks;
+        if (found == 0) continue;
+        for (std::uint32_t left = found; left != 0; left &= left - 1) last.entry[__builtin_ctz(left)] = i - 1;
+        last.blocks |= found;
+        last.soonest = i - 1;
+    }
+    return last;
+}
+
+/// Blocks of entry i, an active one, that have none behind it.
+GSE_INLINE std::uint32_t ended_blocks(const LastActive& last, std::uint32_t blocks, std::uint32_t i) {
+    std::uint32_t ended = 0;
+    if (i < last.soonest) return ended;
+    for (; blocks != 0; blocks &= blocks - 1)
+        if (last.entry[__builtin_ctz(blocks)] == i) ended |= blocks & (0u - blocks);
+    return ended;
+}
+
 static void backward(const BackwardJob& job) {
-    std::uint32_t end = job.count;  // nothing behind the last active entry matters
-    while (end > 0 && job.entries[end - 1].record < job.first_record) --end;
-    if (end == 0) return;
+    const LastActive last = find_last_active(job);
+    if (last.end == 0) return;
     PixelGrid grid;
     fill_grid(job.x, job.y, grid);
     start_transmittance(job.width, job.height, grid, job.scratch->transmittance);
-    std::uint32_t alive = 0xffff, i = 0;
-    for (; i < end && alive != 0; ++i) {
+    std::uint32_t alive = last.blocks, i = 0;
+    for (; i < last.end && alive != 0; ++i) {
         prefetch_entry(job, i + 8);
         const TileEntry& entry = job.entries[i];
-        const Record& r = job.records[entry.record];
+        const Record& r = record_at(job.records, entry.record);
         const std::uint32_t blocks = entry.blocks & alive;
         if (entry.record < job.first_record)
             alive &= ~pass_record(r, blocks, grid, *job.scratch);
         else if (blocks == 0)
             clear_slot(slot_of(job, entry));
         else
-            alive &= ~backward_record(r, blocks, grid, *job.scratch, slot_of(job, entry));
+            alive &= ~(backward_record(r, blocks, grid, *job.scratch, slot_of(job, entry)) |
+                       ended_blocks(last, blocks, i));
     }
-    clear_rest(job, i);
+    clear_rest(job, i, last.end);
 }
 
 static void contribute(const BackwardJob& job) {
     PixelGrid grid;
     fill_grid(job.x, job.y, grid);
     start_transmittance(job.width, job.height, grid, job.scratch->transmittance);
-    std::uint32_t alive = 0xffff, i = 0;
+    std::uint32_t alive = AllBlocks, i = 0;
     for (; i < job.count && alive != 0; ++i) {
         prefetch_entry(job, i + 8);
         const TileEntry& entry = job.entries[i];
-        const Record& r = job.records[entry.record];
+        const Record& r = record_at(job.records, entry.record);
         Sums sums;
         for (F& sum : sums.s) sum = zero();
         for (std::uint32_t left = entry.blocks & alive; left != 0; left &= left - 1) {
@@ -163,5 +197,5 @@ static void contribute(const BackwardJob& job) {
         }
         store_sums(sums.s, slot_of(job, entry));
     }
-    clear_rest(job, i);
+    clear_rest(job, i, job.count);
 }

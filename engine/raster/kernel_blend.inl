@@ -7,6 +7,10 @@ constexpr float Limit = static_cast<float>(AlphaLimit);
 constexpr float CutTransmittance = static_cast<float>(TransmittanceCut);
 constexpr int Subs = 16 / F::W;  // registers per 4x4 block
 
+GSE_INLINE const Record& record_at(const RecordTable& table, std::uint32_t index) {
+    return index < table.split ? table.first[index] : table.second[index - table.split];
+}
+
 /// Offsets of the pixel centres of a tile, in block order.
 struct alignas(64) PixelGrid {
     float x[TilePixels], y[TilePixels];
@@ -97,8 +101,8 @@ GSE_INLINE void gather_batch(const BlendJob& job, std::uint32_t begin, std::uint
     alignas(64) std::uint32_t blocks[BatchEntries];
     for (std::uint32_t i = 0; i < size; ++i) {
         const TileEntry& entry = job.entries[begin + i];
-        if (begin + i + 12 < job.count) __builtin_prefetch(job.records + job.entries[begin + i + 12].record);
-        scratch.records[i] = job.records[entry.record];
+        if (begin + i + 12 < job.count) __builtin_prefetch(&record_at(job.records, job.entries[begin + i + 12].record));
+        scratch.records[i] = record_at(job.records, entry.record);
         blocks[i] = entry.blocks;
     }
     for (int block = 0; block < 16; ++block) lengths[block] = 0;
@@ -126,7 +130,7 @@ static void blend(const BlendJob& job) {
         store(scratch.depth + pixel, zero());
         for (int lane = 0; lane < F::W; ++lane) scratch.blended[pixel + lane] = 0;
     }
-    std::uint32_t alive = 0xffff;
+    std::uint32_t alive = job.blocks;
     std::uint32_t lengths[16];
     for (std::uint32_t begin = 0; begin < job.count && alive != 0; begin += BatchEntries) {
         const std::uint32_t size = job.count - begin < BatchEntries ? job.count - begin : BatchEntries;

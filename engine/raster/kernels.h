@@ -103,12 +103,23 @@ struct alignas(64) BlendScratch {
     std::uint16_t lists[16][BatchEntries + 16];
 };
 
+/// Records by index: those below `split` lie in one array, the others in a second one.
+struct RecordTable {
+    const Record* first;
+    const Record* second;  // its first is record `split`
+    std::uint32_t split;
+};
+
+inline constexpr std::uint32_t NoSplit = 0xffffffff;  // all records lie in the first array
+inline constexpr std::uint32_t AllBlocks = 0xffff;
+
 struct BlendJob {
-    const Record* records;
+    RecordTable records;
     const TileEntry* entries;
     std::uint32_t count;
-    int x, y;           // first pixel of the tile
-    int width, height;  // of the image
+    std::uint32_t blocks;  // those to blend; nothing is said of the others
+    int x, y;              // first pixel of the tile
+    int width, height;     // of the image
     TileLight* light;
     BlendScratch* scratch;
 };
@@ -121,7 +132,7 @@ struct alignas(64) BackwardScratch {
 };
 
 struct BackwardJob {
-    const Record* records;
+    RecordTable records;
     const TileEntry* entries;
     std::uint32_t count;
     int x, y;

@@ -27,6 +27,8 @@ struct Settings {
     int sh_degree = 3;                   // highest degree used; the scene's own if lower
     float negative_colour_slope = 0.0f;  // gradient of the clamp at 0 below 0 (0 = exact; 0.01 in training)
     std::array<float, 3> background{0, 0, 0};
+
+    bool operator==(const Settings&) const = default;
 };
 
 /// The settings with both planes given: those that follow scene and camera as they are for these.
@@ -53,6 +55,8 @@ struct Gradients {
     std::vector<std::uint8_t> visible;  // [M] 1 where the row was blended into at least one pixel
 };
 
+class ViewSession;
+
 /// A rasterizer keeps its scratch memory between calls: one object per thread of use, no allocation once
 /// warm. Results are bit-identical for every number of threads.
 class Rasterizer {
@@ -78,6 +82,10 @@ public:
     /// renders).
     virtual void forward_values(const GaussianSpans& gaussians, const Camera& camera,
                                 const Settings& settings, std::span<const float> values, Image& output) = 0;
+
+    /// A session of `views` views (view_session.h) that keeps up to `budget_bytes` of what does not change in them; views beyond
+    /// that are rendered in full. The rasterizer must outlive it. backward() of the one does not follow forward() of the other.
+    virtual std::unique_ptr<ViewSession> view_session(std::size_t views, std::size_t budget_bytes);
 
     /// "plain", "scalar", "avx2" or "avx512".
     virtual std::string name() const = 0;

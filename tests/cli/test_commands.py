@@ -70,6 +70,10 @@ class Commands(ProgramTest):
         figures = json.loads(process.stdout)
         for key in ["forward_ms", "backward_ms", "ns_per_pair", "peak_rss_mb"]:
             self.assertGreater(figures[key], 0, key)
+        self.assertEqual([share["share"] for share in figures["skips"]["shares"]], [0.01, 0.05, 0.25, 1])
+        for share in figures["skips"]["shares"]:
+            self.assertGreater(share["ratio"], 0)
+            self.assertEqual((share["picture_difference"], share["gradient_difference"]), (0, 0))
 
     def test_bench_speed_prints_the_readme_table(self):
         process = run("bench", "speed", "--splats", 300, 500, "--views", 2, "--repetitions", 1, "--size", "64x48",

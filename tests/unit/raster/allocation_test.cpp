@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "engine/raster/view_session.h"
 #include "tests/agree/raster/scenes.h"
 
 namespace {
@@ -56,4 +57,27 @@ DOCTEST_TEST_CASE("no allocation once warm") {
     }
     DOCTEST_CHECK(before > 0);
     DOCTEST_CHECK(allocations.load() == before);
+}
+
+DOCTEST_TEST_CASE("no allocation in a view session once its views are prepared") {
+    using namespace gse;
+    const GaussianData data = test::random_scene({.count = 6000, .seed = 92, .log_scale = -3.5});
+    const Camera cameras[] = {test::test_camera(100, 80), test::test_camera(64, 90)};
+    const Image d_colours[] = {test::noise_image(100, 80, 3, 1), test::noise_image(64, 90, 3, 1)};
+    ThreadPool pool(2);
+    const auto rasterizer = raster::make_fast_rasterizer(pool);
+    const auto session = rasterizer->view_session(2, std::size_t{64} << 20);
+    raster::ForwardOutput image;
+    raster::Gradients gradients;
+    std::size_t before = 0;
+    for (int round = 0; round < 3; ++round) {
+        if (round == 1) before = allocations.load();
+        for (std::size_t view = 0; view < 2; ++view) {
+            session->forward(view, spans(data), 5500, cameras[view], {}, image);
+            session->backward(d_colours[view], {}, gradients);
+        }
+    }
+    DOCTEST_CHECK(before > 0);
+    DOCTEST_CHECK(allocations.load() == before);
+    DOCTEST_CHECK(session->work().continued == 6);
 }

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/raster/bench.h"
+#include "engine/raster/skip_bench.h"
 #include "tests/agree/raster/scenes.h"
 
 using namespace gse;
@@ -27,4 +28,30 @@ DOCTEST_TEST_CASE("the raster bench measures time and error") {
     DOCTEST_CHECK(bench.psnr_db > 90);  // float against double: about 120 dB
     DOCTEST_CHECK(bench.max_abs_error < 1e-4);
     DOCTEST_CHECK(bench.gradient_error < 1e-2);
+}
+
+DOCTEST_TEST_CASE("the bench of the skips compares what it times, and the skips change nothing") {
+    const GaussianData data = test::random_scene({.count = 800, .seed = 112, .log_scale = -3.5});
+    const std::vector<Camera> cameras = {test::test_camera(64, 48), test::test_camera(64, 48, 5.0)};
+    raster::BenchSettings settings;
+    settings.width = 64;
+    settings.height = 48;
+    settings.repetitions = 3;
+    settings.threads = 2;
+    const double shares[] = {0.05, 1.0};
+    const auto benches = raster::bench_skips(spans(data), cameras, settings, shares);
+    DOCTEST_REQUIRE(benches.size() == 2);
+    for (const auto& bench : benches) {
+        DOCTEST_CHECK(bench.full.forward_ms > 0);
+        DOCTEST_CHECK(bench.ratio > 0);
+        DOCTEST_CHECK(bench.picture_difference == 0);
+        DOCTEST_CHECK(bench.gradient_difference == 0);
+        DOCTEST_CHECK(bench.pairs > 0);
+    }
+    DOCTEST_CHECK(benches[0].labelled == 40);
+    DOCTEST_CHECK(benches[0].pairs < benches[0].full_pairs);
+    DOCTEST_CHECK(benches[0].kept_mib > 0);
+    DOCTEST_CHECK(benches[1].labelled == 800);
+    DOCTEST_CHECK(benches[1].pairs == benches[1].full_pairs);   // nothing stays: rendered in full
+    DOCTEST_CHECK(benches[1].kept_mib == 0);
 }
