@@ -174,7 +174,7 @@ std::optional<Place> free_place(const Point& at, double width, const Box& plot, 
         taken.push_back(box);
         return Place{place, far};
     };
-    constexpr double near = 13, ring = 15, outermost = 62;
+    constexpr double near = 15, ring = 15, outermost = 64;
     for (double away = near; away <= outermost; away += ring) {
         const double middle = at[0] - width / 2, beside = at[0] + away, before = at[0] - away - width;
         const std::array<Point, 8> places{{{beside, at[1] + Small / 2}, {middle, at[1] - away}, {middle, at[1] + away + Small},
@@ -221,6 +221,7 @@ void draw_lines(Image& image, const ChartPanel& panel, const Scale& scale, std::
         const double x = scale.x(guide.x), top = scale.plot.top;
         for (double y = top; y < scale.plot.bottom; y += 12)
             draw_line(image, {x, y}, {x, std::min(y + 6, scale.plot.bottom)}, 1, Dim);
+        cover_line({{x, top}, {x, scale.plot.bottom}}, taken);
         const double width = text_width(guide.name, Small);
         const double left = x + 8 + width < scale.plot.right ? x + 8 : x - 8 - width;
         draw_text(image, left, top + Small + 4, guide.name, Small, Dim);

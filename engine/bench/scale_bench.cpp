@@ -67,14 +67,15 @@ public:
 
     std::vector<GrowthSeries> run() {
         std::vector<GrowthSeries> list;
-        list.push_back(series("splats", "splats", "Splats", 1, [this](double count) {
+        list.push_back(series("splats", "splats", "By number of splats", 1, [this](double count) {
             return raster_costs(synth::timing_scene(static_cast<std::size_t>(count), parameters_.seed), parameters_.usual_size);
         }));
         const Scene scene = synth::timing_scene(static_cast<std::size_t>(parameters_.usual_splats), parameters_.seed);
-        list.push_back(series("side", "pixels a side", "Picture", 2,
+        list.push_back(series("side", "pixels a side", "By size of the picture", 2,
                               [&](double side) { return raster_costs(scene, static_cast<int>(side)); }));
-        list.push_back(series("share", "labelled share", "Label", 1, [&](double share) { return label_costs(scene, share); }));
-        list.push_back(series("views", "views", "Views", 1,
+        list.push_back(
+            series("share", "labelled share", "By labelled share", 1, [&](double share) { return label_costs(scene, share); }));
+        list.push_back(series("views", "views", "By number of views", 1,
                               [&](double views) { return back_projection_costs(scene, static_cast<int>(views)); }));
         if (parameters_.search) add_search(list.back());
         return list;
@@ -239,7 +240,7 @@ void add_panel(Chart& chart, const Json& series, const std::string& title, const
 
 Table growth_table(const GrowthSeries& series) {
     const auto names = cost_names(series);
-    Table table{fmt::format("{}: {}", series.title, series.unit), {series.unit}, {}};
+    Table table{series.title, {series.unit}, {}};
     for (const auto& name : names) table.head.push_back(name + ", " + unit_of(name));
     const auto row_of = [&](const std::string& first, const auto& cell) {
         std::vector<std::string> row{first};
@@ -271,7 +272,7 @@ Chart scale_chart(const ScaleBenchParameters& parameters, const Json& report) {
     add_panel(chart, list[3], "Time by number of views", "views", "ms");
     add_panel(chart, list[2], "Backward pass by labelled share", "labelled share of the splats", "ms");
     chart.notes = {fmt::format(
-        "Where something else grows: {} splats, SH degree 3, {} x {} pixels. Wall time, least of {} runs (a search: "
+        "Where something else grows: {} splats, SH degree 3, {} x {} pixels. Wall time, least of {} timed (a search: "
         "processor time of one run, of a scene of some thousand splats). Memory: most that the process held, above what it held "
         "before. "
         "Power p: cost grows as size to the p, by least squares over all points; \"upper half\": over the larger sizes.",
