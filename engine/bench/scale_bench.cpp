@@ -272,7 +272,7 @@ Chart scale_chart(const ScaleBenchParameters& parameters, const Json& report) {
     add_panel(chart, list[3], "Time by number of views", "views", "ms");
     add_panel(chart, list[2], "Backward pass by labelled share", "labelled share of the splats", "ms");
     chart.notes = {fmt::format(
-        "Where something else grows: {} splats, SH degree 3, {} x {} pixels. Wall time, least of {} timed (a search: "
+        "Where something else grows: {} splats, SH degree 3, {} x {} pixels. Wall time, least of {} timed runs (a search: "
         "processor time of one run, of a scene of some thousand splats). Memory: most that the process held, above what it held "
         "before. "
         "Power p: cost grows as size to the p, by least squares over all points; \"upper half\": over the larger sizes.",
