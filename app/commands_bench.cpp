@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -18,12 +17,17 @@
 #include "engine/base/path_text.h"
 #include "engine/base/print.h"
 #include "engine/base/staged_folder.h"
+#include "engine/bench/all_bench.h"
 #include "engine/bench/clip_bench.h"
 #include "engine/bench/edit_bench.h"
+#include "engine/bench/locate_bench.h"
 #ifdef GSE_WINDOW
 #include "engine/bench/preview_bench.h"
+#include "engine/bench/preview_sweep.h"
 #endif
 #include "engine/bench/raster_report.h"
+#include "engine/bench/raster_sweep.h"
+#include "engine/bench/scale_bench.h"
 #include "engine/bench/search_bench.h"
 #include "engine/bench/speed_bench.h"
 #include "engine/io/cameras.h"
@@ -35,11 +39,24 @@
 namespace gse::app {
 namespace {
 
+/// Every setting of a subject, over generated scenes: figures and a picture in a folder.
+struct SweepOutput {
+    std::filesystem::path folder;
+    void leave(const Subject& subject) const {
+        const auto place = folder.empty() ? std::filesystem::path("out/bench_" + subject.name) : folder;
+        leave_subject(subject, place);
+        fmt::print("{}picture {}/{}.png\n", subject_text(subject), std::filesystem::absolute(place).lexically_normal().string(),
+                   subject.name);
+    }
+};
+constexpr const char* SweepHelp = "Folder for the figures and the picture; with a scene, a file for the JSON";
+constexpr const char* SceneHelp = "Scene file; without one, every setting is measured on generated scenes and drawn";
+
 struct RasterBenchOptions {
     std::filesystem::path scene;
     std::string cameras;
     std::filesystem::path output;
-    int views = 4;
+    RasterSweepParameters sweep;
     raster::BenchSettings settings;
     std::vector<double> labelled_shares{0.01, 0.05, 0.25, 1};
     bool skips = true;
@@ -50,24 +67,18 @@ std::vector<Camera> bench_cameras(const Scene& scene, const RasterBenchOptions& 
     std::vector<View> views;
     if (options.cameras != "none") views = scene_cameras(options.scene, options.cameras);
     if (views.empty())
-        views = orbit_views(scene_orbit(scene, {}), options.views, options.settings.width, options.settings.height);
+        views = orbit_views(scene_orbit(scene, {}), options.sweep.views, options.sweep.width, options.sweep.height);
     std::vector<Camera> cameras;
-    const auto count = std::min(views.size(), static_cast<std::size_t>(options.views));
+    const auto count = std::min(views.size(), static_cast<std::size_t>(options.sweep.views));
     for (std::size_t i = 0; i < count; ++i) cameras.push_back(views[i * views.size() / count].camera);
     return cameras;
 }
 
-void add_raster_bench(CLI::App& bench) {
+void add_raster_bench(CLI::App& bench, CommandContext& context) {
     auto options = std::make_shared<RasterBenchOptions>();
     auto* command = bench.add_subcommand("raster", "Forward and backward of the rasterizer, with its error");
-    command->add_option("scene", options->scene, "Scene file")->required();
+    command->add_option("scene", options->scene, SceneHelp);
     command->add_option("--cameras", options->cameras, "Camera file; found beside the scene, \"none\" for an orbit");
-    command->add_option("--views", options->views, "How many cameras to use")->capture_default_str()->check(CLI::Range(1, 1000));
-    command->add_option("--width", options->settings.width, "Picture width")->capture_default_str()->check(CLI::Range(1, 8192));
-    command->add_option("--height", options->settings.height, "Picture height")->capture_default_str()->check(CLI::Range(1, 8192));
-    command->add_option("--repetitions", options->settings.repetitions, "Timed rounds")
-        ->capture_default_str()
-        ->check(CLI::Range(1, 10000));
     command->add_option("--threads", options->settings.threads, "Threads; 0 = one per core")
         ->capture_default_str()
         ->check(CLI::Range(0, 256));
@@ -76,8 +87,12 @@ void add_raster_bench(CLI::App& bench) {
     command->add_option("--labelled-shares", options->labelled_shares, "Shares of the splats that those iterations change")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 1.0));
-    command->add_option("--out", options->output, "Also write the JSON to this file");
-    command->callback([options] {
+    command->add_option("--out", options->output, SweepHelp);
+    bind_fields(*command, options->sweep, "Measurement");
+    command->callback([options, &context] {
+        if (options->scene.empty()) return SweepOutput{options->output}.leave(bench_raster_sweep(options->sweep, context.job()));
+        options->settings.width = options->sweep.width, options->settings.height = options->sweep.height;
+        options->settings.repetitions = options->sweep.repetitions;
         const Scene scene = load_scene(options->scene);
         const auto cameras = bench_cameras(scene, *options);
         auto json = raster_report(raster::bench_raster(scene.gaussians.spans(), cameras, options->settings));
@@ -87,13 +102,6 @@ void add_raster_bench(CLI::App& bench) {
         if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
         print_json(json, 2);
     });
-}
-
-/// "1280x720". Throws Error.
-void parse_size(const std::string& text, int& width, int& height) {
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 || width > 16384 || height > 16384)
-        throw Error(ErrorCode::InvalidArgument, "the size \"" + text + "\" is not understood", "write it like 1280x720");
 }
 
 void add_speed_bench(CLI::App& bench) {
@@ -117,8 +125,8 @@ void add_speed_bench(CLI::App& bench) {
     command->add_option("--scenes-out", options->bench.scenes_folder, "Also write the scenes and their cameras into this folder");
     command->add_option("--out", options->output, "Also write the table to this file");
     command->callback([options] {
-        parse_size(options->raster_size, options->bench.raster_width, options->bench.raster_height);
-        parse_size(options->preview_size, options->bench.preview_width, options->bench.preview_height);
+        parse_picture_size(options->raster_size, options->bench.raster_width, options->bench.raster_height);
+        parse_picture_size(options->preview_size, options->bench.preview_width, options->bench.preview_height);
         const auto table = speed_table(options->bench);
         if (!options->output.empty()) write_file(options->output, table);
         fmt::print("{}", table);
@@ -187,33 +195,74 @@ void add_edit_bench(CLI::App& bench, CommandContext& context) {
         report["files"] = folder.listing();
         write_file(folder.path() / "edit.json", json_text(report, 1) + "\n");
         folder.commit();
-        fmt::print("{}picture {}/pareto.png\n", edit_bench_table(report),
+        fmt::print("{}picture {}/pareto.png\n", subject_text(edit_bench_subject(report)),
                    std::filesystem::absolute(options->output).lexically_normal().string());
         if (report["stopped"].get<bool>())
             throw Error(ErrorCode::Cancelled, "the measurement was stopped; what it had reached is saved", "", options->output);
     });
 }
 
+/// A subject that asks the model: its fields and the model's options.
+template <class Parameters>
+void add_model_subject(CLI::App& bench, CommandContext& context, const char* name, const char* help,
+                       Subject (*measure)(const Parameters&, const EditRecipe&, const JobControl&)) {
+    struct Options {
+        Parameters parameters;
+        EditRecipe settings;
+        SweepOutput output;
+    };
+    auto options = std::make_shared<Options>();
+    auto* command = bench.add_subcommand(name, help);
+    add_model_options(*command, options->settings.job);
+    command->add_option("--out", options->output.folder, "Folder for the figures and the picture");
+    bind_fields(*command, options->parameters, "Measurement");
+    command->callback([options, command, measure, &context] {
+        apply_eval_model(*command, options->settings);
+        options->output.leave(measure(options->parameters, options->settings, context.job()));
+    });
+}
+
+void add_all_bench(CLI::App& bench, CommandContext& context) {
+    struct Options {
+        AllBenchParameters parameters;
+        EditRecipe settings;
+        std::filesystem::path output = "out/bench";
+    };
+    auto options = std::make_shared<Options>();
+    auto* command = bench.add_subcommand("all", "Every subject on one page with its pictures: index.html");
+    add_model_options(*command, options->settings.job);
+    command->add_option("--out", options->output, "Folder for index.html, all.json and the pictures")->capture_default_str();
+    bind_fields(*command, options->parameters, "Measurement");
+    command->callback([options, command, &context] {
+        apply_eval_model(*command, options->settings);
+        StagedFolder folder(options->output, {"all.json", all_bench_files()});
+        auto report = bench_all(options->parameters, options->settings, folder.path(), context.job());
+        report["files"] = folder.listing();
+        write_file(folder.path() / "all.json", json_text(report, 1) + "\n");
+        folder.commit();
+        fmt::print("{}/index.html\n", std::filesystem::absolute(options->output).lexically_normal().string());
+    });
+}
+
 #ifdef GSE_WINDOW
-void add_preview_bench(CLI::App& bench) {
+void add_preview_bench(CLI::App& bench, CommandContext& context) {
     struct Options {
         std::filesystem::path scene, output;
-        std::string size = "1280x720";
         PreviewBenchOptions bench;
+        PreviewSweepParameters sweep;
     };
     auto options = std::make_shared<Options>();
     auto* command = bench.add_subcommand("preview", "A turn around the scene with the preview's renderers, with their error");
-    command->add_option("scene", options->scene, "Scene file")->required();
-    command->add_option("--backend", options->bench.backend, "vulkan, native or both")
-        ->capture_default_str()
-        ->check(CLI::IsMember({"vulkan", "native", "both"}));
-    command->add_option("--size", options->size, "Picture size, WIDTHxHEIGHT")->capture_default_str();
-    command->add_option("--frames", options->bench.frames, "Frames of the turn")->capture_default_str()->check(CLI::Range(1, 10000));
+    command->add_option("scene", options->scene, SceneHelp);
     command->add_flag("--compare,!--no-compare", options->bench.compare_plain, "Measure the error against the double version");
     command->add_flag("--validation", options->bench.validation, "With Vulkan's validation layers (slow); counts messages");
-    command->add_option("--out", options->output, "Also write the JSON to this file");
-    command->callback([options] {
-        parse_size(options->size, options->bench.width, options->bench.height);
+    command->add_option("--out", options->output, SweepHelp);
+    bind_fields(*command, options->sweep, "Measurement");
+    command->get_option("--backend")->check(CLI::IsMember({"vulkan", "native", "both"}));
+    command->callback([options, &context] {
+        if (options->scene.empty()) return SweepOutput{options->output}.leave(bench_preview_sweep(options->sweep, context.job()));
+        options->bench.backend = options->sweep.backend, options->bench.frames = options->sweep.frames;
+        parse_picture_size(options->sweep.size, options->bench.width, options->bench.height);
         const Scene scene = load_scene(options->scene);
         auto json = bench_preview(scene, options->bench);
         if (json.contains("native")) json["native"]["moving"] = bench_moving(scene, options->bench.width, options->bench.height);
@@ -228,14 +277,19 @@ void add_preview_bench(CLI::App& bench) {
 void add_bench_command(CLI::App& app, CommandContext& context) {
     auto* bench = app.add_subcommand("bench", "Measure run time against error");
     bench->require_subcommand(1);
-    add_raster_bench(*bench);
+    add_raster_bench(*bench, context);
     add_speed_bench(*bench);
 #ifdef GSE_WINDOW
-    add_preview_bench(*bench);
+    add_preview_bench(*bench, context);
 #endif
     add_clip_bench(*bench, context);
     add_search_bench(*bench, context);
+    add_model_subject<LocateBenchParameters>(*bench, context, "locate",
+                                             "What searches find against passes and seconds, a point per setting", bench_locate);
     add_edit_bench(*bench, context);
+    add_model_subject<ScaleBenchParameters>(*bench, context, "scale",
+                                            "How time and memory grow with splats, pixels, views and labels", bench_scale);
+    add_all_bench(*bench, context);
 }
 
 }  // namespace gse::app

@@ -10,7 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/bench/eval_run.h"
-#include "engine/bench/pareto_chart.h"
+#include "engine/bench/setting_points.h"
 #include "engine/edit/words.h"
 #include "engine/io/image_file.h"
 
@@ -40,33 +40,22 @@ Error not_understood(const std::string& text, const std::string& form) {
     return Error(ErrorCode::InvalidArgument, "the point \"" + text + "\" is not understood", "write it like " + form);
 }
 
-std::vector<std::string> split(const std::string& text) {
-    std::vector<std::string> parts;
-    for (std::size_t at = 0; at < text.size();) {
-        const auto first = text.find_first_not_of(" ,", at);
-        if (first == std::string::npos) break;
-        const auto end = std::min(text.find_first_of(" ,", first), text.size());
-        parts.push_back(text.substr(first, end - first));
-        at = end;
-    }
-    return parts;
-}
-
 /// The settings' own point of each method and those asked for, each once.
 std::vector<EditPoint> points_of(const EditBenchParameters& parameters, const edit::EditRequest& request) {
-    std::vector<EditPoint> points{pulling(request.iterations), redrawing(request.edited_views, request.view_steps, request.rounds)};
+    std::vector<EditPoint> points{pulling(request.iterations),
+                                  redrawing(request.edited_views, request.view_steps, request.rounds)};
     for (auto& point : points) point.standard = true;
     const auto add = [&](EditPoint point) {
         if (std::none_of(points.begin(), points.end(), [&](const auto& other) { return other.settings == point.settings; }))
             points.push_back(std::move(point));
     };
     char rest = 0;
-    for (const auto& text : split(parameters.sds)) {
+    for (const auto& text : words_in_list(parameters.sds)) {
         int iterations = 0;
         if (std::sscanf(text.c_str(), "%d%c", &iterations, &rest) != 1 || iterations < 1) throw not_understood(text, "100");
         add(pulling(iterations));
     }
-    for (const auto& text : split(parameters.redraws)) {
+    for (const auto& text : words_in_list(parameters.redraws)) {
         int views = 0, steps = 0, rounds = 0;
         if (std::sscanf(text.c_str(), "%dx%dx%d%c", &views, &steps, &rounds, &rest) != 3) throw not_understood(text, "8x6x1");
         add(redrawing(views, steps, rounds));
@@ -78,7 +67,8 @@ std::vector<EditPoint> points_of(const EditBenchParameters& parameters, const ed
     return points;
 }
 
-EvalRun run_of(const EditBenchParameters& parameters, const pipeline::EditRecipe& settings, const std::vector<EditPoint>& points) {
+EvalRun run_of(const EditBenchParameters& parameters, const pipeline::EditRecipe& settings,
+               const std::vector<EditPoint>& points) {
     EvalRun run;
     run.parameters.seed = parameters.seed;
     run.parameters.edits = run.parameters.ablation_edits = parameters.edits;
@@ -155,20 +145,33 @@ Json curves_of(const Json& evaluation, const std::vector<EditPoint>& points) {
     return curves;
 }
 
-ChartPanel panel_of(const Json& curves, const char* cost, const std::string& title) {
-    const std::map<std::string, std::pair<std::string, DrawColour>> looks{
-        {"sds", {"sds: iterations", {0.80f, 0.33f, 0.10f}}}, {"views", {"views: views x steps x rounds", {0.10f, 0.40f, 0.75f}}}};
-    ChartPanel panel{title, "error removed", {}};
-    for (const auto& curve : curves) {
-        const auto& [name, colour] = looks.at(curve["method"].get<std::string>());
-        ChartCurve drawn{name, colour, {}};
+/// Name of a method's curve, as the legend has it.
+std::string curve_name(const std::string& method) {
+    return method == "sds" ? "sds: iterations" : "views: views x steps x rounds";
+}
+
+/// The curves' points beside each other.
+std::vector<SettingPoint> setting_points(const Json& curves) {
+    std::vector<SettingPoint> points;
+    for (const auto& curve : curves)
         for (const auto& point : curve["points"])
-            if (point[cost].is_number())
-                drawn.points.push_back({point[cost].get<double>(), point["error_removed"].get<double>(),
-                                        point["name"].get<std::string>(), point["default"].get<bool>()});
-        panel.curves.push_back(std::move(drawn));
-    }
-    return panel;
+            points.push_back({curve_name(curve["method"].get<std::string>()), point["name"].get<std::string>(),
+                              point["default"].get<bool>(), point["settings"], point});
+    return points;
+}
+
+/// Of the two methods' defaults that which an edit takes by itself.
+std::vector<SettingPoint> with_one_default(std::vector<SettingPoint> points) {
+    for (auto& point : points) point.standard = point.standard && point.curve == curve_name("views");
+    return points;
+}
+
+const std::vector<Facet>& edit_facets() {
+    static const std::vector<Facet> facets{
+        {"tflop", "error_removed", "TFLOP per edit (forward passes of the networks)", "error removed", false, ChartScale::Percent,
+         "Against arithmetic"},
+        {"seconds", "error_removed", "seconds per edit", "error removed", false, ChartScale::Percent, "Against time"}};
+    return facets;
 }
 
 Chart chart_of(const Json& report) {
@@ -178,13 +181,17 @@ Chart chart_of(const Json& report) {
     chart.title = fmt::format("What an edit removes of the error, and what it costs: {} edits, seed {}, model {}",
                               report["edits"].get<std::size_t>(), parameters["seed"].get<std::uint64_t>(),
                               report["model"].get<std::string>());
-    chart.panels = {panel_of(report["curves"], "tflop", "TFLOP per edit (forward passes of the networks)"),
-                    panel_of(report["curves"], "seconds", "seconds per edit")};
-    chart.notes = {"Error: mean absolute difference to the true edited scene inside the true part, on views between those of the edit; a "
-                   "ring marks the default of a method.",
-                   fmt::format("The search before an edit comes on top: {:.2g} TFLOP, {:.2g} s, {:.0f} UNet passes. Kinds: {}.",
-                               search["tflop"].get<double>(), search["seconds"].get<double>(), search["unet"].get<double>(),
-                               parameters["kinds"].get<std::string>())};
+    chart.mark = "default of a method";
+    for (const auto& facet : edit_facets()) {
+        chart.panels.push_back(panel_of(setting_points(report["curves"]), facet));
+        chart.panels.back().line = ChartLine::OwnFront;
+    }
+    chart.notes = {
+        "Error: mean absolute difference to the true edited scene inside the true part, on views between those of the edit. "
+        "Lines: the front of each method.",
+        fmt::format("The search before an edit comes on top: {:.2g} TFLOP, {:.2g} s, {:.0f} UNet passes. Kinds: {}.",
+                    search["tflop"].get<double>(), search["seconds"].get<double>(), search["unet"].get<double>(),
+                    parameters["kinds"].get<std::string>())};
     return chart;
 }
 
@@ -194,31 +201,37 @@ Json bench_edit(const EditBenchParameters& parameters, const pipeline::EditRecip
                 const JobControl& job) {
     const auto points = points_of(parameters, settings.request);
     Json evaluation = run_eval(run_of(parameters, settings, points), folder, job);
-    Json report{{"model", evaluation["model"]}, {"parameters", fields_to_json(parameters)}, {"edits", evaluation["edits"].size()}};
+    Json report{
+        {"model", evaluation["model"]}, {"parameters", fields_to_json(parameters)}, {"edits", evaluation["edits"].size()}};
     report["stopped"] = evaluation["stopped"];
     report["search"] = search_means(evaluation["edits"]);
     report["curves"] = curves_of(evaluation, points);
+    report["fronts"] = fronts_of(with_one_default(setting_points(report["curves"])), edit_facets());
     report["picture"] = "pareto.png";
     write_png(folder / "pareto.png", draw_chart(chart_of(report)));
     report["evaluation"] = std::move(evaluation);
     return report;
 }
 
-std::string edit_bench_table(const Json& report) {
-    std::string text = fmt::format("{:<8}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n", "method", "point", "removed", "TFLOP", "UNet", "seconds",
-                                   "leak");
-    const auto number = [](const Json& value, int digits) {
-        return value.is_number() ? fmt::format("{:.{}f}", value.get<double>(), digits) : std::string("-");
-    };
-    for (const auto& curve : report["curves"])
-        for (const auto& point : curve["points"])
-            text += fmt::format("{:<8}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{}\n", curve["method"].get<std::string>(),
-                                point["name"].get<std::string>(), number(point["error_removed"], 3), number(point["tflop"], 4),
-                                number(point["unet"], 0), number(point["seconds"], 2), number(point["leak_rate"], 4),
-                                point["default"].get<bool>() ? "  default" : "");
+Subject edit_bench_subject(Json report) {
+    Subject subject{"edit", "Edits: error removed against cost, by method", {}, {}, {}, {}};
+    const auto points = points_json(setting_points(report["curves"]));
+    subject.picture = draw_chart(chart_of(report));
+    subject.tables = {points_table("", points,
+                                   {{"error_removed", "error removed"},
+                                    {"tflop", "TFLOP"},
+                                    {"unet", "UNet passes"},
+                                    {"seconds", "seconds"},
+                                    {"leak_rate", "leak"},
+                                    {"psnr_outside_db", "dB outside"}})};
     const auto& search = report["search"];
-    return text + fmt::format("search before each: {} TFLOP, {} UNet passes, {} s\n", number(search["tflop"], 4),
-                              number(search["unet"], 0), number(search["seconds"], 2));
+    subject.remarks = front_remarks(report["fronts"], {"Against arithmetic", "Against time"});
+    subject.remarks.push_back(fmt::format("The search before each edit: {} TFLOP, {} UNet passes, {} seconds.",
+                                          number_text(search["tflop"].get<double>()), number_text(search["unet"].get<double>()),
+                                          number_text(search["seconds"].get<double>())));
+    report.erase("evaluation");
+    subject.report = std::move(report);
+    return subject;
 }
 
 }  // namespace gse::bench

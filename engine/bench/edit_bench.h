@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/base/fields.h"
+#include "engine/bench/subject.h"
 #include "engine/pipeline/edit_job.h"
 
 namespace gse::bench {
@@ -27,8 +28,10 @@ struct EditBenchParameters {
         f("edits", self.edits, "Synthetic edits with ground truth.", Range{1, 10000});
         f("kinds", self.kinds, "Kinds of edits, in turn: recolour material add ground.");
         f("mode", self.mode, "Mode the edits are asked for: auto, or right (modify or add, as each needs).");
-        f("held_out_views", self.held_out_views, "Views between those of the edit, on which the result is compared.", Range{1, 512});
-        f("oracle_views", self.oracle_views, "The edits are given cameras that know the scene's framing and front, and the new word.");
+        f("held_out_views", self.held_out_views, "Views between those of the edit, on which the result is compared.",
+          Range{1, 512});
+        f("oracle_views", self.oracle_views,
+          "The edits are given cameras that know the scene's framing and front, and the new word.");
         f("sds", self.sds, "Points of method sds: iterations, several with spaces between.");
         f("redraws", self.redraws, "Points of method views: views x steps x rounds, as 8x6x1, several with spaces between.");
     }
@@ -40,7 +43,7 @@ struct EditBenchParameters {
 nlohmann::ordered_json bench_edit(const EditBenchParameters& parameters, const pipeline::EditRecipe& settings,
                                   const std::filesystem::path& folder, const JobControl& job);
 
-/// The curves as a table.
-std::string edit_bench_table(const nlohmann::ordered_json& report);
+/// What bench_edit() returned as a subject, with its picture; the evaluation is left out.
+Subject edit_bench_subject(nlohmann::ordered_json report);
 
 }  // namespace gse::bench

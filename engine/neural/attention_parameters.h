@@ -9,6 +9,7 @@ namespace gse::neural {
 
 struct AttentionParameters {
     std::string method = "probes";
+    std::string levels;
     int refinement = 0;
     double strength = 0.75;
     int steps = 50;
@@ -20,8 +21,13 @@ struct AttentionParameters {
           "probes: noise the image to a few levels and look once at each; img2img: the paper's way, look at "
           "every step of "
           "an image-to-image run (some hundred times slower).");
+        f("levels", self.levels,
+          "probes: noise levels looked at, as shares of the schedule (\"0.3 0.5 0.7\"); empty = what the model states. For what "
+          "the "
+          "scene shows: where something is added, the model's own count.");
         f("refinement", self.refinement,
-          "How often the maps are spread along the self-attention of the same passes, which keeps to what looks alike; 0 = never.",
+          "How often the maps are spread along the self-attention of the same passes, which keeps to what looks alike; 0 = "
+          "never.",
           Range{0, 4});
         f("strength", self.strength, "img2img: share of the steps that are run.", Range{0.02, 1});
         f("steps", self.steps, "img2img: sampling steps.", Range{1, 1000});

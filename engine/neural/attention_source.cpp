@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <numeric>
+#include <sstream>
 
 #include "engine/base/error.h"
 #include "engine/neural/images.h"
@@ -27,6 +29,21 @@ constexpr std::int64_t BatchPixels =
 bool any_prefix(std::string_view name, const std::vector<std::string>& prefixes) {
     return std::any_of(prefixes.begin(), prefixes.end(),
                        [&](const auto& prefix) { return name.starts_with(prefix); });
+}
+
+/// "0.3 0.5 0.7"; none in an empty text. Throws Error (InvalidArgument) unless all are shares.
+std::vector<double> levels_in(const std::string& text) {
+    std::vector<double> levels;
+    std::istringstream stream(text);
+    for (std::string word; stream >> word;) {
+        char* end = nullptr;
+        const double level = std::strtod(word.c_str(), &end);
+        if (*end != 0 || !(level >= 0 && level <= 1))
+            throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" is no noise level", word),
+                        "write shares like 0.3 0.5 0.7");
+        levels.push_back(level);
+    }
+    return levels;
 }
 
 /// Mean over the word's tokens [k,s,s], at the image's size, divided by its maximum.
@@ -99,6 +116,7 @@ BundleAttentionSource::BundleAttentionSource(std::shared_ptr<const ModelBundle> 
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("there is no attention method \"{}\"", parameters_.method),
                     "use probes or img2img");
+    levels_ = levels_in(parameters_.levels);
 }
 
 AttentionCapture BundleAttentionSource::make_capture() const {
@@ -128,7 +146,7 @@ void BundleAttentionSource::probe(const edit::AttentionQuery& query, const torch
                                   const torch::Tensor& context, AttentionCapture& capture,
                                   AttentionAccumulator& sum) const {
     const auto& facts = bundle_->facts;
-    auto levels = query.absent ? facts.attention_absent_timesteps : facts.attention_timesteps;
+    auto levels = query.absent ? facts.attention_absent_timesteps : levels_.empty() ? facts.attention_timesteps : levels_;
     if (levels.empty()) levels = query.absent ? AbsentLevels : PresentLevels;
     std::vector<torch::Tensor> noises;
     std::vector<std::int64_t> timesteps;
@@ -152,7 +170,8 @@ void BundleAttentionSource::probe(const edit::AttentionQuery& query, const torch
         const auto noisy = bundle_->schedule.add_noise(start, all_noise.narrow(0, first, size), t);
         const auto words = context.expand({size, -1, -1});
         const double scale = bundle_->unet->config().time_cond_proj_dim > 0 ? UsualEmbeddedScale : 1;
-        const Conditioning conditioning{torch::stack({words, words}, 1), scale, shown.defined() ? shown.expand({size, -1, -1, -1}) : shown};
+        const Conditioning conditioning{torch::stack({words, words}, 1), scale,
+                                        shown.defined() ? shown.expand({size, -1, -1, -1}) : shown};
         guided_output(bundle_->unet, noisy, t, conditioning, &capture);
         // Equal weight for every pass: a smaller last batch must not count as much as a full one.
         for (auto& map : capture.maps)

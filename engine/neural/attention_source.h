@@ -54,6 +54,7 @@ private:
     BufferHolder buffers_;   // goes last
     std::shared_ptr<const ModelBundle> bundle_;
     AttentionParameters parameters_;
+    std::vector<double> levels_;   // of the parameters
 };
 
 /// "a bear" and "front view" to "a bear, front view".

@@ -77,7 +77,7 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
                          const BenchSettings& settings) {
     GSE_CHECK(!cameras.empty() && settings.repetitions > 0);
     ThreadPool pool(settings.threads);
-    const auto rasterizer = make_fast_rasterizer(pool);
+    const auto rasterizer = make_fast_rasterizer(pool, settings.kernels);
     std::vector<Camera> views;
     for (const Camera& camera : cameras) views.push_back(camera.resized(settings.width, settings.height));
     const Image d_colour = noise_image(settings.width, settings.height);

@@ -42,6 +42,7 @@ struct BenchSettings {
     int width = 512, height = 512;
     int repetitions = 5;
     unsigned threads = 0;       // 0 = one per hardware thread
+    std::string kernels;        // instruction set; empty = the best
     bool compare_plain = true;  // the plain version takes seconds on large scenes
 };
 

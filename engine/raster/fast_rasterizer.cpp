@@ -165,7 +165,11 @@ private:
 }  // namespace
 
 std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool) {
-    return std::make_unique<FastRasterizer>(choose_kernels(), pool);
+    return make_fast_rasterizer(pool, "");
+}
+
+std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool, const std::string& kernels) {
+    return std::make_unique<FastRasterizer>(choose_kernels(kernels.c_str()), pool);
 }
 
 }  // namespace gse::raster

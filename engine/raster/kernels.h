@@ -186,8 +186,8 @@ extern const Kernels Avx2Kernels;
 extern const Kernels Avx512Kernels;
 #endif
 
-/// The table that GSE_CPU forces, else the best this processor runs. Throws Error if the forced one is
-/// unknown or cannot run here.
-const Kernels& choose_kernels();
+/// The table of that name; of an empty one that which GSE_CPU forces, else the best this processor runs. Throws Error if the
+/// one asked for is unknown or cannot run here.
+const Kernels& choose_kernels(const char* name);
 
 }  // namespace gse::raster

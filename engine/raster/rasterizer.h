@@ -97,5 +97,10 @@ std::unique_ptr<Rasterizer> make_plain_rasterizer();
 /// The fast one: tiles, SIMD chosen at run time (forced by GSE_CPU=scalar|avx2|avx512), threads from `pool`
 /// (kept by reference; must outlive the rasterizer).
 std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool);
+/// The same with the instruction set of that name. Throws Error for one that there is not, or not on this processor.
+std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool, const std::string& kernels);
+
+/// The instruction sets that run here, the fastest first.
+std::vector<std::string> usable_kernels();
 
 }  // namespace gse::raster

@@ -120,6 +120,23 @@ class Searches(ProgramTest):
         process = self.edit("--source", "bear", "--prompt", long + "wearing a crown", "--target", "crown")
         self.assert_one_sentence(process, "30 words", '"crown"', "shorten the sentence")
 
+    def test_bench_locate_measures_a_point_per_setting(self):
+        out = self.folder / "locate"
+        process = run("-q", "bench", "locate", "--scenes", 1, "--kinds", "recolour", "--views", 6, "--repeats", "", "--levels", "0.3 0.6",
+                      "--img2img", "", "--no-parts", "--out", out)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        points = {point["name"]: point for point in json.loads((out / "locate.json").read_text())["points"]}
+        self.assertEqual(set(points), {"as set", "6", "0.3 0.6"})
+        for point in points.values():
+            self.assertTrue(0 <= point["iou"] <= 1)
+            self.assertGreater(point["processor_seconds"], 0)
+        self.assertLess(points["6"]["unet"], points["as set"]["unet"])
+        self.assertLess(points["as set"]["unet"], points["0.3 0.6"]["unet"])
+        self.assertTrue((out / "locate.png").read_bytes().startswith(b"\x89PNG"))
+        self.assert_one_sentence(run("-q", "bench", "locate", "--scenes", 1, "--kinds", "add", "--out", self.folder / "none"), "added")
+        self.assert_one_sentence(run("-q", "bench", "locate", "--scenes", 1, "--levels", "2", "--out", self.folder / "none"), "levels")
+        self.assertFalse((self.folder / "none").exists())
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -68,6 +68,20 @@ DOCTEST_TEST_CASE(
     }
 }
 
+DOCTEST_TEST_CASE("attention source: the noise levels that are named are those looked at; others are refused in a sentence") {
+    const TinyModel model;
+    const edit::AttentionQuery query{gradient_image(32, 32), "a red bear", {"bear"}};
+    const auto looked = [&](const std::string& levels) {
+        AttentionParameters parameters;
+        parameters.levels = levels;
+        return BundleAttentionSource(load_shared(model), parameters).locate(query)[0].data;
+    };
+    DOCTEST_CHECK(looked("") == looked(" 0.45"));   // what is looked at where neither model nor recipe says
+    DOCTEST_CHECK(looked("0.3 0.5 0.7") != looked("0.45"));
+    for (const char* wrong : {"1.5", "half", "0.5,0.7", "nan"})
+        DOCTEST_CHECK(contains(message_of([&] { looked(wrong); }), "noise level"));
+}
+
 DOCTEST_TEST_CASE("attention accumulator: a hand-made map comes back") {
     AttentionAccumulator sum(4, 2);
     auto probabilities = torch::zeros({1, 2, 16, 2});  // heads 2, 4x4, two columns

@@ -1,0 +1,22 @@
+// Times for the benches.
+#pragma once
+
+#include <time.h>
+
+#include <chrono>
+
+namespace gse::bench {
+
+/// Seconds of a clock that never goes back.
+inline double wall_seconds() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// Processor seconds of all threads since the process began: says nothing of what else the machine does.
+inline double processor_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace gse::bench

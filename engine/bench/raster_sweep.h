@@ -1,0 +1,40 @@
+// gseditpro bench raster: error against time of the rasterizer, per instruction set and number of threads.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "engine/base/fields.h"
+#include "engine/base/progress.h"
+#include "engine/bench/subject.h"
+
+namespace gse::bench {
+
+struct RasterSweepParameters {
+    int splats = 100000;
+    std::uint64_t seed = 0;
+    int width = 512, height = 512;
+    int views = 4;
+    int repetitions = 5;
+    std::string kernels = "all";
+    std::string thread_counts = "1 2";
+
+    template <class Self, class F>
+    static void visit_fields(Self& self, F&& f) {
+        f("splats", self.splats, "Splats of the generated scene.", Range{1, 2e7});
+        f("seed", self.seed, "Its seed.");
+        f("width", self.width, "Picture width.", Range{1, 8192});
+        f("height", self.height, "Picture height.", Range{1, 8192});
+        f("views", self.views, "How many cameras to use.", Range{1, 1000});
+        f("repetitions", self.repetitions, "Timed rounds over them, after one to warm up.", Range{1, 10000});
+        f("kernels", self.kernels, "Instruction sets: all that run here, or some of scalar avx2 avx512.");
+        f("thread_counts", self.thread_counts, "Numbers of threads; one per core is always among them.");
+    }
+};
+
+/// Forward and backward pass over a generated scene (synth/timing_scene.h): wall time per picture, least of the rounds, against
+/// the largest error of a pixel and the relative error of the gradient, both to the plain double version. Throws Error for wrong
+/// parameters, and when stopped.
+Subject bench_raster_sweep(const RasterSweepParameters& parameters, const JobControl& job);
+
+}  // namespace gse::bench

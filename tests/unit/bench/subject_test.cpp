@@ -1,0 +1,170 @@
+// Subjects of the benches over tiny scenes, their tables, and the page of all.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/json.h"
+#include "engine/bench/all_bench.h"
+#include "engine/bench/machine.h"
+#include "engine/bench/page.h"
+#include "engine/bench/raster_sweep.h"
+#include "engine/bench/scale_bench.h"
+#include "engine/bench/subject.h"
+#include "engine/raster/rasterizer.h"
+#include "tests/test_paths.h"
+
+using namespace gse;
+using namespace gse::bench;
+
+namespace {
+
+std::filesystem::path fresh_folder(const std::string& name) {
+    const auto folder = test::binary_folder() / "bench_subjects" / name;
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directories(folder);
+    return folder;
+}
+
+/// Whether the page asks for anything that is not in it.
+bool refers_elsewhere(const std::string& html) {
+    for (const char* word : {"http:", "https:", "href", "url(", "@import", "<script", "<link", "<iframe"})
+        if (html.find(word) != std::string::npos) return true;
+    const std::string source = "src=\"";
+    for (auto at = html.find(source); at != std::string::npos; at = html.find(source, at + 1))
+        if (html.compare(at + source.size(), 5, "data:") != 0) return true;
+    return false;
+}
+
+RasterSweepParameters tiny_sweep() {
+    RasterSweepParameters parameters;
+    parameters.splats = 400;
+    parameters.width = 48, parameters.height = 32;
+    parameters.views = 2, parameters.repetitions = 1;
+    return parameters;
+}
+
+ScaleBenchParameters tiny_scale() {
+    ScaleBenchParameters parameters;
+    parameters.splats = "100 400";
+    parameters.sizes = "16 32 48";
+    parameters.views = "3 6";
+    parameters.shares = "0.1 1";
+    parameters.usual_splats = 300, parameters.usual_size = 32, parameters.repetitions = 1;
+    parameters.search = false;
+    return parameters;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("the rasterizer's sweep has a point per instruction set and number of threads, with errors to the truth") {
+    const auto subject = bench_raster_sweep(tiny_sweep(), {});
+    std::set<std::string> kernels;
+    int defaults = 0;
+    for (const auto& point : subject.report["points"]) {
+        kernels.insert(point["curve"].get<std::string>());
+        defaults += point["default"].get<bool>();
+        DOCTEST_CHECK(point["forward_ms"].get<double>() > 0);
+        DOCTEST_CHECK(point["backward_ms"].get<double>() > 0);
+        constexpr double rough = 1e-2;   // single precision is nearer by far
+        DOCTEST_CHECK(point["max_abs_error"].get<double>() < rough);
+        DOCTEST_CHECK(point["gradient_error"].get<double>() < rough);
+    }
+    const auto usable = raster::usable_kernels();
+    DOCTEST_CHECK(kernels == std::set<std::string>(usable.begin(), usable.end()));
+    DOCTEST_CHECK(defaults == 1);
+    DOCTEST_CHECK(subject.report["fronts"].size() == 2);
+    DOCTEST_CHECK(subject.tables[0].rows.size() == subject.report["points"].size());
+    DOCTEST_CHECK(subject.picture.width > 0);
+    auto wrong = tiny_sweep();
+    wrong.kernels = "sse";
+    DOCTEST_CHECK_THROWS_AS(bench_raster_sweep(wrong, {}), Error);
+    wrong = tiny_sweep();
+    wrong.thread_counts = "many";
+    DOCTEST_CHECK_THROWS_AS(bench_raster_sweep(wrong, {}), Error);
+}
+
+DOCTEST_TEST_CASE("series grow until a limit, with exponents") {
+    auto parameters = tiny_scale();
+    const auto subject = bench_scale(parameters, {}, {});
+    std::set<std::string> of;
+    for (const auto& series : subject.report["series"]) {
+        of.insert(series["of"].get<std::string>());
+        DOCTEST_CHECK(series["left_out"].empty());
+        for (const auto& cost : series["costs"]) {
+            DOCTEST_CHECK(cost["points"].size() >= 2);
+            if (cost["what"] != "memory") DOCTEST_CHECK(cost["exponent"].is_number());
+        }
+    }
+    DOCTEST_CHECK(of == std::set<std::string>{"splats", "side", "views", "share"});
+    DOCTEST_CHECK(subject.tables.size() == 4);
+    parameters.limit_seconds = 0.001;   // no second point is as quick
+    parameters.splats = "2000 20000000";
+    const auto limited = bench_scale(parameters, {}, {});
+    DOCTEST_CHECK(limited.report["series"][0]["left_out"].size() == 1);
+    DOCTEST_REQUIRE_FALSE(limited.remarks.empty());
+    DOCTEST_CHECK(limited.remarks[0].find("20,000,000") != std::string::npos);
+}
+
+DOCTEST_TEST_CASE("a subject is left as figures, picture and text") {
+    const auto folder = fresh_folder("left") / "raster";
+    const auto subject = bench_raster_sweep(tiny_sweep(), {});
+    leave_subject(subject, folder);
+    DOCTEST_CHECK(std::filesystem::file_size(folder / "raster.png") > 0);
+    const auto report = parse_json<nlohmann::ordered_json>(read_file(folder / "raster.json"), "the report");
+    DOCTEST_CHECK(report["parameters"]["splats"] == 400);
+    DOCTEST_CHECK(report["files"].contains("raster.png"));
+    DOCTEST_CHECK(subject_text(subject).find("default") != std::string::npos);
+}
+
+DOCTEST_TEST_CASE("lists of numbers are read once each and ascending; wrong ones are refused with the setting's name") {
+    DOCTEST_CHECK(numbers_in_list("views", "8, 4 8", 1, 100) == std::vector<double>{4, 8});
+    DOCTEST_CHECK(numbers_in_list("views", "", 1, 100).empty());
+    for (const char* wrong : {"four", "0", "101", "nan", "4x"}) {
+        std::string message;
+        try {
+            numbers_in_list("views", wrong, 1, 100);
+        } catch (const Error& error) {
+            message = error.message();
+        }
+        DOCTEST_CHECK(message.starts_with("views"));
+    }
+}
+
+DOCTEST_TEST_CASE("base64") {
+    for (const auto& [bytes, text] : {std::pair<std::string, std::string>{"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"},
+                                      {"foobar", "Zm9vYmFy"}, {"\xff\xfe\xfd", "//79"}})
+        DOCTEST_CHECK(base64_text(bytes) == text);   // RFC 4648, section 10, and bytes above 127
+}
+
+DOCTEST_TEST_CASE("the page escapes what it is told and refers to no other file") {
+    const std::vector<PageSection> sections{{"Less <b>& more\"",
+                                             {"a note"},
+                                             "not a picture",
+                                             {{"rows", {"setting", "ms"}, {{"a<b", "1"}}}},
+                                             {"a remark"},
+                                             {{"splats", 3}}}};
+    const auto html = html_page("Page", {{"processor", "<unknown>"}}, sections);
+    DOCTEST_CHECK_FALSE(refers_elsewhere(html));
+    for (const char* text :
+         {"Less &lt;b&gt;&amp; more&quot;", "a&lt;b", "&lt;unknown&gt;", "data:image/png;base64,", "a remark", "a note"})
+        DOCTEST_CHECK(html.find(text) != std::string::npos);
+    DOCTEST_CHECK(html.find("<b>") == std::string::npos);
+}
+
+DOCTEST_TEST_CASE("all of one subject: the page is complete, and a subject that is not known is refused") {
+    const auto folder = fresh_folder("all");
+    AllBenchParameters parameters;
+    parameters.subjects = "nothing";
+    DOCTEST_CHECK_THROWS_AS(bench_all(parameters, {}, folder, {}), Error);
+    parameters.subjects = "";
+    const auto report = bench_all(parameters, {}, folder, {});
+    DOCTEST_CHECK(report["subjects"].empty());
+    const auto html = read_file(folder / "index.html");
+    DOCTEST_CHECK_FALSE(refers_elsewhere(html));
+    const auto machine = machine_json();
+    for (const auto& [name, value] : machine.items()) DOCTEST_CHECK(html.find(name) != std::string::npos);
+    DOCTEST_CHECK(std::filesystem::exists(folder / "all.json"));
+}
