@@ -39,8 +39,8 @@ struct ChartPanel {
     ChartLine line = ChartLine::OwnFront;
     ChartScale y_scale = ChartScale::Percent;   // Percent: shares, from 0 on; the cost axis is always logarithmic
     bool less_is_better = false;         // of y
-    std::string title;                   // above it, where there are several
-    std::vector<ChartGuide> guides;
+    std::string title = {};              // above it, where there are several
+    std::vector<ChartGuide> guides = {};
 };
 
 struct Chart {
