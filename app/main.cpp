@@ -1,6 +1,7 @@
 // Entry point: one place that turns an Error into a sentence and an exit code.
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 
 #include "app/cli.h"
@@ -36,6 +37,8 @@ int main(int argc, char** argv) {
         return failed(error);
     } catch (const std::bad_alloc&) {
         return failed(gse::out_of_memory());
+    } catch (const std::filesystem::filesystem_error& error) {   // a name that the system does not take
+        return failed(gse::Error(gse::ErrorCode::NotFound, error.code().message(), "use another name", error.path1()));
     } catch (const std::exception& error) {
         if (std::ferror(stdout) != 0 && !gse::app::flush_output()) return 1;  // printing failed, not the work
         std::fprintf(stderr, "gseditpro: unexpected failure (%s); please report it\n", gse::printable(error.what()).c_str());

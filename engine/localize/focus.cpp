@@ -46,7 +46,7 @@ OrbitParameters focus_orbit(const GaussianSet& set, std::span<const std::uint8_t
     const double radius = 0.5 * std::max({size.x, size.y, size.z});
     if (!(radius > 0)) return base;
     OrbitParameters result = base;
-    result.centre = (low + high) * 0.5;
+    result.centre = (low + high) * 0.5 + normalized(base.up) * (2 * radius * parameters.head_room);
     // A region as deep as it is wide reaches towards the camera: measure the fill at its front face.
     result.radius = radius / (std::tan(base.fov_x / 2) * parameters.fill) + 0.5 * radius;
     return result;

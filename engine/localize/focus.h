@@ -12,6 +12,7 @@ namespace gse::localize {
 struct FocusParameters {
     double fill = 0.62;          // share of the half field of view that the region's radius takes
     double trim = 0.03;          // share of the labelled rows cut off at either end of every axis
+    double head_room = 0;        // how far above the region's middle the picture's lies, in extents of the region
     double least_change = 0.75;  // a new radius above this share of the old one is not worth new pictures
 };
 

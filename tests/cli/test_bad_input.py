@@ -72,6 +72,12 @@ class HostileFiles(ProgramTest):
         self.assertIn(r"a\x00b\x1b[31mRED", process.stdout)
         self.assertNotIn("\x1b", process.stdout)
 
+    def test_names_longer_than_the_system_takes(self):
+        process = run("edit", "A" * 5000 + ".ply", "--source", "bear", "--prompt", "a blue bear", "--out", self.folder / "out")
+        self.assertEqual(process.returncode, 1, process.stderr)
+        self.assertNotIn("please report", process.stderr)
+        self.assertIn("use another name", process.stderr)
+
     def test_recipes_of_the_wrong_type(self):
         for name in ["recipe_ver_null.json", "recipe_ver_str.json"]:
             self.assert_one_sentence(run("edit", "--recipe", HOSTILE / name, "--out", self.folder / "out"), name, "recipe", "version", "null" if "null" in name else "number")

@@ -54,6 +54,23 @@ DOCTEST_TEST_CASE("the focused orbit frames the labelled ball") {
     DOCTEST_CHECK(most - least > 33);
 }
 
+DOCTEST_TEST_CASE("head room lifts the picture's middle above the region's, along the world's up") {
+    std::vector<std::uint8_t> bits;
+    const auto set = floor_and_ball(bits);
+    gse::OrbitParameters base;
+    base.radius = 25;
+    const auto plain = gse::localize::focus_orbit(set, bits, base);
+    gse::localize::FocusParameters framing;
+    framing.head_room = 0.5;   // of the extent: half the ball's height
+    const auto lifted = gse::localize::focus_orbit(set, bits, base, framing);
+    const auto shift = lifted.centre - plain.centre;
+    DOCTEST_CHECK(lifted.radius == plain.radius);
+    DOCTEST_CHECK(gse::dot(shift, gse::normalized(base.up)) == doctest::Approx(gse::length(shift)));
+    const auto camera = gse::orbit_camera(lifted, 0, 100, 100);
+    const auto middle = camera.to_camera(plain.centre);
+    DOCTEST_CHECK(camera.fy * middle.y / middle.z + camera.cy > 60);   // the ball is in the lower half
+}
+
 DOCTEST_TEST_CASE("without a label, or with everything labelled already in frame, nothing moves") {
     std::vector<std::uint8_t> bits;
     const auto set = floor_and_ball(bits);
