@@ -6,10 +6,12 @@
 namespace gse {
 namespace {
 
+/// A message may quote a file; a zero byte in it would end what() there.
 std::string compose(const std::string& message, const std::string& hint, const std::filesystem::path& path) {
     std::string text = message;
     if (!hint.empty()) text += "; " + hint;
     if (!path.empty()) text += ": " + path.string();
+    for (auto zero = text.find('\0'); zero != std::string::npos; zero = text.find('\0', zero)) text.replace(zero, 1, "\\x00");
     return text;
 }
 

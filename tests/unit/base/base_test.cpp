@@ -54,6 +54,11 @@ DOCTEST_TEST_CASE("an error says what, what to do and where, on one line") {
     DOCTEST_CHECK(std::string(Error(ErrorCode::Malformed, "short").what()) == "short");
 }
 
+DOCTEST_TEST_CASE("a zero byte that a message quotes does not end it") {
+    const Error error(ErrorCode::Malformed, std::string("it holds \"a\0b\"", 14), "get it again", "scene.ply");
+    DOCTEST_CHECK(std::string(error.what()) == "it holds \"a\\x00b\"; get it again: scene.ply");
+}
+
 DOCTEST_TEST_CASE("files are mapped, written whole, and kept when writing fails") {
     ScratchFolder scratch;
     const auto path = scratch.path() / "new/folder/a.txt";
