@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "engine/base/error.h"
-#include "engine/bench/clock.h"
+#include "engine/base/clock.h"
 #include "engine/bench/eval_figures.h"
 #include "engine/bench/setting_points.h"
 #include "engine/edit/words.h"

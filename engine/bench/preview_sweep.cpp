@@ -4,15 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
 
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/bench/setting_points.h"
+#include "engine/localize/clusters.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/preview/moving_scale.h"
 #include "engine/preview/resolve.h"
@@ -123,25 +124,14 @@ private:
     preview::SplatRenderer renderer_;
 };
 
-/// Red, green or blue at a place of the full picture, between the pixels of a smaller one (linear, edges repeated).
-double sampled(const Image& image, double x, double y, std::size_t channel) {
-    const double left = std::clamp(x - 0.5, 0.0, image.width - 1.0), top = std::clamp(y - 0.5, 0.0, image.height - 1.0);
-    const int x0 = static_cast<int>(left), y0 = static_cast<int>(top), x1 = std::min(x0 + 1, image.width - 1),
-              y1 = std::min(y0 + 1, image.height - 1);
-    const double u = left - x0, v = top - y0;
-    const auto at = [&](int column, int row) { return static_cast<double>(image.at(column, row, static_cast<int>(channel))); };
-    return (1 - v) * ((1 - u) * at(x0, y0) + u * at(x1, y0)) + v * ((1 - u) * at(x0, y1) + u * at(x1, y1));
-}
-
-/// Root mean square of the difference of red, green and blue.
+/// Root mean square of the difference of red, green and blue; a smaller picture is shown as large as the truth, as the window does.
 double rms_error(const Image& shown, const Image& truth) {
-    const double across = static_cast<double>(shown.width) / truth.width, down = static_cast<double>(shown.height) / truth.height;
+    const Image full = localize::resize_image(shown, truth.width, truth.height);
     double squares = 0;
     for (int y = 0; y < truth.height; ++y)
         for (int x = 0; x < truth.width; ++x)
-            for (std::size_t c = 0; c < 3; ++c) {
-                const double d = sampled(shown, (x + 0.5) * across, (y + 0.5) * down, c) -
-                                 static_cast<double>(truth.at(x, y, static_cast<int>(c)));
+            for (int c = 0; c < 3; ++c) {
+                const double d = static_cast<double>(full.at(x, y, c)) - static_cast<double>(truth.at(x, y, c));
                 squares += d * d;
             }
     return std::sqrt(squares / (3.0 * static_cast<double>(truth.pixel_count())));
@@ -216,14 +206,13 @@ private:
 
     /// Milliseconds, ascending.
     std::vector<double> time_turn(SweptRenderer& renderer, const PreviewSetting& setting) const {
-        using Clock = std::chrono::steady_clock;
         std::vector<double> times;
         renderer.draw(scaled(cameras_.back(), setting), setting);   // to warm up
         for (const auto& camera : cameras_) {
             const auto view = scaled(camera, setting);
-            const auto start = Clock::now();
+            const double start = wall_seconds();
             renderer.draw(view, setting);
-            times.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+            times.push_back(1e3 * (wall_seconds() - start));
         }
         std::sort(times.begin(), times.end());
         return times;

@@ -12,7 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/base/process_memory.h"
 #include "engine/base/thread_pool.h"
-#include "engine/bench/clock.h"
+#include "engine/base/clock.h"
 #include "engine/bench/growth.h"
 #include "engine/bench/setting_points.h"
 #include "engine/raster/rasterizer.h"

@@ -9,6 +9,7 @@
 #include "engine/base/check.h"
 #include "engine/base/hash.h"
 #include "engine/base/random.h"
+#include "engine/math/unproject.h"
 
 namespace gse::edit {
 namespace {
@@ -28,11 +29,6 @@ std::uint64_t private_voxel(std::uint64_t view, int cell_x, int cell_y) {
 }
 
 /// World point of a pixel's surface.
-Vec3 unprojected(const Camera& camera, double x, double y, double z) {
-    const Vec3 p{(x - camera.cx) / camera.fx * z, (y - camera.cy) / camera.fy * z, z};
-    return camera.rotation.transposed() * p + camera.centre();
-}
-
 /// Voxels of a cell with the pixels of each.
 using Shares = std::vector<std::pair<std::uint64_t, int>>;
 

@@ -9,6 +9,7 @@
 
 #include "engine/base/check.h"
 #include "engine/localize/clusters.h"
+#include "engine/math/unproject.h"
 
 namespace gse::edit {
 namespace {
@@ -19,11 +20,6 @@ constexpr double HardlyAnything = 4.0 / 255;
 constexpr double MostUnchanged = 0.5;       // the limits of views.md 12
 constexpr double MostDisagreement = 0.2;
 constexpr double RimCells = 2, CellsPerSide = 64;   // of Stable Diffusion's latents; the same share of smaller pictures
-
-struct Sample {
-    std::size_t view = 0;
-    std::array<float, 3> colour{};
-};
 
 /// Pixel of a view that shows the point, or -1.
 std::ptrdiff_t pixel_that_shows(const RoundView& view, const Vec3& point) {
@@ -38,10 +34,7 @@ std::ptrdiff_t pixel_that_shows(const RoundView& view, const Vec3& point) {
 }
 
 Vec3 point_of(const RoundView& view, int x, int y) {
-    const Camera& camera = view.view.camera;
-    const double z = view.depth.at(x, y, 0);
-    return camera.rotation.transposed() * Vec3{(x + 0.5 - camera.cx) / camera.fx * z, (y + 0.5 - camera.cy) / camera.fy * z, z} +
-           camera.centre();
+    return unprojected(view.view.camera, x + 0.5, y + 0.5, static_cast<double>(view.depth.at(x, y, 0)));
 }
 
 float median_of(std::vector<float>& values) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/check.h"
+#include "engine/base/clock.h"
 #include "engine/base/process_memory.h"
 #include "engine/raster/bench_tools.h"
 #include "engine/raster/plain.h"
@@ -21,10 +22,10 @@ struct Round {
 
 template <class Work>
 void time_into(Round& round, const Work& work) {
-    const double wall = wall_seconds(), cpu = cpu_seconds();
+    const double wall = wall_seconds(), cpu = processor_seconds();
     work();
     round.wall += wall_seconds() - wall;
-    round.cpu += cpu_seconds() - cpu;
+    round.cpu += processor_seconds() - cpu;
 }
 
 BenchTimes summarize(const std::vector<Round>& rounds, std::size_t views) {

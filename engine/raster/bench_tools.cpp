@@ -1,24 +1,11 @@
-// Clocks and noise.
+// Noise and differences.
 #include "engine/raster/bench_tools.h"
 
-#include <time.h>
-
-#include <chrono>
 #include <cmath>
 
 #include "engine/base/random.h"
 
 namespace gse::raster {
-
-double cpu_seconds() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double wall_seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 Image noise_image(int width, int height) {
     Image image(width, height, 3);

@@ -1,4 +1,4 @@
-// What the rasterizer's benches share: clocks, a picture's gradient, a difference.
+// What the rasterizer's benches share: a picture's gradient, a difference.
 #pragma once
 
 #include <span>
@@ -6,10 +6,6 @@
 #include "engine/base/image.h"
 
 namespace gse::raster {
-
-/// Processor time of the process, all threads together.
-double cpu_seconds();
-double wall_seconds();
 
 /// A gradient image like a loss would send: noise of unit size.
 Image noise_image(int width, int height);

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/base/check.h"
+#include "engine/base/clock.h"
 #include "engine/base/random.h"
 #include "engine/raster/bench_tools.h"
 #include "engine/raster/view_session.h"
@@ -104,9 +105,9 @@ public:
 private:
     template <class Work>
     static double time_of(const Work& work) {
-        const double begin = cpu_seconds();
+        const double begin = processor_seconds();
         work();
-        return 1e3 * (cpu_seconds() - begin);
+        return 1e3 * (processor_seconds() - begin);
     }
 
     void round() {

@@ -55,7 +55,7 @@ Case hat_case() {
 
 edit::EditResult run(const Case& c, const std::string& kernels, unsigned threads, std::size_t budget, bool relabels) {
     ThreadPool pool(threads);
-    const auto rasterizer = test::make_forced(kernels, pool);
+    const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
     edit::OracleGuidance guidance(c.target, c.plan.views, c.plan.settings, *rasterizer);
     edit::EditTools tools{*rasterizer, guidance, {}, {}};
     tools.view_bytes = budget;
@@ -88,7 +88,7 @@ bool same_result(const edit::EditResult& a, const edit::EditResult& b) {
 DOCTEST_TEST_CASE("an edit gives the same bytes with and without memory for its views") {
     const Case c = hat_case();
     for (const bool relabels : {false, true})
-        for (const std::string& kernels : test::available_kernels()) {
+        for (const std::string& kernels : raster::usable_kernels()) {
             DOCTEST_CAPTURE(relabels);
             DOCTEST_CAPTURE(kernels);
             const auto full = run(c, kernels, 2, 0, relabels);

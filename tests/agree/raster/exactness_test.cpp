@@ -45,14 +45,14 @@ DOCTEST_TEST_CASE("bit-identical for any number of threads and when repeated") {
     const GaussianData data = test::random_scene({.count = 20000, .seed = 51, .log_scale = -3.8});
     const GaussianData other = test::random_scene({.count = 700, .seed = 52});
     const Camera camera = test::test_camera(150, 110);
-    for (const std::string& kernels : test::available_kernels()) {
+    for (const std::string& kernels : raster::usable_kernels()) {
         DOCTEST_CAPTURE(kernels);
         ThreadPool one(1);
-        const Results expected = run(*test::make_forced(kernels, one), data, camera, 0);
+        const Results expected = run(*raster::make_fast_rasterizer(one, kernels), data, camera, 0);
         for (const unsigned threads : {2u, 3u, 8u}) {
             DOCTEST_CAPTURE(threads);
             ThreadPool pool(threads);
-            const auto rasterizer = test::make_forced(kernels, pool);
+            const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
             DOCTEST_CHECK(identical(run(*rasterizer, data, camera, 0), expected));
             run(*rasterizer, other, test::test_camera(64, 48),
                 100);  // leaves other numbers in the scratch memory
@@ -67,8 +67,8 @@ DOCTEST_TEST_CASE("a restriction to rows gives exactly the tail of the full grad
     ThreadPool pool(2);
     std::vector<std::unique_ptr<Rasterizer>> all;
     all.push_back(make_plain_rasterizer());
-    for (const std::string& kernels : test::available_kernels())
-        all.push_back(test::make_forced(kernels, pool));
+    for (const std::string& kernels : raster::usable_kernels())
+        all.push_back(raster::make_fast_rasterizer(pool, kernels));
     for (const auto& rasterizer : all) {
         DOCTEST_CAPTURE(rasterizer->name());
         const Gradients full = run(*rasterizer, data, camera, 0).gradients;
@@ -94,8 +94,8 @@ DOCTEST_TEST_CASE("rows that were not drawn get exact zeros") {
     for (std::size_t row = 0; row < data.size(); row += 3) data.opacity_logit[row] = -20.0f;
     const Camera camera = test::test_camera(64, 64);
     ThreadPool pool(2);
-    for (const std::string& kernels : test::available_kernels()) {
-        const auto rasterizer = test::make_forced(kernels, pool);
+    for (const std::string& kernels : raster::usable_kernels()) {
+        const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
         const Gradients g = run(*rasterizer, data, camera, 0).gradients;
         std::size_t seen = 0;
         for (std::size_t row = 0; row < data.size(); ++row) {
@@ -110,10 +110,28 @@ DOCTEST_TEST_CASE("rows that were not drawn get exact zeros") {
     }
 }
 
+/// Sets GSE_CPU while it lives; an empty name leaves the choice to the program.
+class ForcedCpu {
+public:
+    explicit ForcedCpu(const std::string& name) {
+        if (const char* old = std::getenv("GSE_CPU")) old_ = old;
+        name.empty() ? unsetenv("GSE_CPU") : setenv("GSE_CPU", name.c_str(), 1);
+    }
+    ~ForcedCpu() { old_.empty() ? unsetenv("GSE_CPU") : setenv("GSE_CPU", old_.c_str(), 1); }
+    ForcedCpu(const ForcedCpu&) = delete;
+    ForcedCpu& operator=(const ForcedCpu&) = delete;
+
+private:
+    std::string old_;
+};
+
 DOCTEST_TEST_CASE("GSE_CPU forces an instruction set and refuses what it does not know") {
     ThreadPool pool(1);
-    DOCTEST_CHECK(test::make_forced("scalar", pool)->name() == "scalar");
-    const auto names = test::available_kernels();
-    DOCTEST_CHECK(test::make_forced("", pool)->name() == names.back());  // the best is the default
-    DOCTEST_CHECK_THROWS_AS(test::make_forced("sse9", pool), Error);
+    const auto name_under = [&pool](const char* forced_name) {
+        const ForcedCpu forced(forced_name);
+        return raster::make_fast_rasterizer(pool)->name();
+    };
+    DOCTEST_CHECK(name_under("scalar") == "scalar");
+    DOCTEST_CHECK(name_under("") == raster::usable_kernels().front());  // the best is the default
+    DOCTEST_CHECK_THROWS_AS(name_under("sse9"), Error);
 }

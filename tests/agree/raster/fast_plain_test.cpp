@@ -77,8 +77,8 @@ void compare(const Case& c, Rasterizer& fast) {
 
 DOCTEST_TEST_CASE("every fast version agrees with the plain one") {
     ThreadPool pool(2);
-    for (const std::string& kernels : test::available_kernels()) {
-        const auto fast = test::make_forced(kernels, pool);
+    for (const std::string& kernels : raster::usable_kernels()) {
+        const auto fast = raster::make_fast_rasterizer(pool, kernels);
         DOCTEST_CHECK(fast->name() == kernels);
         for (const Case& c : cases()) {
             DOCTEST_CAPTURE(kernels);
@@ -103,9 +103,9 @@ DOCTEST_TEST_CASE("contributions and composited values agree with the plain vers
     Image expected;
     plain->forward_values(spans(data), camera, {}, values, expected);
     const auto ambiguous = test::ambiguous_pixels(data, camera, {});
-    for (const std::string& kernels : test::available_kernels()) {
+    for (const std::string& kernels : raster::usable_kernels()) {
         DOCTEST_CAPTURE(kernels);
-        const auto fast = test::make_forced(kernels, pool);
+        const auto fast = raster::make_fast_rasterizer(pool, kernels);
         std::vector<double> fast_masked(data.size()), fast_total(data.size());
         fast->contributions(spans(data), camera, {}, mask, fast_masked, fast_total);
         // Ambiguous pixels are a few per thousand here; each may move one weight of 1/255.
@@ -129,8 +129,8 @@ DOCTEST_TEST_CASE("contributions equal the gradient of a constant colour, and ad
     for (std::size_t i = 0; i < mask.data.size(); ++i) d_colour.data[i * 3] = mask.data[i];
     std::vector<std::unique_ptr<Rasterizer>> all;
     all.push_back(make_plain_rasterizer());
-    for (const std::string& kernels : test::available_kernels())
-        all.push_back(test::make_forced(kernels, pool));
+    for (const std::string& kernels : raster::usable_kernels())
+        all.push_back(raster::make_fast_rasterizer(pool, kernels));
     for (const auto& rasterizer : all) {
         DOCTEST_CAPTURE(rasterizer->name());
         std::vector<double> masked(data.size()), total(data.size());

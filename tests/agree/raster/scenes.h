@@ -80,40 +80,6 @@ inline Image noise_image(int width, int height, int channels, std::uint64_t seed
     return image;
 }
 
-/// Sets GSE_CPU while it lives; an empty name leaves the choice to the program.
-class ForcedCpu {
-public:
-    explicit ForcedCpu(const std::string& name) {
-        if (const char* old = std::getenv("GSE_CPU")) old_ = old;
-        name.empty() ? unsetenv("GSE_CPU") : setenv("GSE_CPU", name.c_str(), 1);
-    }
-    ~ForcedCpu() { old_.empty() ? unsetenv("GSE_CPU") : setenv("GSE_CPU", old_.c_str(), 1); }
-    ForcedCpu(const ForcedCpu&) = delete;
-    ForcedCpu& operator=(const ForcedCpu&) = delete;
-
-private:
-    std::string old_;
-};
-
-inline std::unique_ptr<raster::Rasterizer> make_forced(const std::string& name, ThreadPool& pool) {
-    const ForcedCpu forced(name);
-    return raster::make_fast_rasterizer(pool);
-}
-
-/// Instruction sets this machine can run.
-inline std::vector<std::string> available_kernels() {
-    std::vector<std::string> names;
-    ThreadPool pool(1);
-    for (const char* name : {"scalar", "avx2", "avx512"}) {
-        try {
-            make_forced(name, pool);
-            names.push_back(name);
-        } catch (const Error&) {  // not on this processor
-        }
-    }
-    return names;
-}
-
 template <class A, class B>
 double relative_l2(const A& found, const B& expected) {
     if (found.size() != expected.size()) return INFINITY;

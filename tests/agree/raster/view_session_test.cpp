@@ -133,14 +133,14 @@ void live_through(Comparison& comparison, Rows rows, std::uint64_t seed) {
 }  // namespace
 
 DOCTEST_TEST_CASE("a view session gives the bits of rendering in full, for every instruction set, thread count and budget") {
-    for (const std::string& kernels : test::available_kernels())
+    for (const std::string& kernels : raster::usable_kernels())
         for (const unsigned threads : {1u, 2u})
             for (const std::size_t budget : {std::size_t{0}, std::size_t{600 << 10}, Ample}) {
                 DOCTEST_CAPTURE(kernels);
                 DOCTEST_CAPTURE(threads);
                 DOCTEST_CAPTURE(budget);
                 ThreadPool pool(threads);
-                const auto rasterizer = test::make_forced(kernels, pool);
+                const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
                 Comparison comparison(*rasterizer, budget);
                 const Rows rows = with_compact_tail(test::random_scene({.count = 5000, .seed = 81, .log_scale = -3.6}), 400);
                 live_through(comparison, rows, 82);
@@ -231,9 +231,9 @@ DOCTEST_TEST_CASE("a view session counts rows that cannot be drawn, before and b
 
 DOCTEST_TEST_CASE("a row that changes may come to reach the whole picture, and one as deep as a fixed row lies behind it") {
     ThreadPool pool(2);
-    for (const std::string& kernels : test::available_kernels()) {
+    for (const std::string& kernels : raster::usable_kernels()) {
         DOCTEST_CAPTURE(kernels);
-        const auto rasterizer = test::make_forced(kernels, pool);
+        const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
         Rows rows = with_compact_tail(test::random_scene({.count = 2000, .seed = 88, .log_scale = -3.6, .opacity = 3}), 60);
         Comparison comparison(*rasterizer, Ample);
         comparison.check(rows);
@@ -253,9 +253,9 @@ DOCTEST_TEST_CASE("a row that changes may come to reach the whole picture, and o
 DOCTEST_TEST_CASE("a view session agrees with the plain version rendered in full") {
     ThreadPool pool(2);
     const auto plain = make_plain_rasterizer();
-    for (const std::string& kernels : test::available_kernels()) {
+    for (const std::string& kernels : raster::usable_kernels()) {
         DOCTEST_CAPTURE(kernels);
-        const auto rasterizer = test::make_forced(kernels, pool);
+        const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
         Rows rows = with_compact_tail(test::random_scene({.count = 700, .seed = 89}), 80);
         const Camera camera = test::test_camera(96, 64);
         const auto session = rasterizer->view_session(1, Ample), truth = plain->view_session(1, Ample);

@@ -29,8 +29,8 @@ struct Hostile {
 struct Everyone {
     Everyone() {
         versions.push_back(make_plain_rasterizer());
-        for (const std::string& kernels : test::available_kernels())
-            versions.push_back(test::make_forced(kernels, pool));
+        for (const std::string& kernels : raster::usable_kernels())
+            versions.push_back(raster::make_fast_rasterizer(pool, kernels));
     }
     ThreadPool pool{2};
     std::vector<std::unique_ptr<Rasterizer>> versions;

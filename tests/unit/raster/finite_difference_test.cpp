@@ -151,8 +151,8 @@ DOCTEST_TEST_CASE("the clamp of dark colours lets through the slope that was ask
     ThreadPool pool(1);
     std::vector<std::unique_ptr<Rasterizer>> all;
     all.push_back(make_plain_rasterizer());
-    for (const std::string& kernels : test::available_kernels())
-        all.push_back(test::make_forced(kernels, pool));
+    for (const std::string& kernels : raster::usable_kernels())
+        all.push_back(raster::make_fast_rasterizer(pool, kernels));
     for (const auto& rasterizer : all) {
         ForwardOutput image;
         Gradients strict, soft;

@@ -1,11 +1,11 @@
-// Times for the benches.
+// Clocks for the benches.
 #pragma once
 
 #include <time.h>
 
 #include <chrono>
 
-namespace gse::bench {
+namespace gse {
 
 /// Seconds of a clock that never goes back.
 inline double wall_seconds() {
@@ -19,4 +19,4 @@ inline double processor_seconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-}  // namespace gse::bench
+}  // namespace gse
