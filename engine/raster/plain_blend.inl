@@ -25,6 +25,10 @@ struct Decision {
     double after = 0;  // transmittance behind the pair
 };
 
+/// Behind two pairs at the alpha limit T is (1 - 0.99)^2, exactly the cut: they end the pixel, as in float, whatever 1 - 0.99 is
+/// rounded to.
+constexpr double LastCut = TransmittanceCut * (1 + 1e-12);
+
 template <class Visit, class Watch>
 std::size_t walk_pairs(const SplatList& list, const Camera& camera, std::vector<double>& transmittance,
                        Visit&& visit, Watch&& watch) {
@@ -54,7 +58,7 @@ std::size_t walk_pairs(const SplatList& list, const Camera& camera, std::vector<
                 const double before = transmittance[pixel], after = before * (1 - alpha);
                 watch(Decision{pixel, unclamped, after});
                 if (sigma < 0 || alpha < AlphaCut) continue;
-                if (after <= TransmittanceCut) {
+                if (after <= LastCut) {
                     finished[pixel] = 1;
                     continue;
                 }
