@@ -93,6 +93,8 @@ public:
             modify(result);
         result.failed_views = static_cast<int>(std::count_if(
             result.views.begin(), result.views.end(), [](const ViewEvidence& view) { return view.failed; }));
+        result.broken_attention = broken_;
+        if (broken_ > 0) log::warning("{} values of the attention were not finite and count as none", broken_);
         return result;
     }
 
@@ -225,7 +227,7 @@ private:
         GSE_CHECK_EQ(maps.size(), query.words.size());
         for (auto& map : maps) {
             GSE_CHECK(map.width == renders_[v].width && map.height == renders_[v].height);
-            normalise_maximum(map);
+            broken_ += normalise_maximum(map);
         }
         return maps;
     }
@@ -515,6 +517,7 @@ private:
     const LocateInput& input_;
     const LocateTools& tools_;
     std::vector<Image> renders_, depths_;
+    std::size_t broken_ = 0;   // values of the attention so far
 };
 
 }  // namespace

@@ -81,6 +81,7 @@ struct LocateResult {
     AddRegion region;                // add mode: where the new thing goes
     GaussianData seeds;              // add mode: new rows
     int failed_views = 0;
+    std::size_t broken_attention = 0;   // values of the attention that were not finite, and count as none
     Confidence confidence;
     SearchProblem problem = SearchProblem::None;
     std::string message, remedy;  // of the problem: what came of the search, and what to do

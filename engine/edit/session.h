@@ -102,7 +102,7 @@ struct EditTools {
 /// Runs the edit. Rows outside the label come back bit-identical (checked at the end), and so do rows that cannot be drawn,
 /// labelled or not: they are in no picture and no loss. A step whose guidance is not finite is left out. When that goes on, or
 /// the memory runs out in the middle, the result is what was reached, with `failure` or `shortage`. The same plan, request and
-/// seed give the same bytes for any number of threads. Throws Error when no labelled row is visible in any view, and when
+/// seed give the same bytes for any number of threads of one instruction set (tests/agree/edit, tests/stress/edit). Throws Error when no labelled row is visible in any view, and when
 /// the guidance was finite in no step.
 EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools);
 

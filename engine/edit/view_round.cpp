@@ -8,6 +8,7 @@
 #include "engine/base/check.h"
 #include "engine/base/log.h"
 #include "engine/base/random.h"
+#include "engine/edit/broken_values.h"
 #include "engine/edit/colour_word.h"
 #include "engine/edit/scales.h"
 #include "engine/edit/view_agreement.h"
@@ -157,9 +158,9 @@ void ViewRounds::name_colour(const std::vector<RoundView>& views, const JobContr
     const auto told = as_told(request_.prompt);
     if (shapes_ == nullptr || views.empty() || is_described(told, shapes_->word())) return;
     const auto key = std::max_element(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.mask.count() < b.mask.count(); });
-    const auto drawn = guidance_.edit({*key}, input(ColourStream), job);
+    auto drawn = guidance_.edit({*key}, input(ColourStream), job);
     ++key_views_;
-    GSE_CHECK_EQ(drawn.images.size(), std::size_t{1});
+    mend_broken({*key}, drawn.images);
     const auto colour = shapes_->colour_in(*key, drawn.images.front(), Random::stream(request_.seed, ColourStream + 1).next(), known_);
     if (colour.empty()) return;
     sentence_ = described_as(told, shapes_->word(), colour);
@@ -181,7 +182,10 @@ std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vecto
     round_ = iteration / request_.fit_steps;
     if (round_ == 0) name_colour(views, job);
     auto drawn = guidance_.edit(views, input(40000 + static_cast<std::uint64_t>(round_)), job);
-    GSE_CHECK_EQ(drawn.images.size(), views.size());
+    if (const auto broken = mend_broken(views, drawn.images); broken > 0) {
+        drawn.scalars["broken_values"] = static_cast<double>(broken);
+        log::warning("{} values of the redrawn views were not finite; the scene stays as it was there", broken);
+    }
     judge(views, drawn);
     if (shapes_ != nullptr) {
         found_ = shapes_->cut_out(views, drawn.images, round_, job);
@@ -196,7 +200,7 @@ void ViewRounds::redo(std::size_t view, const RoundView& begun, int attempt, con
     constexpr std::uint64_t first = 1u << 20, most_views = 1u << 20, most_rounds = 64;   // streams that nothing else draws from
     const auto stream = first + (static_cast<std::uint64_t>(attempt) * most_rounds + static_cast<std::uint64_t>(round_)) * most_views + view;
     auto drawn = guidance_.edit({begun}, input(stream), job);
-    GSE_CHECK_EQ(drawn.images.size(), std::size_t{1});
+    mend_broken({begun}, drawn.images);
     if (shapes_ != nullptr) shapes_->take_out(begun, drawn.images.front(), Random::stream(request_.seed, stream + 1).next());
     replace(view, std::move(drawn.images.front()), original, begun.mask);
 }

@@ -115,13 +115,17 @@ void refine(WordMask& found, const Image& picture, const Image& map, const std::
 
 }  // namespace
 
-void normalise_maximum(Image& map) {
-    const float largest = map.data.empty() ? 0 : *std::max_element(map.data.begin(), map.data.end());
-    if (!(largest > 0) || !std::isfinite(largest)) {
-        std::fill(map.data.begin(), map.data.end(), 0.0f);
-        return;
+std::size_t normalise_maximum(Image& map) {
+    std::size_t broken = 0;
+    float largest = 0;
+    for (auto& value : map.data) {
+        if (!std::isfinite(value)) ++broken, value = 0;
+        value = std::max(0.0f, value);
+        largest = std::max(largest, value);
     }
-    for (auto& value : map.data) value = std::isfinite(value) ? std::max(0.0f, value / largest) : 0.0f;
+    if (largest > 0)
+        for (auto& value : map.data) value /= largest;
+    return broken;
 }
 
 WordMask find_word_mask(const Image& picture, const Image& map, double threshold, const std::string& word,

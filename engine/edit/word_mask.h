@@ -31,8 +31,8 @@ struct WordMaskTools {
     TextSegmenter* text_segmenter = nullptr;
 };
 
-/// Scales an attention map to a maximum of 1; negative and non-finite values become 0.
-void normalise_maximum(Image& map);
+/// Scales an attention map to a maximum of 1; negative and non-finite values become 0. Returns how many were not finite.
+std::size_t normalise_maximum(Image& map);
 
 /// Threshold and DBSCAN on a 64-cell grid, small clusters dropped (GSEditPro 3.2, method S4a); then the mask of a text segmenter
 /// that agrees with the attention, or of a segmenter from clicks and box, or the region itself (method A8).

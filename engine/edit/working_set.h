@@ -50,8 +50,8 @@ public:
     std::size_t first_row() const { return table_.first_row; }
     std::size_t labelled() const { return table_.labelled(); }
 
-    /// Anchors, Adam on every attribute, clamps. Returns the anchor loss. Rows with a non-finite gradient are left as
-    /// they are and counted.
+    /// Anchors, Adam on every attribute, clamps. Returns the anchor loss. Rows with a non-finite gradient get
+    /// none in this step, like rows that no pixel shows, and are counted.
     double step(const raster::Gradients& gradients, int iteration, const EditRequest& request);
     /// Adds the screen-space gradients of one iteration to the densification statistics.
     void collect(const raster::Gradients& gradients);

@@ -162,6 +162,7 @@ void add_search(nlohmann::ordered_json& report, const EditJob& job) {
     report["views"] = job.views().size();
     if (job.front_read()) report["front_read"] = *job.front_read() / Degree;
     report["failed_views"] = located.failed_views;
+    if (located.broken_attention > 0) report["broken_attention"] = located.broken_attention;
     report["confidence"] = nullptr;   // nothing was looked for
     if (confidence.value >= 0) {
         report["confidence"] = confidence.value;
