@@ -1,7 +1,6 @@
 // gseditpro bench: run time against error, as JSON.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -28,12 +27,12 @@
 #include "engine/bench/raster_report.h"
 #include "engine/bench/raster_sweep.h"
 #include "engine/bench/scale_bench.h"
+#include "engine/bench/scene_views.h"
 #include "engine/bench/search_bench.h"
 #include "engine/bench/speed_bench.h"
-#include "engine/io/cameras.h"
+#include "engine/bench/stability_bench.h"
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/neural_loader.h"
-#include "engine/pipeline/scene_tools.h"
 #include "engine/raster/bench.h"
 
 namespace gse::app {
@@ -62,18 +61,6 @@ struct RasterBenchOptions {
     bool skips = true;
 };
 
-/// Up to `count` cameras, evenly spread over those named; an orbit when there are none.
-std::vector<Camera> bench_cameras(const Scene& scene, const RasterBenchOptions& options) {
-    std::vector<View> views;
-    if (options.cameras != "none") views = scene_cameras(options.scene, options.cameras);
-    if (views.empty())
-        views = orbit_views(scene_orbit(scene, {}), options.sweep.views, options.sweep.width, options.sweep.height);
-    std::vector<Camera> cameras;
-    const auto count = std::min(views.size(), static_cast<std::size_t>(options.sweep.views));
-    for (std::size_t i = 0; i < count; ++i) cameras.push_back(views[i * views.size() / count].camera);
-    return cameras;
-}
-
 void add_raster_bench(CLI::App& bench, CommandContext& context) {
     auto options = std::make_shared<RasterBenchOptions>();
     auto* command = bench.add_subcommand("raster", "Forward and backward of the rasterizer, with its error");
@@ -94,7 +81,8 @@ void add_raster_bench(CLI::App& bench, CommandContext& context) {
         options->settings.width = options->sweep.width, options->settings.height = options->sweep.height;
         options->settings.repetitions = options->sweep.repetitions;
         const Scene scene = load_scene(options->scene);
-        const auto cameras = bench_cameras(scene, *options);
+        const auto& sweep = options->sweep;
+        const auto cameras = spread_cameras(scene, options->scene, options->cameras, sweep.views, sweep.width, sweep.height);
         auto json = raster_report(raster::bench_raster(scene.gaussians.spans(), cameras, options->settings));
         if (options->skips)
             json["skips"] = skip_report(
@@ -102,6 +90,18 @@ void add_raster_bench(CLI::App& bench, CommandContext& context) {
         if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");
         print_json(json, 2);
     });
+}
+
+void add_stability_bench(CLI::App& bench, CommandContext& context) {
+    struct Options {
+        StabilityParameters parameters;
+        SweepOutput output;
+    };
+    auto options = std::make_shared<Options>();
+    auto* command = bench.add_subcommand("stability", "Error of the rasterizer on scenes that are hard on it, a histogram by cause");
+    command->add_option("--out", options->output.folder, "Folder for the figures and the picture");
+    bind_fields(*command, options->parameters, "Measurement");
+    command->callback([options, &context] { options->output.leave(bench_stability(options->parameters, context.job())); });
 }
 
 void add_speed_bench(CLI::App& bench) {
@@ -278,6 +278,7 @@ void add_bench_command(CLI::App& app, CommandContext& context) {
     auto* bench = app.add_subcommand("bench", "Measure run time against error");
     bench->require_subcommand(1);
     add_raster_bench(*bench, context);
+    add_stability_bench(*bench, context);
     add_speed_bench(*bench);
 #ifdef GSE_WINDOW
     add_preview_bench(*bench, context);

@@ -19,6 +19,7 @@
 #endif
 #include "engine/bench/raster_sweep.h"
 #include "engine/bench/scale_bench.h"
+#include "engine/bench/stability_bench.h"
 #include "engine/io/image_file.h"
 
 namespace gse::bench {
@@ -27,7 +28,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const std::vector<std::string>& subject_names() {
-    static const std::vector<std::string> names{"raster", "preview", "locate", "edit", "scale"};
+    static const std::vector<std::string> names{"raster", "stability", "preview", "locate", "edit", "scale"};
     return names;
 }
 
@@ -89,11 +90,12 @@ private:
     /// A subject's report; of one that failed, why.
     Json measure(const std::string& name) {
         try {
-            return name == "raster"    ? raster()
-                   : name == "preview" ? preview()
-                   : name == "locate"  ? locate()
-                   : name == "edit"    ? edit()
-                                       : scale();
+            return name == "raster"      ? raster()
+                   : name == "stability" ? stability()
+                   : name == "preview"   ? preview()
+                   : name == "locate"    ? locate()
+                   : name == "edit"      ? edit()
+                                         : scale();
         } catch (const Error& error) {
             if (error.code() == ErrorCode::Cancelled || error.code() == ErrorCode::InvalidArgument) throw;
             sections_.push_back({name, {"This could not be measured: " + error.message()}, {}, {}, {}, {}});
@@ -114,6 +116,10 @@ private:
         RasterSweepParameters used;
         used.splats = parameters_.raster_splats;
         return take(bench_raster_sweep(used, job_), used);
+    }
+    Json stability() {
+        const StabilityParameters used;
+        return take(bench_stability(used, job_), used);
     }
     Json preview() {
 #ifdef GSE_WINDOW

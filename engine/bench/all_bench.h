@@ -12,7 +12,7 @@
 namespace gse::bench {
 
 struct AllBenchParameters {
-    std::string subjects = "raster preview locate edit scale";
+    std::string subjects = "raster stability preview locate edit scale";
     std::uint64_t seed = 1;
     int locate_scenes = 4;
     int edits = 6;
@@ -23,7 +23,7 @@ struct AllBenchParameters {
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
-        f("subjects", self.subjects, "What is measured: some of raster preview locate edit scale.");
+        f("subjects", self.subjects, "What is measured: some of raster stability preview locate edit scale.");
         f("seed", self.seed, "Seed of scenes and suites.");
         f("locate_scenes", self.locate_scenes, "Scenes of `bench locate` here.", Range{1, 10000});
         f("edits", self.edits, "Edits of `bench edit` here.", Range{1, 10000});

@@ -28,18 +28,6 @@ const std::vector<Facet>& raster_facets() {
     return facets;
 }
 
-std::vector<std::string> kernels_of(const RasterSweepParameters& parameters) {
-    const auto usable = raster::usable_kernels();
-    if (parameters.kernels == "all") return usable;
-    const auto names = words_in_list(parameters.kernels);
-    if (names.empty()) throw Error(ErrorCode::InvalidArgument, "no kernels are named", "use all, or some of scalar avx2 avx512");
-    for (const auto& name : names)
-        if (std::find(usable.begin(), usable.end(), name) == usable.end())
-            throw Error(ErrorCode::InvalidArgument, "the kernels \"" + name + "\" do not run here",
-                        "use all, or some of scalar avx2 avx512");
-    return names;
-}
-
 /// One thread of the double version over the first view, milliseconds.
 Json time_plain(const Scene& scene, const Camera& camera) {
     using Clock = std::chrono::steady_clock;
@@ -74,7 +62,7 @@ std::vector<SettingPoint> raster_points(const RasterSweepParameters& parameters,
     const auto usual = raster::make_fast_rasterizer(pool)->name();
     auto counts = numbers_in_list("thread_counts", parameters.thread_counts, 1, 256);
     if (std::find(counts.begin(), counts.end(), pool.thread_count()) == counts.end()) counts.push_back(pool.thread_count());
-    const auto kernels = kernels_of(parameters);
+    const auto kernels = kernels_in_list(parameters.kernels);
     const int total = static_cast<int>(kernels.size() * counts.size());
     std::vector<SettingPoint> points;
     for (const auto& name : kernels) {
@@ -98,6 +86,18 @@ std::vector<SettingPoint> raster_points(const RasterSweepParameters& parameters,
 }
 
 }  // namespace
+
+std::vector<std::string> kernels_in_list(const std::string& list) {
+    const auto usable = raster::usable_kernels();
+    if (list == "all") return usable;
+    const auto names = words_in_list(list);
+    if (names.empty()) throw Error(ErrorCode::InvalidArgument, "no kernels are named", "use all, or some of scalar avx2 avx512");
+    for (const auto& name : names)
+        if (std::find(usable.begin(), usable.end(), name) == usable.end())
+            throw Error(ErrorCode::InvalidArgument, "the kernels \"" + name + "\" do not run here",
+                        "use all, or some of scalar avx2 avx512");
+    return names;
+}
 
 Subject bench_raster_sweep(const RasterSweepParameters& parameters, const JobControl& job) {
     const Scene scene = synth::timing_scene(static_cast<std::size_t>(parameters.splats), parameters.seed);

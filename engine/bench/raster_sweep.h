@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "engine/base/fields.h"
 #include "engine/base/progress.h"
@@ -31,6 +32,9 @@ struct RasterSweepParameters {
         f("thread_counts", self.thread_counts, "Numbers of threads; one per core is always among them.");
     }
 };
+
+/// The instruction sets that a list names: "all" that run here, or some of them. Throws Error (InvalidArgument).
+std::vector<std::string> kernels_in_list(const std::string& list);
 
 /// Forward and backward pass over a generated scene (synth/timing_scene.h): wall time per picture, least of the rounds, against
 /// the largest error of a pixel and the relative error of the gradient, both to the plain double version. Throws Error for wrong

@@ -24,6 +24,14 @@ class Benches(ProgramTest):
         for front in report["fronts"]:
             self.assertTrue(front["front"])
 
+    def test_stability_counts_every_picture(self):
+        process, report = self.subject("stability", "--scenes", 1, "--causes", "needles, few pixels")
+        self.assertEqual([cause["cause"] for cause in report["causes"]], ["needles", "few pixels"])
+        self.assertIn("0 with a value that is not finite; 0 in which", process.stdout)
+        out = self.folder / "none"
+        self.assert_one_sentence(run("-q", "bench", "stability", "--causes", "weather", "--out", out), "weather")
+        self.assertFalse(out.exists())
+
     def test_preview_measures_qualities(self):
         _, report = self.subject("preview", "--backend", "native", "--splats", 300, "--size", "64x48", "--frames", 2,
                                  "--sh-degrees", "0", "--scales", "0.5")

@@ -12,6 +12,8 @@
 #include "engine/bench/page.h"
 #include "engine/bench/raster_sweep.h"
 #include "engine/bench/scale_bench.h"
+#include "engine/bench/stability_bench.h"
+#include "engine/bench/stability_chart.h"
 #include "engine/bench/subject.h"
 #include "engine/raster/rasterizer.h"
 #include "tests/test_paths.h"
@@ -84,6 +86,41 @@ DOCTEST_TEST_CASE("the rasterizer's sweep has a point per instruction set and nu
     wrong = tiny_sweep();
     wrong.thread_counts = "many";
     DOCTEST_CHECK_THROWS_AS(bench_raster_sweep(wrong, {}), Error);
+}
+
+DOCTEST_TEST_CASE("stability: a line per cause, every picture in one decade, the same figures again") {
+    StabilityParameters parameters;
+    parameters.scenes = 2;
+    parameters.causes = "ordinary, few pixels,camera inside";
+    const auto subject = bench_stability(parameters, {});
+    const auto& causes = subject.report["causes"];
+    DOCTEST_REQUIRE(causes.size() == 3);
+    for (const auto& cause : causes)
+        for (const char* kind : {"picture", "gradient", "row", "unclear_picture"}) {
+            std::size_t counted = 0;
+            for (const auto& count : cause[kind]["decades"]) counted += count.get<std::size_t>();
+            DOCTEST_CHECK(counted == 2 * raster::usable_kernels().size());
+            DOCTEST_CHECK(cause[kind]["median"].get<double>() <= cause[kind]["worst"].get<double>());
+        }
+    DOCTEST_CHECK(subject.tables[0].rows.size() == 3);
+    DOCTEST_CHECK(bench_stability(parameters, {}).report == subject.report);
+    parameters.seed = 9;
+    DOCTEST_CHECK(bench_stability(parameters, {}).report != subject.report);
+}
+
+DOCTEST_TEST_CASE("a histogram's cells are where their counts are, and the darker the more") {
+    std::vector<std::size_t> first(ErrorDecades, 0), second(ErrorDecades, 0);
+    first[0] = 9, second[9] = 1, second[8] = 8;
+    const auto image = draw_histograms("title", {"first", "second"}, {{"panel", {first, second}}}, {"a note"});
+    const auto shade = [&](double across, int line) {   // at the upper left of a cell, where no number is
+        return image.at(static_cast<int>(170 + across * 101 + 4), 110 + 26 * line + 4, 0);
+    };
+    DOCTEST_CHECK(image.width == 1200);
+    DOCTEST_CHECK(shade(0, 0) < 0.2f);
+    DOCTEST_CHECK(shade(1, 0) > 0.9f);
+    DOCTEST_CHECK(shade(8, 1) < shade(9, 1));
+    DOCTEST_CHECK(shade(9, 1) < 0.8f);
+    DOCTEST_CHECK(shade(0, 1) > 0.9f);
 }
 
 DOCTEST_TEST_CASE("series grow until a limit, with exponents") {
