@@ -10,7 +10,6 @@
 #include "engine/base/random.h"
 #include "engine/edit/colour_word.h"
 #include "engine/edit/scales.h"
-#include "engine/edit/view_agreement.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -25,6 +24,7 @@ Mask eroded(Mask mask, double radius_px) {
 
 constexpr double FeatherPx = 3;       // of a picture of ReferenceSide (views.md 8.6)
 constexpr std::uint64_t ColourStream = 39000;   // of the request's seed
+constexpr double StrengthRaise = 0.1;   // of redrawing that hardly changed anything (views.md 12)
 constexpr double LeastCover = 0.01;   // of the picture: smaller things are not worth a redrawn view (views.md 8)
 
 }  // namespace
@@ -147,7 +147,7 @@ bool ViewRounds::begins(int iteration) const { return round_ < 0 || iteration / 
 /// What this round is asked to be; `stream` of the request's seed.
 RoundInput ViewRounds::input(std::uint64_t stream) const {
     const auto plan = round_plan(request_, plan_.mode);
-    return {round_,          plan.rounds, plan.steps_of(round_), plan.strength_of(round_), Random::stream(request_.seed, stream).next(),
+    return {round_,          plan.rounds, plan.steps_of(round_), std::min(1.0, plan.strength_of(round_) + raised_), Random::stream(request_.seed, stream).next(),
             shapes_ != nullptr, sentence_};
 }
 
@@ -158,7 +158,7 @@ void ViewRounds::name_colour(const std::vector<RoundView>& views, const JobContr
     if (shapes_ == nullptr || views.empty() || is_described(told, shapes_->word())) return;
     const auto key = std::max_element(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.mask.count() < b.mask.count(); });
     const auto drawn = guidance_.edit({*key}, input(ColourStream), job);
-    ++key_views_;
+    ++extra_pictures_;
     GSE_CHECK_EQ(drawn.images.size(), std::size_t{1});
     const auto colour = shapes_->colour_in(*key, drawn.images.front(), Random::stream(request_.seed, ColourStream + 1).next(), known_);
     if (colour.empty()) return;
@@ -167,9 +167,27 @@ void ViewRounds::name_colour(const std::vector<RoundView>& views, const JobContr
               colour, sentence_);
 }
 
+/// The pictures of a round. Where most of them hardly differ from the scene, they are drawn once more, further from it.
+RoundTargets ViewRounds::draw(const std::vector<RoundView>& views, const JobControl& job) {
+    const auto asked = input(40000 + static_cast<std::uint64_t>(round_));
+    auto drawn = guidance_.edit(views, asked, job);
+    GSE_CHECK_EQ(drawn.images.size(), views.size());
+    auto agreement = view_agreement(views, drawn.images);
+    if (shapes_ == nullptr && raised_ == 0 && asked.strength < 1 && hardly_edited(agreement)) {
+        raised_ = StrengthRaise;
+        extra_pictures_ += views.size();
+        log::info("{:.0f} % of the redrawn views hardly differ from the scene: they are redrawn with strength {:.2f}",
+                  100 * agreement.unchanged, std::min(1.0, asked.strength + raised_));
+        drawn = guidance_.edit(views, input(40000 + static_cast<std::uint64_t>(round_)), job);
+        GSE_CHECK_EQ(drawn.images.size(), views.size());
+        agreement = view_agreement(views, drawn.images);
+    }
+    judge(agreement, drawn);
+    return drawn;
+}
+
 /// Says what is suspicious about the pictures as the model drew them.
-void ViewRounds::judge(const std::vector<RoundView>& views, RoundTargets& drawn) {
-    const auto agreement = view_agreement(views, drawn.images);
+void ViewRounds::judge(const ViewAgreement& agreement, RoundTargets& drawn) {
     drawn.scalars.merge(agreement.scalars());
     warnings_ = warnings_of(agreement, shapes_ != nullptr);
     for (const auto& warning : warnings_) log::warning("{}", warning);
@@ -180,9 +198,7 @@ std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vecto
     GSE_CHECK_EQ(views.size(), views_.size());
     round_ = iteration / request_.fit_steps;
     if (round_ == 0) name_colour(views, job);
-    auto drawn = guidance_.edit(views, input(40000 + static_cast<std::uint64_t>(round_)), job);
-    GSE_CHECK_EQ(drawn.images.size(), views.size());
-    judge(views, drawn);
+    auto drawn = draw(views, job);
     if (shapes_ != nullptr) {
         found_ = shapes_->cut_out(views, drawn.images, round_, job);
         drawn.scalars.merge(found_.scalars);
@@ -206,10 +222,11 @@ void ViewRounds::replace(std::size_t view, Image edited, const Image& original, 
     blend(view, original, mask);
 }
 
-void ViewRounds::resume(int round, std::vector<std::size_t> views, std::string sentence) {
-    round_ = round;
-    sentence_ = std::move(sentence);
-    views_ = std::move(views);
+void ViewRounds::resume(const RoundState& start) {
+    round_ = start.round;
+    sentence_ = start.sentence;
+    views_ = start.views;
+    raised_ = start.raised;
 }
 
 void ViewRounds::blend(std::size_t view, const Image& original, const Mask& mask) {
