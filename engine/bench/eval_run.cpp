@@ -52,6 +52,15 @@ Json spec_json(const synth::SceneSpec& spec) {
             {"seed", spec.seed}};
 }
 
+/// What was said of the redrawn views of the last round, and of the fit to them.
+Json redrawing_figures(const edit::EditResult& result) {
+    Json figures;
+    for (const auto& record : result.history)
+        for (const auto& [name, value] : record.guidance) figures[name] = value;
+    figures["kept_chroma"] = result.kept_chroma;
+    return figures;
+}
+
 Json case_json(const EvalCase& edit, std::size_t index) {
     return {{"index", index},
             {"kind", edit.kind},
@@ -218,6 +227,7 @@ private:
         const auto& use = job.edited().use;
         figures["cost"] = {{"seconds", job.edited().seconds}, {"unet", use.unet}, {"tflop", use.flop * 1e-12}};
         figures["edit_seconds"] = result.seconds;
+        if (result.redrawn_views > 0) figures["redrawing"] = redrawing_figures(result);
         if (const auto& verdict = job.edited().verdict) figures["gate"] = pipeline::verdict_to_json(*verdict);
         job.times().end();
         return figures;

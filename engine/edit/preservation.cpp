@@ -56,13 +56,14 @@ Preservation::Box Preservation::grown(const Box& box, int by, const Image& image
             std::min(image.height, box.y1 + by)};
 }
 
-double Preservation::add_gradient(const Image& rendered, const Image& original, const Mask& may_change,
-                                  Image& gradient) {
+double Preservation::add_gradient(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient,
+                                  const Image* trust) {
     GSE_CHECK_EQ(rendered.data.size(), original.data.size());
     GSE_CHECK_EQ(rendered.data.size(), gradient.data.size());
     GSE_CHECK_EQ(may_change.data.size(), rendered.pixel_count());
+    if (trust != nullptr) GSE_CHECK_EQ(trust->data.size(), rendered.pixel_count());
     double loss = 0;
-    const Box changed = add_l1(rendered, original, may_change, gradient, loss);
+    const Box changed = add_l1(rendered, original, may_change, trust, gradient, loss);
     const double scale = weights_.multiplier * weights_.ssim / static_cast<double>(rendered.data.size());
     if (scale > 0 && !changed.empty()) ssim_gradient(rendered, changed, scale, gradient, loss);
     return loss;
@@ -70,7 +71,7 @@ double Preservation::add_gradient(const Image& rendered, const Image& original, 
 
 /// Fills target_ and returns the box of the pixels where it differs from the render.
 Preservation::Box Preservation::add_l1(const Image& rendered, const Image& original, const Mask& may_change,
-                                       Image& gradient, double& loss) {
+                                       const Image* trust, Image& gradient, double& loss) {
     target_.resize(rendered.width, rendered.height, 3);
     const double scale = weights_.multiplier * weights_.l1 / static_cast<double>(rendered.data.size());
     const auto push = static_cast<float>(scale);
@@ -80,14 +81,15 @@ Preservation::Box Preservation::add_l1(const Image& rendered, const Image& origi
             const auto pixel = static_cast<std::size_t>(y) * static_cast<std::size_t>(rendered.width) +
                                static_cast<std::size_t>(x);
             const Image& source = may_change.data[pixel] != 0 ? rendered : original;
+            const float share = trust != nullptr ? trust->data[pixel] : 1.0f;
             bool differs = false;
             for (std::size_t i = pixel * 3; i < pixel * 3 + 3; ++i) {
                 target_.data[i] = source.data[i];
                 const float difference = rendered.data[i] - target_.data[i];
                 if (difference == 0) continue;
                 differs = true;
-                loss += scale * std::abs(static_cast<double>(difference));
-                gradient.data[i] += difference > 0 ? push : -push;
+                loss += scale * static_cast<double>(share) * std::abs(static_cast<double>(difference));
+                gradient.data[i] += difference > 0 ? share * push : -share * push;
             }
             if (differs)
                 box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1),

@@ -22,9 +22,10 @@ public:
     explicit Preservation(const PreservationWeights& weights) : weights_(weights) {}
 
     /// Loss of `rendered` [H,W,3] against M * rendered + (1 - M) * original, the first factor detached; adds
-    /// its gradient to `gradient` [H,W,3]. L1 and 1 - SSIM are means over all pixels and channels.
-    double add_gradient(const Image& rendered, const Image& original, const Mask& may_change,
-                        Image& gradient);
+    /// its gradient to `gradient` [H,W,3]. L1 and 1 - SSIM are means over all pixels and channels; `trust` [H,W,1] says how much a
+    /// pixel's L1 counts, null = fully.
+    double add_gradient(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient,
+                        const Image* trust = nullptr);
 
 private:
     /// Pixels [x0,x1) x [y0,y1).
@@ -35,7 +36,7 @@ private:
         int height() const { return y1 - y0; }
     };
     static Box grown(const Box& box, int by, const Image& image);
-    Box add_l1(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient,
+    Box add_l1(const Image& rendered, const Image& original, const Mask& may_change, const Image* trust, Image& gradient,
                double& loss);
     void load(const Image& rendered, const Box& work, std::size_t channel);
     double differentiate(const Box& work, const Box& live);

@@ -289,7 +289,8 @@ private:
             gradient_.resize(output_.colour.width, output_.colour.height, 3);
             std::fill(gradient_.data.begin(), gradient_.data.end(), 0.0f);
             if (phase_)   // redrawn inside the mask, the original outside: one loss for both
-                record.preservation = preservation_.add_gradient(output_.colour, phase_->target(view), no_mask(), gradient_);
+                record.preservation = preservation_.add_gradient(output_.colour, phase_->target(view), no_mask(), gradient_,
+                                                                   phase_->trust(view));
             else
                 record.preservation =
                     preservation_.add_gradient(output_.colour, originals_[view], masks_.mask(view), gradient_);
@@ -477,6 +478,7 @@ private:
         result.guidance_scale = guidance_scale_;
         if (phase_) {
             result.redrawn_views = phase_->redrawn();
+            if (!result.shortage && !result.stopped) result.kept_chroma = phase_->check_colour(spans(set_.rows()), settings_);
             seconds_.guidance = phase_->seconds();
         }
         result.seconds = {{"originals", seconds_.originals}, {"render", seconds_.render},     {"preserve", seconds_.preserve},

@@ -58,6 +58,7 @@ struct EditResult {
     std::size_t skipped_rows = 0;            // rows whose gradient was not finite, summed over the steps
     std::size_t continued_pictures = 0;      // for which only the labelled rows were prepared
     std::size_t redrawn_views = 0;           // pictures that view guidance has asked for
+    double kept_chroma = -1;                 // of the colour that they have, see view_agreement.h; negative = not known
     std::size_t cloned = 0, split = 0, pruned = 0;
     std::size_t changed_outside_label = 0;   // rows outside the label that differ from the base in any bit; always 0
     std::size_t nonfinite = 0;               // labelled rows with a NaN or infinity in the result; always 0

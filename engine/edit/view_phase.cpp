@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/edit/stage_timer.h"
+#include "engine/edit/view_agreement.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -69,12 +70,13 @@ void ViewPhase::choose(const std::vector<std::size_t>& visible) {
         for (std::size_t v = 0; v < plan_.views.size(); ++v) masks.push_back(masks_.mask(v));
         return rounds_.choose(visible, masks);
     }
-    rounds_.resume(start->round, start->views, start->sentence);
+    rounds_.resume(*start);
     for (std::size_t i = 0; i < start->views.size(); ++i) {
         const auto view = start->views[i];
         rounds_.replace(view, *start->edited[i], originals_[view], masks_.mask(view));
     }
     state_ = tools_.start->round;
+    weigh();
     begin_sheet();
 }
 
@@ -122,6 +124,7 @@ std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpa
     state->views = rounds_.views();
     state->sentence = rounds_.sentence();
     state->warnings = rounds_.warnings();
+    state->raised = rounds_.raised();
     state->begun = begun;
     for (const auto view : state->views) state->edited.push_back(std::make_shared<const Image>(rounds_.edited(view)));
     state->attempts.assign(state->views.size(), 0);
@@ -130,6 +133,7 @@ std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpa
         for (const auto i : rounds_.found().usable) state->dropped[i] = false;
     state_ = std::move(state);
     redrawn_ += state_->views.size();
+    weigh();
     begin_sheet();
     return scalars;
 }
@@ -150,7 +154,10 @@ void ViewPhase::take_orders() {
         auto next = std::make_shared<RoundState>(*state_);
         bool changed = false;
         for (const auto& order : orders) changed |= follow(order, *next);
-        if (changed) state_ = std::move(next);
+        if (changed) {
+            state_ = std::move(next);
+            weigh();
+        }
         show_sheet();   // also where nothing has changed: the orders are done
     }
     if (tools_.job.stop_requested()) throw Error(ErrorCode::Cancelled, "the edit was stopped");
@@ -191,6 +198,24 @@ void ViewPhase::redo(std::size_t index, RoundState& next) {
     refresh_sheet(index);
 }
 
+double ViewPhase::check_colour(const GaussianSpans& rows, const raster::Settings& settings) {
+    if (!state_) return -1;
+    std::vector<double> of_views, of_scene;
+    for (const auto view : fitted()) {
+        tools_.rasterizer.forward(rows, plan_.views[view].camera, settings, output_);
+        for (auto& value : output_.colour.data) value = std::clamp(value, 0.0f, 1.0f);
+        of_views.push_back(mean_chroma(rounds_.target(view), masks_.mask(view)));
+        of_scene.push_back(mean_chroma(output_.colour, masks_.mask(view)));
+    }
+    const double kept = kept_chroma(std::move(of_views), of_scene);
+    if (const auto warning = warning_of_chroma(kept); !warning.empty()) {
+        log::warning("{}", warning);
+        sheet_.warnings.push_back(warning);
+        show_sheet();
+    }
+    return kept;
+}
+
 void ViewPhase::take_masks() {
     if (!state_) return;
     for (std::size_t i = 0; i < state_->views.size(); ++i) {
@@ -199,6 +224,22 @@ void ViewPhase::take_masks() {
         refresh_sheet(i);
     }
     show_sheet();
+}
+
+/// Views that are fitted to say how much to believe each other; what is drawn anew is not where the depths are.
+void ViewPhase::weigh() {
+    if (anew_) return;
+    std::vector<RoundView> views;
+    std::vector<Image> pictures;
+    for (std::size_t i = 0; i < state_->views.size(); ++i) {
+        if (state_->dropped[i]) continue;
+        views.push_back((*state_->begun)[i]);
+        pictures.push_back(*state_->edited[i]);
+    }
+    auto weights = trust_weights(views, pictures);
+    trust_.assign(plan_.views.size(), {});
+    for (std::size_t i = 0, next = 0; i < state_->views.size(); ++i)
+        if (!state_->dropped[i]) trust_[state_->views[i]] = std::move(weights[next++]);
 }
 
 void ViewPhase::begin_sheet() {

@@ -28,8 +28,8 @@ public:
     /// Views of the plan that the fit uses, ascending; at least one.
     std::vector<std::size_t> fitted() const;
     /// Before an iteration: has the views redrawn where a round begins, as the rows show them now (`scalars` gets what the
-    /// model tells; a new thing is laid over what the rows of `unlabelled` show), and does what the artist says. The last view that is used is not dropped, and one that cannot be redrawn
-    /// once more stays as it is. True when the fit uses other views than before. Throws Error (Cancelled, Model).
+    /// model tells; a new thing is laid over what the rows of `unlabelled` show), and does what the artist says. The last view that
+    /// is used is not dropped, and one that cannot be redrawn once more stays as it is. True when the fit uses other views than before. Throws Error (Cancelled, Model).
     bool ready(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled, const raster::Settings& settings,
                std::map<std::string, double>& scalars);
     int round() const { return rounds_.round(); }               // -1 = none has begun
@@ -39,9 +39,14 @@ public:
     /// What the scene is fitted to: redrawn inside the mask, the original outside.
     const Image& target(std::size_t view) const { return rounds_.target(view); }
 
+    /// How much a pixel of it counts, [H,W,1]; null = all fully.
+    const Image* trust(std::size_t view) const { return trust_.empty() || trust_[view].data.empty() ? nullptr : &trust_[view]; }
+    /// After the fit: see kept_chroma(); says so where the colours were lost.
+    double check_colour(const GaussianSpans& rows, const raster::Settings& settings);
+
     /// For snapshots; null before the first round.
     const std::shared_ptr<const RoundState>& state() const { return state_; }
-    std::size_t redrawn() const { return redrawn_ + rounds_.key_views(); }   // pictures so far
+    std::size_t redrawn() const { return redrawn_ + rounds_.extra_pictures(); }   // pictures so far
     double seconds() const { return seconds_; }        // that redrawing took
 
 private:
@@ -53,6 +58,7 @@ private:
     bool resumes(const RoundState& start, const std::vector<std::size_t>& visible) const;
     bool follow(const TargetOrder& order, RoundState& next);
     void redo(std::size_t index, RoundState& next);
+    void weigh();
     void begin_sheet();
     void refresh_sheet(std::size_t index);
     void show_sheet() const;
@@ -66,6 +72,7 @@ private:
     ViewRounds rounds_;
     const std::string key_;
     std::shared_ptr<const RoundState> state_;
+    std::vector<Image> trust_;   // of the plan's views; empty for what is not fitted
     ViewTargets sheet_;
     raster::ForwardOutput output_;
     std::size_t redrawn_ = 0;

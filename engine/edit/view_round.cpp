@@ -11,7 +11,6 @@
 #include "engine/edit/broken_values.h"
 #include "engine/edit/colour_word.h"
 #include "engine/edit/scales.h"
-#include "engine/edit/view_agreement.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
@@ -26,7 +25,18 @@ Mask eroded(Mask mask, double radius_px) {
 
 constexpr double FeatherPx = 3;       // of a picture of ReferenceSide (views.md 8.6)
 constexpr std::uint64_t ColourStream = 39000;   // of the request's seed
+constexpr double StrengthRaise = 0.1;   // of redrawing that hardly changed anything (views.md 12)
 constexpr double LeastCover = 0.01;   // of the picture: smaller things are not worth a redrawn view (views.md 8)
+
+/// The pictures that the model draws, one per view; what is not finite in them is counted and stays as the scene is.
+RoundTargets drawn_by(ViewGuidance& guidance, const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) {
+    auto drawn = guidance.edit(views, input, job);
+    if (const auto broken = mend_broken(views, drawn.images); broken > 0) {
+        drawn.scalars["broken_values"] = static_cast<double>(broken);
+        log::warning("{} values of the redrawn views were not finite; the scene stays as it was there", broken);
+    }
+    return drawn;
+}
 
 }  // namespace
 
@@ -148,7 +158,7 @@ bool ViewRounds::begins(int iteration) const { return round_ < 0 || iteration / 
 /// What this round is asked to be; `stream` of the request's seed.
 RoundInput ViewRounds::input(std::uint64_t stream) const {
     const auto plan = round_plan(request_, plan_.mode);
-    return {round_,          plan.rounds, plan.steps_of(round_), plan.strength_of(round_), Random::stream(request_.seed, stream).next(),
+    return {round_,          plan.rounds, plan.steps_of(round_), std::min(1.0, plan.strength_of(round_) + raised_), Random::stream(request_.seed, stream).next(),
             shapes_ != nullptr, sentence_};
 }
 
@@ -158,9 +168,8 @@ void ViewRounds::name_colour(const std::vector<RoundView>& views, const JobContr
     const auto told = as_told(request_.prompt);
     if (shapes_ == nullptr || views.empty() || is_described(told, shapes_->word())) return;
     const auto key = std::max_element(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.mask.count() < b.mask.count(); });
-    auto drawn = guidance_.edit({*key}, input(ColourStream), job);
-    ++key_views_;
-    mend_broken({*key}, drawn.images);
+    const auto drawn = drawn_by(guidance_, {*key}, input(ColourStream), job);
+    ++extra_pictures_;
     const auto colour = shapes_->colour_in(*key, drawn.images.front(), Random::stream(request_.seed, ColourStream + 1).next(), known_);
     if (colour.empty()) return;
     sentence_ = described_as(told, shapes_->word(), colour);
@@ -168,9 +177,25 @@ void ViewRounds::name_colour(const std::vector<RoundView>& views, const JobContr
               colour, sentence_);
 }
 
+/// The pictures of a round. Where most of them hardly differ from the scene, they are drawn once more, further from it.
+RoundTargets ViewRounds::draw(const std::vector<RoundView>& views, const JobControl& job) {
+    const auto asked = input(40000 + static_cast<std::uint64_t>(round_));
+    auto drawn = drawn_by(guidance_, views, asked, job);
+    auto agreement = view_agreement(views, drawn.images);
+    if (shapes_ == nullptr && raised_ == 0 && asked.strength < 1 && hardly_edited(agreement)) {
+        raised_ = StrengthRaise;
+        extra_pictures_ += views.size();
+        log::info("{:.0f} % of the redrawn views hardly differ from the scene: they are redrawn with strength {:.2f}",
+                  100 * agreement.unchanged, std::min(1.0, asked.strength + raised_));
+        drawn = drawn_by(guidance_, views, input(40000 + static_cast<std::uint64_t>(round_)), job);
+        agreement = view_agreement(views, drawn.images);
+    }
+    judge(agreement, drawn);
+    return drawn;
+}
+
 /// Says what is suspicious about the pictures as the model drew them.
-void ViewRounds::judge(const std::vector<RoundView>& views, RoundTargets& drawn) {
-    const auto agreement = view_agreement(views, drawn.images);
+void ViewRounds::judge(const ViewAgreement& agreement, RoundTargets& drawn) {
     drawn.scalars.merge(agreement.scalars());
     warnings_ = warnings_of(agreement, shapes_ != nullptr);
     for (const auto& warning : warnings_) log::warning("{}", warning);
@@ -181,12 +206,7 @@ std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vecto
     GSE_CHECK_EQ(views.size(), views_.size());
     round_ = iteration / request_.fit_steps;
     if (round_ == 0) name_colour(views, job);
-    auto drawn = guidance_.edit(views, input(40000 + static_cast<std::uint64_t>(round_)), job);
-    if (const auto broken = mend_broken(views, drawn.images); broken > 0) {
-        drawn.scalars["broken_values"] = static_cast<double>(broken);
-        log::warning("{} values of the redrawn views were not finite; the scene stays as it was there", broken);
-    }
-    judge(views, drawn);
+    auto drawn = draw(views, job);
     if (shapes_ != nullptr) {
         found_ = shapes_->cut_out(views, drawn.images, round_, job);
         drawn.scalars.merge(found_.scalars);
@@ -199,8 +219,7 @@ std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vecto
 void ViewRounds::redo(std::size_t view, const RoundView& begun, int attempt, const Image& original, const JobControl& job) {
     constexpr std::uint64_t first = 1u << 20, most_views = 1u << 20, most_rounds = 64;   // streams that nothing else draws from
     const auto stream = first + (static_cast<std::uint64_t>(attempt) * most_rounds + static_cast<std::uint64_t>(round_)) * most_views + view;
-    auto drawn = guidance_.edit({begun}, input(stream), job);
-    mend_broken({begun}, drawn.images);
+    auto drawn = drawn_by(guidance_, {begun}, input(stream), job);
     if (shapes_ != nullptr) shapes_->take_out(begun, drawn.images.front(), Random::stream(request_.seed, stream + 1).next());
     replace(view, std::move(drawn.images.front()), original, begun.mask);
 }
@@ -210,10 +229,11 @@ void ViewRounds::replace(std::size_t view, Image edited, const Image& original, 
     blend(view, original, mask);
 }
 
-void ViewRounds::resume(int round, std::vector<std::size_t> views, std::string sentence) {
-    round_ = round;
-    sentence_ = std::move(sentence);
-    views_ = std::move(views);
+void ViewRounds::resume(const RoundState& start) {
+    round_ = start.round;
+    sentence_ = start.sentence;
+    views_ = start.views;
+    raised_ = start.raised;
 }
 
 void ViewRounds::blend(std::size_t view, const Image& original, const Mask& mask) {

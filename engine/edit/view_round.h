@@ -11,6 +11,8 @@
 #include "engine/edit/request.h"
 #include "engine/edit/session.h"
 #include "engine/edit/shape_round.h"
+#include "engine/edit/view_agreement.h"
+#include "engine/edit/view_targets.h"
 
 namespace gse::edit {
 
@@ -53,11 +55,13 @@ public:
     /// Another picture for a view of this round.
     void replace(std::size_t view, Image edited, const Image& original, const Mask& mask);
     /// Goes on in the middle of a round in which these views were redrawn; their pictures come by replace().
-    void resume(int round, std::vector<std::size_t> views, std::string sentence);
+    void resume(const RoundState& start);
+    /// By how much the views were redrawn further from the render than was asked, because they hardly changed.
+    double raised() const { return raised_; }
     /// What the model is told where the artist's sentence leaves the new thing's colour open; else empty.
     const std::string& sentence() const { return sentence_; }
-    /// Views that were drawn for its colour, beside views().
-    std::size_t key_views() const { return key_views_; }
+    /// Pictures that were asked for beside one of each of views() a round: for the colour, and where a first try hardly changed.
+    std::size_t extra_pictures() const { return extra_pictures_; }
     /// What is suspicious about the pictures of the last round.
     const std::vector<std::string>& warnings() const { return warnings_; }
     /// What the last round found of the new shape.
@@ -71,7 +75,8 @@ public:
 
 private:
     RoundInput input(std::uint64_t stream) const;
-    void judge(const std::vector<RoundView>& views, RoundTargets& drawn);
+    RoundTargets draw(const std::vector<RoundView>& views, const JobControl& job);
+    void judge(const ViewAgreement& agreement, RoundTargets& drawn);
     void name_colour(const std::vector<RoundView>& views, const JobControl& job);
 
     const EditPlan& plan_;
@@ -84,7 +89,8 @@ private:
     std::vector<std::string> warnings_;
     std::vector<std::size_t> views_;
     std::vector<Image> targets_, edited_;   // of the plan's views; empty for those that are not redrawn
-    std::size_t key_views_ = 0;
+    double raised_ = 0;
+    std::size_t extra_pictures_ = 0;
     int round_ = -1;
 };
 

@@ -50,6 +50,7 @@ struct RoundState {
     std::vector<bool> dropped;                       // per view
     std::string sentence = {};                       // that the model was told; empty = the edit's
     std::vector<std::string> warnings = {};          // of the round as it was redrawn
+    double raised = 0;                               // strength of redrawing beyond what was asked
 };
 
 }  // namespace gse::edit

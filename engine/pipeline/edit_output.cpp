@@ -202,6 +202,7 @@ nlohmann::ordered_json make_report(EditJob& job) {
     report["masks_refreshed"] = result.masks_refreshed;
     report["skipped_steps"] = result.skipped_steps;
     report["skipped_rows"] = result.skipped_rows;
+    if (result.kept_chroma >= 0) report["kept_chroma"] = result.kept_chroma;
     report["cloned"] = result.cloned;
     report["split"] = result.split;
     report["pruned"] = result.pruned;

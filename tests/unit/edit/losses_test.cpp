@@ -151,3 +151,22 @@ DOCTEST_TEST_CASE("the pseudo ground truth leaves the inside of the mask alone b
     Image third(40, 24, 3);
     DOCTEST_CHECK(preservation.add_gradient(original, original, Mask(40, 24), third) == doctest::Approx(0));
 }
+
+DOCTEST_TEST_CASE("trust scales what a pixel's absolute difference counts") {
+    const Image image = random_image(9, 7, 6), original = random_image(9, 7, 7);
+    const Mask nothing(9, 7);
+    edit::Preservation preservation({1, 0, 10});
+    Image full(9, 7, 3), weighed(9, 7, 3), trust(9, 7, 1);
+    std::fill(trust.data.begin(), trust.data.end(), 0.25f);
+    trust.data[5] = 1;
+    const double loss = preservation.add_gradient(image, original, nothing, full);
+    const double trusted = preservation.add_gradient(image, original, nothing, weighed, &trust);
+    double expected = 0;
+    for (std::size_t i = 0; i < full.data.size(); ++i) {
+        DOCTEST_CHECK(weighed.data[i] == doctest::Approx(trust.data[i / 3] * full.data[i]));
+        expected += 10.0 / static_cast<double>(full.data.size()) * static_cast<double>(trust.data[i / 3]) *
+                    std::abs(static_cast<double>(image.data[i]) - static_cast<double>(original.data[i]));
+    }
+    DOCTEST_CHECK(trusted == doctest::Approx(expected).epsilon(1e-5));
+    DOCTEST_CHECK(trusted < loss);
+}

@@ -91,11 +91,15 @@ DOCTEST_TEST_CASE("a change at the mask's rim is told from one in its middle") {
     const auto cut = edit::view_agreement(middle, pictures);
     DOCTEST_CHECK(cut.at_rim > 0);
     DOCTEST_CHECK(cut.at_rim < 1);
+    edit::ViewAgreement cut_off;
+    cut_off.at_rim = 0.5;
+    DOCTEST_CHECK(edit::warnings_of(cut_off, false).size() == 1);
+    DOCTEST_CHECK(edit::warnings_of(cut_off, true).empty());   // it has room of its own
 }
 
 DOCTEST_TEST_CASE("an artist is told when the model left the views as they were") {
     test::Redrawing run;
-    const auto request = test::view_request(1, 4);
+    const auto request = test::view_request(1, 40);
     std::vector<edit::ViewTargets> sheets;
     run.tools.targets = [&](const edit::ViewTargets& sheet) { sheets.push_back(sheet); };
     run.edited(request);
@@ -109,4 +113,39 @@ DOCTEST_TEST_CASE("an artist is told when the model left the views as they were"
     DOCTEST_REQUIRE(!sheets.empty());
     DOCTEST_REQUIRE(sheets.front().warnings.size() == 1);
     DOCTEST_CHECK(sheets.front().warnings.front().find("100 % of the redrawn views hardly differ") == 0);
+}
+
+DOCTEST_TEST_CASE("colour that is lost between the redrawn views and the scene is noticed, where there is colour to lose") {
+    Image red(4, 4, 3);
+    for (std::size_t i = 0; i < red.data.size(); i += 3) red.data[i] = 0.8f;
+    Mask all(4, 4), none(4, 4);
+    std::fill(all.data.begin(), all.data.end(), std::uint8_t{1});
+    DOCTEST_CHECK(edit::mean_chroma(red, all) == doctest::Approx(0.8));
+    DOCTEST_CHECK(edit::mean_chroma(red, none) == 0);
+    const double kept = edit::kept_chroma({0.8, 0.6, 0.4}, {0.3, 0.3});
+    DOCTEST_CHECK(kept == doctest::Approx(0.5));   // of the median
+    DOCTEST_CHECK(!edit::warning_of_chroma(kept).empty());
+    DOCTEST_CHECK(edit::warning_of_chroma(0.9).empty());
+    const double grey = edit::kept_chroma({0.02, 0.01}, {0.0});
+    DOCTEST_CHECK(grey < 0);
+    DOCTEST_CHECK(edit::warning_of_chroma(grey).empty());
+}
+
+DOCTEST_TEST_CASE("a view that differs from all others counts less in the fit, where three or more show a point") {
+    ThreadPool pool(1);
+    const auto rasterizer = raster::make_fast_rasterizer(pool);
+    const auto views = rendered_views(test::ball_scene(), *rasterizer);
+    auto greys = std::vector<float>(views.size(), 0.5f);
+    greys[3] = 0.95f;
+    const auto trust = edit::trust_weights(views, painted(views, greys));
+    DOCTEST_REQUIRE(trust.size() == views.size());
+    const auto least = [&](std::size_t v) { return *std::min_element(trust[v].data.begin(), trust[v].data.end()); };
+    DOCTEST_CHECK(least(3) == doctest::Approx(0.1));   // 0.45 away
+    DOCTEST_CHECK(least(7) == doctest::Approx(1.0));
+    for (std::size_t v = 0; v < views.size(); ++v)
+        for (std::size_t i = 0; i < trust[v].data.size(); ++i)
+            if (views[v].mask.data[i] == 0) DOCTEST_REQUIRE(trust[v].data[i] == 1.0f);
+    const std::vector<edit::RoundView> two(views.begin(), views.begin() + 2);
+    for (const auto& weights : edit::trust_weights(two, painted(two, {0.1f, 0.9f})))
+        DOCTEST_CHECK(std::all_of(weights.data.begin(), weights.data.end(), [](float w) { return w == 1.0f; }));
 }

@@ -25,6 +25,10 @@ public:
         Random random(input.seed);
         edit::RoundTargets targets;
         for (const auto& view : views) {
+            if (input.strength < least_strength) {
+                targets.images.push_back(view.rendered);
+                continue;
+            }
             raster::ForwardOutput output;
             rasterizer_.forward(target_.spans(), view.view.camera, {}, output);
             if (noisy)
@@ -39,6 +43,7 @@ public:
     std::vector<std::vector<edit::RoundView>> asked;   // per input
     int fails_in = -1;                                 // round
     bool fails_alone = false;                          // where a single view is asked for
+    double least_strength = 0;                         // below it the pictures stay as they are
     bool noisy = false;                                // another picture for another seed
 
 private:

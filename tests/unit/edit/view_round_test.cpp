@@ -166,3 +166,35 @@ DOCTEST_TEST_CASE("surface noise: unit variance, no blotches, the same place get
     const Image empty = edit::surface_noise(nothing, camera, cells, 4, cell / 2, 7, 0);
     DOCTEST_CHECK(std::abs(correlation(empty, edit::surface_noise(nothing, camera, cells, 4, cell / 2, 7, 1))) < 0.15);
 }
+
+DOCTEST_TEST_CASE("views that hardly changed are redrawn once more from further off, and only once") {
+    Redrawing run;
+    auto request = view_request(2, 10);
+    const double asked = request.view_strength;
+    run.oracle.least_strength = asked + 0.05;
+    const auto result = run.edited(request);
+    const auto& inputs = run.oracle.inputs;
+    DOCTEST_REQUIRE(inputs.size() == 3);
+    DOCTEST_CHECK(inputs[0].strength == doctest::Approx(asked));
+    DOCTEST_CHECK(inputs[1].strength == doctest::Approx(asked + 0.1));
+    DOCTEST_CHECK(inputs[1].seed == inputs[0].seed);
+    DOCTEST_CHECK(inputs[2].round == 1);
+    DOCTEST_CHECK(inputs[2].strength > edit::round_plan(request, run.plan.mode).strength_of(1));
+    DOCTEST_CHECK(result.redrawn_views == 12);
+    DOCTEST_CHECK(run.error_of(result.set) < run.error_of(run.scene.set));
+
+    Redrawing deaf;   // the model does not know the word
+    deaf.oracle.least_strength = 2;
+    std::vector<std::string> warnings;
+    deaf.tools.targets = [&](const edit::ViewTargets& sheet) { warnings = sheet.warnings; };
+    deaf.edited(view_request(2, 10));
+    DOCTEST_CHECK(deaf.oracle.inputs.size() == 3);
+    DOCTEST_CHECK(warnings.size() == 1);
+}
+
+DOCTEST_TEST_CASE("the fit to views that agree keeps their colour") {
+    Redrawing run;
+    const auto result = run.edited(view_request(1, 40));
+    DOCTEST_CHECK(result.kept_chroma > 0.7);
+    DOCTEST_CHECK(result.kept_chroma < 1.1);
+}
