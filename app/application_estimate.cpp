@@ -73,6 +73,8 @@ void Application::refresh_estimate() {
     const Cost cost = estimated_cost(measured, model_.request, work);
     model_.estimate.seconds = cost.seconds;
     model_.estimate.tflop = cost.tflop;
+    const auto by_quality = costs_by_quality(measured, model_.request, work);
+    for (std::size_t i = 0; i < by_quality.size(); ++i) model_.estimate.quality_seconds[i] = by_quality[i].seconds;
     model_.estimate.memory_mb = estimated_memory_mb(measured, planned_memory());
     model_.estimate.memory_free_mb = static_cast<double>(free_memory()) / (1 << 20);
 }

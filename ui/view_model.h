@@ -159,6 +159,7 @@ struct Estimate {
     double tflop = -1;           // 10^12 operations of the networks
     double memory_mb = -1;
     double memory_free_mb = -1;
+    std::array<double, edit::Qualities.size()> quality_seconds{-1, -1, -1};   // of each quality
 };
 
 /// A short message over the viewport, with an optional button.

@@ -14,7 +14,7 @@ constexpr std::array<Names, 20> GradientOnly{
     "iterations",    "guidance_weight", "gate_guidance",  "preserve",    "l1",          "ssim",  "dynamic_mask",
     "dynamic_from",  "dynamic_every",   "look_again",     "look_again_tau", "densify_from", "densify_until", "t_min",
     "t_max_start",   "t_max_end",       "guidance_scale", "clamp",       "weight",      "sample_posterior"};
-constexpr std::array<Names, 12> ViewsOnly{"edited_views",    "rounds",         "view_steps",          "fit_steps",
+constexpr std::array<Names, 13> ViewsOnly{"quality", "edited_views",    "rounds",         "view_steps",          "fit_steps",
                                           "view_strength",   "view_guidance_scale", "shape_rounds",   "shape_steps",
                                           "shape_fit_steps", "shape_strength", "shape_again_strength", "shape_views"};
 

@@ -226,6 +226,8 @@ EditRequest validated(EditRequest request) {
     if (request.mode != "auto" && !mode_named(request.mode))
         throw Error(ErrorCode::InvalidArgument, "\"" + request.mode + "\" is not an edit mode",
                     "use auto, modify, replace or add");
+    if (std::find(Qualities.begin(), Qualities.end(), request.quality) == Qualities.end())
+        throw Error(ErrorCode::InvalidArgument, "\"" + request.quality + "\" is not a quality", "use draft, normal or fine");
     if (request.method != "auto" && request.method != "views" && request.method != "sds")
         throw Error(ErrorCode::InvalidArgument, "\"" + request.method + "\" is not a method", "use auto, views or sds");
     if (!request.source.empty()) request.source = phrase_of(request.source, "source");
@@ -256,11 +258,31 @@ int RoundPlan::view_steps_within(int steps) const {
     return sum;
 }
 
+namespace {
+
+/// Of the views and of their steps.
+struct QualityShare {
+    double views = 1, steps = 1;
+};
+
+QualityShare share_of(const std::string& quality) {
+    if (quality == Qualities.front()) return {1.0 / 2, 2.0 / 3};
+    if (quality == Qualities.back()) return {2, 4.0 / 3};
+    return {};
+}
+
+}  // namespace
+
 RoundPlan round_plan(const LoopSettings& settings, EditMode mode) {
+    RoundPlan plan{settings.shape_rounds, settings.shape_fit_steps, true,
+                   settings.shape_steps,  settings.shape_strength,  settings.shape_again_strength, settings.shape_views};
     if (mode == EditMode::Modify)
-        return {settings.rounds, settings.fit_steps, false, settings.view_steps, settings.view_strength, settings.view_strength, settings.edited_views};
-    return {settings.shape_rounds, settings.shape_fit_steps, true,
-            settings.shape_steps,  settings.shape_strength,  settings.shape_again_strength, settings.shape_views};
+        plan = {settings.rounds, settings.fit_steps, false, settings.view_steps, settings.view_strength, settings.view_strength, settings.edited_views};
+    const auto share = share_of(settings.quality);
+    const auto scaled = [](int count, double by) { return std::max(1, static_cast<int>(std::lround(count * by))); };
+    plan.views = scaled(plan.views, share.views);
+    plan.view_steps = scaled(plan.view_steps, share.steps);
+    return plan;
 }
 
 double mask_growth_px(const LoopSettings& settings, EditMode mode) {

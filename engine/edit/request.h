@@ -1,6 +1,7 @@
 // Everything an edit is asked to be: words, views, thresholds, losses and rates, in one list of fields.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -100,6 +101,7 @@ struct LoopSettings {
     std::uint64_t seed = 0;
     bool localize = true;
     std::string method = "auto";
+    std::string quality = "normal";
     int iterations = 200;
     // View guidance
     std::string instruction;
@@ -180,6 +182,9 @@ private:
         f("method", self.method,
           "How the model leads the edit: views (it redraws some views, the scene is fitted to them), sds (it pulls at every step, the "
           "paper's way) or auto (views, which come closer in less time).");
+        f("quality", self.quality,
+          "How much work redrawing takes: draft (half of the views below, two thirds of their steps), normal, or fine (twice the views, a "
+          "third more steps).");
         f("iterations", self.iterations, "Optimisation steps of method sds.", Range{0, 1e6});
         f("instruction", self.instruction,
           "What a model that edits pictures by instructions (InstructPix2Pix) is told to do (\"make the bear golden\"); empty = to turn "
@@ -296,6 +301,9 @@ std::string thing_in_place(const EditRequest& request);
 /// Whether the views method is what `method` means: it is, unless score distillation is asked for.
 bool edits_by_views(const LoopSettings& settings);
 
+/// The values of LoopSettings::quality, from quick to thorough.
+inline constexpr std::array<const char*, 3> Qualities{"draft", "normal", "fine"};
+
 /// Rounds of redrawn views as an edit of a mode needs them: what has a new shape needs more than what is recoloured.
 struct RoundPlan {
     int rounds = 1;
@@ -311,6 +319,7 @@ struct RoundPlan {
     /// Denoising steps of a view in the rounds that begin within the first `steps` steps of the loop.
     int view_steps_within(int steps) const;
 };
+/// With the quality in it; at least one view and one step.
 RoundPlan round_plan(const LoopSettings& settings, EditMode mode);
 
 /// Optimisation steps of an edit.

@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/edit/surface_noise.h"
 #include "engine/neural/attention_source.h"
+#include "engine/neural/buffer_cache.h"
 #include "engine/neural/images.h"
 #include "engine/neural/torch_errors.h"
 
@@ -223,6 +224,7 @@ edit::RoundTargets DiffusionViews::edit(const std::vector<edit::RoundView>& view
         const torch::NoGradGuard no_grad;
         Batch batch = prepare(views, input);
         denoise(batch, views, input, job);
+        release_buffers();   // those of the UNet do not fit the decoder, which takes most of all
         auto targets = finish(batch, views, input);
         if (!torch::isfinite(batch.x).all().item<bool>())
             throw Error(ErrorCode::Model, "the model's pictures hold values that are not finite",

@@ -122,6 +122,15 @@ Cost estimated_cost(const Measured& measured, const edit::EditRequest& request, 
     return sum.cost();
 }
 
+std::array<Cost, edit::Qualities.size()> costs_by_quality(const Measured& measured, edit::EditRequest request, const PlannedWork& work) {
+    std::array<Cost, edit::Qualities.size()> costs;
+    for (std::size_t i = 0; i < costs.size(); ++i) {
+        request.quality = edit::Qualities[i];
+        costs[i] = estimated_cost(measured, request, work);
+    }
+    return costs;
+}
+
 double estimated_memory_mb(const Measured& measured, const PlannedMemory& memory) {
     const double load = measured.load_mb >= 0 ? measured.load_mb : LibrariesMb + memory.weights;
     const double begin = memory.loaded ? memory.before_load : memory.process;

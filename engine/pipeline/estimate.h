@@ -1,6 +1,7 @@
 // What an edit will take, from what its parts took on this machine.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "engine/base/fields.h"
@@ -75,6 +76,9 @@ struct Cost {
     double tflop = -1;             // of the networks' forward passes
 };
 Cost estimated_cost(const Measured& measured, const edit::EditRequest& request, const PlannedWork& work);
+
+/// The same for every quality, in the order of edit::Qualities.
+std::array<Cost, edit::Qualities.size()> costs_by_quality(const Measured& measured, edit::EditRequest request, const PlannedWork& work);
 
 /// What decides about an edit's memory, in MB.
 struct PlannedMemory {

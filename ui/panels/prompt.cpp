@@ -156,6 +156,32 @@ void draw_method(Context& context) {
     tooltip(help);
 }
 
+/// "draft: half of the views ... About 5 s.", a line per quality.
+std::string quality_help(const Estimate& estimate) {
+    constexpr std::array<const char*, edit::Qualities.size()> what{"half of the views, two thirds of their steps: to see where it goes",
+                                                                   "what the settings say", "twice the views, a third more steps"};
+    std::string help;
+    for (std::size_t i = 0; i < what.size(); ++i) {
+        help += fmt::format("{}{}: {}.", i == 0 ? "" : "\n", edit::Qualities[i], what[i]);
+        const double seconds = estimate.quality_seconds[i];
+        if (seconds >= 0) help += fmt::format(" About {}.", duration_text(seconds));
+    }
+    return help;
+}
+
+void draw_quality(Context& context) {
+    if (!edit::edits_by_views(context.request)) return;
+    const auto& names = edit::Qualities;
+    const std::string help = quality_help(context.model.estimate);
+    int quality = static_cast<int>(std::find(names.begin(), names.end(), context.request.quality) - names.begin());
+    row_label(context, "Quality", help);
+    if (segmented(context, "prompt.quality", names, quality)) {
+        context.request.quality = names[static_cast<std::size_t>(quality)];
+        context.request_changed = true;
+    }
+    tooltip(help);
+}
+
 /// The steps that the method will run: of the loop, or of the fits to redrawn views.
 void draw_iterations(Context& context) {
     auto& request = context.request;
@@ -223,6 +249,9 @@ std::string estimate_text(const Estimate& estimate) {
     if (estimate.seconds < 0 && estimate.memory_mb < 0) return {};
     std::string text = estimate.seconds >= 0 ? fmt::format("Estimate: about {}", duration_text(estimate.seconds))
                                              : "Time: measured with the first search";
+    const auto& [draft, normal, fine] = estimate.quality_seconds;
+    if (estimate.seconds >= 0 && draft >= 0 && fine > draft)
+        text += fmt::format(" (draft {}, normal {}, fine {})", duration_text(draft), duration_text(normal), duration_text(fine));
     if (estimate.tflop >= 0) text += fmt::format(", {}", tflop_text(estimate.tflop));
     if (estimate.memory_mb < 0) return text;
     text += ", " + bytes_text(estimate.memory_mb * 1e6);
@@ -388,6 +417,7 @@ void draw_words(Context& context) {
     ImGui::Spacing();
     draw_mode(context);
     draw_method(context);
+    draw_quality(context);
     draw_strength(context);
     draw_seed(context);
     draw_model_settings(context);

@@ -119,7 +119,8 @@ DOCTEST_TEST_CASE("iterations are those of the method that leads the edit") {
     DOCTEST_CHECK(now.iterations == pulled);
     harness.application.model().request.method = "sds";
     harness.frame(60);   // else two presses are a double click
-    harness.drag(place, {place.x + 120, place.y});
+    const auto moved = harness.middle("prompt.iterations");   // the quality counts for views alone
+    harness.drag(moved, {moved.x + 120, moved.y});
     DOCTEST_CHECK(harness.application.model().request.iterations > pulled);
 }
 

@@ -198,3 +198,28 @@ DOCTEST_TEST_CASE("the fit to views that agree keeps their colour") {
     DOCTEST_CHECK(result.kept_chroma > 0.7);
     DOCTEST_CHECK(result.kept_chroma < 1.1);
 }
+
+DOCTEST_TEST_CASE("quality scales views and steps of a round, whatever they are set to") {
+    edit::EditRequest request;
+    request.prompt = "a blue ball";
+    request.source = "ball";
+    for (const auto mode : {edit::EditMode::Modify, edit::EditMode::Replace, edit::EditMode::Add}) {
+        request.quality = "normal";
+        const auto normal = edit::round_plan(request, mode);
+        request.quality = "draft";
+        const auto draft = edit::round_plan(request, mode);
+        request.quality = "fine";
+        const auto fine = edit::round_plan(request, mode);
+        DOCTEST_CHECK(2 * draft.views == normal.views);
+        DOCTEST_CHECK(fine.views == 2 * normal.views);
+        DOCTEST_CHECK(draft.view_steps < normal.view_steps);
+        DOCTEST_CHECK(fine.view_steps > normal.view_steps);
+        DOCTEST_CHECK(draft.rounds == fine.rounds);
+    }
+    request.edited_views = request.view_steps = 1;
+    request.quality = "draft";
+    DOCTEST_CHECK(edit::round_plan(request, edit::EditMode::Modify).views == 1);
+    DOCTEST_CHECK(edit::round_plan(request, edit::EditMode::Modify).view_steps == 1);
+    request.quality = "best";
+    DOCTEST_CHECK_THROWS_AS(edit::validated(request), Error);
+}
