@@ -27,6 +27,7 @@ Measured Application::measured_now() const {
 }
 
 void Application::remember_measured(const std::string& key, const Measured& measured) {
+    model_.cache_bytes = cached_bytes(cache_->folder());   // a job has ended
     Measured& known = measured_[key];
     nlohmann::ordered_json news = fields_to_json(measured);
     if (measured.raster < 0) news.erase("rows");

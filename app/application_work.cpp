@@ -197,7 +197,6 @@ void Application::locate() {
     auto done = [this, search, recipe, recipe_key = measured_key(), key = model_key(), model = model_path_,
                  on_cpu = model_.model_settings.device == "cpu"](const Error* error) {
         model_load_ = search->loaded;
-        model_.cache_bytes = cached_bytes(cache_->folder());
         if (search->model) text_model_ = search->model, text_model_key_ = key;
         else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu) drop_model(model, *error);
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
@@ -341,7 +340,6 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     auto done = [this, search, pending, recipe_key = measured_key(), key = model_key(), model = model_path_,
                  on_cpu = model_.model_settings.device == "cpu"](const Error* error) {
         model_load_ = search->loaded;
-        model_.cache_bytes = cached_bytes(cache_->folder());
         if (search->model) text_model_ = search->model, text_model_key_ = key;
         else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu) drop_model(model, *error);
         remember_measured(recipe_key, search->measured);

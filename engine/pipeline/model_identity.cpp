@@ -111,7 +111,8 @@ std::string model_identity(const JobParameters& job, AnswerMemory& memory, int v
     if (const auto tiny = named_taesd(job, folder ? path : path.parent_path()); !tiny.empty() && fs::is_directory(tiny))
         text += "tiny autoencoder\n" + contents_below(tiny, memory);
     for (const auto& lora : neural::find_loras(job.lora))   // its name may say that it was distilled
-        text += fmt::format("lora {} {} {}\n", static_cast<int>(neural::lora_mark(lora.file)), lora.strength, contents_of(lora.file, memory));
+        text += fmt::format("lora {} {} {}\n", static_cast<int>(neural::lora_mark(lora.file)), lora.strength,
+                            contents_of(lora.file, memory));
     Digest digest;
     digest.text(text);
     return digest.hex();

@@ -42,7 +42,8 @@ struct CacheSettings {
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
-        f("cache_mb", self.cache_mb, "Most that answers of the networks take on the disk, MB; what was used least recently goes first; 0 = none are kept.",
+        f("cache_mb", self.cache_mb,
+          "Most that answers of the networks take on the disk, MB; what was used least recently goes first; 0 = none are kept.",
           Range{0, 1e6});
     }
 };

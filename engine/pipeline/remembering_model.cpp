@@ -71,7 +71,8 @@ std::optional<std::vector<Image>> images_in(std::string_view bytes, std::size_t 
         std::int32_t width = 0, height = 0, channels = 0;
         if (!take(bytes, width) || !take(bytes, height) || !take(bytes, channels)) return std::nullopt;
         if (std::min({width, height, channels}) < 0 || std::max(width, height) > most_side || channels > most_channels) return std::nullopt;
-        const auto size = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * static_cast<std::size_t>(channels) * sizeof(float);
+        const auto size = std::size_t{sizeof(float)} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                          static_cast<std::size_t>(channels);
         if (bytes.size() < size) return std::nullopt;
         images.emplace_back(width, height, channels);
         std::memcpy(images.back().data.data(), bytes.data(), size);
@@ -349,7 +350,8 @@ neural::TunedModel RememberingModel::tune(const neural::DreamBoothParameters& pa
     auto tuned = real().tune(parameters, instance, instance_prompt, class_prompt, job, &memory);
     try {
         const ScratchFile file;
-        if (tuned.model->save_tuning(file.path(), cache_->largest_bytes())) cache_->keep(asked, tuning_bytes(tuned.report, read_file(file.path())));
+        if (tuned.model->save_tuning(file.path(), cache_->largest_bytes()))
+            cache_->keep(asked, tuning_bytes(tuned.report, read_file(file.path())));
     } catch (const Error& error) {   // it is only not remembered
         log::debug("{}", error.what());
     }
