@@ -270,6 +270,7 @@ void Application::toggle_fullscreen() {
 void Application::save_settings() {
     nlohmann::json json;
     json["ui_scale"] = chosen_scale_;
+    json["cache_mb"] = model_.cache_mb;
     json["model"] = model_path_;
     json["loras"] = loras_;
     for (const auto& [key, measured] : measured_) json["measured"][key] = fields_to_json(measured);
@@ -295,6 +296,8 @@ void Application::load_settings() {
                 measured_.erase(key);
             }
         }
+    model_.cache_mb = static_cast<int>(cache_->most_bytes() >> 20);
+    model_.cache_bytes = cached_bytes(cache_->folder());
     model_path_ = text("model");
     loras_ = texts_of(json, "loras");
     layout_ = text("layout");

@@ -83,11 +83,6 @@ struct LiveEdit {
     std::condition_variable_any spoken;        // of orders and waits
 };
 
-/// Memory of the process around the loading of its model, MB; none = nothing was loaded.
-struct ModelLoad {
-    double before = -1, after = -1;
-};
-
 /// Says what is running: name, target and recipe.
 void describe(LiveEdit& live, const EditRecipe& recipe);
 
@@ -179,6 +174,8 @@ public:
     void press_toast(std::size_t index) override;
     void toggle_fullscreen() override;
     void set_ui_scale(float scale) override;
+    void set_cache_mb(int most) override;
+    void clear_cache() override;
     void quit() override { quit_ = true; }
 
 private:
@@ -262,7 +259,6 @@ private:
     void remember_measured(const std::string& key, const Measured& measured);
     void refresh_estimate();
     PlannedMemory planned_memory() const;
-    void take_load(const ModelLoad& load);
 
     // application_targets.cpp
     void refresh_targets();
@@ -361,6 +357,7 @@ private:
     std::uint64_t next_edit_id_ = 1;
     std::map<std::string, Measured> measured_;   // by model and size of pictures
     ModelLoad model_load_;                       // of the model in memory
+    std::shared_ptr<DiskCache> cache_ = open_answer_cache(load_cache_settings());   // of what models answered
     /// An attention threshold that the search has not been told yet.
     struct Threshold {
         double value = 0;

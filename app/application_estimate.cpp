@@ -27,6 +27,7 @@ Measured Application::measured_now() const {
 }
 
 void Application::remember_measured(const std::string& key, const Measured& measured) {
+    model_.cache_bytes = cached_bytes(cache_->folder());   // a job has ended
     Measured& known = measured_[key];
     nlohmann::ordered_json news = fields_to_json(measured);
     if (measured.raster < 0) news.erase("rows");
@@ -36,17 +37,12 @@ void Application::remember_measured(const std::string& key, const Measured& meas
     save_settings();
 }
 
-/// A model was loaded: what the process holds beside it follows.
-void Application::take_load(const ModelLoad& load) {
-    if (load.after >= 0) model_load_ = load;
-}
-
 PlannedMemory Application::planned_memory() const {
     PlannedMemory memory;
     const auto& current = document_.state().current;
     memory.process = current_rss_mb();
-    memory.loaded = text_model_ != nullptr && text_model_key_ == model_key() && model_load_.before >= 0;
-    memory.before_load = model_load_.before;
+    memory.loaded = text_model_ != nullptr && text_model_key_ == model_key() && model_load_.before_mb >= 0;
+    memory.before_load = model_load_.before_mb;
     for (const auto& row : model_.models)
         if (row.path == model_in_use()) memory.weights = static_cast<double>(row.bytes) / 1e6;
     memory.scene = static_cast<double>(current.byte_size()) / 1e6;

@@ -137,9 +137,9 @@ void Application::try_model(const std::string& path, std::vector<std::string> lo
     model_tried_ = wanted;
     model_problems_.try_emplace(wanted);
     work_.start({fmt::format("Check the model \"{}\"", row == rows.end() ? wanted : row->name),
-                 [job, model](const JobControl& control) {
+                 [job, model, cache = cache_](const JobControl& control) {
                      control.report("loading the model", 0, 0);
-                     *model = load_recipe_model(job);
+                     *model = open_recipe_model(job, cache);
                  },
                  [this, wanted, model, profile, takes_settings, loras = std::move(loras)](const Error* error) {
                      model_tried_.clear();
@@ -183,9 +183,9 @@ void Application::try_loras(std::vector<std::string> loras) {
     auto model = std::make_shared<std::shared_ptr<neural::TextToImage>>();
     model_.loras_checking = true;
     work_.start({"Merge the LoRAs",
-                 [job, model](const JobControl& control) {
+                 [job, model, cache = cache_](const JobControl& control) {
                      control.report("loading the model", 0, 0);
-                     *model = load_recipe_model(job);
+                     *model = open_recipe_model(job, cache);
                  },
                  [this, model, profile, refuse, loras = std::move(loras)](const Error* error) {
                      model_.loras_checking = false;
@@ -239,6 +239,18 @@ void Application::drop_model(const std::string& path, const Error& error) {
     model_path_.clear();
     take_chosen_model();
     refuse_model(path, reason_of(error));
+}
+
+void Application::set_cache_mb(int most) {
+    model_.cache_mb = most;
+    cache_->resize(bytes_of(CacheSettings{most}));
+    model_.cache_bytes = cached_bytes(cache_->folder());
+    save_settings();
+}
+
+void Application::clear_cache() {
+    clear_cache_folder(cache_->folder());
+    model_.cache_bytes = 0;
 }
 
 }  // namespace gse::app

@@ -132,27 +132,32 @@ double seconds_since(std::chrono::steady_clock::time_point then) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
 }
 
-void load(Search& search, const JobParameters& job, const JobControl& control) {
+void load(Search& search, const JobParameters& job, const std::shared_ptr<DiskCache>& cache, const JobControl& control) {
     control.report("loading the model", 0, 0);
     if (search.model) return use_threads(job);
-    const auto start = std::chrono::steady_clock::now();
-    search.loaded.before = current_rss_mb();
-    search.model = load_recipe_model(job);
-    search.loaded.after = current_rss_mb();
-    search.measured.load = seconds_since(start);
-    if (search.first_load) search.measured.load_mb = search.loaded.after - search.loaded.before;
+    search.model = open_recipe_model(job, cache);
+}
+
+/// Of a model that was needed for more than the cache holds.
+void measure_load(Search& search) {
+    const auto load = search.model ? load_of(*search.model) : std::nullopt;
+    if (!load) return;
+    search.loaded = *load;
+    search.measured.load = load->seconds;
+    if (search.first_load) search.measured.load_mb = load->after_mb - load->before_mb;
 }
 
 /// The most memory that the job has taken beside model and scene.
 void measure_peak(Search& search, const PeakMemory& peak) {
-    if (search.loaded.after >= 0) measure_memory(search.measured, search.memory, search.loaded.after, peak.mb());
+    measure_load(search);
+    if (search.loaded.after_mb >= 0) measure_memory(search.measured, search.memory, search.loaded.after_mb, peak.mb());
 }
 
 void look(Search& search) {
     search.job->locate();
     measure_search(search.measured, *search.job, search.job->times().seconds("locate"));
     const double tuning = search.job->times().seconds("dreambooth");
-    if (tuning > 0) {
+    if (tuning > 0 && search.job->times().networks("dreambooth").flop > 0) {
         const double steps = std::max(1, search.job->recipe().dreambooth.steps);
         search.measured.tune_step = tuning / steps;
         search.measured.tune_step_tflop = search.job->times().networks("dreambooth").flop * 1e-12 / steps;
@@ -178,10 +183,10 @@ void Application::locate() {
         return report_error(error);
     }
     const Measured measured = measured_now();
-    auto work = [search, recipe = open_recipe(recipe), said = model_.said_words, measured, tuned = known_tuning(recipe), scene = working_scene(),
+    auto work = [search, recipe = open_recipe(recipe), said = model_.said_words, measured, tuned = known_tuning(recipe), scene = working_scene(), cache = cache_,
                  views = document_.state().views](const JobControl& control) {
         const auto before = network_use();
-        load(*search, recipe.job, control);
+        load(*search, recipe.job, cache, control);
         const PeakMemory peak;
         search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned, said}, control);
         look(*search);
@@ -191,7 +196,7 @@ void Application::locate() {
     };
     auto done = [this, search, recipe, recipe_key = measured_key(), key = model_key(), model = model_path_,
                  on_cpu = model_.model_settings.device == "cpu"](const Error* error) {
-        take_load(search->loaded);
+        model_load_ = search->loaded;
         if (search->model) text_model_ = search->model, text_model_key_ = key;
         else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu) drop_model(model, *error);
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
@@ -317,9 +322,9 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     snapshot_base_ = state.current;
     auto pending = std::make_shared<PendingResult>();
     auto work = [search, recipe, label, pending, live = live_, open = open_recipe(recipe), said = model_.said_words,
-                 tuned = known_tuning(recipe), scene = working_scene(), views = state.views](const JobControl& control) {
+                 tuned = known_tuning(recipe), scene = working_scene(), views = state.views, cache = cache_](const JobControl& control) {
         live->use_before = live->use = network_use();
-        load(*search, recipe.job, control);
+        load(*search, recipe.job, cache, control);
         const PeakMemory peak;
         if (search->job) {
             search->job->set_control(control);
@@ -334,7 +339,7 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     };
     auto done = [this, search, pending, recipe_key = measured_key(), key = model_key(), model = model_path_,
                  on_cpu = model_.model_settings.device == "cpu"](const Error* error) {
-        take_load(search->loaded);
+        model_load_ = search->loaded;
         if (search->model) text_model_ = search->model, text_model_key_ = key;
         else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu) drop_model(model, *error);
         remember_measured(recipe_key, search->measured);

@@ -20,6 +20,7 @@
 #include "engine/pipeline/gate.h"
 #include "engine/pipeline/model_settings.h"
 #include "engine/pipeline/target_sheet.h"
+#include "engine/pipeline/tuning_json.h"
 
 namespace gse::app {
 namespace {
@@ -31,6 +32,7 @@ struct EditOptions {
     bool headless = false;
     bool json = false;
     bool gate = true;
+    bool no_cache = false;
     CLI::App* command = nullptr;
 };
 
@@ -41,6 +43,7 @@ void add_options(CLI::App& command, const std::shared_ptr<EditOptions>& options)
     command.add_flag("--demo", options->demo, "The bundled scene and sentence");
     command.add_flag("--headless", options->headless, "Work without a display (this version always does)");
     command.add_flag("--json", options->json, "Print the report as JSON");
+    command.add_flag("--no-cache", options->no_cache, "Ask the networks anew, and keep no answer of theirs on the disk");
     auto& job = options->recipe.job;
     command.add_option("scene", job.scene, "Scene file or folder");
     JobParameters::visit_fields(job, [&](const char* name, auto& value, const char* help, const auto&... range) {
@@ -51,21 +54,6 @@ void add_options(CLI::App& command, const std::shared_ptr<EditOptions>& options)
     bind_fields(command, options->recipe.guidance, "Guidance (score distillation)");
     bind_fields(command, options->recipe.attention, "Attention", "--attention-");
     add_dreambooth_options(command, options->recipe);
-}
-
-nlohmann::ordered_json tuning_to_json(const neural::TuneReport& tuning) {
-    nlohmann::ordered_json json;
-    json["steps"] = tuning.steps;
-    json["skipped"] = tuning.skipped;
-    json["class_seconds"] = tuning.class_seconds;
-    json["seconds"] = tuning.seconds;
-    json["instance_before"] = tuning.instance_before;
-    json["instance_after"] = tuning.instance_after;
-    json["prior_before"] = tuning.prior_before;
-    json["prior_after"] = tuning.prior_after;
-    json["instance_losses"] = tuning.instance_losses;
-    json["prior_losses"] = tuning.prior_losses;
-    return json;
 }
 
 /// What is in the folder, and in the report, only when it was asked for.
@@ -147,7 +135,7 @@ void print_summary(const nlohmann::ordered_json& report, const std::filesystem::
     const auto& networks = report["networks"]["total"];
     const auto count = [&](const char* name) { return networks[name].get<std::uint64_t>(); };
     print("{:.1f} s, {:.0f} MB at most; {}\n", report["seconds"]["total"].get<double>(), report["peak_rss_mb"].get<double>(),
-          use_text({count("unet"), count("encoder"), count("decoder"), networks["tflop"].get<double>() * 1e12}));
+          use_text({count("unet"), count("encoder"), count("decoder"), networks["tflop"].get<double>() * 1e12, networks.value("cached", std::uint64_t{0})}));
     print("edited scene   {}/scene.ply\nbefore, labels {}/source.ply\nfilm           {}/before_after.mp4\n"
                "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
                text, text, text, text, text, text, text);
@@ -188,7 +176,7 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
     refuse_own_folder(options.recipe.job.scene, options.output);
     StagedFolder folder(options.output, {"report.json", {"scene.ply", "source.ply", "recipe.json", "report.json", "evidence",
                                                          "before_after.mp4", "before_after.png", "lora.safetensors"}});
-    EditJob job(options.recipe, context.job());
+    EditJob job(options.recipe, context.job(), options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
     folder.require_space(bytes_of_results(job));
     job.locate();
     require_search(job, options.output);
@@ -235,7 +223,7 @@ void run_locate_command(EditOptions& options, const CommandContext& context) {
         throw Error(ErrorCode::Unwritable, "the folder holds an edited scene, which what is found now would not belong to",
                     "choose another place with --out", options.output);
     StagedFolder folder(options.output, {"report.json", {"source.ply", "recipe.json", "report.json", "evidence"}});
-    EditJob job(options.recipe, context.job());
+    EditJob job(options.recipe, context.job(), options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
     job.locate();
     write_labelled_source(folder.path() / "source.ply", job);
     write_evidence(folder.path() / "evidence", job.located(), job.views());

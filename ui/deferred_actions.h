@@ -218,6 +218,12 @@ public:
     void set_ui_scale(float scale) override {
         later([this, scale] { target_->set_ui_scale(scale); });
     }
+    void set_cache_mb(int most) override {
+        later([this, most] { target_->set_cache_mb(most); });
+    }
+    void clear_cache() override {
+        later([this] { target_->clear_cache(); });
+    }
     void quit() override {
         later([this] { target_->quit(); });
     }

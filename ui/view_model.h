@@ -331,6 +331,8 @@ struct ViewModel {
     std::vector<CameraKey> camera_keys;
     Comparison comparison = Comparison::None;
     float ui_scale = 1;
+    int cache_mb = 0;               // most that answers of the networks take on the disk; 0 = none are kept
+    std::uint64_t cache_bytes = 0;  // what they take
 };
 
 }  // namespace gse::ui

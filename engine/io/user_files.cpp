@@ -87,6 +87,7 @@ std::filesystem::path config_folder() { return user_folder("GSE_CONFIG_DIR", "XD
 std::filesystem::path state_folder() {
     return user_folder("GSE_STATE_DIR", "XDG_STATE_HOME", ".local/state");
 }
+std::filesystem::path cache_folder() { return user_folder("GSE_CACHE_DIR", "XDG_CACHE_HOME", ".cache"); }
 
 Json load_user_json(const std::filesystem::path& path) {
     std::string text;

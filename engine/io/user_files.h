@@ -14,6 +14,8 @@ namespace gse {
 std::filesystem::path config_folder();
 /// $GSE_STATE_DIR, else $XDG_STATE_HOME/gseditpro, else ~/.local/state/gseditpro.
 std::filesystem::path state_folder();
+/// $GSE_CACHE_DIR, else $XDG_CACHE_HOME/gseditpro, else ~/.cache/gseditpro.
+std::filesystem::path cache_folder();
 
 /// The object in `path`; an empty one when the file is not there. A file that is no JSON object is renamed to
 /// NAME.damaged, with a warning.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/answer_memory.h"
 #include "engine/base/fields.h"
 #include "engine/base/progress.h"
 #include "engine/edit/interfaces.h"
@@ -59,10 +60,18 @@ public:
 
     /// DreamBooth: a model of its own that has learned what the pictures show under `instance_prompt`, while pictures of
     /// `class_prompt`, drawn from the loaded weights first, keep what it knows. Begins at the loaded weights, also where this
-    /// model is a tuned one. Throws Error (Cancelled) on a stop request.
+    /// model is a tuned one. The class's pictures are taken from `memory` (of the loaded weights; may be null) and kept there.
+    /// Throws Error (Cancelled) on a stop request.
     virtual TunedModel tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
                             const std::string& instance_prompt, const std::string& class_prompt,
-                            const JobControl& job) const = 0;
+                            const JobControl& job, AnswerMemory* memory) const = 0;
+    TunedModel tune(const DreamBoothParameters& parameters, std::span<const Image> instance, const std::string& instance_prompt,
+                    const std::string& class_prompt, const JobControl& job) const;
+    /// The tuning as a file that load_tuning() gives back bit by bit: low-rank factors, or all weights. False where there is none,
+    /// or it would be larger. Throws Error (Unwritable).
+    virtual bool save_tuning(const std::filesystem::path& path, std::uint64_t most_bytes) const = 0;
+    /// The model that save_tuning() was asked of, from one with the same loaded weights. Throws Error.
+    virtual std::shared_ptr<TextToImage> load_tuning(const std::filesystem::path& path) const = 0;
     /// The tuning as a file (kohya's names). Throws Error (InvalidArgument) unless this is a model tuned with a rank.
     virtual void save_lora(const std::filesystem::path& path) const = 0;
     /// A model of its own: the loaded weights, tuned by a file. Throws Error (NotFound, Malformed, Model).
@@ -75,6 +84,11 @@ struct TunedModel {
     std::shared_ptr<TextToImage> model;
     TuneReport report;
 };
+
+inline TunedModel TextToImage::tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
+                                    const std::string& instance_prompt, const std::string& class_prompt, const JobControl& job) const {
+    return tune(parameters, instance, instance_prompt, class_prompt, job, nullptr);
+}
 
 /// What a model is loaded with.
 struct ModelOptions {

@@ -187,9 +187,9 @@ void BundleAttentionSource::probe(const edit::AttentionQuery& query, const torch
 
 void BundleAttentionSource::run_img2img(const edit::AttentionQuery& query, const torch::Tensor& latents,
                                         const torch::Tensor& context, AttentionCapture& capture,
-                                        AttentionAccumulator& sum) const {
+                                        AttentionAccumulator& sum) {
     const auto& schedule = bundle_->schedule;
-    const auto negative = bundle_->encode_prompts({""});
+    const auto& negative = context_of("");
     const double lowest = query.absent ? AbsentLowestLevel * static_cast<double>(schedule.steps()) : 0;
     for (int repeat = 0; repeat < std::max(1, query.repeats); ++repeat) {
         const auto sampler = make_sampler(SamplerKind::Ddim, schedule, parameters_.steps);
@@ -221,6 +221,12 @@ void BundleAttentionSource::run_img2img(const edit::AttentionQuery& query, const
     }
 }
 
+const torch::Tensor& BundleAttentionSource::context_of(const std::string& sentence) {
+    auto& context = contexts_[sentence];
+    if (!context.defined()) context = bundle_->encode_prompts({sentence});
+    return context;
+}
+
 std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& query) {
     const auto prompt = with_view_words(query.prompt, query.view_words);
     std::vector<std::vector<std::int64_t>> columns;
@@ -234,7 +240,7 @@ std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& que
         const torch::NoGradGuard no_grad;
         const auto image = resize_square(to_tensor(query.image, bundle_->device), bundle_->image_size());
         const auto latents = image_to_latents(*bundle_, image, Codec::Quick);
-        const auto context = bundle_->encode_prompts({prompt});
+        const auto context = context_of(prompt);
         AttentionAccumulator sum(latents.size(2), static_cast<std::int64_t>(capture.columns.size()));
         if (parameters_.method == "probes")
             probe(query, latents, context, capture, sum);

@@ -2,7 +2,10 @@
 // repeats.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "engine/edit/interfaces.h"
 #include "engine/neural/attention_parameters.h"
@@ -49,12 +52,15 @@ private:
                AttentionCapture& capture, AttentionAccumulator& sum) const;
     void run_img2img(const edit::AttentionQuery& query, const torch::Tensor& latents,
                      const torch::Tensor& context, AttentionCapture& capture,
-                     AttentionAccumulator& sum) const;
+                     AttentionAccumulator& sum);
+    /// [1,T,D], encoded once per sentence (method E6).
+    const torch::Tensor& context_of(const std::string& sentence);
 
     BufferHolder buffers_;   // goes last
     std::shared_ptr<const ModelBundle> bundle_;
     AttentionParameters parameters_;
     std::vector<double> levels_;   // of the parameters
+    std::map<std::string, torch::Tensor> contexts_;
 };
 
 /// "a bear" and "front view" to "a bear, front view".

@@ -194,6 +194,22 @@ std::optional<LoraWeights> DreamBoothTrainer::lora() const {
     return lora_;
 }
 
+NamedTensors tuned_weights(const ModelBundle& bundle) {
+    NamedTensors tensors;
+    for (const auto& weight : bundle.unet->named_parameters()) tensors.emplace_back("unet." + weight.key(), weight.value());
+    for (const auto& weight : bundle.text_encoder->named_parameters()) tensors.emplace_back("text." + weight.key(), weight.value());
+    return tensors;
+}
+
+ModelBundle with_weights(const ModelBundle& bundle, const SafetensorsFile& file) {
+    ModelBundle result = bundle;
+    result.unet = twin_of(bundle.unet, true);
+    result.text_encoder = twin_of(bundle.text_encoder, true);
+    const torch::NoGradGuard no_grad;
+    for (const auto& [name, weight] : tuned_weights(result)) file.copy_to(name, weight);
+    return result;
+}
+
 ModelBundle with_lora(const ModelBundle& bundle, const LoraWeights& weights, double strength) {
     ModelBundle result = bundle;
     result.unet = twin_of(bundle.unet, false, std::nullopt);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/base/answer_memory.h"
 #include "engine/base/image.h"
 #include "engine/base/progress.h"
 #include "engine/base/thread_pool.h"
@@ -77,6 +78,7 @@ void count_step(TuneReport& report, const TuningStep& step, int planned);
 struct TuningTask {
     std::span<const Image> instance;
     std::string instance_prompt, class_prompt;
+    AnswerMemory* memory = nullptr;   // of pictures of the class that this model drew before; may be null
 };
 
 struct TuningResult {
@@ -92,5 +94,10 @@ TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameter
 
 /// A copy of the model with a LoRA merged in.
 ModelBundle with_lora(const ModelBundle& bundle, const LoraWeights& weights, double strength);
+
+/// All weights of the UNet and the text encoder, as they are; and a copy of the model with such weights. A file that lacks one
+/// is refused: throws Error (Model).
+NamedTensors tuned_weights(const ModelBundle& bundle);
+ModelBundle with_weights(const ModelBundle& bundle, const SafetensorsFile& file);
 
 }  // namespace gse::neural

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -12,6 +13,7 @@
 #include "engine/base/random.h"
 #include "engine/neural/dreambooth.h"
 #include "engine/neural/images.h"
+#include "engine/neural/network_use.h"
 #include "engine/neural/pipelines.h"
 
 namespace gse::neural {
@@ -67,10 +69,13 @@ EncodedPictures encode_instance(const ModelBundle& bundle, const TuningTask& tas
 /// The class pictures stay latents: decoding and encoding them again would only blur them.
 class ClassPictures {
 public:
-    ClassPictures(const ModelBundle& bundle, const DreamBoothParameters& parameters, const std::string& prompt)
+    /// `memory` may be null.
+    ClassPictures(const ModelBundle& bundle, const DreamBoothParameters& parameters, const std::string& prompt, AnswerMemory* memory)
         : bundle_(bundle),
           parameters_(parameters),
           sampler_steps_(parameters.class_steps),
+          prompt_(prompt),
+          memory_(memory),
           context_(bundle.encode_prompts({"", prompt})),
           ids_(bundle.token_ids({prompt})) {}
 
@@ -83,11 +88,12 @@ public:
             const auto count = std::min(team, batches - first);
             side_by_side(pool, static_cast<std::size_t>(count), [&](std::size_t i) {
                 const auto index = first + static_cast<std::int64_t>(i);
-                latents[static_cast<std::size_t>(index)] = sample(index, job);
+                latents[static_cast<std::size_t>(index)] = remembered_sample(index, job);
             });
             if (job.stop_requested()) stop_here();
         }
         job.report("class pictures", parameters_.class_images, parameters_.class_images);
+        thread_use().cached += found_;
         auto all = torch::cat(latents);
         if (!torch::isfinite(all).all().item<bool>())
             throw Error(ErrorCode::Model, "a picture drawn from the model is not finite", "its weights are damaged",
@@ -96,10 +102,32 @@ public:
     }
 
 private:
+    /// Pictures in the batch with this number.
+    std::int64_t size_of(std::int64_t index) const { return std::min(ClassBatch, parameters_.class_images - index * ClassBatch); }
+
+    torch::Tensor remembered_sample(std::int64_t index, const JobControl& job) {
+        if (memory_ == nullptr) return sample(index, job);
+        const auto side = bundle_.latent_size();
+        const auto question = fmt::format("pictures of the class\n{}\n{} steps, guidance {}, seed {}, batch {} of {}", prompt_, sampler_steps_,
+                                          parameters_.class_guidance, parameters_.seed, index, size_of(index));
+        auto latents = torch::empty({size_of(index), bundle_.latent_channels(), side, side}, torch::kFloat32);
+        if (const auto answer = memory_->find(question); answer && answer->size() == latents.nbytes()) {
+            std::copy(answer->begin(), answer->end(), static_cast<char*>(latents.data_ptr()));
+            ++found_;
+            return latents.to(bundle_.device);
+        }
+        const auto drawn = sample(index, job);
+        if (job.stop_requested()) return drawn;   // it is not finished
+        latents.copy_(drawn);
+        if (torch::isfinite(latents).all().item<bool>())
+            memory_->keep(question, {static_cast<const char*>(latents.data_ptr()), latents.nbytes()});
+        return drawn;
+    }
+
     torch::Tensor sample(std::int64_t index, const JobControl& job) const {
         const torch::NoGradGuard no_grad;
         const auto side = bundle_.latent_size();
-        const auto size = std::min(ClassBatch, parameters_.class_images - index * ClassBatch);
+        const auto size = size_of(index);
         const auto sampler = make_sampler(SamplerKind::Ddim, bundle_.schedule, sampler_steps_);
         auto latents = seeded_noise({size, bundle_.latent_channels(), side, side},
                                     Random::stream(Random::stream(parameters_.seed, ClassStream).next(),
@@ -119,6 +147,9 @@ private:
     const ModelBundle& bundle_;
     const DreamBoothParameters& parameters_;
     std::int64_t sampler_steps_;
+    std::string prompt_;
+    AnswerMemory* memory_;
+    std::atomic<std::uint64_t> found_ = 0;   // batches that were drawn before
     torch::Tensor context_, ids_;
 };
 
@@ -262,7 +293,7 @@ TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameter
     std::optional<BatchSource> prior;
     if (parameters.prior_weight > 0 && parameters.class_images > 0) {
         ThreadPool pool(tuning_threads(parameters, bundle.device));
-        prior.emplace(bundle, ClassPictures(bundle, parameters, task.class_prompt).draw(pool, job),
+        prior.emplace(bundle, ClassPictures(bundle, parameters, task.class_prompt, task.memory).draw(pool, job),
                       Random::stream(parameters.seed, PriorStream).next());
         report.class_seconds = seconds_now() - start;
     }

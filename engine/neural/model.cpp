@@ -13,6 +13,7 @@
 #include "engine/neural/clip_score.h"
 #include "engine/neural/dreambooth.h"
 #include "engine/neural/images.h"
+#include "engine/neural/safetensors.h"
 #include "engine/neural/sds_guidance.h"
 #include "engine/neural/torch_errors.h"
 #include "engine/neural/view_guidance.h"
@@ -56,6 +57,7 @@ public:
           lora_(std::move(lora)) {}
 
     using TextToImage::attention;
+    using TextToImage::tune;
     std::unique_ptr<edit::AttentionSource> attention(const AttentionParameters& parameters) const override {
         return std::make_unique<BundleAttentionSource>(slow_, parameters);
     }
@@ -82,9 +84,9 @@ public:
 
     TunedModel tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
                     const std::string& instance_prompt, const std::string& class_prompt,
-                    const JobControl& job) const override {
+                    const JobControl& job, AnswerMemory* memory) const override {
         auto result = guard_torch("tuning the model", [&] {
-            return run_dreambooth(*loaded_, parameters, {instance, instance_prompt, class_prompt}, job);
+            return run_dreambooth(*loaded_, parameters, {instance, instance_prompt, class_prompt, memory}, job);
         });
         return {std::make_shared<Model>(loaded_, std::move(result.bundle), std::move(result.lora), fast_), std::move(result.report)};
     }
@@ -92,6 +94,26 @@ public:
         if (!lora_)
             throw Error(ErrorCode::InvalidArgument, "the model was not tuned as a LoRA", "tune it with a rank above 0", path);
         write_lora(path, *lora_);
+    }
+    bool save_tuning(const std::filesystem::path& path, std::uint64_t most_bytes) const override {
+        if (slow_ == loaded_) return false;
+        if (lora_) return write_lora(path, *lora_), std::filesystem::file_size(path) <= most_bytes;
+        return guard_torch("saving the tuning", [&] {
+            const auto weights = tuned_weights(*slow_);
+            std::uint64_t bytes = 0;
+            for (const auto& [name, weight] : weights) bytes += weight.nbytes();
+            if (bytes > most_bytes) return false;
+            write_safetensors(path, weights);
+            return true;
+        });
+    }
+    std::shared_ptr<TextToImage> load_tuning(const std::filesystem::path& path) const override {
+        const bool whole = guard_torch("reading a tuning", [&] { return SafetensorsFile(path).contains("unet.conv_in.weight"); });
+        if (!whole) return load_lora(path, 1.0);
+        auto tuned = guard_torch("reading a tuning", [&] {
+            return std::make_shared<const ModelBundle>(with_weights(*loaded_, SafetensorsFile(path)));
+        });
+        return std::make_shared<Model>(loaded_, std::move(tuned), std::nullopt, fast_);
     }
     using TextToImage::load_lora;
     std::shared_ptr<TextToImage> load_lora(const std::filesystem::path& path, double strength) const override {

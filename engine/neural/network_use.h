@@ -11,16 +11,18 @@ struct NetworkUse {
     std::uint64_t encoder = 0;   // of the VAE
     std::uint64_t decoder = 0;
     double flop = 0;             // 2 per multiply-add of convolutions, linear layers and attention
+    std::uint64_t cached = 0;    // answers that were read from the disk instead
 
     NetworkUse& operator+=(const NetworkUse& other) {
         unet += other.unet;
         encoder += other.encoder;
         decoder += other.decoder;
         flop += other.flop;
+        cached += other.cached;
         return *this;
     }
     friend NetworkUse operator-(const NetworkUse& a, const NetworkUse& b) {
-        return {a.unet - b.unet, a.encoder - b.encoder, a.decoder - b.decoder, a.flop - b.flop};
+        return {a.unet - b.unet, a.encoder - b.encoder, a.decoder - b.decoder, a.flop - b.flop, a.cached - b.cached};
     }
 };
 

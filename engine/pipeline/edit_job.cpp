@@ -32,10 +32,6 @@ std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::pa
                 "use a PLY whose float column \"label\" is 1 where the edit may change something", path);
 }
 
-std::filesystem::path model_path(const JobParameters& job) {
-    return job.model.empty() ? starter_model_path() : std::filesystem::path(job.model);
-}
-
 /// So that a recipe that was written elsewhere names the same files. Throws Error for one that is not there.
 std::vector<std::string> absolute_loras(const JobParameters& job) {
     std::vector<std::string> texts;
@@ -58,14 +54,8 @@ void warn_unknown_words(const std::vector<std::string>& words, const std::vector
     }
 }
 
-void use_threads(const JobParameters& job) { neural_api().set_threads(job.threads); }
-
-std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job) {
-    use_threads(job);
-    return neural_api().load_model(model_path(job), {job.device, neural::find_loras(job.lora), job.taesd, job.precision});
-}
-
-EditJob::EditJob(EditRecipe recipe, JobControl control) : recipe_(std::move(recipe)), control_(std::move(control)) {
+EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCache> cache)
+    : recipe_(std::move(recipe)), control_(std::move(control)) {
     check_recipe(nullptr);
     times_.begin("load_scene");
     recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
@@ -76,7 +66,7 @@ EditJob::EditJob(EditRecipe recipe, JobControl control) : recipe_(std::move(reci
     GivenCameras given;
     if (recipe_.job.cameras != "none") given.cameras = scene_cameras(recipe_.job.scene, recipe_.job.cameras);
     times_.begin("load_model");
-    auto model = load_recipe_model(recipe_.job);
+    auto model = open_recipe_model(recipe_.job, std::move(cache));
     times_.end();
     begin(std::move(scene), std::move(model), given);
 }
@@ -165,8 +155,9 @@ void EditJob::tune() {
     workplace_->take_model(std::move(tuned.model));
     tuning_ = std::move(tuned.report);
     times_.end();
-    log::info("tuned in {:.0f} s: loss on the scene {:.3f} to {:.3f}, on what the model knew {:.3f} to {:.3f}",
-              tuning_->seconds, tuning_->instance_before, tuning_->instance_after, tuning_->prior_before,
+    log::info("{} {:.0f} s: loss on the scene {:.3f} to {:.3f}, on what the model knew {:.3f} to {:.3f}",
+              times_.networks("dreambooth").flop > 0 ? "tuned in" : "the tuning was read from the cache; it took", tuning_->seconds,
+              tuning_->instance_before, tuning_->instance_after, tuning_->prior_before,
               tuning_->prior_after);
 }
 
@@ -192,6 +183,7 @@ void EditJob::locate() {
     const auto labelled = std::count(result.label.bits->begin(), result.label.bits->end(), std::uint8_t{1});
     log::info("mode {} ({}); {} of {} splats labelled, {} new", edit::mode_name(result.mode), result.reason,
               labelled, scene().gaussians.size(), result.seeds.size());
+    if (const auto use = times_.networks("locate"); use.cached > 0) log::info("located with {}", use_text(use));
 }
 
 /// The same from the views chosen already; the networks are asked only about pictures they have not seen.

@@ -12,6 +12,7 @@
 #include "engine/pipeline/loop.h"
 #include "engine/pipeline/model_words.h"
 #include "engine/pipeline/recipe.h"
+#include "engine/pipeline/recipe_model.h"
 #include "engine/pipeline/search.h"
 #include "engine/pipeline/stage_times.h"
 
@@ -28,17 +29,12 @@ struct EditJobInput {
     std::vector<std::string> said = {};            // words that the scene is known to show: no news
 };
 
-/// The model a recipe names (the starter when it names none). Throws Error (Model, NotFound).
-std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job);
-
-/// Sets how many threads the networks take, for a model that is loaded already.
-void use_threads(const JobParameters& job);
-
 /// A run from stage to stage (views.h, search.h, loop.h): keeps what each came to and how long it took.
 class EditJob {
 public:
     /// Checks the request, reads the scene, loads the model, chooses the views. Throws Error before anything is written.
-    EditJob(EditRecipe recipe, JobControl control);
+    /// `cache`: see open_recipe_model().
+    EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCache> cache = nullptr);
     /// The same for what is in memory; the recipe's files are not read.
     EditJob(EditRecipe recipe, EditJobInput input, JobControl control);
 

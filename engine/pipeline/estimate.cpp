@@ -146,6 +146,7 @@ void measure_search(Measured& measured, const EditJob& job, double seconds) {
     if (asked <= 0) return;
     const double words = words_of_search(job.located().mode);
     const auto use = job.times().networks("locate");
+    if (use.cached > 0) return;   // what it would have taken was not seen
     measured.question = seconds / asked;
     measured.question_tflop = tflop_of(use) / asked;
     measured.rounds = asked / words / job.recipe().request.views;

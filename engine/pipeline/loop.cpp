@@ -6,6 +6,7 @@
 #include "engine/edit/grabcut_segmenter.h"
 #include "engine/edit/instruction.h"
 #include "engine/pipeline/neural_loader.h"
+#include "engine/pipeline/recipe_model.h"
 
 namespace gse::pipeline {
 namespace {
@@ -60,7 +61,7 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
     tools.snapshot_seconds = observer.snapshot_seconds;
     tools.new_label = observer.new_label;
     tools.start = observer.start ? &*observer.start : nullptr;
-    const auto attention = model.attention(recipe.attention);   // not the one that remembers: every render is another question
+    const auto attention = without_memory(model).attention(recipe.attention);   // every render is another question
     const auto segmenter = edit::make_default_segmenter();
     // What the words did not find, their attention does not follow either.
     const bool lost = located.by_label() && located.result.mode == edit::EditMode::Modify;

@@ -12,24 +12,27 @@ namespace gse::pipeline {
 namespace {
 
 std::atomic<neural::Api*> loaded_api = nullptr;
+std::atomic<int> wanted_threads = 1;
+thread_local std::uint64_t cached_answers = 0;
+
+std::array<std::filesystem::path, 3> candidates() {
+    const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    return {program / "libgse_neural.so", program / "../libgse_neural.so", program / "../lib/gseditpro/libgse_neural.so"};
+}
 
 neural::Api* load() {
-    const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    const std::array<std::filesystem::path, 3> candidates{program / "libgse_neural.so", program / "../libgse_neural.so",
-                                                          program / "../lib/gseditpro/libgse_neural.so"};
-    for (const auto& candidate : candidates) {
-        if (!std::filesystem::exists(candidate)) continue;
-        void* library = dlopen(candidate.c_str(), RTLD_NOW | RTLD_LOCAL);
-        if (library == nullptr)
-            throw Error(ErrorCode::Foreign, std::string("the networks' library cannot be loaded (") + dlerror() + ")",
-                        "install libtorch1.13", candidate);
-        auto* entry = reinterpret_cast<neural::Api* (*)()>(dlsym(library, "gse_neural_api"));
-        if (entry == nullptr)
-            throw Error(ErrorCode::Foreign, "the networks' library has no entry point", "build it again", candidate);
-        return entry();
-    }
-    throw Error(ErrorCode::NotFound, "this build has no networks (libgse_neural.so is missing)",
-                "build with -DGSE_NEURAL=ON", candidates[0]);
+    const auto path = neural_library();
+    if (path.empty())
+        throw Error(ErrorCode::NotFound, "this build has no networks (libgse_neural.so is missing)",
+                    "build with -DGSE_NEURAL=ON", candidates()[0]);
+    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr)
+        throw Error(ErrorCode::Foreign, std::string("the networks' library cannot be loaded (") + dlerror() + ")",
+                    "install libtorch1.13", path);
+    auto* entry = reinterpret_cast<neural::Api* (*)()>(dlsym(library, "gse_neural_api"));
+    if (entry == nullptr)
+        throw Error(ErrorCode::Foreign, "the networks' library has no entry point", "build it again", path);
+    return entry();
 }
 
 }  // namespace
@@ -39,9 +42,26 @@ neural::Api& neural_api() {
     return *api;
 }
 
+std::filesystem::path neural_library() {
+    for (const auto& candidate : candidates())
+        if (std::filesystem::exists(candidate)) return candidate;
+    return {};
+}
+
+void set_network_threads(int count) {
+    wanted_threads = count;
+    if (neural::Api* api = loaded_api) api->set_threads(count);
+}
+
+int network_threads() { return wanted_threads; }
+
 neural::NetworkUse network_use() {
     const neural::Api* api = loaded_api;
-    return api != nullptr ? api->use() : neural::NetworkUse{};
+    auto use = api != nullptr ? api->use() : neural::NetworkUse{};
+    use.cached += cached_answers;
+    return use;
 }
+
+void count_cached_answer() { ++cached_answers; }
 
 }  // namespace gse::pipeline

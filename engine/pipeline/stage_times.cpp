@@ -16,14 +16,17 @@ double now_seconds() {
 }
 
 nlohmann::ordered_json use_json(const neural::NetworkUse& use) {
-    return {{"unet", use.unet}, {"encoder", use.encoder}, {"decoder", use.decoder}, {"tflop", use.flop * 1e-12}};
+    nlohmann::ordered_json json{{"unet", use.unet}, {"encoder", use.encoder}, {"decoder", use.decoder}, {"tflop", use.flop * 1e-12}};
+    if (use.cached > 0) json["cached"] = use.cached;
+    return json;
 }
 
 }  // namespace
 
 std::string use_text(const neural::NetworkUse& use) {
-    return fmt::format("{} UNet, {} encoder and {} decoder passes, {:.{}f} TFLOP", use.unet, use.encoder, use.decoder, use.flop * 1e-12,
-                       use.flop < 1e12 ? 3 : use.flop < 1e14 ? 1 : 0);
+    const auto text = fmt::format("{} UNet, {} encoder and {} decoder passes, {:.{}f} TFLOP", use.unet, use.encoder, use.decoder,
+                                  use.flop * 1e-12, use.flop < 1e12 ? 3 : use.flop < 1e14 ? 1 : 0);
+    return use.cached > 0 ? text + fmt::format("; {} answers read from the cache", use.cached) : text;
 }
 
 void StageTimes::begin(const std::string& stage) {
@@ -37,7 +40,7 @@ void StageTimes::end() {
     const auto use = network_use() - start_use_;
     const auto found = std::find_if(networks_.begin(), networks_.end(), [&](const auto& entry) { return entry.first == open_; });
     if (found != networks_.end()) found->second += use;
-    else if (use.flop > 0) networks_.emplace_back(open_, use);
+    else if (use.flop > 0 || use.cached > 0) networks_.emplace_back(open_, use);
 }
 
 neural::NetworkUse StageTimes::networks() const {

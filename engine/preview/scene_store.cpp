@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "engine/base/check.h"
+#include "engine/preview/changed_rows.h"
 #include "engine/preview/packing.h"
 
 namespace gse::preview {
@@ -28,21 +29,32 @@ bool same_harmonics(const GaussianSet& a, const GaussianSet& b) {
 
 std::byte* Uploader::reserve(const std::shared_ptr<vulkan::Buffer>& target, std::uint64_t offset,
                              std::uint64_t bytes) {
+    sent_ += bytes;
     if (!always_stage_ && target->mapped() != nullptr) return target->mapped() + offset;
     vulkan::Buffer staging(device_, {.size = bytes,
                                      .usage = vk::BufferUsageFlagBits::eTransferSrc,
                                      .home = vulkan::BufferHome::Upload,
                                      .name = "scene staging"});
     std::byte* memory = staging.mapped();
-    copies_.push_back({target, std::move(staging), offset, bytes});
+    copies_.push_back({target, std::move(staging), {vk::BufferCopy(0, offset, bytes)}});
     return memory;
+}
+
+void Uploader::replace(const std::shared_ptr<vulkan::Buffer>& target, std::span<const std::byte> bytes,
+                       std::vector<vk::BufferCopy> parts) {
+    sent_ += bytes.size();
+    vulkan::Buffer staging(device_, {.size = bytes.size(),
+                                     .usage = vk::BufferUsageFlagBits::eTransferSrc,
+                                     .home = vulkan::BufferHome::Upload,
+                                     .name = "changed rows"});
+    std::memcpy(staging.mapped(), bytes.data(), bytes.size());
+    copies_.push_back({target, std::move(staging), std::move(parts)});
 }
 
 void Uploader::flush(vk::CommandBuffer commands) {
     if (copies_.empty()) return;
-    for (const auto& copy : copies_)
-        commands.copyBuffer(copy.staging.handle(), copy.target->handle(),
-                            vk::BufferCopy(0, copy.offset, copy.bytes));
+    vulkan::compute_barrier(commands);   // what is replaced may still be read
+    for (const auto& copy : copies_) commands.copyBuffer(copy.staging.handle(), copy.target->handle(), copy.parts);
     copies_.clear();
     vulkan::compute_barrier(commands);
 }
@@ -60,7 +72,15 @@ void SceneStore::begin(const GaussianSet& set) {
     pending->set = set;
     pending->geometry = !same_geometry(set, shown_);
     pending->harmonics = !same_harmonics(set, shown_);
-    make_chunks(*pending);
+    const bool comparable = set.size() > 0 && set.size() == shown_.size() && set.sh_degree() == shown_.sh_degree();
+    pending->patches = comparable && !mostly_changed(shown_, set);
+    if (pending->patches) {
+        pending->chunks = chunks_;
+        pending->geometry_patches.resize(chunks_.size());
+        pending->harmonics_patches.resize(chunks_.size());
+    } else {
+        make_chunks(*pending);
+    }
     if (!pending->geometry && !pending->harmonics) pending->next_row = set.size();
     pending_ = std::move(pending);
 }
@@ -87,6 +107,8 @@ void SceneStore::pack_slice(Pending& pending) {
     const std::size_t begin = pending.next_row;
     const SceneChunk& chunk = pending.chunks[begin / ChunkRows];
     const std::size_t end = std::min(begin + SliceRows, chunk.first + chunk.count), at = begin - chunk.first;
+    pending.next_row = end;
+    if (pending.patches) return patch_slice(pending, chunk, begin, end);
     if (pending.geometry) {
         auto* out = uploader_.reserve(chunk.geometry, at * GeometryBytes, (end - begin) * GeometryBytes);
         pack_geometry(pending.set, begin, end, reinterpret_cast<float*>(out));
@@ -96,7 +118,39 @@ void SceneStore::pack_slice(Pending& pending) {
         auto* out = uploader_.reserve(chunk.harmonics, at * row_bytes, (end - begin) * row_bytes);
         pack_harmonics(pending.set, begin, end, reinterpret_cast<std::uint16_t*>(out));
     }
-    pending.next_row = end;
+}
+
+void SceneStore::patch_slice(Pending& pending, const SceneChunk& chunk, std::size_t begin, std::size_t end) const {
+    std::vector<RowRun> runs;
+    const auto append = [&](std::vector<Patch>& patches, std::uint64_t row_bytes, auto&& pack) {
+        Patch& patch = patches[begin / ChunkRows];
+        for (const auto& run : runs) {
+            const std::uint64_t bytes = (run.end - run.begin) * row_bytes, at = patch.bytes.size();
+            patch.bytes.resize(at + bytes);
+            pack(run, patch.bytes.data() + at);
+            patch.parts.emplace_back(at, (run.begin - chunk.first) * row_bytes, bytes);
+        }
+    };
+    if (pending.geometry) {
+        changed_geometry(shown_, pending.set, begin, end, runs);
+        append(pending.geometry_patches, GeometryBytes, [&](const RowRun& run, std::byte* out) {
+            pack_geometry(pending.set, run.begin, run.end, reinterpret_cast<float*>(out));
+        });
+    }
+    if (!pending.harmonics) return;
+    runs.clear();
+    changed_harmonics(shown_, pending.set, begin, end, runs);
+    append(pending.harmonics_patches, harmonics_texels(pending.set.sh_degree()) * 8, [&](const RowRun& run, std::byte* out) {
+        pack_harmonics(pending.set, run.begin, run.end, reinterpret_cast<std::uint16_t*>(out));
+    });
+}
+
+void SceneStore::apply_patches(Pending& pending) {
+    for (std::size_t i = 0; i < pending.chunks.size(); ++i) {
+        auto &geometry = pending.geometry_patches[i], &harmonics = pending.harmonics_patches[i];
+        if (!geometry.parts.empty()) uploader_.replace(pending.chunks[i].geometry, geometry.bytes, std::move(geometry.parts));
+        if (!harmonics.parts.empty()) uploader_.replace(pending.chunks[i].harmonics, harmonics.bytes, std::move(harmonics.parts));
+    }
 }
 
 bool SceneStore::advance(double milliseconds) {
@@ -108,6 +162,7 @@ bool SceneStore::advance(double milliseconds) {
         if (std::chrono::steady_clock::now() - start > budget && pending_->next_row < pending_->set.size())
             return false;
     }
+    if (pending_->patches) apply_patches(*pending_);
     // Values belong to rows; they stay when the number of rows does.
     for (std::size_t i = 0; i < pending_->chunks.size() && pending_->set.size() == shown_.size(); ++i)
         pending_->chunks[i].values = chunks_[i].values;

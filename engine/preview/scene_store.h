@@ -1,5 +1,5 @@
 // The scene on the device: chunks of rows, filled slice by slice while the old scene is still shown; arrays
-// that did not change are shared with it.
+// that did not change are shared with it, and where only some rows did, only those are sent.
 #pragma once
 
 #include <cstddef>
@@ -21,18 +21,23 @@ public:
     /// Memory for `bytes` at `offset` of `target`, to be filled before flush().
     std::byte* reserve(const std::shared_ptr<vulkan::Buffer>& target, std::uint64_t offset,
                        std::uint64_t bytes);
+    /// Bytes for parts of a buffer that frames under way may still read: written when they are done.
+    void replace(const std::shared_ptr<vulkan::Buffer>& target, std::span<const std::byte> bytes,
+                 std::vector<vk::BufferCopy> parts);
     /// Records the copies that are due.
     void flush(vk::CommandBuffer commands);
+    std::uint64_t sent_bytes() const { return sent_; }
 
 private:
     struct Copy {
         std::shared_ptr<vulkan::Buffer> target;
         vulkan::Buffer staging;
-        std::uint64_t offset, bytes;
+        std::vector<vk::BufferCopy> parts;
     };
     vulkan::Device& device_;
     bool always_stage_;
     std::vector<Copy> copies_;
+    std::uint64_t sent_ = 0;
 };
 
 /// Rows [first, first + count).
@@ -60,17 +65,28 @@ public:
     const GaussianSet& shown() const { return shown_; }
     std::span<const SceneChunk> chunks() const { return chunks_; }
     std::uint64_t byte_size() const;
+    /// Bytes sent to the device so far.
+    std::uint64_t sent_bytes() const { return uploader_.sent_bytes(); }
 
 private:
+    /// Packed rows that will take the place of others in a buffer.
+    struct Patch {
+        std::vector<std::byte> bytes;
+        std::vector<vk::BufferCopy> parts;
+    };
     struct Pending {
         GaussianSet set;
         std::vector<SceneChunk> chunks;
         bool geometry = false, harmonics = false;  // to be packed
+        bool patches = false;                      // into the buffers shown, changed rows only
+        std::vector<Patch> geometry_patches, harmonics_patches;   // per chunk
         std::size_t next_row = 0;
     };
     std::shared_ptr<vulkan::Buffer> make(std::uint64_t bytes, vk::Format format, const char* name);
     void make_chunks(Pending& pending);
     void pack_slice(Pending& pending);
+    void patch_slice(Pending& pending, const SceneChunk& chunk, std::size_t begin, std::size_t end) const;
+    void apply_patches(Pending& pending);
 
     vulkan::Device& device_;
     Uploader uploader_;

@@ -294,6 +294,8 @@ std::uint64_t SplatRenderer::device_bytes() const {
     return state_->store.byte_size() + state_->workspace.byte_size();
 }
 
+std::uint64_t SplatRenderer::sent_bytes() const { return state_->store.sent_bytes(); }
+
 FrameStatistics SplatRenderer::statistics() {
     state_->receive();
     return state_->statistics;

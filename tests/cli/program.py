@@ -9,6 +9,7 @@ import tempfile
 import unittest
 
 PROGRAM = os.environ["GSE_PROGRAM"]
+os.environ["GSE_CACHE_DIR"] = os.devnull   # what is tested is computed; a test of the cache names a folder
 SHARED = pathlib.Path(os.environ.get("GSE_SHARED") or os.environ.get("GSE_SHARED_DEFAULT", "../shared"))
 
 

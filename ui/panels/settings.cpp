@@ -68,6 +68,37 @@ void draw_background(Context& context) {
     }
 }
 
+struct CacheSize {
+    int megabytes;
+    const char* name;
+};
+constexpr std::array CacheSizes{CacheSize{0, "Off"}, CacheSize{128, "128 MB"}, CacheSize{512, "512 MB"}, CacheSize{2048, "2 GB"},
+                                CacheSize{8192, "8 GB"}};
+
+void draw_cache(Context& context) {
+    heading(context, "Answers kept on the disk");
+    dim_text("What the networks answered about a scene (attention maps, pictures of the class, what they learned) is not asked again, "
+             "also after a restart.");
+    std::array<const char*, CacheSizes.size()> names{};
+    int chosen = -1;
+    for (std::size_t at = 0; at < CacheSizes.size(); ++at) {
+        names[at] = CacheSizes[at].name;
+        if (CacheSizes[at].megabytes == context.model.cache_mb) chosen = static_cast<int>(at);
+    }
+    row_label(context, "At most", "What was used least recently goes first");
+    ImGui::BeginGroup();
+    if (segmented(context, "settings.cache", names, chosen))
+        context.actions.set_cache_mb(CacheSizes[static_cast<std::size_t>(chosen)].megabytes);
+    ImGui::EndGroup();
+    const auto held = static_cast<double>(context.model.cache_bytes);
+    row_label(context, "In use");
+    plain_text(held > 0 ? bytes_text(held) : "nothing");
+    ImGui::SameLine();
+    if (button(context, {.name = "settings.clear_cache", .text = "Clear", .why_off = held > 0 ? "" : "There is nothing to clear.",
+                         .tooltip = "Removes all of it; the next search asks the networks again"}))
+        context.actions.clear_cache();
+}
+
 void draw_keys(Context& context) {
     if (!folding(context, "settings.keys", "Keys")) return;
     const char* group = "";
@@ -102,6 +133,7 @@ void draw_settings_panel(Context& context) {
     };
     context.view_changed |= field_rows(context, "settings", context.view, wanted, [](const char*, bool&) {});
     if (!context.model.renderer.empty()) property(context, "Drawn by", context.model.renderer);
+    draw_cache(context);
     draw_keys(context);
 }
 

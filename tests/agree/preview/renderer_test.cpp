@@ -106,6 +106,49 @@ DOCTEST_TEST_CASE("an upload goes slice by slice and the old scene stays until i
     DOCTEST_CHECK(shared->instance->message_count() == 0);
 }
 
+DOCTEST_TEST_CASE("of a scene whose rows have changed in part only those are sent, and the picture is that of a fresh upload") {
+    auto* shared = test::test_device();
+    if (shared == nullptr) return;
+    auto& device = *shared->device;
+    const GaussianSet first{test::random_scene({.count = 30000, .seed = 7, .log_scale = -3.5})};
+    const auto request = small_request();
+    for (const bool stage : {false, true}) {
+        preview::SplatRenderer renderer(device, {.always_stage = stage}), fresh(device);
+        renderer.upload(first);
+        renderer.draw(request);
+        const std::uint64_t whole = renderer.sent_bytes();
+        GaussianSet shown = first;
+        for (const int part : {0, 1, 2, 3, 4, 5}) {
+            GaussianData data = shown.to_data();
+            for (std::size_t row = static_cast<std::size_t>(part); row < data.size(); row += part == 5 ? 1 : 97) {   // scattered; then all
+                if (part == 0 || part == 5) data.position[row * 3 + 1] += 0.05f;
+                if (part == 1) data.log_scale[row * 3] += 0.2f;
+                if (part == 2) data.rotation[row * 4 + 2] += 0.3f;
+                if (part == 3) data.opacity_logit[row] = row % 2 == 0 ? -8.0f : std::nanf("");
+                if (part == 4) data.sh[row * (data.sh.size() / data.size()) + 1] += 0.4f;
+            }
+            const std::uint64_t before = renderer.sent_bytes();
+            shown = GaussianSet{data};
+            renderer.upload(shown);
+            render(device, renderer, request, 0);   // begun, and replaced by the same
+            renderer.upload(shown);
+            const Image picture = renderer.draw(request);
+            const std::uint64_t sent = renderer.sent_bytes() - before;
+            if (part < 5) DOCTEST_CHECK(sent < whole / 20);
+            DOCTEST_CHECK(sent > 0);
+            fresh.upload(GaussianSet{});
+            fresh.draw(request);
+            fresh.upload(shown);
+            DOCTEST_CHECK(largest_difference(picture, fresh.draw(request)) == 0);
+        }
+        const std::uint64_t before = renderer.sent_bytes();
+        renderer.upload(GaussianSet{shown.to_data()});   // other arrays, the same values
+        renderer.draw(request);
+        DOCTEST_CHECK(renderer.sent_bytes() == before);
+    }
+    DOCTEST_CHECK(shared->instance->message_count() == 0);
+}
+
 DOCTEST_TEST_CASE("picking finds the splat and its depth, and the depth picture agrees") {
     auto* shared = test::test_device();
     if (shared == nullptr) return;

@@ -383,6 +383,44 @@ DOCTEST_TEST_CASE("a model that cannot be used is never in use: its row says why
     DOCTEST_CHECK(again.app.model().models.front().chosen);
 }
 
+DOCTEST_TEST_CASE("a search is known after a restart, unless the cache was cleared or is off") {
+    if (!networks()) return;
+    const Place place;
+    const ScratchFolder folder;
+    setenv("GSE_CACHE_DIR", folder.path().c_str(), 1);
+    std::vector<std::uint8_t> label;
+    const auto start = [&](auto before) {   // one start of the program: its network passes
+        Session session;
+        auto& app = session.app;
+        before(app);
+        session.open_bear();
+        auto request = app.model().request;
+        request.source = "bear";
+        request.prompt = "a blue bear on the grass";
+        request.target = "blue";
+        app.set_request(request);
+        app.locate();
+        DOCTEST_REQUIRE(session.idle());
+        DOCTEST_CHECK(app.model().job.error.empty());
+        const auto& state = app.document().state();
+        const auto& found = *state.labels[static_cast<std::size_t>(state.active_label)].bits;
+        if (label.empty()) label = found;
+        DOCTEST_CHECK(found == label);
+        const auto& cost = app.model().cost;
+        app.shut_down();
+        return cost.unet + cost.encoder + cost.decoder;
+    };
+    const auto nothing = [](app::Application&) {};
+    const auto first = start(nothing);
+    DOCTEST_CHECK(first > 0);
+    DOCTEST_CHECK(start([](app::Application& app) { DOCTEST_CHECK(app.model().cache_bytes > 0); }) == 0);
+    DOCTEST_CHECK(start([](app::Application& app) { app.clear_cache(); }) == first);
+    DOCTEST_CHECK(start([](app::Application& app) { app.set_cache_mb(0); }) == first);
+    DOCTEST_CHECK(start([](app::Application& app) { DOCTEST_CHECK(app.model().cache_mb == 0); }) == first);   // it is remembered
+    DOCTEST_CHECK(fs::is_empty(folder.path() / "answers"));
+    setenv("GSE_CACHE_DIR", "/dev/null", 1);
+}
+
 DOCTEST_TEST_CASE("a scale for one start is not kept, a chosen one is") {
     const Place place;
     const auto scale_of = [](float for_this_start) {

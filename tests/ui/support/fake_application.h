@@ -1,6 +1,8 @@
 // An application that only remembers what it was asked for, with a small real scene behind its view model.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <map>
 #include <memory>
 #include <string>
@@ -137,6 +139,8 @@ public:
     void press_toast(std::size_t index) override { calls.push_back("press_toast " + std::to_string(index)); }
     void toggle_fullscreen() override { calls.push_back("toggle_fullscreen"); }
     void set_ui_scale(float scale) override;
+    void set_cache_mb(int most) override { calls.push_back(fmt::format("set_cache_mb {}", most)); }
+    void clear_cache() override { calls.push_back("clear_cache"); }
     void quit() override { calls.push_back("quit"); }
 
 private:

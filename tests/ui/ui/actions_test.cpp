@@ -361,6 +361,11 @@ DOCTEST_TEST_CASE("views, export, scene, models, settings") {
     DOCTEST_CHECK(asks(harness, "settings.show_bounds", "set_view_settings"));
     DOCTEST_CHECK(harness.application.model().view.show_bounds);
     DOCTEST_CHECK(asks(harness, "settings.scale.200 %", "set_ui_scale 2.00"));
+    harness.application.model().ui_scale = 1;
+    harness.application.model().cache_bytes = 3000000;
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "settings.cache.128 MB", "set_cache_mb 128"));
+    DOCTEST_CHECK(asks(harness, "settings.clear_cache", "clear_cache"));
 }
 
 DOCTEST_TEST_CASE("menus reach what the panels reach") {

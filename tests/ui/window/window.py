@@ -42,7 +42,8 @@ class Window:
         self._until(socket.exists, 20, "the X server did not start")
         self.environment = dict(os.environ, DISPLAY=self.display, GSE_UI_MAP=str(self.map),
                                 GSE_UI_FIRST_FRAME=str(self.folder / "first_frame"),
-                                GSE_CONFIG_DIR=str(self.folder / "config"), GSE_STATE_DIR=str(self.folder / "state"))
+                                GSE_CONFIG_DIR=str(self.folder / "config"), GSE_STATE_DIR=str(self.folder / "state"),
+                                GSE_CACHE_DIR=str(self.folder / "cache"))
         self.log = open(self.folder / "window.log", "ab")
         size = ["--width", str(width), "--height", str(height)] if sized else []
         self.process = subprocess.Popen([PROGRAM, "open", *size, *map(str, arguments)],

@@ -133,6 +133,36 @@ DOCTEST_TEST_CASE("the preservation loss and its gradient agree with the definit
     }
 }
 
+DOCTEST_TEST_CASE("a change in a corner costs what the definition says, and pushes nothing farther off than two windows") {
+    const Image original = random_image(60, 50, 6);
+    for (const auto& [x0, y0] : {std::array{0, 0}, {57, 47}, {30, 20}, {0, 25}}) {
+        Image image = original;
+        const Image other = random_image(60, 50, 7);
+        for (int y = y0; y < y0 + 3; ++y)
+            for (int x = x0; x < x0 + 3; ++x)
+                for (int c = 0; c < 3; ++c) image.at(x, y, c) = other.at(x, y, c);
+        edit::Preservation preservation({0.8, 0.2, 10});
+        Image gradient(60, 50, 3);
+        const double loss = preservation.add_gradient(image, original, Mask(60, 50), gradient);
+        DOCTEST_CHECK(loss == doctest::Approx(plain_loss(image, original)).epsilon(1e-5));
+        double largest = 0;
+        for (const float value : gradient.data) largest = std::max(largest, std::abs(static_cast<double>(value)));
+        for (int y = 0; y < 50; ++y)
+            for (int x = 0; x < 60; ++x) {
+                const bool near = x >= x0 - 10 && x < x0 + 13 && y >= y0 - 10 && y < y0 + 13;
+                if (!near) DOCTEST_CHECK(gradient.at(x, y, 0) == 0);
+                const auto i = (static_cast<std::size_t>(y) * 60 + static_cast<std::size_t>(x)) * 3;
+                if (!near || (x + 3 * y) % 7 != 0) continue;
+                Image up = image, down = image;
+                up.data[i] += static_cast<float>(Step);
+                down.data[i] -= static_cast<float>(Step);
+                const double slope = (plain_loss(up, original) - plain_loss(down, original)) /
+                                     (static_cast<double>(up.data[i]) - down.data[i]);
+                if (image.data[i] != original.data[i]) DOCTEST_CHECK(std::abs(gradient.data[i] - slope) < GradientTolerance * largest);
+            }
+    }
+}
+
 DOCTEST_TEST_CASE("the pseudo ground truth leaves the inside of the mask alone but for the window's reach") {
     const Image image = random_image(40, 24, 4), original = random_image(40, 24, 5);
     Mask mask(40, 24);

@@ -6,6 +6,7 @@
 #include "engine/neural/attention_source.h"
 #include "engine/neural/images.h"
 #include "engine/neural/model.h"
+#include "engine/neural/network_use.h"
 #include "engine/neural/sds_guidance.h"
 #include "tests/unit/neural/tiny_model.h"
 
@@ -66,6 +67,25 @@ DOCTEST_TEST_CASE(
         query.words = {"hat"};
         DOCTEST_CHECK(contains(message_of([&] { source.locate(query); }), "hat"));
     }
+}
+
+DOCTEST_TEST_CASE("attention source: a sentence is encoded once, whatever pictures it is asked about") {
+    const TinyModel model;
+    const auto bundle = load_shared(model);
+    const Image image = gradient_image(50, 40), other = gradient_image(40, 50);
+    const auto arithmetic = [](auto&& pass) {
+        const auto before = thread_use();
+        pass();
+        return (thread_use() - before).flop;
+    };
+    const double encoding = arithmetic([&] { bundle->encode_prompts({"a red bear"}); });
+    BundleAttentionSource source(bundle, {}), fresh(bundle, {});
+    const edit::AttentionQuery first{image, "a red bear", {"bear"}}, second{other, "a red bear", {"bear"}};
+    std::vector<Image> maps;
+    const double whole = arithmetic([&] { source.locate(first); }), rest = arithmetic([&] { maps = source.locate(second); });
+    DOCTEST_CHECK(encoding > 0);
+    DOCTEST_CHECK(whole - rest == doctest::Approx(encoding));
+    DOCTEST_CHECK(maps[0].data == fresh.locate(second)[0].data);
 }
 
 DOCTEST_TEST_CASE("attention source: the noise levels that are named are those looked at; others are refused in a sentence") {

@@ -1,0 +1,361 @@
+// Questions as text, answers as bytes.
+#include "engine/pipeline/remembering_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <utility>
+
+#include "engine/base/digest.h"
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/json.h"
+#include "engine/base/leftover.h"
+#include "engine/base/log.h"
+#include "engine/base/process_memory.h"
+#include "engine/pipeline/neural_loader.h"
+#include "engine/pipeline/tuning_json.h"
+
+namespace gse::pipeline {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+template <class T>
+void put(std::string& bytes, const T& value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// Takes a value off the front; false where there are too few bytes.
+template <class T>
+bool take(std::string_view& bytes, T& value) {
+    if (bytes.size() < sizeof value) return false;
+    std::memcpy(&value, bytes.data(), sizeof value);
+    bytes.remove_prefix(sizeof value);
+    return true;
+}
+
+std::string bytes_of(const std::vector<float>& values) {
+    return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float)};
+}
+
+std::vector<float> floats_in(std::string_view bytes) {
+    std::vector<float> values(bytes.size() / sizeof(float));
+    std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
+    return values;
+}
+
+bool finite(const std::vector<float>& values) {
+    return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
+}
+
+/// Width, height, channels and values of each.
+std::string bytes_of(const std::vector<Image>& images) {
+    std::string bytes;
+    for (const auto& image : images) {
+        for (const std::int32_t size : {image.width, image.height, image.channels}) put(bytes, size);
+        bytes.append(reinterpret_cast<const char*>(image.data.data()), image.data.size() * sizeof(float));
+    }
+    return bytes;
+}
+
+/// Exactly `count` images; nothing where the bytes are something else.
+std::optional<std::vector<Image>> images_in(std::string_view bytes, std::size_t count) {
+    constexpr std::int32_t most_side = 1 << 14, most_channels = 16;
+    std::vector<Image> images;
+    while (images.size() < count) {
+        std::int32_t width = 0, height = 0, channels = 0;
+        if (!take(bytes, width) || !take(bytes, height) || !take(bytes, channels)) return std::nullopt;
+        if (std::min({width, height, channels}) < 0 || std::max(width, height) > most_side || channels > most_channels) return std::nullopt;
+        const auto size = std::size_t{sizeof(float)} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                          static_cast<std::size_t>(channels);
+        if (bytes.size() < size) return std::nullopt;
+        images.emplace_back(width, height, channels);
+        std::memcpy(images.back().data.data(), bytes.data(), size);
+        bytes.remove_prefix(size);
+    }
+    return bytes.empty() ? std::optional(std::move(images)) : std::nullopt;
+}
+
+std::string digest_of(const Image& image) {
+    Digest digest;
+    digest.image(image);
+    return digest.hex();
+}
+
+/// A file of a library that reads and writes by name; gone when this is.
+class ScratchFile {
+public:
+    ScratchFile() : path_(std::filesystem::temp_directory_path() / ("gseditpro-" + writer_mark() + ".safetensors")) {}
+    ~ScratchFile() {
+        std::error_code ignored;
+        std::filesystem::remove(path_, ignored);
+    }
+    ScratchFile(const ScratchFile&) = delete;
+    ScratchFile& operator=(const ScratchFile&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+/// Text-image vectors: pictures one by one, sentences (a hundred short ones per word) in one entry that grows.
+class RememberingScore final : public edit::TextImageScore {
+public:
+    explicit RememberingScore(std::shared_ptr<const RememberingModel> model) : model_(std::move(model)) {
+        const auto kept = model_->cache().find(sentences_question());
+        std::string_view bytes = kept ? std::string_view(*kept) : std::string_view();
+        std::uint32_t length = 0, count = 0;
+        while (take(bytes, length) && take(bytes, count) && bytes.size() >= length + std::size_t{count} * sizeof(float)) {
+            known_[std::string(bytes.substr(0, length))] = floats_in(bytes.substr(length, count * sizeof(float)));
+            bytes.remove_prefix(length + count * sizeof(float));
+        }
+    }
+    ~RememberingScore() override { keep_sentences(); }
+    RememberingScore(const RememberingScore&) = delete;
+    RememberingScore& operator=(const RememberingScore&) = delete;
+
+    std::vector<float> image(const Image& image) override {
+        keep_sentences();   // those asked about the picture before
+        const auto question = model_->question("vector of a picture", digest_of(image));
+        if (const auto answer = model_->cache().find(question)) return count_cached_answer(), floats_in(*answer);
+        auto vector = score().image(image);
+        if (finite(vector)) model_->cache().keep(question, bytes_of(vector));
+        return vector;
+    }
+    std::vector<float> text(const std::string& sentence) override {
+        const auto known = known_.find(sentence);
+        if (known != known_.end()) return known->second;
+        auto vector = score().text(sentence);
+        if (finite(vector)) known_[sentence] = vector, changed_ = true;
+        return vector;
+    }
+
+private:
+    static constexpr std::size_t MostSentenceBytes = std::size_t{4} << 20;
+
+    std::string sentences_question() const { return model_->question("vectors of sentences", ""); }
+
+    void keep_sentences() {
+        if (!std::exchange(changed_, false)) return;
+        std::string bytes;
+        for (const auto& [sentence, vector] : known_) {
+            put(bytes, static_cast<std::uint32_t>(sentence.size()));
+            put(bytes, static_cast<std::uint32_t>(vector.size()));
+            bytes += sentence + bytes_of(vector);
+        }
+        if (bytes.size() > MostSentenceBytes) return known_.clear();   // begins anew
+        model_->cache().keep(sentences_question(), bytes);
+    }
+
+    edit::TextImageScore& score() {
+        if (!score_) score_ = model_->real().text_image_score();
+        return *score_;
+    }
+
+    std::shared_ptr<const RememberingModel> model_;
+    std::unique_ptr<edit::TextImageScore> score_;   // when it is needed
+    std::map<std::string, std::vector<float>> known_;
+    bool changed_ = false;
+};
+
+/// The cache as the networks see it: questions are about this model.
+class ModelMemory final : public AnswerMemory {
+public:
+    ModelMemory(DiskCache& cache, std::string about) : cache_(cache), about_(std::move(about)) {}
+    std::optional<std::string> find(std::string_view question) override { return cache_.find(about_ + std::string(question)); }
+    void keep(std::string_view question, std::string_view answer) override { cache_.keep(about_ + std::string(question), answer); }
+
+private:
+    DiskCache& cache_;
+    const std::string about_;
+};
+
+std::string question_of(const edit::AttentionQuery& query, const neural::AttentionParameters& parameters) {
+    return Json{fields_to_json(parameters), query.prompt, query.words, query.view_words, query.absent, query.repeats, query.seed,
+                digest_of(query.image)}
+        .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string question_of(const neural::DreamBoothParameters& parameters, std::span<const Image> instance,
+                        const std::string& instance_prompt, const std::string& class_prompt) {
+    auto settings = fields_to_json(parameters);
+    settings.erase("threads");   // the result is the same
+    Json pictures = Json::array();
+    for (const auto& image : instance) pictures.push_back(digest_of(image));
+    return Json{settings, instance_prompt, class_prompt, pictures}.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// A tuning as an entry: length of the report, report, weights.
+std::string tuning_bytes(const neural::TuneReport& report, std::string_view weights) {
+    const auto json = tuning_to_json(report).dump();
+    std::string bytes;
+    put(bytes, static_cast<std::uint64_t>(json.size()));
+    return bytes + json + std::string(weights);
+}
+
+}  // namespace
+
+/// Attention of a model, from its cache where the same was asked before.
+class RememberingAttention final : public edit::AttentionSource {
+public:
+    RememberingAttention(std::shared_ptr<const RememberingModel> model, const neural::AttentionParameters& parameters)
+        : model_(std::move(model)), parameters_(parameters) {}
+
+    std::vector<Image> locate(const edit::AttentionQuery& query) override {
+        const auto question = model_->question("attention", question_of(query, parameters_));
+        if (const auto answer = model_->cache().find(question))
+            if (auto maps = images_in(*answer, query.words.size())) return count_cached_answer(), std::move(*maps);
+        if (!source_) source_ = model_->real().attention(parameters_);
+        auto maps = source_->locate(query);
+        if (std::all_of(maps.begin(), maps.end(), [](const Image& map) { return finite(map.data); }))
+            model_->cache().keep(question, bytes_of(maps));
+        return maps;
+    }
+    double threshold() const override { return model_->facts().threshold; }
+    int image_size() const override { return model_->facts().attention_size; }
+
+private:
+    std::shared_ptr<const RememberingModel> model_;
+    const neural::AttentionParameters parameters_;
+    std::unique_ptr<edit::AttentionSource> source_;   // when it is needed
+};
+
+RememberingModel::RememberingModel(std::shared_ptr<DiskCache> cache, std::string identity, Loader loader)
+    : cache_(std::move(cache)), identity_(std::move(identity)), loaded_identity_(identity_), loader_(std::move(loader)) {}
+
+const neural::TextToImage& RememberingModel::real() const {
+    const std::lock_guard lock(mutex_);
+    if (real_) return *real_;
+    const auto start = std::chrono::steady_clock::now();
+    ModelLoad load;
+    load.before_mb = current_rss_mb();
+    real_ = loader_();   // may throw; asked again then
+    loader_ = nullptr;
+    load.after_mb = current_rss_mb();
+    load.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    load_ = load;
+    return *real_;
+}
+
+std::optional<ModelLoad> RememberingModel::load() const {
+    const std::lock_guard lock(mutex_);
+    return load_;
+}
+
+std::string RememberingModel::question(std::string_view kind, std::string_view text) const {
+    return fmt::format("{} of {} on {} threads\n{}", kind, identity_, network_threads(), text);
+}
+
+std::optional<RememberingModel::Facts> RememberingModel::kept_facts() const {
+    const auto answer = cache_->find("facts of " + identity_);
+    const auto json = answer ? try_parse_json(*answer) : nlohmann::json();
+    if (!json.is_object()) return std::nullopt;
+    try {
+        Facts facts;
+        facts.words = json.at("words").get<std::vector<std::string>>();
+        facts.image_size = json.at("image_size").get<int>();
+        facts.name = json.at("name").get<std::string>();
+        facts.kind = static_cast<neural::BundleKind>(json.at("kind").get<int>());
+        facts.scores = json.at("scores").get<bool>();
+        facts.threshold = json.at("threshold").get<double>();
+        facts.attention_size = json.at("attention_size").get<int>();
+        return facts;
+    } catch (const nlohmann::json::exception&) {
+        return std::nullopt;
+    }
+}
+
+bool RememberingModel::known() const {
+    const std::lock_guard lock(mutex_);
+    if (!facts_) facts_ = kept_facts();
+    return facts_.has_value();
+}
+
+const RememberingModel::Facts& RememberingModel::facts() const {
+    if (known()) return *facts_;
+    const auto& model = real();
+    Facts facts{model.known_words(), model.image_size(), model.name(), model.kind(), model.text_image_score() != nullptr, 0.5, 0};
+    const auto attention = model.attention();
+    facts.threshold = attention->threshold();
+    facts.attention_size = attention->image_size();
+    const nlohmann::json json{{"words", facts.words},   {"image_size", facts.image_size}, {"name", facts.name},
+                              {"kind", facts.kind},     {"scores", facts.scores},         {"threshold", facts.threshold},
+                              {"attention_size", facts.attention_size}};
+    cache_->keep("facts of " + identity_, json_text(json));
+    const std::lock_guard lock(mutex_);
+    if (!facts_) facts_ = std::move(facts);
+    return *facts_;
+}
+
+std::unique_ptr<edit::AttentionSource> RememberingModel::attention(const neural::AttentionParameters& parameters) const {
+    return std::make_unique<RememberingAttention>(shared_from_this(), parameters);
+}
+
+std::unique_ptr<edit::Guidance> RememberingModel::guidance(const std::string& prompt, const neural::SdsParameters& parameters) const {
+    return real().guidance(prompt, parameters);
+}
+
+std::unique_ptr<edit::ViewGuidance> RememberingModel::views(const std::string& prompt, const neural::SdsParameters& parameters) const {
+    return real().views(prompt, parameters);
+}
+
+std::unique_ptr<edit::TextImageScore> RememberingModel::text_image_score() const {
+    return facts().scores ? std::make_unique<RememberingScore>(shared_from_this()) : nullptr;
+}
+
+bool RememberingModel::save_tuning(const std::filesystem::path& path, std::uint64_t most_bytes) const {
+    return real().save_tuning(path, most_bytes);
+}
+
+std::shared_ptr<neural::TextToImage> RememberingModel::load_lora(const std::filesystem::path& path, double strength) const {
+    return real().load_lora(path, strength);
+}
+
+std::shared_ptr<RememberingModel> RememberingModel::tuned_model(const std::string& question, Loader loader) const {
+    Digest digest;
+    digest.text(question);
+    auto model = std::make_shared<RememberingModel>(cache_, digest.hex(), std::move(loader));
+    model->loaded_identity_ = loaded_identity_;
+    const auto facts = this->facts();
+    model->facts_ = facts;   // a tuning changes none of them
+    return model;
+}
+
+neural::TunedModel RememberingModel::tune(const neural::DreamBoothParameters& parameters, std::span<const Image> instance,
+                                          const std::string& instance_prompt, const std::string& class_prompt, const JobControl& job,
+                                          AnswerMemory*) const {
+    const auto asked = fmt::format("tuning of {} on {} threads\n{}", loaded_identity_, network_threads(),
+                                   question_of(parameters, instance, instance_prompt, class_prompt));
+    if (auto answer = cache_->find(asked)) {
+        std::string_view bytes(*answer);
+        std::uint64_t length = 0;
+        if (take(bytes, length) && length <= bytes.size()) {
+            if (const auto report = tuning_from_json(bytes.substr(0, length))) {
+                count_cached_answer();
+                auto loader = [self = shared_from_this(), weights = std::string(bytes.substr(length))] {
+                    const ScratchFile file;
+                    write_file(file.path(), weights);
+                    return self->real().load_tuning(file.path());
+                };
+                return {tuned_model(asked, std::move(loader)), *report};
+            }
+        }
+    }
+    ModelMemory memory(*cache_, fmt::format("{} on {} threads\n", loaded_identity_, network_threads()));
+    auto tuned = real().tune(parameters, instance, instance_prompt, class_prompt, job, &memory);
+    try {
+        const ScratchFile file;
+        if (tuned.model->save_tuning(file.path(), cache_->largest_bytes()))
+            cache_->keep(asked, tuning_bytes(tuned.report, read_file(file.path())));
+    } catch (const Error& error) {   // it is only not remembered
+        log::debug("{}", error.what());
+    }
+    return {tuned_model(asked, [model = std::move(tuned.model)] { return model; }), std::move(tuned.report)};
+}
+
+}  // namespace gse::pipeline
