@@ -57,7 +57,7 @@ std::vector<EditPoint> points_of(const EditBenchParameters& parameters, const ed
     }
     for (const auto& text : words_in_list(parameters.redraws)) {
         int views = 0, steps = 0, rounds = 0;
-        if (std::sscanf(text.c_str(), "%dx%dx%d%c", &views, &steps, &rounds, &rest) != 3) throw not_understood(text, "8x6x1");
+        if (std::sscanf(text.c_str(), "%dx%dx%d%c", &views, &steps, &rounds, &rest) != 3) throw not_understood(text, "8x4x1");
         add(redrawing(views, steps, rounds));
     }
     for (const auto& point : points) {   // out of range: said before anything runs

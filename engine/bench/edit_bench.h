@@ -20,7 +20,7 @@ struct EditBenchParameters {
     int held_out_views = 12;
     bool oracle_views = false;
     std::string sds = "25 50 100 200";
-    std::string redraws = "4x4x1 8x2x1 8x6x1 8x6x2 16x8x1";
+    std::string redraws = "4x3x1 8x2x1 8x4x1 8x6x1 8x4x2 16x6x1";
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
@@ -33,7 +33,7 @@ struct EditBenchParameters {
         f("oracle_views", self.oracle_views,
           "The edits are given cameras that know the scene's framing and front, and the new word.");
         f("sds", self.sds, "Points of method sds: iterations, several with spaces between.");
-        f("redraws", self.redraws, "Points of method views: views x steps x rounds, as 8x6x1, several with spaces between.");
+        f("redraws", self.redraws, "Points of method views: views x steps x rounds, as 8x4x1, several with spaces between.");
     }
 };
 

@@ -266,8 +266,8 @@ struct QualityShare {
 };
 
 QualityShare share_of(const std::string& quality) {
-    if (quality == Qualities.front()) return {1.0 / 2, 2.0 / 3};
-    if (quality == Qualities.back()) return {2, 4.0 / 3};
+    if (quality == Qualities.front()) return {0.5, 0.75};
+    if (quality == Qualities.back()) return {2, 1.5};
     return {};
 }
 

@@ -107,7 +107,7 @@ struct LoopSettings {
     std::string instruction;
     int edited_views = 8;
     int rounds = 1;
-    int view_steps = 6;
+    int view_steps = 4;   // error removed on seeds 55 56 57 of eval, 12 edits each: 0.643 0.533 0.597; with 6: 0.655 0.535 0.591
     int fit_steps = 40;
     double view_strength = 0.75;
     // Shapes by views: a thing that becomes another, or is new
@@ -183,8 +183,8 @@ private:
           "How the model leads the edit: views (it redraws some views, the scene is fitted to them), sds (it pulls at every step, the "
           "paper's way) or auto (views, which come closer in less time).");
         f("quality", self.quality,
-          "How much work redrawing takes: draft (half of the views below, two thirds of their steps), normal, or fine (twice the views, a "
-          "third more steps).");
+          "How much work redrawing takes: draft (half of the views below, three quarters of their steps), normal, or fine (twice the "
+          "views, half again as many steps).");
         f("iterations", self.iterations, "Optimisation steps of method sds.", Range{0, 1e6});
         f("instruction", self.instruction,
           "What a model that edits pictures by instructions (InstructPix2Pix) is told to do (\"make the bear golden\"); empty = to turn "
@@ -309,7 +309,7 @@ struct RoundPlan {
     int rounds = 1;
     int fit_steps = 40;      // after each round
     bool anew = false;       // the inside of the masks becomes something else
-    int view_steps = 6;      // of the first round
+    int view_steps = 4;      // of the first round
     double strength = 0.75, again_strength = 0.75;   // of the first round and of the later ones
     int views = 8;           // redrawn in a round
 

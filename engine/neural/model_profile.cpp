@@ -126,7 +126,7 @@ Json stated_by_size(ModelKind kind) {
                        {"tau", 0.5},           {"evidence_px", 1.0},
                        {"iterations", 4000},   {"geometry_share", 1.0},
                        {"colour_coupling", 0.0}, {"shape_views", 8},
-                       {"shape_steps", 8}};
+                       {"shape_steps", 8},      {"view_steps", 8}};
     json["guidance"] = {{"guidance_scale", 7.5}, {"view_guidance_scale", 7.5}, {"t_max_end", 0.5}};
     json["attention"] = {{"refinement", 1}};   // views.md 15; the starter's own maps are as good without
     json["dreambooth"] = {{"steps", 400},           {"batch", 4},

@@ -99,7 +99,7 @@ class Evaluations(ProgramTest):
         self.assertTrue((out / "pareto.png").read_bytes().startswith(b"\x89PNG"))
         self.assertIn("pareto.png", report["files"])
         for points in ["8x6", "8x6x1x", "eight"]:
-            self.assert_one_sentence(run("-q", "bench", "edit", "--out", self.folder / "none", "--redraws", points), "8x6x1")
+            self.assert_one_sentence(run("-q", "bench", "edit", "--out", self.folder / "none", "--redraws", points), "8x4x1")
         self.assert_one_sentence(run("-q", "bench", "edit", "--out", self.folder / "none", "--redraws", "8000x6x1"), "edited_views")
         self.assertFalse((self.folder / "none").exists())
 

@@ -158,8 +158,8 @@ void draw_method(Context& context) {
 
 /// "draft: half of the views ... About 5 s.", a line per quality.
 std::string quality_help(const Estimate& estimate) {
-    constexpr std::array<const char*, edit::Qualities.size()> what{"half of the views, two thirds of their steps: to see where it goes",
-                                                                   "what the settings say", "twice the views, a third more steps"};
+    constexpr std::array<const char*, edit::Qualities.size()> what{"half of the views, three quarters of their steps: to see where it goes",
+                                                                   "what the settings say", "twice the views, half again as many steps"};
     std::string help;
     for (std::size_t i = 0; i < what.size(); ++i) {
         help += fmt::format("{}{}: {}.", i == 0 ? "" : "\n", edit::Qualities[i], what[i]);

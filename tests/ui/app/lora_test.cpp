@@ -70,15 +70,15 @@ DOCTEST_TEST_CASE("LoRAs: added, weighed, taken off; a bad one leaves the model 
             DOCTEST_CHECK(app.model().toasts.back().is_error);
             DOCTEST_CHECK(app.model().toasts.back().text.find("LoRA") != std::string::npos);
         }
-        const int steps = app.model().request.view_steps;
+        const int rounds = app.model().request.rounds;
         app.add_lora(fast.string());   // brings settings of its own
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_REQUIRE(app.model().loras.size() == 2);
-        DOCTEST_CHECK(app.model().request.view_steps == 4);
+        DOCTEST_CHECK(app.model().request.rounds == 2);
         app.remove_lora(1);
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().loras.size() == 1);
-        DOCTEST_CHECK(app.model().request.view_steps == steps);
+        DOCTEST_CHECK(app.model().request.rounds == rounds);
         app.save_project(project);
         DOCTEST_REQUIRE(session.settled());
         app.remove_lora(0);
