@@ -30,7 +30,7 @@ ADDRESS_SPACE = 6 << 30          # bytes; libraries and thread stacks take most 
 LARGEST_RSS = 900 << 10          # kilobytes: the program itself, and what a small file may claim
 CPU_SECONDS = 60
 SANITIZED = os.environ.get("GSE_SANITIZED", "0") == "1"   # shadow memory does not fit any limit
-ENVIRONMENT = {**os.environ, "OPENBLAS_CORETYPE": os.environ.get("OPENBLAS_CORETYPE", "Haswell"), "OPENBLAS_NUM_THREADS": "1"}
+ENVIRONMENT = {**os.environ, "GSE_CACHE_DIR": os.devnull, "OPENBLAS_CORETYPE": os.environ.get("OPENBLAS_CORETYPE", "Haswell"), "OPENBLAS_NUM_THREADS": "1"}
 
 
 def limit():
