@@ -5,33 +5,22 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string>
-#include <string_view>
 
+#include "engine/base/hash_input.h"
 #include "engine/base/image.h"
 
 namespace gse {
 
 /// Two lanes of multiply and rotate that feed each other, over words of 8 bytes. Not for secrets: two different contents have
 /// the same digest by chance with a probability of about 2^-128.
-class Digest {
+class Digest : public HashInput<Digest> {
 public:
     void bytes(const void* data, std::size_t size) {
-        const auto* at = static_cast<const unsigned char*>(data);
-        for (; size >= sizeof(std::uint64_t); size -= sizeof(std::uint64_t), at += sizeof(std::uint64_t)) {
-            std::uint64_t word = 0;
-            std::memcpy(&word, at, sizeof word);
-            add(word);
-        }
+        const auto* at = add_words(data, size);
         std::uint64_t rest = size;   // how many bytes are left counts too
         for (; size > 0; --size) rest = rest << 8 | *at++;
         add(rest);
-    }
-    /// Length first: "ab", "c" is not "a", "bc".
-    void text(std::string_view text) {
-        add(text.size());
-        bytes(text.data(), text.size());
     }
     void image(const Image& image) {
         add(static_cast<std::uint64_t>(image.width));

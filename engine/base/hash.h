@@ -3,29 +3,19 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
-#include <string_view>
 
+#include "engine/base/hash_input.h"
 #include "engine/base/image.h"
 
 namespace gse {
 
 /// FNV-1a over 8-byte words with a final mix: a question has a few hundred kilobytes, and chance collisions over the few
 /// hundred questions of a session are below 1e-14.
-class Hash {
+class Hash : public HashInput<Hash> {
 public:
     void bytes(const void* data, std::size_t size) {
-        const auto* at = static_cast<const unsigned char*>(data);
-        for (; size >= sizeof(std::uint64_t); size -= sizeof(std::uint64_t), at += sizeof(std::uint64_t)) {
-            std::uint64_t word = 0;
-            std::memcpy(&word, at, sizeof word);
-            add(word);
-        }
+        const auto* at = add_words(data, size);
         for (; size > 0; --size) add(*at++);
-    }
-    void text(std::string_view text) {
-        add(text.size());
-        bytes(text.data(), text.size());
     }
     void image(const Image& image) {
         add(static_cast<std::uint64_t>(image.width));

@@ -8,6 +8,7 @@
 #include "engine/edit/preservation.h"
 #include "engine/edit/working_set.h"
 #include "tests/unit/edit/edit_scenes.h"
+#include "tests/unit/edit/row_gradients.h"
 
 namespace {
 
@@ -88,16 +89,7 @@ edit::EditRequest twin_request() {
 }
 
 raster::Gradients noisy_gradients(const edit::WorkingSet& set, Random& random) {
-    raster::Gradients gradients;
-    const auto fill = [&](std::vector<float>& values, std::size_t stride) {
-        values.resize(set.labelled() * stride);
-        for (auto& value : values) value = static_cast<float>(1e-3 * random.normal() * std::exp(3 * random.normal()));
-    };
-    fill(gradients.position, 3), fill(gradients.log_scale, 3), fill(gradients.rotation, 4), fill(gradients.opacity_logit, 1);
-    fill(gradients.sh, set.rows().sh_stride()), fill(gradients.mean2d_norm, 1);
-    for (auto& value : gradients.mean2d_norm) value = std::abs(value);
-    gradients.visible.assign(set.labelled(), 1);
-    return gradients;
+    return test::row_gradients(set, [&] { return 1e-3 * random.normal() * std::exp(3 * random.normal()); });
 }
 
 /// Pictures in double precision, one channel.

@@ -7,6 +7,7 @@
 
 #include "engine/edit/working_set.h"
 #include "tests/unit/edit/edit_scenes.h"
+#include "tests/unit/edit/row_gradients.h"
 
 namespace {
 
@@ -26,20 +27,7 @@ edit::EditRequest restless_request() {
 
 /// Gradients of every labelled row, random.
 raster::Gradients random_gradients(const edit::WorkingSet& set, Random& random) {
-    raster::Gradients gradients;
-    const auto fill = [&](std::vector<float>& values, std::size_t stride) {
-        values.resize(set.labelled() * stride);
-        for (auto& value : values) value = static_cast<float>(random.normal());
-    };
-    fill(gradients.position, 3);
-    fill(gradients.log_scale, 3);
-    fill(gradients.rotation, 4);
-    fill(gradients.opacity_logit, 1);
-    fill(gradients.sh, set.rows().sh_stride());
-    fill(gradients.mean2d_norm, 1);
-    for (auto& value : gradients.mean2d_norm) value = std::abs(value);
-    gradients.visible.assign(set.labelled(), 1);
-    return gradients;
+    return test::row_gradients(set, [&] { return random.normal(); });
 }
 
 void step(edit::WorkingSet& set, const edit::EditRequest& request, Random& random, int times) {
