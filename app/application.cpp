@@ -8,6 +8,7 @@
 #include <ctime>
 
 #include "app/engine_names.h"
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/io/user_files.h"
@@ -19,10 +20,6 @@ namespace {
 
 constexpr double ToastSeconds = 7, ErrorToastSeconds = 20;
 constexpr std::size_t MostToasts = 4, MostLogLines = 2000;
-
-double seconds_since(std::chrono::steady_clock::time_point then) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
-}
 
 /// Lines of the log from any thread, until the application takes them.
 struct LogBox {

@@ -8,6 +8,7 @@
 #include "app/application.h"
 #include "app/engine_names.h"
 #include "app/process.h"
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
@@ -127,10 +128,6 @@ struct Search {
     PlannedMemory memory;
     neural::NetworkUse use;
 };
-
-double seconds_since(std::chrono::steady_clock::time_point then) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
-}
 
 void load(Search& search, const JobParameters& job, const std::shared_ptr<DiskCache>& cache, const JobControl& control) {
     control.report("loading the model", 0, 0);

@@ -1,7 +1,6 @@
 // gseditpro open: the window, its frame loop, and what ties its parts together.
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "app/process.h"
 #include "app/viewport.h"
 #include "app/window_textures.h"
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
@@ -35,11 +35,7 @@ struct OpenOptions {
     bool sample = false, validate = false;
 };
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count(); }
-
-constexpr double IdleWait = 0.5;      // nothing happens: the window only wakes for input
+constexpr double IdleWait = 0.5;      // nothing happens: what is due by the clock is looked after, nothing is drawn
 constexpr double WorkingWait = 0.1;   // a job runs: its numbers move, the processor belongs to it
 constexpr double MovingFrame = 0.05;  // the camera moves: the panels are drawn anew with every picture, or after this time
 constexpr double WorkingFrame = 0.04; // the same while a job runs that needs the processor too,
@@ -67,14 +63,14 @@ public:
     /// Runs until the artist leaves.
     void run() {
         while (!app_.wants_to_quit()) {
-            wait();
+            const bool woken = wait();
             if (window_.should_close() || interrupt_token().stop_requested()) {
                 window_.set_should_close(false);
                 if (interrupt_token().stop_requested()) break;
                 shell_.request_quit();
             }
             try {
-                frame();
+                frame(woken);
             } catch (const vulkan::DeviceLost& lost) {
                 log::warning("the graphics device was lost and is set up again ({})", lost.what());
                 window_.rebuild_device();
@@ -111,36 +107,40 @@ private:
         return window;
     }
 
-    void wait() {
+    /// False: nothing has come in and nothing moves.
+    bool wait() {
         const double frame = viewport_.waits_for_picture() ? MovingFrame : app_.busy() ? working_frame() : 0;
-        while (seconds_since(frame_began_) < frame) window_.wait(frame - seconds_since(frame_began_));
-        const bool moving = viewport_.busy() || textures_.uploads_waiting() || shell_.animating() ||
-                            seconds_since(last_input_) < ActiveSeconds;
-        const auto before = Clock::now();
-        const double patience = moving ? 0 : app_.busy() ? WorkingWait : IdleWait;
-        if (patience <= 0) {
+        for (double rest; (rest = frame_began_ + frame - wall_seconds()) > 0;) window_.wait(rest);
+        const double before = wall_seconds();
+        if (moving() || before - last_input_ < ActiveSeconds) {
             window_.poll();
-            return;
+            return true;
         }
+        const double patience = app_.busy() ? WorkingWait : IdleWait;
         window_.wait(patience);
-        if (seconds_since(before) < patience * 0.9) last_input_ = Clock::now();   // something came in
+        if (wall_seconds() - before < patience * 0.9) last_input_ = wall_seconds();   // something came in
+        return app_.busy() || last_input_ >= before;
     }
+
+    bool moving() const { return viewport_.busy() || textures_.uploads_waiting() || shell_.animating(); }
 
     double working_frame() { return window_.device().info().is_cpu ? SoftwareFrame : WorkingFrame; }
 
-    void frame() {
-        frame_began_ = Clock::now();
+    void frame(bool woken) {
+        frame_began_ = wall_seconds();
         if (app_.layout_changed()) shell_.set_layout(app_.layout());
         app_.update(viewport_);
         lose_device_if_asked();
+        const bool captures = capture_wanted();
+        at_rest_ = !woken && !moving() && !captures && !shell_.takes_text();   // a caret blinks
+        if (at_rest_) return write_map();   // the window shows what it would show
         if (!window_.begin_frame()) return;
         viewport_.record();
         shell_.draw(app_.model(), app_, textures_);
         if (shell_.glyphs().all().size() != glyphs_dressed_) window_.renew_fonts();
-        const bool captures = capture_wanted();
         if (captures) window_.request_capture();
         window_.end_frame();
-        viewport_.set_window_ms(seconds_since(frame_began_) * 1000);
+        viewport_.set_window_ms((wall_seconds() - frame_began_) * 1000);
         set_title();
         if (captures) write_capture();
         write_map();
@@ -168,8 +168,9 @@ private:
         window_.device().pretend_lost();
     }
     void write_map() {
-        if (widget_map_.empty() || seconds_since(map_written_) < 0.1) return;
-        map_written_ = Clock::now();
+        if (widget_map_.empty() || wall_seconds() - map_written_ < 0.1) return;
+        map_written_ = wall_seconds();
+        rests_ += at_rest_;
         shell_.write_widgets(widget_map_);
         write_file(widget_map_.string() + ".state", state_json().dump(1));
     }
@@ -208,6 +209,7 @@ private:
         state["comparison"] = static_cast<int>(model.comparison);
         state["mode"] = model.view.mode;
         state["frames"] = frames_;
+        state["rests"] = rests_;
         state["focus"] = shell_.focused();
         state["busy"] = viewport_.busy();
         state["devices_lost"] = devices_lost_;
@@ -242,8 +244,9 @@ private:
     Application app_;
     std::filesystem::path widget_map_;
     std::string title_;
-    Clock::time_point last_input_ = Clock::now(), map_written_{}, frame_began_{};
-    std::size_t frames_ = 0, devices_lost_ = 0;
+    double last_input_ = wall_seconds(), map_written_ = 0, frame_began_ = 0;
+    bool at_rest_ = false;
+    std::size_t frames_ = 0, rests_ = 0, devices_lost_ = 0;   // rests: times that nothing had to be drawn
 };
 
 void run_open(const OpenOptions& options) {

@@ -172,6 +172,7 @@ std::string Shell::focused() const {
 }
 
 bool Shell::animating() const { return state_->animating; }
+bool Shell::takes_text() const { return ImGui::GetIO().WantTextInput; }
 std::string Shell::layout() const { return state_->layout.to_json(); }
 void Shell::set_layout(const std::string& json) {
     state_->layout = Layout::from_json(json);

@@ -29,6 +29,8 @@ public:
 
     /// True when the next frame will look different even without input: a camera glides, a key is held.
     bool animating() const;
+    /// A text field has the focus; its caret blinks.
+    bool takes_text() const;
 
     /// Sizes, places and front tabs of the panels as JSON; unknown parts are passed over.
     std::string layout() const;

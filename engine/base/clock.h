@@ -1,4 +1,4 @@
-// Clocks for the benches.
+// Clocks: what has gone by, and what the processor spent.
 #pragma once
 
 #include <time.h>
@@ -10,6 +10,10 @@ namespace gse {
 /// Seconds of a clock that never goes back.
 inline double wall_seconds() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+inline double seconds_since(std::chrono::steady_clock::time_point then) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - then).count();
 }
 
 /// Processor seconds of all threads since the process began: says nothing of what else the machine does.

@@ -36,6 +36,15 @@ EditPoint redrawing(int views, int steps, int rounds) {
             {{"method", "views"}, {"edited_views", views}, {"view_steps", steps}, {"rounds", rounds}}};
 }
 
+/// One of the settings' own points with another quality.
+EditPoint of_quality(const char* quality) {
+    return {"views", quality, {{"method", "views"}, {"quality", quality}}};
+}
+
+EditPoint stopping_at_rest() {
+    return {"sds", "until at rest", {{"method", "sds"}, {"early_stop", true}}};
+}
+
 Error not_understood(const std::string& text, const std::string& form) {
     return Error(ErrorCode::InvalidArgument, "the point \"" + text + "\" is not understood", "write it like " + form);
 }
@@ -52,11 +61,19 @@ std::vector<EditPoint> points_of(const EditBenchParameters& parameters, const ed
     char rest = 0;
     for (const auto& text : words_in_list(parameters.sds)) {
         int iterations = 0;
+        if (text == "rest") {
+            add(stopping_at_rest());
+            continue;
+        }
         if (std::sscanf(text.c_str(), "%d%c", &iterations, &rest) != 1 || iterations < 1) throw not_understood(text, "100");
         add(pulling(iterations));
     }
     for (const auto& text : words_in_list(parameters.redraws)) {
         int views = 0, steps = 0, rounds = 0;
+        if (std::find(std::begin(edit::Qualities), std::end(edit::Qualities), text) != std::end(edit::Qualities)) {
+            add(of_quality(text.c_str()));
+            continue;
+        }
         if (std::sscanf(text.c_str(), "%dx%dx%d%c", &views, &steps, &rounds, &rest) != 3) throw not_understood(text, "8x4x1");
         add(redrawing(views, steps, rounds));
     }
@@ -147,7 +164,7 @@ Json curves_of(const Json& evaluation, const std::vector<EditPoint>& points) {
 
 /// Name of a method's curve, as the legend has it.
 std::string curve_name(const std::string& method) {
-    return method == "sds" ? "sds: iterations" : "views: views x steps x rounds";
+    return method == "sds" ? "sds: iterations" : "views: views x steps x rounds, or quality";
 }
 
 /// The curves' points beside each other.

@@ -19,8 +19,8 @@ struct EditBenchParameters {
     std::string mode = "auto";
     int held_out_views = 12;
     bool oracle_views = false;
-    std::string sds = "25 50 100 200";
-    std::string redraws = "4x3x1 8x2x1 8x4x1 8x6x1 8x4x2 16x6x1";
+    std::string sds = "25 50 100 200 rest";
+    std::string redraws = "draft 8x2x1 8x4x1 8x6x1 8x4x2 fine";
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
@@ -32,8 +32,8 @@ struct EditBenchParameters {
           Range{1, 512});
         f("oracle_views", self.oracle_views,
           "The edits are given cameras that know the scene's framing and front, and the new word.");
-        f("sds", self.sds, "Points of method sds: iterations, several with spaces between.");
-        f("redraws", self.redraws, "Points of method views: views x steps x rounds, as 8x4x1, several with spaces between.");
+        f("sds", self.sds, "Points of method sds: iterations, or \"rest\" (the default's, until no view changes any more), several with spaces between.");
+        f("redraws", self.redraws, "Points of method views: views x steps x rounds, as 8x4x1, or a quality, several with spaces between.");
     }
 };
 

@@ -112,6 +112,18 @@ class Viewport(WindowTest):
                 self.assertGreaterEqual(len(set(self.colours(window))), LEAST_COLOURS, "blank while comparing")
         self.assertEqual(window.close(), 0)
 
+    def test_nothing_is_drawn_while_nothing_happens(self):
+        window = self.open("--sample", width=1000, height=640)
+        self.wait_for_scene(window)
+        window.wait(lambda s: s["rests"] >= 2, "the window does not come to rest", 60)
+        before = window.state()
+        window.wait(lambda s: s["rests"] >= before["rests"] + 6, "the window does not stay at rest", 30)
+        self.assertEqual(window.state()["frames"], before["frames"])
+        window.xdotool("mousemove", *window.place("viewport", 0.4, 0.4))
+        window.wait(lambda s: s["frames"] > before["frames"], "the mouse does not wake it", 10)
+        self.assertGreaterEqual(len(set(self.colours(window))), LEAST_COLOURS)
+        self.assertEqual(window.close(), 0)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -107,11 +107,15 @@ class Window:
         return round(rect["x"] + x * rect["width"]), round(rect["y"] + y * rect["height"])
 
     def settle(self, seconds=0.25):
-        """Until what was sent was seen: a moment, and on a busy machine as long as three frames take."""
-        frames = self.state()["frames"]
+        """Until what was sent was seen: a moment, and on a busy machine as long as three frames take, or until the window has
+        twice found nothing to draw."""
+        before = self.state()
         time.sleep(seconds)
         end = time.monotonic() + 10 * PATIENCE
-        while self.process.poll() is None and self.state()["frames"] < frames + 3 and time.monotonic() < end:
+        while self.process.poll() is None and time.monotonic() < end:
+            now = self.state()
+            if now["frames"] >= before["frames"] + 3 or now["rests"] >= before["rests"] + 2:
+                break
             time.sleep(0.05)
 
     def click(self, name, x=0.5, y=0.5, count=1):
