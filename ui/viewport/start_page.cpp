@@ -16,6 +16,16 @@ namespace {
 
 constexpr std::size_t MostRecent = 8;
 
+/// An edit of the sample of each kind.
+struct Example {
+    const char* kind;
+    const char* sentence;
+};
+constexpr Example Examples[] = {{"Another material", "a golden bear on the grass"},
+                                {"Something added", "a bear wearing a blue hat on the grass"},
+                                {"Another thing", "a red cat on the grass"}};
+constexpr const char* SampleSource = "bear";
+
 void draw_recoverable(Context& context) {
     for (std::size_t index = 0; index < context.model.recoverable.size(); ++index) {
         begin_notice(context, fmt::format("start.recovery.{}", index), palette::Warning);
@@ -45,6 +55,28 @@ void draw_recent(Context& context) {
     }
 }
 
+/// Sentences to begin with: the sample opens, they stand in the panel Prompt.
+void draw_examples(Context& context) {
+    heading(context, "Try it on the sample");
+    std::size_t index = 0;
+    for (const auto& example : Examples) {
+        if (button(context, {.name = fmt::format("start.try.{}", index++),
+                             .text = fmt::format("\"{}\"", example.sentence),
+                             .tooltip = "Opens the sample with this sentence; then press Locate, and Edit"})) {
+            context.request.source = SampleSource;
+            context.request.prompt = example.sentence;
+            context.request.target.clear();
+            context.request.mode = "auto";
+            context.request_changed = true;
+            open_sample(context);
+        }
+        ImGui::SameLine();
+        ImGui::AlignTextToFramePadding();
+        dim_text(example.kind);
+    }
+    ImGui::Spacing();
+}
+
 void draw_loading(Context& context) {
     const auto& job = context.model.file_job;
     wrapped_text(job.title.empty() ? "Opening" : job.title);
@@ -58,7 +90,7 @@ void draw_loading(Context& context) {
 void draw_start_page(Context& context) {
     const ImVec2 space = ImGui::GetContentRegionAvail();
     const float width = std::min(context.em * 32, space.x - context.em * 2);
-    const float lines = 9.0f + static_cast<float>(std::min(MostRecent, context.model.recent.size())) +
+    const float lines = 15.0f + static_cast<float>(std::min(MostRecent, context.model.recent.size())) +
                         7.0f * static_cast<float>(context.model.recoverable.size());
     const float top = std::max(context.em, (space.y - lines * ImGui::GetTextLineHeightWithSpacing()) * 0.4f);
     ImGui::SetCursorPos({std::max(0.0f, (space.x - width) * 0.5f), top});
@@ -83,6 +115,7 @@ void draw_start_page(Context& context) {
                          .tooltip = "A small scene that comes with the program"}))
         open_sample(context);
     ImGui::Spacing();
+    draw_examples(context);
     draw_recent(context);
     if (context.model.recent.empty())
         dim_text(

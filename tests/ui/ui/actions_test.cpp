@@ -36,6 +36,18 @@ DOCTEST_TEST_CASE("the start page opens, recovers and discards") {
     DOCTEST_CHECK(asks(harness, "question.0", "discard_recovery"));
 }
 
+DOCTEST_TEST_CASE("the start page's sentences open the sample and are what the edit is asked for") {
+    Harness harness({Wide, High, 1, Situation::Nothing, false});
+    harness.application.model().request.target = "crown";
+    harness.application.model().request.mode = "add";
+    DOCTEST_CHECK(asks(harness, "start.try.2", "open_sample"));
+    const auto& request = harness.application.model().request;
+    DOCTEST_CHECK(request.source == "bear");
+    DOCTEST_CHECK(request.prompt == "a red cat on the grass");
+    DOCTEST_CHECK(request.target == "");
+    DOCTEST_CHECK(request.mode == "auto");
+}
+
 DOCTEST_TEST_CASE("prompt: back to the defaults is back to what suits the model; the words stay") {
     Harness harness({Wide, High, 1, Situation::Scene, false});
     auto& model = harness.application.model();
