@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/check.h"
+#include "engine/localize/clusters.h"
 
 namespace gse::edit {
 namespace {
@@ -17,25 +18,14 @@ bool within(const Image& image, int x, int y) { return x >= 0 && y >= 0 && x < i
 
 /// 1 where nothing is and sky is not.
 Mask holes_of(const Image& depth, const Mask& mask) {
-    const auto empty = [&](int x, int y) { return depth.at(x, y, 0) <= 0; };
-    Mask sky(depth.width, depth.height);
-    std::vector<std::pair<int, int>> open;
+    Mask empty(depth.width, depth.height), beyond(depth.width, depth.height);
     for (int y = 0; y < depth.height; ++y)
         for (int x = 0; x < depth.width; ++x) {
             const bool rim = x == 0 || y == 0 || x + 1 == depth.width || y + 1 == depth.height;
-            if (!empty(x, y) || (!rim && mask.at(x, y) != 0)) continue;
-            sky.at(x, y) = 1;
-            open.emplace_back(x, y);
+            empty.at(x, y) = depth.at(x, y, 0) <= 0 ? 1 : 0;
+            beyond.at(x, y) = rim || mask.at(x, y) == 0 ? 1 : 0;
         }
-    while (!open.empty()) {
-        const auto [x, y] = open.back();
-        open.pop_back();
-        for (const auto& [dx, dy] : Sides) {
-            if (!within(depth, x + dx, y + dy) || !empty(x + dx, y + dy) || sky.at(x + dx, y + dy) != 0) continue;
-            sky.at(x + dx, y + dy) = 1;
-            open.emplace_back(x + dx, y + dy);
-        }
-    }
+    const Mask sky = localize::flood_fill(empty, beyond);
     Mask holes(depth.width, depth.height);
     for (std::size_t i = 0; i < holes.data.size(); ++i) holes.data[i] = depth.data[i] <= 0 && sky.data[i] == 0 ? 1 : 0;
     return holes;

@@ -127,7 +127,7 @@ public:
         settings_.negative_colour_slope = TrainingColourSlope;
         if (tools.views == nullptr) return;
         if (round_plan(request_, plan.mode).anew && tools.attention != nullptr)
-            shapes_.emplace(plan_, request_, tools.word, *tools.attention, tools.segmenter);
+            shapes_.emplace(plan_, request_, tools.word, *tools.attention);
         phase_.emplace(plan_, request_, tools, originals_, masks_, shapes_ ? &*shapes_ : nullptr);
     }
 
@@ -238,14 +238,16 @@ private:
         draw_only(phase_ ? phase_->fitted() : visible);
     }
 
-    /// Has views redrawn where a round begins, and does what the artist says of them; a new shape grows from the first round.
+    /// Has views redrawn where a round begins, and does what the artist says of them; a new shape grows anew
+    /// from each round: what was fitted to pictures that contradict each other is of their mixed colours.
     void begin_round(int iteration, IterationRecord& record) {
         const int before = phase_->round();
         if (phase_->ready(iteration, spans(set_.rows()), set_.unlabelled(), settings_, record.guidance)) draw_only(phase_->fitted());
-        if (!shapes_ || iteration > 0 || phase_->round() == before) return;
+        if (!shapes_ || phase_->round() == before) return;
         const auto seeds = shapes_->seeds(phase_->found(), bounds_of(plan_.room, plan_.seeds), set_.rows().sh_degree);
         if (seeds.size() > 0) return set_.plant(seeds, FadedLogit);
         const std::string nothing = "the redrawn views agree on no shape of \"" + tools_.word + "\"";
+        if (phase_->round() > 0) return log::warning("{} any more; the last round's is fitted further", nothing);
         if (plan_.seeds.size() == 0) throw Error(ErrorCode::Model, nothing, "try another seed, or more views (shape_views)");
         log::warning("{}; it grows from the place that was found for it", nothing);
     }

@@ -18,11 +18,20 @@ namespace gse::edit {
 namespace {
 
 constexpr std::size_t LeastViews = 3;   // fewer do not enclose a space
-// Of a redrawn picture that pixel is the thing which the segmenter keeps and whose attention is this share of the threshold, or
-// half-way from the threshold to the most there is: attention reaches beyond what it is of. Of 16 replaced things on seeds 56 and 57
-// (`gseditpro eval --kinds replace --edits 8`) the shares .4 (and .8 without the segmenter) / 1 / 1.2 / 1.4 removed 28 / 34 / 37 / 40 %
-// of the error, with outlines of an IoU of .65 / .67 / .68 / .65.
-constexpr double LeastShare = 1.2;
+// Of a redrawn picture that pixel is the thing whose attention is CertainShare of the threshold (or half-way from it to the most
+// there is), or PossibleShare of it where the picture differs from what is behind the thing. Attention alone either reaches beyond the
+// thing or leaves out parts of it (a mushroom's stem); the difference alone takes shadows along.
+constexpr double CertainShare = 1.2, PossibleShare = 0.85;
+constexpr float LeastDifference = 0.1f;    // of the channel that differs most: what the autoencoder loses is mostly less
+constexpr double LeastPart = 0.2;          // attention of a part beside that of the largest: a pair of wings has two
+constexpr double LeastArea = 0.002;        // of the picture
+
+/// Largest difference of a channel.
+float difference(const Image& a, const Image& b, std::size_t pixel) {
+    float most = 0;
+    for (std::size_t c = pixel * 3; c < pixel * 3 + 3; ++c) most = std::max(most, std::abs(a.data[c] - b.data[c]));
+    return most;
+}
 
 /// Mean over the pixel and its eight neighbours: the rim of a thing is part of a pixel.
 Image softened(const Mask& mask) {
@@ -47,8 +56,8 @@ Image over(const Image& picture, const Image& share, const Image& backdrop) {
 
 }  // namespace
 
-ShapeFinder::ShapeFinder(const EditPlan& plan, const EditRequest& request, std::string word, AttentionSource& attention, Segmenter* segmenter)
-    : plan_(plan), request_(request), word_(std::move(word)), attention_(attention), segmenter_(segmenter) {}
+ShapeFinder::ShapeFinder(const EditPlan& plan, const EditRequest& request, std::string word, AttentionSource& attention)
+    : plan_(plan), request_(request), word_(std::move(word)), attention_(attention) {}
 
 Image ShapeFinder::outline_of(const RoundView& view, const Image& picture, std::uint64_t seed) const {
     const AttentionQuery query{picture, as_told(request_.prompt), {word_}, view.view_words, false, 1, seed};
@@ -56,14 +65,16 @@ Image ShapeFinder::outline_of(const RoundView& view, const Image& picture, std::
     GSE_CHECK_EQ(maps.size(), std::size_t{1});
     normalise_maximum(maps.front());
     const double level = request_.attention_threshold > 0 ? request_.attention_threshold : attention_.threshold();
-    WordMask found = find_word_mask(picture, maps.front(), level, word_, request_, {segmenter_, nullptr});
-    if (!found.found()) return Image(picture.width, picture.height, 1);
-    const double least = std::min(LeastShare * level, (1 + level) / 2);
-    for (std::size_t i = 0; i < found.mask.data.size(); ++i) {
-        const bool inside = found.mask.data[i] != 0 && maps.front().data[i] >= least;
-        found.mask.data[i] = inside && view.mask.data[i] != 0 ? 1 : 0;
+    const double certain = std::min(CertainShare * level, (1 + level) / 2), possible = PossibleShare * level;
+    const Image& map = maps.front();
+    Mask found(picture.width, picture.height);
+    for (std::size_t i = 0; i < found.data.size(); ++i) {
+        const bool differs = difference(picture, view.backdrop.picture, i) >= LeastDifference;
+        found.data[i] = view.mask.data[i] != 0 && map.data[i] >= (differs ? possible : certain) ? 1 : 0;
     }
-    return softened(found.mask);
+    found = localize::clean_clusters(localize::without_holes(found), map, {1.5, 4}, LeastPart);
+    const bool shows = static_cast<double>(found.count()) >= LeastArea * static_cast<double>(found.data.size());
+    return shows ? softened(found) : Image(picture.width, picture.height, 1);
 }
 
 bool ShapeFinder::take_out(const RoundView& view, Image& picture, std::uint64_t seed, Image* outline) const {

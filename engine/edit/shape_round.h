@@ -23,8 +23,8 @@ struct CutOut {
 
 class ShapeFinder {
 public:
-    /// `word` is what is looked for in the redrawn pictures; `segmenter` may be null.
-    ShapeFinder(const EditPlan& plan, const EditRequest& request, std::string word, AttentionSource& attention, Segmenter* segmenter);
+    /// `word` is what is looked for in the redrawn pictures.
+    ShapeFinder(const EditPlan& plan, const EditRequest& request, std::string word, AttentionSource& attention);
 
     /// Finds the thing in each picture and lays it over the view's backdrop: the pictures become what the scene is fitted to.
     /// Throws Error (Model) when fewer than three views show it, (Cancelled) on a stop request.
@@ -41,14 +41,14 @@ public:
     GaussianData seeds(const CutOut& found, const HullBox& box, int sh_degree) const;
 
 private:
-    /// Where a picture shows the thing; [H,W,1] in [0,1], all zero where it does not.
+    /// Where a picture shows the thing, by the word's attention and by what differs from the view's backdrop; [H,W,1] in [0,1], all
+    /// zero where it does not.
     Image outline_of(const RoundView& view, const Image& picture, std::uint64_t seed) const;
 
     const EditPlan& plan_;
     const EditRequest& request_;
     std::string word_;
     AttentionSource& attention_;
-    Segmenter* segmenter_;
 };
 
 }  // namespace gse::edit

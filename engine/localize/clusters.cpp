@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
+#include <vector>
 
 #include "engine/base/check.h"
 
@@ -101,6 +103,38 @@ Mask clean_clusters(const Mask& mask, const Image& map, const DbscanParameters& 
     Mask result(mask.width, mask.height);
     for (std::size_t i = 0; i < clusters.size(); ++i)
         result.data[i] = clusters[i] >= 0 && mass[clusters[i]] >= keep_mass * largest ? 1 : 0;
+    return result;
+}
+
+Mask flood_fill(const Mask& open, const Mask& from) {
+    GSE_CHECK(open.width == from.width && open.height == from.height);
+    Mask reached(open.width, open.height);
+    std::vector<std::pair<int, int>> rim;
+    const auto reach = [&](int x, int y) {
+        if (x < 0 || y < 0 || x >= open.width || y >= open.height || open.at(x, y) == 0 || reached.at(x, y) != 0) return;
+        reached.at(x, y) = 1;
+        rim.emplace_back(x, y);
+    };
+    for (int y = 0; y < open.height; ++y)
+        for (int x = 0; x < open.width; ++x)
+            if (from.at(x, y) != 0) reach(x, y);
+    while (!rim.empty()) {
+        const auto [x, y] = rim.back();
+        rim.pop_back();
+        reach(x - 1, y), reach(x + 1, y), reach(x, y - 1), reach(x, y + 1);
+    }
+    return reached;
+}
+
+Mask without_holes(const Mask& mask) {
+    Mask open(mask.width, mask.height), edge(mask.width, mask.height);
+    for (int y = 0; y < mask.height; ++y)
+        for (int x = 0; x < mask.width; ++x) {
+            open.at(x, y) = mask.at(x, y) == 0 ? 1 : 0;
+            edge.at(x, y) = x == 0 || y == 0 || x + 1 == mask.width || y + 1 == mask.height ? 1 : 0;
+        }
+    Mask result = flood_fill(open, edge);
+    for (auto& bit : result.data) bit = bit == 0 ? 1 : 0;
     return result;
 }
 

@@ -25,6 +25,12 @@ Mask threshold_map(const Image& map, double threshold);
 /// DBSCAN's noise is dropped; the result may be empty.
 Mask clean_clusters(const Mask& mask, const Image& map, const DbscanParameters& parameters, double keep_mass);
 
+/// The pixels of `open` that a way of neighbours (four each) within it joins to one of `from`.
+Mask flood_fill(const Mask& open, const Mask& from);
+
+/// The set pixels and those that they enclose.
+Mask without_holes(const Mask& mask);
+
 /// Set pixels grown by a disc of `radius_px` (negative: shrunk).
 Mask dilate(const Mask& mask, double radius_px);
 

@@ -33,40 +33,67 @@ private:
     double threshold_;
 };
 
+edit::RoundView grey_view(float backdrop) {
+    edit::RoundView view;
+    view.mask = Mask(Side, Side);
+    std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{1});
+    view.backdrop.picture = Image(Side, Side, 3, backdrop);
+    return view;
+}
+
+/// A picture that differs from a black backdrop within a radius.
+Image disc_picture(double radius, float colour) {
+    Image picture(Side, Side, 3);
+    for (int y = 0; y < Side; ++y)
+        for (int x = 0; x < Side; ++x)
+            for (int c = 0; c < 3; ++c) picture.at(x, y, c) = radius_at(x, y) < radius ? colour : 0.0f;
+    return picture;
+}
+
 /// Radius of the disc that has as many pixels as the outline covers.
-double outline_radius(double threshold) {
+double outline_radius(double threshold, Image picture, float backdrop = 0) {
     const edit::EditPlan plan;
     edit::EditRequest request;
     request.prompt = "a cat on the grass";
     SlopingAttention attention(threshold);
-    const edit::ShapeFinder finder(plan, request, "cat", attention, nullptr);
-    edit::RoundView view;
-    view.mask = Mask(Side, Side);
-    std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{1});
-    view.backdrop.picture = Image(Side, Side, 3);
-    Image picture(Side, Side, 3, 0.5f), outline;
-    DOCTEST_REQUIRE(finder.take_out(view, picture, 1, &outline));
+    const edit::ShapeFinder finder(plan, request, "cat", attention);
+    Image outline;
+    const Image drawn = picture;
+    DOCTEST_REQUIRE(finder.take_out(grey_view(backdrop), picture, 1, &outline));
     double covered = 0;
     for (const float share : outline.data) covered += share;
-    DOCTEST_CHECK(picture.at(Side / 2, Side / 2, 0) == 0.5f);   // the thing stays,
-    DOCTEST_CHECK(picture.at(1, 1, 0) == 0.0f);                 // what is beyond it becomes the backdrop
+    DOCTEST_CHECK(picture.at(Side / 2, Side / 2, 0) == drawn.at(Side / 2, Side / 2, 0));   // the thing stays,
+    DOCTEST_CHECK(picture.at(1, 1, 0) == backdrop);                                        // what is beyond it becomes the backdrop
     return std::sqrt(covered / 3.141592653589793);
 }
 
 double radius_of(double attention) { return Reach - attention * (Reach - Core); }
 
+constexpr double Possible = 0.85;   // share of the threshold that does for what differs
+constexpr double Pixel = 1;   // the softened rim is one wide
+
 }  // namespace
 
-DOCTEST_TEST_CASE("the faint rim of the attention is not of the new thing") {
-    constexpr double pixel = 1;   // of the grid on which the attention is thresholded, and of the softened rim
+DOCTEST_TEST_CASE("the new thing is what differs from the backdrop where the word is seen, however faintly") {
+    for (const double threshold : {0.3, 0.5})
+        for (const double radius : {16.0, 17.0}) {
+            DOCTEST_REQUIRE(radius < radius_of(Possible * threshold));
+            DOCTEST_CHECK(outline_radius(threshold, disc_picture(radius, 0.5f)) == doctest::Approx(std::max(radius, radius_of(1.2 * threshold))).epsilon(Pixel / radius));
+        }
+}
+
+DOCTEST_TEST_CASE("what differs where the word is not seen is not of the new thing") {
     for (const double threshold : {0.3, 0.5, 0.7}) {
-        const double radius = outline_radius(threshold);
-        DOCTEST_CHECK(radius < radius_of(threshold));
-        DOCTEST_CHECK(radius > Core - pixel);
-        DOCTEST_CHECK(radius == doctest::Approx(radius_of(std::min(1.2 * threshold, (1 + threshold) / 2))).epsilon(0.1));
+        const double radius = outline_radius(threshold, Image(Side, Side, 3, 0.5f));
+        DOCTEST_CHECK(radius == doctest::Approx(radius_of(Possible * threshold)).epsilon(2 * Pixel / radius));
     }
 }
 
-DOCTEST_TEST_CASE("however high the threshold, something of the thing is left") {
-    for (const double threshold : {0.85, 0.95, 0.99}) DOCTEST_CHECK(outline_radius(threshold) > Core - 2);
+DOCTEST_TEST_CASE("a thing of the backdrop's colour is where the word is seen clearly") {
+    for (const double threshold : {0.3, 0.5, 0.7}) {
+        const double radius = outline_radius(threshold, Image(Side, Side, 3, 0.5f), 0.5f);
+        DOCTEST_CHECK(radius == doctest::Approx(radius_of(std::min(1.2 * threshold, (1 + threshold) / 2))).epsilon(2 * Pixel / radius));
+    }
+    for (const double threshold : {0.85, 0.95, 0.99})   // however high: something of it is left
+        DOCTEST_CHECK(outline_radius(threshold, Image(Side, Side, 3, 0.5f), 0.5f) > Core - 2);
 }
