@@ -23,7 +23,7 @@ struct Example {
 };
 constexpr Example Examples[] = {{"Another material", "a golden bear on the grass"},
                                 {"Something added", "a bear wearing a blue hat on the grass"},
-                                {"Another thing", "a red cat on the grass"}};
+                                {"Another thing", "a yellow mushroom on the grass"}};
 constexpr const char* SampleSource = "bear";
 
 void draw_recoverable(Context& context) {

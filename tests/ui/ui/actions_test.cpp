@@ -43,7 +43,7 @@ DOCTEST_TEST_CASE("the start page's sentences open the sample and are what the e
     DOCTEST_CHECK(asks(harness, "start.try.2", "open_sample"));
     const auto& request = harness.application.model().request;
     DOCTEST_CHECK(request.source == "bear");
-    DOCTEST_CHECK(request.prompt == "a red cat on the grass");
+    DOCTEST_CHECK(request.prompt == "a yellow mushroom on the grass");
     DOCTEST_CHECK(request.target == "");
     DOCTEST_CHECK(request.mode == "auto");
 }
