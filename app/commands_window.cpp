@@ -110,16 +110,12 @@ private:
     /// False: nothing has come in and nothing moves.
     bool wait() {
         const double frame = viewport_.waits_for_picture() ? MovingFrame : app_.busy() ? working_frame() : 0;
-        for (double rest; (rest = frame_began_ + frame - wall_seconds()) > 0;) window_.wait(rest);
-        const double before = wall_seconds();
-        if (moving() || before - last_input_ < ActiveSeconds) {
-            window_.poll();
-            return true;
-        }
-        const double patience = app_.busy() ? WorkingWait : IdleWait;
-        window_.wait(patience);
-        if (wall_seconds() - before < patience * 0.9) last_input_ = wall_seconds();   // something came in
-        return app_.busy() || last_input_ >= before;
+        bool came_in = false;
+        for (double rest; (rest = frame_began_ + frame - wall_seconds()) > 0;) came_in |= window_.wait(rest);
+        const bool active = came_in || moving() || wall_seconds() - last_input_ < ActiveSeconds;
+        came_in |= active ? window_.poll() : window_.wait(app_.busy() ? WorkingWait : IdleWait);
+        if (came_in) last_input_ = wall_seconds();
+        return active || came_in || app_.busy();
     }
 
     bool moving() const { return viewport_.busy() || textures_.uploads_waiting() || shell_.animating(); }

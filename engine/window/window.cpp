@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "engine/base/log.h"
 #include "engine/vulkan/device.h"
@@ -22,6 +24,7 @@ namespace gse::window {
 namespace {
 
 std::string last_glfw_error;
+std::atomic<bool> wake_asked{false};
 
 void on_glfw_error(int, const char* text) { last_glfw_error = text; }
 
@@ -58,7 +61,13 @@ struct Window::State {
     explicit State(const WindowOptions& wanted);
     ~State();
 
+    static State& of(GLFWwindow* window) { return *static_cast<State*>(glfwGetWindowUserPointer(window)); }
+    void push(const InputQueue::Event& event) {
+        came_in = true;
+        input.push(event);
+    }
     void make_window();
+    void note_events();
     void fit_screen();
     void translate_texts();
     void make_instance();
@@ -77,6 +86,7 @@ struct Window::State {
     Glfw glfw;
     void hand_on_input();
     InputQueue input;
+    bool came_in = false;   // since it was last asked for
     GLFWwindow* window = nullptr;
     std::optional<vulkan::Instance> instance;
     std::optional<vk::raii::SurfaceKHR> surface;
@@ -111,10 +121,10 @@ Window::State::State(const WindowOptions& wanted) : options(wanted), wanted_scal
     io.IniFilename = options.layout_file.empty() ? nullptr : options.layout_file.c_str();
     ImGui_ImplGlfw_InitForVulkan(window, true);
     glfwSetKeyCallback(window, [](GLFWwindow* target, int key, int code, int action, int modifiers) {
-        static_cast<State*>(glfwGetWindowUserPointer(target))->input.push({false, key, code, action, modifiers, 0});
+        of(target).push({false, key, code, action, modifiers, 0});
     });
     glfwSetCharCallback(window, [](GLFWwindow* target, unsigned character) {
-        static_cast<State*>(glfwGetWindowUserPointer(target))->input.push({true, 0, 0, 0, 0, character});
+        of(target).push({true, 0, 0, 0, 0, character});
     });
     translate_texts();
     make_device();
@@ -148,7 +158,7 @@ void Window::State::hand_on_input() {
         else
             ImGui_ImplGlfw_KeyCallback(window, event.key, event.code, event.action, event.modifiers);
     }
-    if (input.waiting()) glfwPostEmptyEvent();   // the next frame is wanted at once
+    if (input.waiting()) Window::wake();   // the next frame is wanted at once
 }
 
 Window::State::~State() {
@@ -175,11 +185,27 @@ void Window::State::make_window() {
     if (options.visible) glfwShowWindow(window);
     glfwSetWindowUserPointer(window, this);
     glfwSetDropCallback(window, [](GLFWwindow* target, int count, const char** names) {
-        auto& self = *static_cast<State*>(glfwGetWindowUserPointer(target));
+        auto& self = of(target);
+        self.came_in = true;
         std::vector<std::filesystem::path> paths;
         for (int i = 0; i < count; ++i) paths.emplace_back(names[i]);
         if (self.options.on_drop) self.options.on_drop(paths);
     });
+    note_events();
+}
+
+/// Whatever may change what the window shows. ImGui's own callbacks, installed later, call these first.
+void Window::State::note_events() {
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* target) { of(target).came_in = true; });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* target, int, int) { of(target).came_in = true; });
+    glfwSetWindowCloseCallback(window, [](GLFWwindow* target) { of(target).came_in = true; });
+    glfwSetWindowFocusCallback(window, [](GLFWwindow* target, int) { of(target).came_in = true; });
+    glfwSetWindowIconifyCallback(window, [](GLFWwindow* target, int) { of(target).came_in = true; });
+    glfwSetWindowContentScaleCallback(window, [](GLFWwindow* target, float, float) { of(target).came_in = true; });
+    glfwSetCursorEnterCallback(window, [](GLFWwindow* target, int) { of(target).came_in = true; });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* target, double, double) { of(target).came_in = true; });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* target, int, int, int) { of(target).came_in = true; });
+    glfwSetScrollCallback(window, [](GLFWwindow* target, double, double) { of(target).came_in = true; });
 }
 
 /// What the options leave open: the usual size, but with its frame inside what panels and docks leave of the screen.
@@ -353,9 +379,19 @@ void Window::State::finish_frame() {
 Window::Window(const WindowOptions& options) : state_(std::make_unique<State>(options)) {}
 Window::~Window() = default;
 
-void Window::poll() { glfwPollEvents(); }
-void Window::wait(double seconds) { glfwWaitEventsTimeout(std::max(seconds, 0.0)); }
-void Window::wake() { glfwPostEmptyEvent(); }
+bool Window::poll() {
+    glfwPollEvents();
+    const bool woken = wake_asked.exchange(false);
+    return std::exchange(state_->came_in, false) || woken;
+}
+bool Window::wait(double seconds) {
+    glfwWaitEventsTimeout(std::max(seconds, 0.0));
+    return poll();
+}
+void Window::wake() {
+    wake_asked = true;
+    glfwPostEmptyEvent();
+}
 bool Window::should_close() const { return glfwWindowShouldClose(state_->window) == GLFW_TRUE; }
 void Window::set_should_close(bool close) {
     glfwSetWindowShouldClose(state_->window, close ? GLFW_TRUE : GLFW_FALSE);

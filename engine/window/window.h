@@ -67,8 +67,8 @@ public:
     Window& operator=(const Window&) = delete;
 
     // Events
-    void poll();
-    void wait(double seconds);  // returns earlier on input or wake()
+    bool poll();                // true when something came in since the last poll() or wait(): input, wake(), a change of the window
+    bool wait(double seconds);  // the same; returns earlier then
     static void wake();         // from any thread
     bool should_close() const;  // the user asked for it
     void set_should_close(bool close);

@@ -250,6 +250,15 @@ DOCTEST_TEST_CASE("window shows pictures, survives resizing and a lost device") 
         window.wait(5);
         DOCTEST_CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(4));
     }
+    DOCTEST_SUBCASE("what came in is told once, however late it is asked for") {
+        while (window.poll()) std::this_thread::sleep_for(std::chrono::milliseconds(50));   // of the window's own coming up
+        app::Window::wake();
+        DOCTEST_CHECK(window.wait(0.05));
+        app::Window::wake();
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        DOCTEST_CHECK(window.wait(0));
+        DOCTEST_CHECK(!window.wait(0));
+    }
     window.device().wait_idle();
     DOCTEST_CHECK(window.validation_messages() == 0);
 }
