@@ -62,7 +62,7 @@ Image picture(raster::Rasterizer& rasterizer, const GaussianSet& set, const Came
 
 /// Draws the true scene, and knows where the new thing is in it; some outlines may be wrong.
 struct TrueViews : edit::ViewGuidance, edit::AttentionSource {
-    TrueViews(const synth::SynthScene& scene, synth::Part shown, raster::Rasterizer& r) : truth(scene), part(shown), rasterizer(r) {}
+    TrueViews(const synth::SynthScene& scene, synth::Part what, raster::Rasterizer& r) : truth(scene), part(what), rasterizer(r) {}
     edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl&) override {
         inputs.push_back(input);
         counts.push_back(views.size());
@@ -71,13 +71,13 @@ struct TrueViews : edit::ViewGuidance, edit::AttentionSource {
         edit::RoundTargets targets;
         for (const auto& view : views) {
             cameras.push_back(view.view.camera);
-            targets.images.push_back(picture(rasterizer, truth.scene.gaussians, view.view.camera));
+            targets.images.push_back(picture(rasterizer, shown().scene.gaussians, view.view.camera));
         }
         return targets;
     }
     std::vector<Image> locate(const edit::AttentionQuery& query) override {
         words.push_back(query.words.front());
-        const Mask mask = mask_of(rasterizer, truth.scene.gaussians, rows_of(truth, part), cameras.at(asked++));
+        const Mask mask = mask_of(rasterizer, shown().scene.gaussians, rows_of(shown(), part), cameras.at(asked++));
         Image map(mask.width, mask.height, 1);
         std::copy(mask.data.begin(), mask.data.end(), map.data.begin());
         if (blind_views > 0 && asked <= static_cast<std::size_t>(blind_views)) map = Image(mask.width, mask.height, 1);
@@ -85,7 +85,10 @@ struct TrueViews : edit::ViewGuidance, edit::AttentionSource {
     }
     int image_size() const override { return Side; }
 
+    const synth::SynthScene& shown() const { return inputs.size() == 1 && at_first != nullptr ? *at_first : truth; }
+
     const synth::SynthScene& truth;
+    const synth::SynthScene* at_first = nullptr;   // what the first round shows instead
     synth::Part part;
     raster::Rasterizer& rasterizer;
     std::vector<edit::RoundInput> inputs;
@@ -224,6 +227,16 @@ DOCTEST_TEST_CASE("what is added grows from the same hull, and hides nothing tha
         DOCTEST_CHECK(figures.error_removed > 0.5);
         DOCTEST_CHECK(result.changed_outside_label == 0);
     }
+}
+
+DOCTEST_TEST_CASE("what the first round took the thing for leaves nothing in the last") {
+    ShapeEdit run(scene_of("statue", "red"), scene_of("chair", "blue"), edit::EditMode::Replace);
+    const auto tree = scene_of("tree", "green");
+    run.views.at_first = &tree;
+    const auto figures = run.figures(run.run());
+    tell("chair, at first a tree", figures);
+    DOCTEST_CHECK(figures.outline_iou > 0.85);
+    DOCTEST_CHECK(figures.error_removed > 0.7);
 }
 
 DOCTEST_TEST_CASE("views that do not show the new thing are left out; too few are said") {
