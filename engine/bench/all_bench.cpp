@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/json.h"
@@ -70,9 +70,9 @@ public:
                     {"seconds", Json::object()}};
         for (const auto& name : known) {
             if (std::find(names.begin(), names.end(), name) == names.end()) continue;
-            const auto start = std::chrono::steady_clock::now();
+            const double start = wall_seconds();
             report["subjects"][name] = measure(name);
-            report["seconds"][name] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            report["seconds"][name] = wall_seconds() - start;
         }
         Json head = report["machine"];
         for (const auto& [name, seconds] : report["seconds"].items()) head["seconds of " + name] = seconds;

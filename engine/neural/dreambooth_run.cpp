@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <thread>
 
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/random.h"
@@ -25,10 +25,6 @@ constexpr std::int64_t ProbeBatch = 4;
 
 // Streams of the tuning's seed; 1 and 2 belong to the low-rank factors.
 constexpr std::uint64_t ClassStream = 3, InstanceStream = 4, PriorStream = 5, ProbeStream = 6;
-
-double seconds_now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 /// Puts the calling thread's number of operation threads back.
 class OperationThreads {
@@ -287,7 +283,7 @@ TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameter
                     is_few_step(bundle.kind) ? "let the plain model learn it, with the few steps as a LoRA (--lora)" : "leave DreamBooth off: it sees the scene",
                     bundle.path);
     check_task(bundle, task);
-    const double start = seconds_now();
+    const double start = wall_seconds();
     TuneReport report;
     BatchSource instance(bundle, encode_instance(bundle, task), Random::stream(parameters.seed, InstanceStream).next());
     std::optional<BatchSource> prior;
@@ -295,7 +291,7 @@ TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameter
         ThreadPool pool(tuning_threads(parameters, bundle.device));
         prior.emplace(bundle, ClassPictures(bundle, parameters, task.class_prompt, task.memory).draw(pool, job),
                       Random::stream(parameters.seed, PriorStream).next());
-        report.class_seconds = seconds_now() - start;
+        report.class_seconds = wall_seconds() - start;
     }
     DreamBoothTrainer trainer(bundle, parameters);
     const auto instance_probes = instance.probes();
@@ -310,7 +306,7 @@ TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameter
     if (!std::isfinite(report.instance_after) || !std::isfinite(report.prior_after))
         throw Error(ErrorCode::Model, "the tuning ended in values that are not finite",
                     "use a lower learning rate", bundle.path);
-    report.seconds = seconds_now() - start;
+    report.seconds = wall_seconds() - start;
     return {std::make_shared<const ModelBundle>(trainer.tuned()), trainer.lora(), report};
 }
 

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "engine/base/check.h"
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/spelling.h"
@@ -254,9 +254,9 @@ OrbitParameters EditJob::film_orbit() const {
 }
 
 void EditJob::edit(const EditRecipe& recipe, const EditObserver& observer, const JobControl& control) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = wall_seconds();
     Edited edited = edit_scene(*workplace_, *located_, plan(), recipe, observer, control);
-    edited.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    edited.seconds = wall_seconds() - start;
     edited_ = std::make_shared<const Edited>(std::move(edited));
 }
 

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <map>
 #include <utility>
 
+#include "engine/base/clock.h"
 #include "engine/base/digest.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
@@ -231,13 +231,13 @@ RememberingModel::RememberingModel(std::shared_ptr<DiskCache> cache, std::string
 const neural::TextToImage& RememberingModel::real() const {
     const std::lock_guard lock(mutex_);
     if (real_) return *real_;
-    const auto start = std::chrono::steady_clock::now();
+    const double start = wall_seconds();
     ModelLoad load;
     load.before_mb = current_rss_mb();
     real_ = loader_();   // may throw; asked again then
     loader_ = nullptr;
     load.after_mb = current_rss_mb();
-    load.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    load.seconds = wall_seconds() - start;
     load_ = load;
     return *real_;
 }

@@ -4,16 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
+#include "engine/base/clock.h"
 #include "engine/pipeline/neural_loader.h"
 
 namespace gse::pipeline {
 namespace {
-
-double now_seconds() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 nlohmann::ordered_json use_json(const neural::NetworkUse& use) {
     nlohmann::ordered_json json{{"unet", use.unet}, {"encoder", use.encoder}, {"decoder", use.decoder}, {"tflop", use.flop * 1e-12}};
@@ -31,12 +27,12 @@ std::string use_text(const neural::NetworkUse& use) {
 
 void StageTimes::begin(const std::string& stage) {
     open_ = stage;
-    start_ = now_seconds();
+    start_ = wall_seconds();
     start_use_ = network_use();
 }
 
 void StageTimes::end() {
-    add(open_, now_seconds() - start_);
+    add(open_, wall_seconds() - start_);
     const auto use = network_use() - start_use_;
     const auto found = std::find_if(networks_.begin(), networks_.end(), [&](const auto& entry) { return entry.first == open_; });
     if (found != networks_.end()) found->second += use;
