@@ -349,12 +349,12 @@ private:
         localize::SpreadParameters spread;
         spread.least_evidence_px = least;
         spread.tau = request().tau;
-        localize::spread_to_unseen(input_.gaussians.spans(), spread, weights);
+        localize::spread_to_unseen(input_.gaussians.spans(), spread, weights, tools_.threads);
         localize::CutParameters cut;
         cut.tau = request().tau;
         cut.least_evidence_px = least;
         cut.smoothness = request().label_smoothness;
-        const auto changed = localize::cut_label(input_.gaussians.spans(), cut, weights);
+        const auto changed = localize::cut_label(input_.gaussians.spans(), cut, weights, tools_.threads);
         if (changed > 0) log::debug("{} splats took the label of those they belong to", changed);
         found.label = localize::label_from_weights(search.word, weights, request().tau, least);
         if (count_bits(found.label) == 0)

@@ -5,54 +5,18 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <numbers>
 
 #include "engine/base/log.h"
 #include "engine/io/compressed_ply.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
+#include "engine/scene/morton.h"
 
 namespace gse::io {
 namespace {
 
 constexpr float ScaleLimit = 20;             // log-scales outside +-20 would ruin the bounds of their chunk
-constexpr std::uint32_t MortonCells = 1024;  // per axis
-
-/// Spreads the low 10 bits so that two zero bits follow each.
-std::uint32_t spread_bits(std::uint32_t v) {
-    v = (v | (v << 16)) & 0x030000ffu;
-    v = (v | (v << 8)) & 0x0300f00fu;
-    v = (v | (v << 4)) & 0x030c30c3u;
-    return (v | (v << 2)) & 0x09249249u;
-}
-
-/// Row numbers in Morton order of their positions, so that the splats of a chunk are neighbours.
-std::vector<std::uint32_t> morton_order(const GaussianSpans& set) {
-    std::array<float, 3> low, high;
-    low.fill(std::numeric_limits<float>::max());
-    high.fill(std::numeric_limits<float>::lowest());
-    for (std::size_t i = 0; i < set.position.size(); ++i) {
-        low[i % 3] = std::min(low[i % 3], set.position[i]);
-        high[i % 3] = std::max(high[i % 3], set.position[i]);
-    }
-    std::vector<std::uint32_t> codes(set.size), order(set.size);
-    for (std::size_t row = 0; row < set.size; ++row) {
-        std::uint32_t code = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double extent = static_cast<double>(high[axis]) - low[axis];
-            const double unit =
-                extent > 0 ? (static_cast<double>(set.position[row * 3 + axis]) - low[axis]) / extent : 0;
-            code |= spread_bits(std::min(MortonCells - 1, static_cast<std::uint32_t>(unit * MortonCells)))
-                    << axis;
-        }
-        codes[row] = code;
-    }
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return codes[a] < codes[b]; });
-    return order;
-}
 
 /// The nine values of a splat that its chunk bounds: position, clamped log-scale, base colour.
 using Bounded = std::array<float, 9>;
@@ -152,7 +116,7 @@ void append_sh(std::string& out, const GaussianSpans& set, std::size_t row) {
 std::string write_compressed_ply(const Scene& scene, std::vector<std::uint32_t>* order_out) {
     const GaussianSet storable = storable_rows(scene.gaussians, "compressed PLY");
     const GaussianSpans set = storable.spans();
-    const std::vector<std::uint32_t> order = morton_order(set);
+    const std::vector<std::uint32_t> order = morton_order(set.position);
     std::string out = header_text(set.size, set.sh_degree);
     std::string vertices, sh;
     for (std::size_t begin = 0; begin < order.size(); begin += CompressedChunkRows) {

@@ -82,21 +82,21 @@ double squared_colour_difference(const GaussianSpans& gaussians, std::size_t a, 
     return sum;
 }
 
-std::vector<Edge> neighbour_edges(const GaussianSpans& gaussians, const CutParameters& parameters, const RowPoints& rows) {
+constexpr std::uint32_t NoRow = std::numeric_limits<std::uint32_t>::max();
+
+std::vector<Edge> neighbour_edges(const GaussianSpans& gaussians, const CutParameters& parameters, const RowPoints& rows,
+                                  ThreadPool* threads) {
     const RowTree tree(3, rows, nanoflann::KDTreeSingleIndexAdaptorParams(RowTreeLeaf));
     const auto wanted = static_cast<std::size_t>(parameters.neighbours) + 1;   // itself among them
-    std::vector<std::uint32_t> nearest(wanted);
-    std::vector<float> squared(wanted);
-    std::vector<Edge> edges;
-    edges.reserve(rows.row.size() * wanted);
-    for (std::size_t i = 0; i < rows.row.size(); ++i) {
-        const auto found = tree.knnSearch(&rows.position[i * 3], wanted, nearest.data(), squared.data());
-        for (std::size_t k = 0; k < found; ++k) {
-            if (nearest[k] == i) continue;
-            edges.push_back({static_cast<std::uint32_t>(i), nearest[k],
-                             squared_colour_difference(gaussians, rows.row[i], rows.row[nearest[k]])});
-        }
-    }
+    std::vector<Edge> edges(rows.row.size() * wanted, Edge{NoRow, NoRow, 0});
+    const auto take = [&](std::size_t i, std::span<const std::uint32_t> nearest, std::span<const float>) {
+        for (std::size_t k = 0; k < nearest.size(); ++k)
+            if (nearest[k] != i)
+                edges[i * wanted + k] = {static_cast<std::uint32_t>(i), nearest[k],
+                                         squared_colour_difference(gaussians, rows.row[i], rows.row[nearest[k]])};
+    };
+    nearest_of_all(tree, rows.position, wanted, threads, take);
+    std::erase_if(edges, [](const Edge& edge) { return edge.from == NoRow; });
     return edges;
 }
 
@@ -118,7 +118,8 @@ struct Problem {
     std::vector<Edge> edges;
 };
 
-Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelWeights& weights) {
+Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelWeights& weights,
+                     ThreadPool* threads) {
     Problem problem;
     Box box;
     if (parameters.neighbours <= 0 || !labelled_box(gaussians, parameters, weights, box)) return problem;
@@ -128,7 +129,7 @@ Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parame
     double mean_evidence = 0, mean_difference = 0;
     for (const auto row : rows) mean_evidence += weights.evidence[row] * share;
     for (const auto row : rows) problem.row_costs.push_back(row_costs(weights, parameters, mean_evidence, row));
-    problem.edges = neighbour_edges(gaussians, parameters, problem.rows);
+    problem.edges = neighbour_edges(gaussians, parameters, problem.rows, threads);
     for (const auto& edge : problem.edges) mean_difference += edge.value / static_cast<double>(problem.edges.size());
     for (auto& edge : problem.edges)   // an edge found from both of its ends counts twice a half
         edge.value = 0.5 * parameters.smoothness * std::exp(-edge.value / std::max(mean_difference, LeastDifference));
@@ -140,7 +141,7 @@ Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parame
 double label_energy(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelWeights& weights,
                     std::span<const std::uint8_t> label) {
     GSE_CHECK_EQ(label.size(), gaussians.size);
-    const Problem problem = make_problem(gaussians, parameters, weights);
+    const Problem problem = make_problem(gaussians, parameters, weights, nullptr);
     const auto& rows = problem.rows.row;
     double energy = 0;
     for (std::size_t i = 0; i < rows.size(); ++i)
@@ -152,10 +153,11 @@ double label_energy(const GaussianSpans& gaussians, const CutParameters& paramet
 
 #ifdef GSE_HAVE_OPENCV
 
-std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& parameters, LabelWeights& weights) {
+std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& parameters, LabelWeights& weights,
+                      ThreadPool* threads) {
     GSE_CHECK_EQ(weights.weight.size(), gaussians.size);
     if (parameters.smoothness <= 0) return 0;
-    const Problem problem = make_problem(gaussians, parameters, weights);
+    Problem problem = make_problem(gaussians, parameters, weights, threads);
     const auto& rows = problem.rows.row;
     if (problem.edges.empty()) return 0;
     cv::detail::GCGraph<double> graph(static_cast<unsigned>(rows.size()), static_cast<unsigned>(problem.edges.size()));
@@ -163,6 +165,7 @@ std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& param
         graph.addTermWeights(graph.addVtx(), not_labelled, labelled);   // the source's side is "labelled"
     for (const auto& edge : problem.edges)
         graph.addEdges(static_cast<int>(edge.from), static_cast<int>(edge.to), edge.value, edge.value);
+    problem.edges = {};   // the graph has its own
     graph.maxFlow();
     std::size_t changed = 0;
     const auto tau = static_cast<float>(parameters.tau);
@@ -178,7 +181,7 @@ std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& param
 
 #else
 
-std::size_t cut_label(const GaussianSpans&, const CutParameters&, LabelWeights&) { return 0; }
+std::size_t cut_label(const GaussianSpans&, const CutParameters&, LabelWeights&, ThreadPool*) { return 0; }
 
 #endif
 

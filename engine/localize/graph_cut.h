@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "engine/base/thread_pool.h"
 #include "engine/localize/back_projection.h"
 
 namespace gse::localize {
@@ -18,8 +19,10 @@ struct CutParameters {
 
 /// Moves the weight of rows to the other side of `tau` so that label_energy() becomes least, exactly (Boykov and Jolly
 /// 2001, with the contrast term of GrabCut, on a graph of splats in place of pixels). Rows that neither a view saw nor a
-/// neighbour spoke for keep what they have. Returns how many rows changed sides. Deterministic; without OpenCV nothing is done.
-std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& parameters, LabelWeights& weights);
+/// neighbour spoke for keep what they have. Returns how many rows changed sides. The same for any number of threads (null =
+/// one); without OpenCV nothing is done.
+std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& parameters, LabelWeights& weights,
+                      ThreadPool* threads = nullptr);
 
 /// E(label) = sum over rows of -log p(label | weight) * trust in the row + smoothness * sum over pairs of neighbours with
 /// different labels of exp(-|colour difference|^2 / mean of it), in nats; label [N], the rows that take part count.

@@ -1,12 +1,16 @@
-// k-d tree over some rows of a set (nanoflann); private to this room.
+// k-d tree over some rows of a set (nanoflann), asked for many points at once; private to this room.
 #pragma once
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <nanoflann.hpp>
+#include <span>
 #include <vector>
 
+#include "engine/base/thread_pool.h"
 #include "engine/scene/gaussian_set.h"
+#include "engine/scene/morton.h"
 
 namespace gse::localize {
 
@@ -30,6 +34,27 @@ struct RowPoints {
 using RowTree =
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, RowPoints>, RowPoints, 3, std::uint32_t>;
 constexpr std::size_t RowTreeLeaf = 16;
+
+/// The nearest rows of the tree to every point [M,3]: calls take(point, numbers, squared distances), nearest first, once for
+/// each, from any thread of the pool (null = this one). The points are gone through along a curve, so that those that follow
+/// each other meet the same nodes in the cache.
+inline void nearest_of_all(const RowTree& tree, std::span<const float> points, std::size_t wanted, ThreadPool* threads,
+                           const std::function<void(std::size_t, std::span<const std::uint32_t>, std::span<const float>)>& take) {
+    const auto order = morton_order(points);
+    const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
+        std::vector<std::uint32_t> nearest(wanted);
+        std::vector<float> squared(wanted);
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto found = tree.knnSearch(&points[std::size_t{order[i]} * 3], wanted, nearest.data(), squared.data());
+            take(order[i], std::span(nearest).first(found), std::span(squared).first(found));
+        }
+    };
+    constexpr std::size_t chunk = 4096;
+    if (threads != nullptr)
+        threads->parallel_for(order.size(), chunk, some);
+    else
+        some(0, order.size(), 0);
+}
 
 inline bool finite_position(const GaussianSpans& gaussians, std::size_t row) {
     return std::isfinite(gaussians.position[row * 3]) && std::isfinite(gaussians.position[row * 3 + 1]) &&

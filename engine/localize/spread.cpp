@@ -30,7 +30,8 @@ double labelled_diagonal(const RowPoints& seen, const LabelWeights& weights, dou
 
 }  // namespace
 
-void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& parameters, LabelWeights& weights) {
+void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& parameters, LabelWeights& weights,
+                      ThreadPool* threads) {
     GSE_CHECK_EQ(weights.weight.size(), gaussians.size);
     weights.inferred.assign(gaussians.size, 0);
     RowPoints seen;
@@ -41,14 +42,14 @@ void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& pa
     const double reach = parameters.reach_share * labelled_diagonal(seen, weights, parameters.tau);
     if (seen.row.empty() || reach <= 0 || parameters.neighbours <= 0) return;
     const RowTree tree(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(RowTreeLeaf));
-    const auto wanted = static_cast<std::size_t>(parameters.neighbours);
-    std::vector<std::uint32_t> nearest(wanted);
-    std::vector<float> squared(wanted);
+    RowPoints unseen;
     for (std::size_t row = 0; row < gaussians.size; ++row) {
         if (weights.evidence[row] > parameters.least_evidence_px || !finite_position(gaussians, row)) continue;
-        const auto found = tree.knnSearch(&gaussians.position[row * 3], wanted, nearest.data(), squared.data());
+        unseen.add(gaussians, row);
+    }
+    const auto take = [&](std::size_t point, std::span<const std::uint32_t> nearest, std::span<const float> squared) {
         double opinion = 0, voices = 0;
-        for (std::size_t i = 0; i < found; ++i) {
+        for (std::size_t i = 0; i < nearest.size(); ++i) {
             const double distance = std::sqrt(static_cast<double>(squared[i]));
             if (distance > reach) continue;
             const auto other = seen.row[nearest[i]];
@@ -56,10 +57,12 @@ void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& pa
             opinion += voice * weights.weight[other];
             voices += voice;
         }
-        if (voices <= 0) continue;
+        if (voices <= 0) return;
+        const auto row = unseen.row[point];
         weights.weight[row] = static_cast<float>(std::clamp(opinion / voices, 0.0, 1.0));
         weights.inferred[row] = 1;
-    }
+    };
+    nearest_of_all(tree, unseen.position, static_cast<std::size_t>(parameters.neighbours), threads, take);
 }
 
 }  // namespace gse::localize

@@ -1,6 +1,7 @@
 // Labels for splats that no view sees (undersides, insides): they take the opinion of the nearest splats that are seen.
 #pragma once
 
+#include "engine/base/thread_pool.h"
 #include "engine/localize/back_projection.h"
 
 namespace gse::localize {
@@ -14,7 +15,8 @@ struct SpreadParameters {
 
 /// Sets the weight of every unseen row to the mean weight of its nearest seen neighbours, weighted by their evidence over
 /// distance, and marks it in `inferred`. Rows with a position that is not finite, or out of reach, keep what they have.
-/// Deterministic; O(N log N).
-void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& parameters, LabelWeights& weights);
+/// The same for any number of threads (null = one); O(N log N).
+void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& parameters, LabelWeights& weights,
+                      ThreadPool* threads = nullptr);
 
 }  // namespace gse::localize

@@ -6,6 +6,7 @@
 
 #include "engine/base/random.h"
 #include "engine/localize/graph_cut.h"
+#include "engine/localize/spread.h"
 
 #ifdef GSE_HAVE_OPENCV
 
@@ -96,6 +97,28 @@ DOCTEST_TEST_CASE("a part of another colour that the views are sure of is kept")
     localize::cut_label(spans(sheets.data), {}, sheets.weights);
     const auto label = sheets.label();
     for (std::size_t row = 0; row < label.size(); ++row) DOCTEST_CHECK(label[row] == (Sheets::red(row) ? 1 : 0));
+}
+
+DOCTEST_TEST_CASE("any number of threads gives the same bits") {
+    constexpr std::size_t count = 20000;   // several of the chunks that threads take
+    Random random(11);
+    Rows rows(count);
+    for (auto& value : rows.data.position) value = static_cast<float>(random.uniform(0, 1));
+    for (auto& value : rows.data.sh) value = static_cast<float>(random.uniform(0, 1));
+    for (std::size_t row = 0; row < count; ++row) {
+        rows.weights.weight[row] = rows.data.position[row * 3] > 0.5f ? 0.7f : 0.3f;
+        rows.weights.evidence[row] = random.uniform(0, 1) < 0.4 ? 0 : random.uniform(0.6, 5);
+        if (random.uniform(0, 1) < 0.2) rows.weights.weight[row] = 1 - rows.weights.weight[row];
+    }
+    auto one = rows.weights, three = rows.weights;
+    localize::spread_to_unseen(spans(rows.data), {}, one);
+    const auto changed = localize::cut_label(spans(rows.data), {}, one);
+    ThreadPool pool(3);
+    localize::spread_to_unseen(spans(rows.data), {}, three, &pool);
+    DOCTEST_CHECK(localize::cut_label(spans(rows.data), {}, three, &pool) == changed);
+    DOCTEST_CHECK(changed > count / 20);
+    DOCTEST_CHECK(three.weight == one.weight);
+    DOCTEST_CHECK(three.inferred == one.inferred);
 }
 
 DOCTEST_TEST_CASE("rows without a place, a colour or a view keep their weight; no smoothness does nothing") {

@@ -4,10 +4,12 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "engine/base/random.h"
+#include "engine/scene/morton.h"
 
 using namespace gse;
 
@@ -172,4 +174,25 @@ DOCTEST_TEST_CASE("filtering keeps rows in order and bit for bit; copies share t
     joined.append_row(data, 7);
     DOCTEST_CHECK(joined.size() == 51);
     DOCTEST_CHECK(joined.sh.back() == data.sh[7 * 27 + 26]);
+}
+
+DOCTEST_TEST_CASE("the Morton order has every point once, cell by cell, broken points among the first") {
+    std::vector<float> position;
+    for (int x = 0; x < 4; ++x)
+        for (int y = 0; y < 4; ++y)
+            for (int z = 0; z < 4; ++z)
+                position.insert(position.end(), {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+    position[5 * 3] = std::numeric_limits<float>::quiet_NaN();
+    const auto order = gse::morton_order(position);
+    std::vector<std::uint32_t> sorted = order;
+    std::sort(sorted.begin(), sorted.end());
+    for (std::uint32_t i = 0; i < sorted.size(); ++i) DOCTEST_CHECK(sorted[i] == i);
+    DOCTEST_CHECK((order[0] == 5 || order[1] == 5));
+    const auto octant = [&](std::size_t i) {
+        int code = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) code |= (position[order[i] * 3 + axis] >= 2 ? 1 : 0) << axis;
+        return code;
+    };
+    for (std::size_t i = 8; i < order.size(); ++i) DOCTEST_CHECK(octant(i) == static_cast<int>(i / 8));
+    DOCTEST_CHECK(gse::morton_order({}).empty());
 }
