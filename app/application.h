@@ -27,7 +27,7 @@
 
 namespace gse::app {
 
-constexpr std::size_t MostSnapshots = 24;   // kept for the scrubber; thinned out beyond
+constexpr std::size_t MostSnapshots = 24, MostSnapshotBytes = std::size_t{512} << 20;   // kept for the scrubber; thinned out beyond
 constexpr double MovingSeconds = 0.25;   // after the last movement of the camera the picture is refined
 
 struct ApplicationOptions {

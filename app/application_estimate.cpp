@@ -49,7 +49,7 @@ PlannedMemory Application::planned_memory() const {
     memory.labelled_share = model_.labelled > 0 && current.size() > 0
                                 ? static_cast<double>(model_.labelled) / static_cast<double>(current.size())
                                 : LikelyLabel;
-    memory.snapshots = MostSnapshots;
+    memory.snapshots = std::min(MostSnapshots * memory.scene * memory.labelled_share, static_cast<double>(MostSnapshotBytes) / 1e6);
     return memory;
 }
 

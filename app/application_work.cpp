@@ -374,9 +374,7 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
         const std::lock_guard lock(live.mutex);
         live.newest = std::move(newest);
         live.snapshots.push_back(std::move(snapshot));
-        if (live.snapshots.size() > MostSnapshots)   // every second of the older half goes
-            for (std::size_t i = 0; i < live.snapshots.size() / 2; ++i)
-                live.snapshots.erase(live.snapshots.begin() + static_cast<std::ptrdiff_t>(i));
+        edit::thin_out(live.snapshots, MostSnapshots, MostSnapshotBytes);
         ++live.version;
     };
     observer.iteration = [&live](const edit::IterationRecord& record) {

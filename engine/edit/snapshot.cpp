@@ -89,4 +89,16 @@ std::size_t EditSnapshot::byte_size() const {
     return bytes;
 }
 
+void thin_out(std::deque<EditSnapshot>& snapshots, std::size_t most, std::size_t most_bytes) {
+    constexpr std::size_t newest = 2;
+    const auto bytes = [&] {
+        std::size_t sum = 0;
+        for (const auto& snapshot : snapshots) sum += snapshot.byte_size();
+        return sum;
+    };
+    while (snapshots.size() > newest && (snapshots.size() > most || bytes() > most_bytes))
+        for (std::size_t i = 0; i < std::max<std::size_t>(1, snapshots.size() / 2) && snapshots.size() > newest; ++i)
+            snapshots.erase(snapshots.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
 }  // namespace gse::edit

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -39,6 +40,9 @@ struct EditSnapshot {
     /// What it holds beside the base's arrays.
     std::size_t byte_size() const;
 };
+
+/// Drops every second snapshot of the older half until they are at most `most` and hold at most `most_bytes`; the two newest stay.
+void thin_out(std::deque<EditSnapshot>& snapshots, std::size_t most, std::size_t most_bytes);
 
 /// Receives the state of a running edit every few iterations.
 using SnapshotCallback = std::function<void(EditSnapshot snapshot)>;

@@ -135,3 +135,30 @@ DOCTEST_TEST_CASE("24 snapshots of a million splats, one in twenty labelled, sta
     DOCTEST_CHECK(snapshots.front().size() == base.size());
     DOCTEST_CHECK_FALSE(test::same_bytes(snapshots.front().materialise(), snapshots[1].materialise()));
 }
+
+DOCTEST_TEST_CASE("snapshots are thinned out by their number and by what they hold") {
+    const auto snapshots = [](int count, std::size_t rows) {
+        std::deque<edit::EditSnapshot> result;
+        for (int i = 0; i < count; ++i) {
+            edit::SnapshotRows now;
+            now.rows.resize(rows);
+            result.push_back({GaussianSet(), std::make_shared<const edit::SnapshotRows>(std::move(now)), i});
+        }
+        return result;
+    };
+    auto few = snapshots(5, 100);
+    edit::thin_out(few, 24, std::size_t{1} << 30);
+    DOCTEST_CHECK(few.size() == 5);
+    edit::thin_out(few, 4, std::size_t{1} << 30);
+    DOCTEST_CHECK(few.size() <= 4);
+    auto heavy = snapshots(20, 10000);
+    const std::size_t one = heavy.front().byte_size();
+    edit::thin_out(heavy, 24, 6 * one);
+    DOCTEST_CHECK(heavy.size() <= 6);
+    DOCTEST_CHECK(heavy.size() >= 3);
+    DOCTEST_CHECK(heavy.back().iteration == 19);
+    DOCTEST_CHECK(heavy[heavy.size() - 2].iteration == 18);
+    edit::thin_out(heavy, 24, one / 2);   // the newest stay, whatever they hold
+    DOCTEST_CHECK(heavy.size() == 2);
+    DOCTEST_CHECK(heavy.back().iteration == 19);
+}
