@@ -189,11 +189,17 @@ private:
     void keep_reached(EditResult& result, const OutOfMemory& shortage) {
         if (result.iterations == 0) throw shortage;
         result.shortage = shortage;
-        pictures_->forget();
         originals_ = {};
+        for (Image* image : {&shown_, &gradient_, &label_seen_}) *image = {};
+    }
+
+    /// What only the steps need goes, so that the result has room.
+    void end_steps() {
+        work_ = pictures_->work();
+        pictures_->forget();
         output_ = {};
         gradients_ = {};
-        for (Image* image : {&shown_, &gradient_, &label_seen_}) *image = {};
+        set_.end_steps();
     }
 
     bool snapshot_due(int iteration) const {
@@ -471,6 +477,7 @@ private:
     }
 
     void finish(EditResult& result) {
+        end_steps();
         const EditSnapshot reached = set_.snapshot(base_.set, result.iterations);
         result.set = reached.materialise();
         result.base_to_new = reached.base_to_new();
@@ -487,7 +494,7 @@ private:
                           {"guidance", seconds_.guidance},   {"backward", seconds_.backward}, {"optimise", seconds_.optimise},
                           {"densify", seconds_.densify},     {"snapshot", seconds_.snapshot}, {"dynamic_mask", seconds_.dynamic_mask}};
         result.masks_refreshed = masks_.refreshed();
-        result.continued_pictures = pictures_->work().continued;
+        result.continued_pictures = work_.continued;
     }
 
     const EditBase& base_;
@@ -515,6 +522,7 @@ private:
     std::vector<double> calibration_;   // norms of the first guidance gradients
     double guidance_scale_ = 0;
     StageSeconds seconds_;
+    raster::ViewSessionWork work_;
     std::chrono::steady_clock::time_point last_snapshot_ = std::chrono::steady_clock::now();
 };
 

@@ -351,6 +351,14 @@ void WorkingSet::resume(const GaussianSet& base, const EditSnapshot& start) {
     remember_anchor();
 }
 
+void WorkingSet::end_steps() {
+    const int degree = rows().sh_degree;
+    table_.anchor = {};
+    table_.anchor.sh_degree = degree;
+    for (AdamMoments* moments : {&table_.position, &table_.log_scale, &table_.rotation, &table_.opacity, &table_.sh}) *moments = {};
+    for (std::vector<float>* array : {&table_.birth_sh, &gradient_}) *array = {};
+}
+
 EditSnapshot WorkingSet::snapshot(const GaussianSet& base, int iteration) const {
     GSE_CHECK_EQ(base.size(), base_size_);
     SnapshotRows now;

@@ -75,6 +75,9 @@ public:
     /// anchors begin there.
     void resume(const GaussianSet& base, const EditSnapshot& start);
 
+    /// No step() follows: anchors, moments and scratch go. What the rows are stays.
+    void end_steps();
+
     std::size_t skipped_rows() const { return skipped_rows_; }
 
     /// The state now. Rows outside the label are those of `base`, which may hold what cannot be drawn (see drawable).
