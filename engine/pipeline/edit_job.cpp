@@ -15,6 +15,7 @@
 #include "engine/io/scene_io.h"
 #include "engine/localize/focus.h"
 #include "engine/pipeline/neural_loader.h"
+#include "engine/pipeline/probe.h"
 
 namespace gse::pipeline {
 namespace {
@@ -253,22 +254,18 @@ OrbitParameters EditJob::film_orbit() const {
     return orbit;
 }
 
-void EditJob::edit(const EditRecipe& recipe, const EditObserver& observer, const JobControl& control) {
-    const double start = wall_seconds();
-    Edited edited = edit_scene(*workplace_, *located_, plan(), recipe, observer, control);
-    edited.seconds = wall_seconds() - start;
-    edited_ = std::make_shared<const Edited>(std::move(edited));
-}
-
 void EditJob::run(const EditObserver& observer) {
     times_.begin("edit");
-    edit(recipe_, observer, control_);
+    const double start = wall_seconds();
+    Edited edited = edit_scene(*workplace_, *located_, plan(), recipe_, observer, control_);
+    edited.seconds = wall_seconds() - start;
+    edited_ = std::make_shared<const Edited>(std::move(edited));
     times_.end();
     log::info("edited in {:.1f} s ({} steps): {}; with what came before it {}", edited_->seconds, result().history.size(),
               use_text(edited_->use), use_text(times_.networks()));
 }
 
-void EditJob::probe(const ProbeSize& size) {
+Edited EditJob::probe(const ProbeSize& size) {
     EditRecipe plain = recipe_;
     plain.request.iterations = plain.request.fit_steps = size.steps;
     plain.request.dynamic_mask = plain.request.look_again = plain.request.early_stop = false;
@@ -279,7 +276,11 @@ void EditJob::probe(const ProbeSize& size) {
     plain.request.view_steps = plain.request.shape_steps = size.view_steps;
     JobControl quiet;
     quiet.stop = control_.stop;
-    edit(plain, {}, quiet);
+    const ProbeScene part = probe_scene(scene().gaussians, plan());
+    const double start = wall_seconds();
+    Edited edited = edit_scene(*workplace_, part.set, *located_, part.plan, plain, {}, quiet);
+    edited.seconds = wall_seconds() - start;
+    return edited;
 }
 
 }  // namespace gse::pipeline

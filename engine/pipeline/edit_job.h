@@ -59,12 +59,12 @@ public:
     void use_label(const std::vector<std::uint8_t>& bits);
     /// Runs the edit loop.
     void run(const EditObserver& observer = {});
-    /// Runs a plain loop of that many steps, for its time; where views lead it, that many are redrawn first. What edited()
-    /// says is of it until run() replaces it.
+    /// Runs a plain loop of that many steps, for its time; where views lead it, that many are redrawn first. Of a large scene
+    /// on a part of the splats, see probe_scene().
     struct ProbeSize {
         int steps = 1, edited_views = 1, view_steps = 1;
     };
-    void probe(const ProbeSize& size);
+    Edited probe(const ProbeSize& size);
     /// Replaces where to report and what stops (a job that located goes on to edit).
     void set_control(JobControl control) { control_ = std::move(control); }
     /// Takes the settings of the loop and of the guidance, and the label's thresholds, of a recipe with the same search_key():
@@ -117,7 +117,6 @@ private:
     void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, const GivenCameras& given);
     void take(Located located);
     void look_again(const EditRecipe& recipe);
-    void edit(const EditRecipe& recipe, const EditObserver& observer, const JobControl& control);
     std::vector<Image> instance_pictures();
 
     EditRecipe recipe_;

@@ -85,11 +85,11 @@ void add_idea(Sum& sum, const Measured& measured) {
     sum.add(passes, std::max(0.0, measured.pass), measured.pass_tflop);
 }
 
-/// What a scene takes beside its own splats: working set, gradients, two moments and anchors of the labelled rows; two sets
-/// put together (the newest snapshot and the one that is looked at), and the snapshots of the label's rows.
+/// What a scene takes beside its own splats: the working set and two sets put together (the newest snapshot and the one that is
+/// looked at); of the labelled rows gradients, two moments, anchors, colours at birth and scratch; and the snapshots.
 double scene_work_mb(const PlannedMemory& memory) {
-    constexpr double sets = 6 + 2;
-    return sets * memory.scene + static_cast<double>(memory.snapshots) * memory.scene * memory.labelled_share;
+    constexpr double sets = 1 + 2, labelled_sets = 6;
+    return (sets + labelled_sets * memory.labelled_share) * memory.scene + memory.snapshots;
 }
 
 }  // namespace
@@ -190,15 +190,15 @@ void measure_redrawing(Measured& measured, const EditJob& job) {
     measured.redraw_view *= seconds / expected;
 }
 
-void measure_pulling(Measured& measured, const EditJob& job, int steps) {
-    const auto& result = job.result();
+void measure_pulling(Measured& measured, const EditJob& job, const Edited& edited, int steps) {
+    const auto& result = edited.result;
     const auto& request = job.recipe().request;
     measured.guidance = stage_seconds(result, "guidance") / steps;
     const auto refreshed = static_cast<double>(result.masks_refreshed);
     const auto mode = job.located().mode;
     const double looks = stage_seconds(result, "dynamic_mask") > 0 ? refreshed + looks_again(request, mode) : 0;
     const double masks = looks * std::max(0.0, measured.question_tflop);
-    if (looks <= 0 || measured.question_tflop >= 0) measured.guidance_tflop = std::max(0.0, tflop_of(job.edited().use) - masks) / steps;
+    if (looks <= 0 || measured.question_tflop >= 0) measured.guidance_tflop = std::max(0.0, tflop_of(edited.use) - masks) / steps;
     const double could = refreshes(request, request.iterations - steps);
     if (refreshed <= 0 || could <= 0 || result.stopped) return;
     measured.follow = refreshed / could;
@@ -212,7 +212,7 @@ void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
     const int steps = static_cast<int>(result.history.size());
     if (steps < least_steps || steps == 0) return;
     if (led_by_views(job)) measure_redrawing(measured, job);
-    else measure_pulling(measured, job, steps);
+    else measure_pulling(measured, job, job.edited(), steps);
     measured.raster = raster_seconds(result) / steps;
     measured.rows = static_cast<double>(std::max<std::size_t>(1, job.scene().gaussians.size()));
 }
@@ -224,45 +224,43 @@ bool steps_measured(const Measured& measured, const EditJob& job) {
 namespace {
 
 /// Redraws with one step and with three: what a step takes, and what a view takes beside its steps.
-void probe_views(Measured& measured, EditJob& job) {
+Edited probe_views(Measured& measured, EditJob& job) {
     constexpr double pixels_at_once = 8 * 64 * 64;   // as many as the model takes in one piece
     constexpr int more_steps = 3;
     const double side = job.model().image_size();
     const int views = std::clamp(static_cast<int>(pixels_at_once / (side * side)), 1,
                                  edit::round_plan(job.recipe().request, job.located().mode).views);
-    struct Probe {
-        double seconds, tflop, count;
-    };
-    const auto redraw = [&](int steps, int view_steps) {
-        job.probe({steps, views, view_steps});
-        return Probe{stage_seconds(job.result(), "guidance"), tflop_of(job.edited().use), static_cast<double>(job.result().redrawn_views)};
-    };
-    redraw(1, 1);   // the first pass of a model takes longer than the others
-    const Probe many = redraw(1, more_steps), one = redraw(ProbeSteps, 1);
-    if (one.count <= 0 || many.count != one.count) return;
-    const auto step = [&](double of_many, double of_one) { return std::max(0.0, (of_many - of_one) / (more_steps - 1) / one.count); };
-    measured.redraw = step(many.seconds, one.seconds);
-    measured.redraw_tflop = step(many.tflop, one.tflop);
-    measured.redraw_view = std::max(0.0, one.seconds / one.count - measured.redraw);
-    measured.redraw_view_tflop = std::max(0.0, one.tflop / one.count - measured.redraw_tflop);
+    job.probe({1, views, 1});   // the first pass of a model takes longer than the others
+    const Edited many = job.probe({1, views, more_steps});
+    Edited one = job.probe({ProbeSteps, views, 1});
+    const auto redrawn = static_cast<double>(one.result.redrawn_views);
+    if (redrawn <= 0 || many.result.redrawn_views != one.result.redrawn_views) return one;
+    const auto step = [&](double of_many, double of_one) { return std::max(0.0, (of_many - of_one) / (more_steps - 1) / redrawn); };
+    const double seconds = stage_seconds(one.result, "guidance"), tflop = tflop_of(one.use);
+    measured.redraw = step(stage_seconds(many.result, "guidance"), seconds);
+    measured.redraw_tflop = step(tflop_of(many.use), tflop);
+    measured.redraw_view = std::max(0.0, seconds / redrawn - measured.redraw);
+    measured.redraw_view_tflop = std::max(0.0, tflop / redrawn - measured.redraw_tflop);
+    return one;
+}
+
+Edited probe_steps(Measured& measured, EditJob& job) {
+    job.probe({1});
+    Edited edited = job.probe({ProbeSteps});
+    measure_pulling(measured, job, edited, static_cast<int>(edited.result.history.size()));
+    return edited;
 }
 
 }  // namespace
 
 void measure_steps(Measured& measured, EditJob& job) {
     try {
-        if (led_by_views(job)) {
-            probe_views(measured, job);
-        } else {
-            job.probe({1});
-            job.probe({ProbeSteps});
-            measure_pulling(measured, job, static_cast<int>(job.result().history.size()));
-        }
-        const auto& result = job.result();
+        const Edited edited = led_by_views(job) ? probe_views(measured, job) : probe_steps(measured, job);
+        const auto& result = edited.result;
         const double raster = raster_seconds(result);
         measured.raster = raster / std::max<std::size_t>(1, result.history.size());
-        measured.begin = std::max(0.0, job.edited().seconds - raster - stage_seconds(result, "guidance"));
-        measured.rows = static_cast<double>(std::max<std::size_t>(1, job.scene().gaussians.size()));
+        measured.begin = std::max(0.0, edited.seconds - raster - stage_seconds(result, "guidance"));
+        measured.rows = static_cast<double>(std::max<std::size_t>(1, result.base_to_new.size()));
     } catch (const Error& error) {
         if (error.code() == ErrorCode::Cancelled) throw;   // else: the edit itself will say what is wrong
     }

@@ -88,7 +88,7 @@ struct PlannedMemory {
     double weights = 0;            // of the model's files: says what loading takes until it was measured
     double scene = 0;              // of the splats
     double labelled_share = 0;     // of them
-    std::size_t snapshots = 0;     // kept at most
+    double snapshots = 0;          // those that are kept, at most
 };
 /// The most that the process will hold.
 double estimated_memory_mb(const Measured& measured, const PlannedMemory& memory);

@@ -49,6 +49,11 @@ edit::EditPlan plan_of(Workplace& workplace, const Located& located, const EditR
 
 Edited edit_scene(Workplace& workplace, const Located& located, const edit::EditPlan& plan, const EditRecipe& recipe,
                   const EditObserver& observer, const JobControl& control) {
+    return edit_scene(workplace, workplace.scene().gaussians, located, plan, recipe, observer, control);
+}
+
+Edited edit_scene(Workplace& workplace, const GaussianSet& scene, const Located& located, const edit::EditPlan& plan,
+                  const EditRecipe& recipe, const EditObserver& observer, const JobControl& control) {
     const auto use_before = network_use();
     const auto& model = workplace.model();
     const auto& request = recipe.request;
@@ -81,7 +86,7 @@ Edited edit_scene(Workplace& workplace, const Located& located, const edit::Edit
         if (observer.targets) observer.targets(sheet);
     };
     tools.target_orders = observer.target_orders;
-    edited.result = edit::run_edit(workplace.scene().gaussians, plan, request, tools);
+    edited.result = edit::run_edit(scene, plan, request, tools);
     edited.use = network_use() - use_before;
     edited.drawn = drawable(edited.result.set);
     edited.key = located.key + fields_to_json(static_cast<const edit::LoopSettings&>(request)).dump() +

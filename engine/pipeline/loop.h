@@ -52,5 +52,8 @@ edit::EditPlan plan_of(Workplace& workplace, const Located& located, const EditR
 /// edit::run_edit does.
 Edited edit_scene(Workplace& workplace, const Located& located, const edit::EditPlan& plan, const EditRecipe& recipe,
                   const EditObserver& observer, const JobControl& control);
+/// The same with another scene in place of the workplace's; the plan is of that one.
+Edited edit_scene(Workplace& workplace, const GaussianSet& scene, const Located& located, const edit::EditPlan& plan,
+                  const EditRecipe& recipe, const EditObserver& observer, const JobControl& control);
 
 }  // namespace gse::pipeline

@@ -2,7 +2,10 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "engine/pipeline/estimate.h"
+#include "engine/pipeline/probe.h"
 
 namespace {
 
@@ -127,8 +130,8 @@ DOCTEST_TEST_CASE("an estimate of memory: the process without the model, the mod
     memory.weights = 50;
     memory.scene = 10;
     memory.labelled_share = 0.5;
-    memory.snapshots = 24;
-    const double scene = 8 * 10 + 24 * 10 * 0.5;
+    memory.snapshots = 120;
+    const double scene = 3 * 10 + 6 * 10 * 0.5 + 120;   // the set, two put together; of half of it what steps need; snapshots
     DOCTEST_CHECK(pipeline::estimated_memory_mb({}, memory) == doctest::Approx(100 + 300 + 50 + scene));
     pipeline::Measured known;
     known.load_mb = 400;
@@ -157,4 +160,24 @@ DOCTEST_TEST_CASE("what was never measured is not guessed") {
     auto work = located();
     work.loaded = false;
     DOCTEST_CHECK(seconds(known, request, work) < 0);
+}
+
+DOCTEST_TEST_CASE("a large scene is thinned out for its time: shares and labels stay, a small one stays whole") {
+    GaussianData data;
+    data.resize(1000);
+    for (std::size_t row = 0; row < data.size(); ++row) data.position[row * 3] = static_cast<float>(row);
+    const GaussianSet scene(std::move(data));
+    edit::EditPlan plan;
+    plan.label.assign(1000, 0);
+    for (std::size_t row = 900; row < 1000; ++row) plan.label[row] = 1;
+    const auto whole = pipeline::probe_scene(scene, plan, 1000);
+    DOCTEST_CHECK(whole.set.shares_all_with(scene));
+    const auto part = pipeline::probe_scene(scene, plan, 300);
+    DOCTEST_CHECK(part.set.size() == 225 + 25);   // every fourth of each kind
+    DOCTEST_REQUIRE(part.plan.label.size() == part.set.size());
+    for (std::size_t row = 0; row < part.set.size(); ++row)
+        DOCTEST_CHECK((part.plan.label[row] != 0) == (part.set.position()[row * 3] >= 900));
+    for (std::size_t row = 0; row + 1 < 1000; ++row) plan.label[row] = 0;
+    const auto lonely = pipeline::probe_scene(scene, plan, 10);
+    DOCTEST_CHECK(std::count(lonely.plan.label.begin(), lonely.plan.label.end(), 1) == 1);
 }
