@@ -4,7 +4,7 @@ import pathlib
 import time
 import unittest
 
-from window import WindowTest
+from window import PATIENCE, WindowTest
 
 
 class Session(WindowTest):
@@ -70,9 +70,9 @@ class Session(WindowTest):
         window.picture("08_editing")
         window.click("job.pause")
         window.wait(lambda s: s["job"]["paused"], "it did not pause", 10)
-        time.sleep(1)
+        time.sleep(PATIENCE)   # the step it is in is the last
         standing = window.state()["losses"]
-        time.sleep(1)
+        time.sleep(PATIENCE)
         self.assertEqual(window.state()["losses"], standing)
         window.click("job.pause")
         window.wait(lambda s: s["losses"] > standing + 5, "it did not go on")
