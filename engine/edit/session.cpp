@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <new>
 #include <numeric>
 
 #include "engine/base/check.h"
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/memory.h"
@@ -42,6 +42,7 @@ constexpr double FadedLogit = -6;              // opacity of what another thing 
 // all that were are more than this share of the steps.
 constexpr std::size_t SkippedInARow = 10;
 constexpr double MostSkipped = 0.1;
+constexpr double SnapshotShare = 0.1;   // of the time, at most, where they come by time: those of a large scene are rarer
 /// While training, colours below black get the full gradient of black (F18 names 0.01): what a large step has driven to black
 /// must be able to come back. WorkingSet keeps them from going further.
 constexpr float TrainingColourSlope = 1.0f;
@@ -204,17 +205,18 @@ private:
 
     bool snapshot_due(int iteration) const {
         if (tools_.snapshot_seconds > 0)
-            return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_snapshot_).count() >=
-                   tools_.snapshot_seconds;
+            return wall_seconds() - last_snapshot_ >= std::max(tools_.snapshot_seconds, snapshot_cost_ * (1 / SnapshotShare - 1));
         return (iteration + 1) % request_.snapshot_every == 0;
     }
 
     void take_snapshot(int iteration) {
         const StageTimer timer(seconds_.snapshot);
+        const double begin = wall_seconds();
         EditSnapshot snapshot = set_.snapshot(base_.set, iteration + 1);
         if (phase_) snapshot.round = phase_->state();
         tools_.snapshot(std::move(snapshot));
-        last_snapshot_ = std::chrono::steady_clock::now();
+        last_snapshot_ = wall_seconds();
+        snapshot_cost_ = last_snapshot_ - begin;
     }
 
     void render_originals() {
@@ -523,7 +525,7 @@ private:
     double guidance_scale_ = 0;
     StageSeconds seconds_;
     raster::ViewSessionWork work_;
-    std::chrono::steady_clock::time_point last_snapshot_ = std::chrono::steady_clock::now();
+    double last_snapshot_ = wall_seconds(), snapshot_cost_ = 0;
 };
 
 }  // namespace

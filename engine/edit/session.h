@@ -89,7 +89,7 @@ struct EditTools {
     /// label does not count. Null = from the base.
     const EditSnapshot* start = nullptr;
     ViewGuidance* views = nullptr;      // leads the edit in place of `guidance`: it redraws views, the rows are fitted to them
-    double snapshot_seconds = 0;        // above 0: a snapshot whenever this much time has passed, instead of by iterations
+    double snapshot_seconds = 0;        // above 0: a snapshot whenever this much time has passed (more where they take long), instead of by iterations
     /// Of view guidance: shows the redrawn views, as soon as a round is redrawn and whenever something about them changes.
     std::function<void(const ViewTargets&)> targets = {};
     /// Asked when a round was redrawn, before every iteration, and again after orders: what the artist says meanwhile, or

@@ -4,8 +4,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
 #include <map>
+#include <thread>
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
@@ -33,6 +35,7 @@ struct Run {
     unsigned threads = 1;
     edit::SnapshotCallback snapshot{};
     JobControl job{};
+    double snapshot_seconds = 0;
 };
 
 edit::EditResult run(const test::BallScene& scene, const edit::EditRequest& request, edit::Guidance& guidance,
@@ -40,7 +43,9 @@ edit::EditResult run(const test::BallScene& scene, const edit::EditRequest& requ
     ThreadPool pool(how.threads);
     const auto rasterizer = raster::make_fast_rasterizer(pool);
     const auto plan = test::ball_plan(scene, *rasterizer);
-    return edit::run_edit(scene.set, plan, request, {*rasterizer, guidance, how.snapshot, how.job});
+    edit::EditTools tools{*rasterizer, guidance, how.snapshot, how.job};
+    tools.snapshot_seconds = how.snapshot_seconds;
+    return edit::run_edit(scene.set, plan, request, tools);
 }
 
 /// Mean base colour of the rows with a bit.
@@ -133,6 +138,27 @@ DOCTEST_TEST_CASE("a stop in the middle returns the last state, equal to a short
     DOCTEST_CHECK(result.nonfinite == 0);
     DOCTEST_REQUIRE(snapshot.size() > 0);
     DOCTEST_CHECK_FALSE(test::same_bytes(snapshot, scene.set));
+}
+
+DOCTEST_TEST_CASE("snapshots by time become rare where they take long") {
+    const auto scene = test::ball_scene();
+    auto guidance = test::towards({0.1, 0.1, 0.9});
+    const auto taken = [&](std::chrono::milliseconds cost) {
+        int count = 0;
+        Run how;
+        how.snapshot_seconds = 1e-9;
+        how.snapshot = [&](const edit::EditSnapshot&) {
+            std::this_thread::sleep_for(cost);
+            ++count;
+        };
+        const auto result = run(scene, short_request(), guidance, how);
+        DOCTEST_REQUIRE(result.iterations == short_request().iterations);
+        return count;
+    };
+    const int often = taken(std::chrono::milliseconds(0)), rare = taken(std::chrono::milliseconds(300));
+    DOCTEST_CHECK(often > 1);
+    DOCTEST_CHECK(rare >= 1);
+    DOCTEST_CHECK(rare < often);
 }
 
 DOCTEST_TEST_CASE("snapshots are the states of the run and stay as they were") {
