@@ -32,6 +32,10 @@ constexpr float LabelSeen = 0.5f;           // share of a pixel from which it sh
 constexpr std::uint64_t SearchSeed = 0;      // one for all: what is found does not follow the loop's dice
 constexpr double AtOdds = 0.6;              // IoU of a view's mask and the common label, below which the view is asked again
 constexpr std::uint64_t SecondAsking = 9000;   // other noise than the first time
+// Of the threshold (at most half-way from it to the most there is): attention of what is not there yet reaches wider than what will be.
+// Of 8 added things each on seeds 55 | 56 | 57 | 58 (`gseditpro eval --kinds add --edits 8`) 1 changed 2.5 | 2.5 | 1.9 | 1.0 % of the
+// pixels outside the true part, 1.2 changed 1.8 | 1.4 | 1.8 | 0.7 %; outlines (mean IoU .40) and error removed (13 %) were the same.
+constexpr double AbsentLevel = 1.2;
 constexpr double RivalLead = 0.5;           // another thing that has so much more takes the pixel from the mask
 
 Image mask_image(const Mask& mask) {
@@ -188,7 +192,7 @@ private:
 
     /// Views have nothing to do with each other here.
     void make_masks(const Search& search, std::vector<ViewEvidence>& views) {
-        const double level = threshold();
+        const double level = search.absent ? std::min(AbsentLevel * threshold(), (1 + threshold()) / 2) : threshold();
         const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
             for (std::size_t v = begin; v < end; ++v) {
                 check_stop();

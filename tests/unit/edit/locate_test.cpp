@@ -408,6 +408,22 @@ DOCTEST_TEST_CASE("an added thing gets seeds where the attention of all views me
     for (const auto& mask : plan.masks) DOCTEST_CHECK(mask.count() > 0);
 }
 
+DOCTEST_TEST_CASE("attention has to be surer of what is not there yet") {
+    const Quiet quiet;
+    Fixture fixture;
+    const double level = fixture.attention.threshold();
+    const auto least_inside = [&](const edit::EditRequest& request) {
+        double least = 1;
+        for (const auto& view : edit::locate(fixture.input(request), fixture.tools()).views)
+            for (std::size_t i = 0; i < view.region.data.size(); ++i)
+                if (view.region.data[i] != 0) least = std::min<double>(least, view.map.data[i]);
+        return least;
+    };
+    const double there = least_inside(request_for("a blue ball", "blue")), absent = least_inside(request_for("a ball with a hat", "hat"));
+    DOCTEST_CHECK(absent > there + 0.15 * level);   // a region is a little more than the pixels above the level
+    DOCTEST_CHECK(absent < there + 0.25 * level);
+}
+
 DOCTEST_TEST_CASE("without agreement an added thing goes to its usual place") {
     const Quiet quiet;
     Fixture fixture;
