@@ -211,6 +211,27 @@ Box worn_box(const std::vector<Vec3>& points) {
     return box;
 }
 
+/// Share of the views that see a cube whose mask covers it; 0 where too few count, or where the relation does not allow it.
+std::vector<double> agreement_of(const RegionSearch& search, const RegionParameters& parameters, const Frame& frame, const Grid& grid,
+                                 const RelatedPlace* place, std::ptrdiff_t voters) {
+    constexpr std::size_t cells_at_once = 512;
+    std::vector<double> agreement(grid.size(), 0);
+    const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t cell = begin; cell < end; ++cell) {
+            if (place != nullptr && !place->allows(grid.centre(cell))) continue;
+            const Vote vote = vote_at(search, frame.to_world(grid.centre(cell)), grid.side);
+            if (vote.counted * 2 < voters || vote.seen < parameters.least_seen * vote.counted) continue;
+            if (vote.seen == 0 || vote.covered < parameters.least_covered * vote.counted) continue;
+            agreement[cell] = static_cast<double>(vote.covered) / vote.seen;
+        }
+    };
+    if (search.threads != nullptr)
+        search.threads->parallel_for(grid.size(), cells_at_once, some);
+    else
+        some(0, grid.size(), 0);
+    return agreement;
+}
+
 }  // namespace
 
 AddRegion vote_region(const RegionSearch& search, const RegionParameters& parameters) {
@@ -224,16 +245,8 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
     const bool related = !place_name(search.relation).empty();
     const RelatedPlace place(search.relation, points, related ? visible_points(search, frame, false) : std::vector<Vec3>{});
     const Grid grid = make_grid(related ? place.box() : worn_box(points), parameters.cells);
-    std::vector<double> agreement(grid.size(), 0);
-    double best = 0;
-    for (std::size_t cell = 0; cell < grid.size(); ++cell) {
-        if (related && !place.allows(grid.centre(cell))) continue;
-        const Vote vote = vote_at(search, frame.to_world(grid.centre(cell)), grid.side);
-        if (vote.counted * 2 < voters || vote.seen < parameters.least_seen * vote.counted) continue;
-        if (vote.seen == 0 || vote.covered < parameters.least_covered * vote.counted) continue;
-        agreement[cell] = static_cast<double>(vote.covered) / vote.seen;
-        best = std::max(best, agreement[cell]);
-    }
+    const auto agreement = agreement_of(search, parameters, frame, grid, related ? &place : nullptr, voters);
+    const double best = *std::max_element(agreement.begin(), agreement.end());
     if (best < parameters.least_agreement) return {};
     std::vector<double> levels;
     for (double level = best; level >= parameters.lowest_agreement; level -= parameters.level_step) levels.push_back(level);
