@@ -62,6 +62,7 @@ struct RoundInput {
     std::uint64_t seed = 0;        // already mixed with the round: the only source of randomness
     bool anew = false;             // the inside of the masks becomes something else: nothing of it is to be kept
     std::string sentence = {};     // that the model is told; empty = the one that the guidance was made for
+    double guided_until = 0;       // steps at or below this noise level are led by the sentence alone, without the negative prompt
 };
 
 /// The pictures as the model would have them, and numbers for the log.

@@ -10,13 +10,14 @@ namespace {
 using Names = std::string_view;
 
 /// Of the gradient, its masks that follow the edit, and the pseudo ground truth. Growth comes once per round instead.
-constexpr std::array<Names, 20> GradientOnly{
+constexpr std::array<Names, 22> GradientOnly{
     "iterations",    "guidance_weight", "gate_guidance",  "preserve",    "l1",          "ssim",  "dynamic_mask",
     "dynamic_from",  "dynamic_every",   "look_again",     "look_again_tau", "densify_from", "densify_until", "t_min",
-    "t_max_start",   "t_max_end",       "guidance_scale", "clamp",       "weight",      "sample_posterior"};
-constexpr std::array<Names, 13> ViewsOnly{"quality", "edited_views",    "rounds",         "view_steps",          "fit_steps",
+    "t_max_start",   "t_max_end",       "guidance_scale", "clamp",       "weight",      "sample_posterior", "delta",       "before_prompt"};
+constexpr std::array<Names, 15> ViewsOnly{"quality", "edited_views",    "rounds",         "view_steps",          "fit_steps",
                                           "view_strength",   "view_guidance_scale", "shape_rounds",   "shape_steps",
-                                          "shape_fit_steps", "shape_strength", "shape_again_strength", "shape_views"};
+                                          "shape_fit_steps", "shape_strength", "shape_again_strength", "shape_views",
+                                          "shape_guided_until", "shape_guidance_scale"};
 
 template <std::size_t N>
 bool among(const std::array<Names, N>& names, std::string_view field) {

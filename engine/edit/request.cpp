@@ -252,6 +252,14 @@ int RoundPlan::steps_of(int round) const {
     return std::max(1, static_cast<int>(std::ceil(view_steps * strength_of(round) / strength - 1e-9)));
 }
 
+double RoundPlan::guided_steps_of(int round) const {
+    constexpr double unguided = 0.5;   // of the two passes of a guided step
+    const int steps = steps_of(round);
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) sum += strength_of(round) * (steps - i) / steps > guided_until ? 1 : unguided;
+    return sum;
+}
+
 int RoundPlan::view_steps_within(int steps) const {
     int sum = 0;
     for (int round = 0; round * fit_steps < steps; ++round) sum += steps_of(round);
@@ -275,7 +283,8 @@ QualityShare share_of(const std::string& quality) {
 
 RoundPlan round_plan(const LoopSettings& settings, EditMode mode) {
     RoundPlan plan{settings.shape_rounds, settings.shape_fit_steps, true,
-                   settings.shape_steps,  settings.shape_strength,  settings.shape_again_strength, settings.shape_views};
+                   settings.shape_steps,  settings.shape_strength,  settings.shape_again_strength, settings.shape_views,
+                   settings.shape_guided_until};
     if (mode == EditMode::Modify)
         plan = {settings.rounds, settings.fit_steps, false, settings.view_steps, settings.view_strength, settings.view_strength, settings.edited_views};
     const auto share = share_of(settings.quality);

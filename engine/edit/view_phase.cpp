@@ -18,8 +18,8 @@ namespace {
 /// Every setting that the redrawn pictures follow from.
 std::string redraw_key(const EditRequest& request, EditMode mode, const std::string& of_model) {
     const auto plan = round_plan(request, mode);
-    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, request.seed, plan.rounds, plan.views,
-                       plan.view_steps, plan.strength, plan.again_strength, of_model);
+    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, request.seed, plan.rounds, plan.views,
+                       plan.view_steps, plan.strength, plan.again_strength, plan.guided_until, of_model);
 }
 
 bool same_camera(const Camera& a, const Camera& b) {

@@ -159,7 +159,7 @@ bool ViewRounds::begins(int iteration) const { return round_ < 0 || iteration / 
 RoundInput ViewRounds::input(std::uint64_t stream) const {
     const auto plan = round_plan(request_, plan_.mode);
     return {round_,          plan.rounds, plan.steps_of(round_), std::min(1.0, plan.strength_of(round_) + raised_), Random::stream(request_.seed, stream).next(),
-            shapes_ != nullptr, sentence_};
+            shapes_ != nullptr, sentence_, plan.guided_until};
 }
 
 /// Where the sentence leaves open what colour the new thing has, the view with most room for it is drawn first, and its colour

@@ -85,35 +85,36 @@ ModelNature checkpoint_nature(const fs::path& path) {
     return nature_of(unet, config_or(beside / "scheduler_config.json", scheduler), unet.out_channels, beside);
 }
 
-/// What suits a kind that redraws views in its own way, over what its size states (views.md section 15). The difference to the
-/// sentence before the edit is left out: it doubles the few calls, and a model that sees the unedited view needs none.
+/// What suits a kind that redraws views in its own way, over what its size states (views.md section 15).
 void state_kind(Json& json, const ModelNature& nature) {
     if (nature.kind == BundleKind::Plain) return;
     Json request = json.value("request", Json::object()), guidance = json.value("guidance", Json::object());
     request["method"] = "views";
     request["rounds"] = 2;
-    guidance["delta"] = 0.0;
+    request["shape_guided_until"] = 0.0;
+    double scale = 1;
     switch (nature.kind) {
         case BundleKind::Lcm:
         case BundleKind::Tcd:
             request["view_steps"] = 4;
             request["view_strength"] = 0.8;
-            guidance["view_guidance_scale"] = nature.embeds_guidance ? 8.5 : 1.0;
+            scale = nature.embeds_guidance ? 8.5 : 1.0;
             break;
         case BundleKind::Turbo:
             request["view_steps"] = 2;
             request["view_strength"] = 0.75;
-            guidance["view_guidance_scale"] = 1.0;
+            scale = 1.0;
             break;
         case BundleKind::InstructPix2Pix:
             request["view_steps"] = 6;
             request["view_strength"] = 0.98;
-            guidance["view_guidance_scale"] = 7.5;
+            scale = 7.5;
             guidance["image_guidance_scale"] = 1.0;
             break;
         case BundleKind::Plain:
             break;
     }
+    guidance["view_guidance_scale"] = guidance["shape_guidance_scale"] = scale;
     json["request"] = std::move(request);
     json["guidance"] = std::move(guidance);
 }
@@ -126,8 +127,10 @@ Json stated_by_size(ModelKind kind) {
                        {"tau", 0.5},           {"evidence_px", 1.0},
                        {"iterations", 4000},   {"geometry_share", 1.0},
                        {"colour_coupling", 0.0}, {"shape_views", 8},
-                       {"shape_steps", 8},      {"view_steps", 8}};
-    json["guidance"] = {{"guidance_scale", 7.5}, {"view_guidance_scale", 7.5}, {"t_max_end", 0.5}};
+                       {"shape_steps", 8},      {"view_steps", 8},
+                       {"shape_guided_until", 0.0}};   // measured with the starter only
+    json["guidance"] = {{"guidance_scale", 7.5}, {"view_guidance_scale", 7.5}, {"shape_guidance_scale", 7.5},
+                        {"t_max_end", 0.5}};
     json["attention"] = {{"refinement", 1}};   // views.md 15; the starter's own maps are as good without
     json["dreambooth"] = {{"steps", 400},           {"batch", 4},
                           {"class_images", 200},    {"class_steps", 50},

@@ -75,7 +75,6 @@ struct DiffusionViews::Batch {
     torch::Tensor noise;
     torch::Tensor mask;       // [K,1,h,w]
     torch::Tensor contexts;   // [K,2,T,D] negative, positive
-    torch::Tensor before;     // the same with the sentence before the edit; undefined where nothing is taken off
     torch::Tensor picture;    // [K,C,h,w] what a model that edits pictures is shown: the unedited views; else undefined
     torch::Tensor x;          // what the steps have made of it
 };
@@ -118,12 +117,7 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
     batch.mask = torch::cat(masks);
     const bool edits = takes_picture(bundle_->unet->config());   // such a model is told what to do, not what there is
     batch.contexts = contexts(views, edits || input.sentence.empty() ? prompt_ : input.sentence);
-    if (edits) {
-        batch.picture = batch.original / bundle_->scaling_factor();   // as the model is used to it: not scaled
-        return batch;   // it sees what it must not change
-    }
-    const auto& before = parameters_.before_prompt;
-    if (!input.anew && parameters_.delta > 0 && !before.empty() && before != prompt_) batch.before = contexts(views, before);
+    if (edits) batch.picture = batch.original / bundle_->scaling_factor();   // as the model is used to it: not scaled
     return batch;
 }
 
@@ -156,8 +150,10 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
                              const JobControl& job) const {
     const auto& schedule = bundle_->schedule;
     const auto timesteps = redraw_levels(bundle_->kind, schedule, input.strength, input.steps);
-    const Conditioning edited{batch.contexts, parameters_.view_guidance_scale, batch.picture, parameters_.image_guidance_scale};
-    const Conditioning unedited_words{batch.before, 1};
+    const double scale = input.anew ? parameters_.shape_guidance_scale : parameters_.view_guidance_scale;
+    Conditioning edited{batch.contexts, scale, batch.picture, parameters_.image_guidance_scale};
+    // Others hold guidance themselves, or follow a picture.
+    const bool pairs = !batch.picture.defined() && row_parts(bundle_->unet->config(), edited) == 2;
     const auto roots = [&](std::int64_t t) {
         const double a = schedule.alpha_cumprod(t);
         return std::pair{std::sqrt(a), std::sqrt(1 - a)};
@@ -167,13 +163,9 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
     for (std::size_t i = 0; i < timesteps.size(); ++i) {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "redrawing the views was stopped");
         const auto t = torch::full({1}, timesteps[i], torch::kInt64);
+        const double level = static_cast<double>(timesteps[i] + 1) / static_cast<double>(schedule.steps());
+        if (pairs && level <= input.guided_until) edited.guidance_scale = 1;
         auto x0 = schedule.to_x0(output(batch.x, timesteps[i], edited), batch.x, t);
-        if (batch.before.defined()) {   // what it would change on the unedited view anyway is taken off
-            const auto [a, b] = roots(timesteps[i]);
-            const auto unedited = a * batch.original + b * batch.noise;
-            x0 = x0 + parameters_.delta *
-                          (batch.original - schedule.to_x0(output(unedited, timesteps[i], unedited_words), unedited, t));
-        }
         x0 = batch.mask * x0 + (1 - batch.mask) * batch.original;   // the surroundings stay, and keep the steps in place
         const auto [now, spread] = roots(timesteps[i]);
         if (i + 1 == timesteps.size()) {

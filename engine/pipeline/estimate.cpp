@@ -41,16 +41,16 @@ bool draws_key_view(const edit::EditRequest& request, edit::EditMode mode) {
 
 /// What the rounds that begin after an iteration ask of the model; one that was begun is not begun again.
 struct Redrawing {
-    double views = 0, steps = 0;   // pictures, and denoising steps of single pictures
+    double views = 0, steps = 0;   // pictures, and denoising steps of single pictures; those that are not guided count half
 };
 
 Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, int first_iteration) {
     const auto plan = edit::round_plan(request, mode);
     Redrawing left;
-    if (first_iteration == 0 && draws_key_view(request, mode)) left = {1, static_cast<double>(plan.steps_of(0))};
+    if (first_iteration == 0 && draws_key_view(request, mode)) left = {1, plan.guided_steps_of(0)};
     for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds; ++round) {
         left.views += plan.views;
-        left.steps += static_cast<double>(plan.views) * plan.steps_of(round);
+        left.steps += plan.views * plan.guided_steps_of(round);
     }
     return left;
 }
@@ -223,6 +223,13 @@ bool steps_measured(const Measured& measured, const EditJob& job) {
 
 namespace {
 
+/// Guided steps of a first round that has so many.
+double guided_steps(const EditJob& job, int view_steps) {
+    auto plan = edit::round_plan(job.recipe().request, job.located().mode);
+    plan.view_steps = view_steps;
+    return plan.guided_steps_of(0);
+}
+
 /// Redraws with one step and with three: what a step takes, and what a view takes beside its steps.
 Edited probe_views(Measured& measured, EditJob& job) {
     constexpr double pixels_at_once = 8 * 64 * 64;   // as many as the model takes in one piece
@@ -235,12 +242,13 @@ Edited probe_views(Measured& measured, EditJob& job) {
     Edited one = job.probe({ProbeSteps, views, 1});
     const auto redrawn = static_cast<double>(one.result.redrawn_views);
     if (redrawn <= 0 || many.result.redrawn_views != one.result.redrawn_views) return one;
-    const auto step = [&](double of_many, double of_one) { return std::max(0.0, (of_many - of_one) / (more_steps - 1) / redrawn); };
+    const double first = guided_steps(job, 1), more = guided_steps(job, more_steps) - first;
+    const auto step = [&](double of_many, double of_one) { return std::max(0.0, (of_many - of_one) / more / redrawn); };
     const double seconds = stage_seconds(one.result, "guidance"), tflop = tflop_of(one.use);
     measured.redraw = step(stage_seconds(many.result, "guidance"), seconds);
     measured.redraw_tflop = step(tflop_of(many.use), tflop);
-    measured.redraw_view = std::max(0.0, seconds / redrawn - measured.redraw);
-    measured.redraw_view_tflop = std::max(0.0, tflop / redrawn - measured.redraw_tflop);
+    measured.redraw_view = std::max(0.0, seconds / redrawn - first * measured.redraw);
+    measured.redraw_view_tflop = std::max(0.0, tflop / redrawn - first * measured.redraw_tflop);
     return one;
 }
 

@@ -45,7 +45,7 @@ struct Measured {
         f("begin", self.begin, "What the loop does before its first step.", any);
         f("guidance", self.guidance, "The model's part of a step.", any);
         f("guidance_tflop", self.guidance_tflop, "Operations of that.", any);
-        f("redraw", self.redraw, "One denoising step of one redrawn view.", any);
+        f("redraw", self.redraw, "One guided denoising step of one redrawn view.", any);
         f("redraw_tflop", self.redraw_tflop, "Operations of that.", any);
         f("redraw_view", self.redraw_view, "One redrawn view beside its steps: encoding and decoding.", any);
         f("redraw_view_tflop", self.redraw_view_tflop, "Operations of that.", any);

@@ -189,6 +189,11 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     DOCTEST_CHECK(half.steps_of(1) == 4);
     DOCTEST_CHECK(half.view_steps_within(2 * request.shape_fit_steps) == 12);
     DOCTEST_CHECK(half.view_steps_within(1) == 8);
+    request.shape_guided_until = 0.5;   // of 0.9 in eighths four are above it, of 0.45 in quarters none: the others count half
+    const auto guided = edit::round_plan(request, EditMode::Replace);
+    DOCTEST_CHECK(guided.guided_steps_of(0) == 4 + 4 * 0.5);
+    DOCTEST_CHECK(guided.guided_steps_of(1) == 4 * 0.5);
+    DOCTEST_CHECK(edit::round_plan(request, EditMode::Modify).guided_steps_of(0) == request.view_steps);
     const auto free = edit::loop_request(request, EditMode::Replace, true);
     DOCTEST_CHECK(free.iterations == 2 * request.shape_fit_steps);
     DOCTEST_CHECK(free.geometry_share == 1);

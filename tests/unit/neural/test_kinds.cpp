@@ -174,6 +174,12 @@ DOCTEST_TEST_CASE("kinds: each redraws views with as few calls as it needs") {
     DOCTEST_CHECK(unet_passes(shared(lcm), parameters, input) == 2 * 3);
     parameters.view_guidance_scale = 1.5;   // a LoRA takes ordinary guidance
     DOCTEST_CHECK(unet_passes(shared(lcm), parameters, input) == 2 * 3 * 2);
+    auto diffusion = shared(load_bundle(plain.path()));
+    input.guided_until = 0.5;   // of the levels 0.8, 0.53 and 0.27 the last is not guided
+    DOCTEST_CHECK(unet_passes(diffusion, parameters, input) == 2 * (2 + 2 + 1));
+    DOCTEST_CHECK(unet_passes(embedding, parameters, input) == 2 * 3);
+    parameters.image_guidance_scale = 1;
+    DOCTEST_CHECK(unet_passes(editing, parameters, input) == 2 * 3 * 2);   // its other row is the picture's
 }
 
 DOCTEST_TEST_CASE("kinds: between the steps an LCM takes fresh noise, TCD none; both repeat with the seed") {
@@ -294,5 +300,4 @@ DOCTEST_TEST_CASE("profile: a kind brings its steps, rounds and guidance, also b
     const auto marked = model_profile(plain.path(), {{plain.path() / "tcd lora.safetensors", 1}});
     DOCTEST_CHECK(marked.bundle == BundleKind::Tcd);
     DOCTEST_CHECK(value(marked, "guidance", "view_guidance_scale") == 1.0);
-    DOCTEST_CHECK(value(marked, "guidance", "delta") == 0.0);
 }
