@@ -36,7 +36,13 @@ std::vector<std::array<double, 3>> centred_fits(Recognition& recognition, const 
 
 }  // namespace
 
-std::string view_words(double azimuth) { return Sides[side_at(azimuth)]; }
+std::string view_words(double azimuth, bool sided) {
+    if (!sided) return Sides[side_at(azimuth)];
+    static const std::array<std::string, 8> sectors{"front view", "front left view",  "left side view",  "back left view",
+                                                    "back view",  "back right view", "right side view", "front right view"};
+    const auto turned = std::lround(std::remainder(azimuth, 2 * Pi) / (Pi / 4));
+    return sectors[static_cast<std::size_t>(turned + 8) % 8];
+}
 
 FrontReading read_front(Recognition& recognition, const std::string& sentence, const std::vector<Image>& pictures,
                         const std::vector<double>& azimuths) {

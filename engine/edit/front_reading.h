@@ -8,8 +8,9 @@
 
 namespace gse::edit {
 
-/// "front view", "side view" or "back view" of a camera at an azimuth (radians, 0 = front).
-std::string view_words(double azimuth);
+/// "front view", "side view" or "back view" of a camera at an azimuth (radians, 0 = front). `sided`: of eight sectors of 45
+/// degrees each, from "front view" by "front left view" (at positive azimuths) and "left side view" to "front right view".
+std::string view_words(double azimuth, bool sided);
 
 struct FrontReading {
     double azimuth = 0;   // of the cameras that see the front, radians in [-pi, pi)

@@ -65,7 +65,7 @@ std::string head_of_phrase(const Words& words, std::size_t first) {
 }  // namespace
 
 bool says_something(const std::string& word) {
-    static const Words others{"add", "remove", "without", "no", "turn", "make", "it", "front", "side", "back", "view"};
+    static const Words others{"add", "remove", "without", "no", "turn", "make", "it", "front", "side", "back", "left", "right", "view"};
     return !contains(Articles, word) && !ends_phrase(word) && !contains(others, word);
 }
 

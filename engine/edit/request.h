@@ -36,6 +36,7 @@ struct SearchSettings {
     double elevation = 12;
     std::string background = "black";
     bool focus = true;
+    bool sided_view_words = false;
     // Localization
     std::string rivals = "auto";
     int attention_repeats = 1;
@@ -60,6 +61,8 @@ struct SearchSettings {
           Range{-60, 80});
         f("background", self.background, "Colour behind the scene: black, white, grey or #rrggbb.");
         f("focus", self.focus, "Move the automatic views in on what was found and look again.");
+        f("sided_view_words", self.sided_view_words,
+          "Tell the model left from right too (\"front left view\"): for models that learned such words.");
         f("rivals", self.rivals,
           "Other things the scene shows (\"hat grass\", \"top hat, grass\"; auto: those the sentence names; none): pixels that attend more to "
           "them are not taken for the source.");

@@ -2,6 +2,8 @@
 // about itself (gseditpro.json).
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/base/file.h"
 #include "engine/neural/safetensors.h"
 #include "engine/neural/starter_stages.h"
@@ -41,7 +43,9 @@ Json facts_of(const UNetTraining& training) {
                {"attention_absent_timesteps", {0.3, 0.5, 0.7}}};
     const auto before = std::filesystem::path(training.parameters.initial) / "gseditpro.json";
     if (!training.parameters.initial.empty() && std::filesystem::exists(before)) facts.update(read_json_file(before));
-    facts["vocabulary"] = training.source.vocabulary();
+    const auto words = training.source.vocabulary();
+    facts["vocabulary"] = words;
+    if (std::find(words.begin(), words.end(), "left") != words.end()) facts["profile"]["request"]["sided_view_words"] = true;
     facts["training"] = fields_to_json(training.parameters);
     return facts;
 }

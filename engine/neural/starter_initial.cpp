@@ -27,10 +27,45 @@ Config read_config(const std::filesystem::path& path) {
     return Config::from_json(read_json_file(path), path);
 }
 
-void expect_words(const std::filesystem::path& folder, const StarterVocabulary& vocabulary) {
-    if (read_json_file(folder / "tokenizer/vocab.json") != parse_json<Json>(vocabulary.vocab_json, "the vocabulary"))
-        throw Error(ErrorCode::InvalidArgument, "the initial model knows other words than this run trains",
-                    StructureHint, folder / "tokenizer/vocab.json");
+/// For each token of `vocabulary` its row in the embedding of the folder's model, or -1 for a token that is new to it.
+/// Throws when that model has a token that the run has not: what it learned of a word would be lost.
+std::vector<std::int64_t> rows_before(const std::filesystem::path& folder, const StarterVocabulary& vocabulary) {
+    const auto file = folder / "tokenizer/vocab.json";
+    const auto before = read_json_file(file), now = parse_json<Json>(vocabulary.vocab_json, "the vocabulary");
+    std::string lost;   // the longest is a whole word
+    for (const auto& token : before.items())
+        if (token.key().ends_with("</w>") && !now.contains(token.key()) && token.key().size() > lost.size()) lost = token.key();
+    if (!lost.empty())
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("the initial model knows \"{}\", which this run does not train", lost.substr(0, lost.size() - 4)),
+                    StructureHint, file);
+    std::vector<std::int64_t> rows(now.size(), -1);
+    for (const auto& [token, id] : now.items())
+        if (before.contains(token)) rows.at(id.get<std::size_t>()) = before.at(token).get<std::int64_t>();
+    return rows;
+}
+
+/// The run's text configuration with the vocabulary of the model it goes on from.
+TextEncoderConfig with_words_of(TextEncoderConfig config, const TextEncoderConfig& before) {
+    config.vocab_size = before.vocab_size;
+    config.bos_token_id = before.bos_token_id;
+    config.eos_token_id = before.eos_token_id;
+    return config;
+}
+
+/// Copies all parameters; token embeddings row by row, those of new tokens staying as they are.
+void take_over(torch::nn::Module& to, const torch::nn::Module& from, const std::vector<std::int64_t>& rows) {
+    const torch::NoGradGuard no_grad;
+    const auto before = from.named_parameters();
+    for (auto& item : to.named_parameters()) {
+        const auto& old = before[item.key()];
+        if (item.key().ends_with("token_embedding.weight")) {
+            for (std::size_t row = 0; row < rows.size(); ++row)
+                if (rows[row] >= 0) item.value()[static_cast<std::int64_t>(row)].copy_(old[rows[row]]);
+        } else {
+            item.value().copy_(old);
+        }
+    }
 }
 
 bool same_weights(torch::nn::Module& one, torch::nn::Module& other) {
@@ -64,9 +99,13 @@ ClipModel initial_clip(const std::filesystem::path& folder, const ClipConfig& co
     ClipModel clip(config);
     const auto weights = folder / "clip/model.safetensors";
     if (folder.empty() || !std::filesystem::exists(weights)) return clip;
-    expect_same(read_config<ClipConfig>(folder / "clip/config.json").to_json(), config.to_json(), folder / "clip/config.json");
-    expect_words(folder, vocabulary);
-    fill(clip, weights, clip_plan());
+    auto before = config;
+    const auto found = read_config<ClipConfig>(folder / "clip/config.json");
+    before.text = with_words_of(config.text, found.text);
+    expect_same(found.to_json(), before.to_json(), folder / "clip/config.json");
+    ClipModel initial(before);
+    fill(initial, weights, clip_plan());
+    take_over(*clip, *initial, rows_before(folder, vocabulary));
     return clip;
 }
 
@@ -75,14 +114,16 @@ StarterParts initial_parts(const std::filesystem::path& folder, const StarterCon
     auto vae = read_config<VaeConfig>(folder / "vae/config.json");
     const double scaling_factor = std::exchange(vae.scaling_factor, configs.vae.scaling_factor);
     expect_same(vae.to_json(), configs.vae.to_json(), folder / "vae/config.json");
-    expect_same(read_config<TextEncoderConfig>(folder / "text_encoder/config.json").to_json(),
-                configs.text.to_json(), folder / "text_encoder/config.json");
+    const auto found = read_config<TextEncoderConfig>(folder / "text_encoder/config.json");
+    const auto before = with_words_of(configs.text, found);
+    expect_same(found.to_json(), before.to_json(), folder / "text_encoder/config.json");
     expect_same(read_config<UNetConfig>(folder / "unet/config.json").to_json(), configs.unet.to_json(),
                 folder / "unet/config.json");
-    expect_words(folder, vocabulary);
     StarterParts parts = fresh_parts(configs, 0);
     fill(parts.vae, folder / "vae/diffusion_pytorch_model.safetensors", vae_plan(false));
-    fill(parts.networks.text, folder / "text_encoder/model.safetensors", text_encoder_plan());
+    ClipTextEncoder text(before);
+    fill(text, folder / "text_encoder/model.safetensors", text_encoder_plan());
+    take_over(*parts.networks.text, *text, rows_before(folder, vocabulary));
     fill(parts.networks.unet, folder / "unet/diffusion_pytorch_model.safetensors", unet_plan());
     parts.scaling_factor = scaling_factor;
     return parts;

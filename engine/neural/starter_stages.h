@@ -43,7 +43,8 @@ struct StarterParts {
     double scaling_factor = 0;   // of the VAE's latents; 0 = not known before they are seen
 };
 StarterParts fresh_parts(const StarterConfigs& configs, std::uint64_t seed);
-/// The weights of a starter folder. Throws Error when its structure or vocabulary is another.
+/// The weights of a starter folder; words that are new to it begin untrained. Throws Error when its structure is another or
+/// it has words that `vocabulary` has not.
 StarterParts initial_parts(const std::filesystem::path& folder, const StarterConfigs& configs,
                            const StarterVocabulary& vocabulary);
 

@@ -85,19 +85,18 @@ StarterTrainParameters checked(StarterTrainParameters parameters, const StarterS
 /// Trains the image-text encoder into `folder`, or takes over what the initial model has.
 void add_clip(const StarterTrainParameters& parameters, const StarterSource& source,
               const std::filesystem::path& work, const std::filesystem::path& folder, const JobControl& job) {
-    const auto kept = std::filesystem::path(parameters.initial) / "clip";
-    if (!trains(parameters.clip_steps, parameters.clip_minutes)) {
-        if (parameters.initial.empty() || !std::filesystem::exists(kept)) return;
-        for (const char* name : {"config.json", "model.safetensors"}) write_file(folder / name, read_file(kept / name));
-        return;
-    }
-    auto twin_parameters = parameters;
-    twin_parameters.pictures = parameters.clip_pictures;
-    const auto pictures = load_or_render_pictures(twin_parameters, *source.twins(), work, job);
+    const bool trained = trains(parameters.clip_steps, parameters.clip_minutes);
+    const auto kept = std::filesystem::path(parameters.initial) / "clip/model.safetensors";
+    if (!trained && (parameters.initial.empty() || !std::filesystem::exists(kept))) return;
     const auto vocabulary = build_vocabulary(source.vocabulary());
     torch::manual_seed(parameters.seed + 2);
     ClipModel clip = initial_clip(parameters.initial, starter_configs(parameters, vocabulary).clip, vocabulary);
-    train_clip(clip, {parameters, pictures, *source.twins(), vocabulary}, work, job);
+    if (trained) {
+        auto twin_parameters = parameters;
+        twin_parameters.pictures = parameters.clip_pictures;
+        const auto pictures = load_or_render_pictures(twin_parameters, *source.twins(), work, job);
+        train_clip(clip, {parameters, pictures, *source.twins(), vocabulary}, work, job);
+    }
     export_clip(clip, folder);
 }
 

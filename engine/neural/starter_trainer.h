@@ -150,7 +150,7 @@ struct StarterTrainParameters {
           "Share of pictures without accessory that are shown with a caption naming one (attention only).",
           Range{0, 1});
         f("caption_dropout", self.caption_dropout, "Share of empty captions (classifier-free guidance).", Range{0, 1});
-        f("bf16", self.bf16, "Convolutions and matrix products in bfloat16, norms and losses in float.");
+        f("bf16", self.bf16, "Convolutions and matrix products of text encoder and UNet in bfloat16, norms and losses in float.");
         f("device", self.device, "cpu or cuda.");
         f("seed", self.seed, "Seed of pictures, weights, wording and noise.");
     }

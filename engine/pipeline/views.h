@@ -35,8 +35,8 @@ Views choose_views(const Scene& scene, const EditRecipe& recipe, const GivenCame
 /// As many views as the request asks for on another orbit.
 Views views_on(const OrbitParameters& orbit, const EditRecipe& recipe);
 
-/// "front view" and so on of every view, with the front where `views.front` looks.
-std::vector<std::string> words_around(const Views& views);
+/// "front view" and so on of every view, with the front where `views.front` looks; `sided` as in edit::view_words.
+std::vector<std::string> words_around(const Views& views, bool sided);
 
 /// The same views of a scene whose front is seen from an azimuth of their orbit (radians), with words for what each sees.
 Views facing(Views views, double front, const EditRecipe& recipe);

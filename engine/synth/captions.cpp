@@ -208,9 +208,9 @@ Caption random_caption(const SceneSpec& spec, double azimuth, Random& random) {
             accessory_phrase(writer, spec, chance(random, 0.85), random);
         if (!only_object && chance(random, 0.82)) ground_phrase(writer, spec, random);
     }
-    if (chance(random, 0.5)) {
+    if (chance(random, 0.65)) {
         writer.comma();
-        writer.say(view_words(azimuth));
+        writer.say(chance(random, 0.75) ? sided_view_words(azimuth) : view_words(azimuth));
     }
     return writer.take();
 }

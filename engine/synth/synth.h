@@ -75,6 +75,9 @@ Camera head_camera(const SynthScene& scene, double azimuth, double elevation, do
 
 /// "front view", "side view" or "back view" of an azimuth.
 std::string view_words(double azimuth);
+/// One of eight, of 45 degrees each: "front view", "front left view", "left side view", ... "front right view"; the camera of
+/// positive azimuths is on the left.
+std::string sided_view_words(double azimuth);
 
 /// A caption and, for every word of it that names something visible, which part it names.
 struct Caption {

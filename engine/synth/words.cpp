@@ -83,7 +83,8 @@ const Words& vocabulary() {
     static const Words words = [] {
         Words all{"a",    "an",       "the",   "of",      "on",     "in",      "with", "and",  "wearing",
                   "made", "standing", "photo", "picture", "front",  "side",    "back", "view", "turn",
-                  "make", "into",     "it",    "add",     "remove", "without", "no",   "floor"};
+                  "make", "into",     "it",    "add",     "remove", "without", "no",   "floor",
+                  "left", "right"};
         for (const auto& list : {object_words(), material_words(), accessory_words(), ground_words()})
             all.insert(all.end(), list.begin(), list.end());
         for (const auto& synonym : synonyms()) all.emplace_back(synonym.typed);
@@ -161,6 +162,13 @@ std::string view_words(double azimuth) {
     const double turn = std::abs(std::remainder(azimuth, 2 * Pi));  // 0 = front, pi = back
     if (turn <= Pi / 4) return "front view";
     return turn >= 3 * Pi / 4 ? "back view" : "side view";
+}
+
+std::string sided_view_words(double azimuth) {
+    static const std::array<std::string, 8> sectors{"front view", "front left view",  "left side view",  "back left view",
+                                                    "back view",  "back right view", "right side view", "front right view"};
+    const double turn = std::remainder(azimuth, 2 * std::numbers::pi) / (std::numbers::pi / 4);
+    return sectors[static_cast<std::size_t>(std::lround(turn) + 8) % 8];
 }
 
 }  // namespace gse::synth

@@ -28,7 +28,7 @@ Shot make_shot(std::uint64_t seed, std::uint64_t index) {
     Shot shot;
     shot.spec = synth::training_spec(random);
     // Front views oversampled: faces and accessories are seen there.
-    shot.azimuth = random.uniform() < 0.55 ? random.uniform(-1.2, 1.2) : random.uniform(-std::numbers::pi, std::numbers::pi);
+    shot.azimuth = random.uniform() < 0.35 ? random.uniform(-1.2, 1.2) : random.uniform(-std::numbers::pi, std::numbers::pi);
     shot.elevation = random.uniform(0.05, 0.75);
     shot.zoom = random.uniform(0.8, 1.6);
     shot.background = random_background(random);
@@ -113,7 +113,7 @@ public:
     }
 
     std::vector<std::string> vocabulary() const override { return synth::vocabulary(); }
-    std::string identity() const override { return "synthetic-2 " + std::to_string(seed_); }
+    std::string identity() const override { return "synthetic-3 " + std::to_string(seed_); }
     const neural::StarterTwins* twins() const override { return twins_.get(); }
 
 private:

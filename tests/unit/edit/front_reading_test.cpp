@@ -63,8 +63,17 @@ DOCTEST_TEST_CASE("pictures that look alike from all sides have no front") {
 }
 
 DOCTEST_TEST_CASE("words of a side") {
-    DOCTEST_CHECK(view_words(0) == "front view");
-    DOCTEST_CHECK(view_words(2 * Pi - 0.3) == "front view");
-    DOCTEST_CHECK(view_words(-Pi / 2) == "side view");
-    DOCTEST_CHECK(view_words(3) == "back view");
+    DOCTEST_CHECK(view_words(0, false) == "front view");
+    DOCTEST_CHECK(view_words(2 * Pi - 0.3, false) == "front view");
+    DOCTEST_CHECK(view_words(-Pi / 2, false) == "side view");
+    DOCTEST_CHECK(view_words(3, false) == "back view");
+    DOCTEST_CHECK(view_words(0.3, true) == "front view");
+    DOCTEST_CHECK(view_words(Pi / 4, true) == "front left view");
+    DOCTEST_CHECK(view_words(Pi / 2 - 2 * Pi, true) == "left side view");
+    DOCTEST_CHECK(view_words(3 * Pi / 4, true) == "back left view");
+    DOCTEST_CHECK(view_words(-Pi + 0.1, true) == "back view");
+    DOCTEST_CHECK(view_words(Pi - 0.1, true) == "back view");
+    DOCTEST_CHECK(view_words(-2.2, true) == "back right view");
+    DOCTEST_CHECK(view_words(-Pi / 2, true) == "right side view");
+    DOCTEST_CHECK(view_words(-0.7, true) == "front right view");
 }

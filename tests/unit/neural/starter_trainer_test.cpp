@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/random.h"
+#include "engine/neural/config.h"
 #include "engine/neural/safetensors.h"
 #include "engine/neural/starter_data.h"
 #include "engine/neural/starter_trainer.h"
@@ -74,13 +75,17 @@ public:
             }
         return picture;
     }
+    /// `more`: words beside those of its captions.
+    explicit ToySource(std::vector<std::string> more = {}) : more_(std::move(more)) {}
     StarterCaption caption(std::uint64_t index, std::uint64_t, bool) const override {
         const std::string colour = ToyColours[Layout(index, 32).colour];
         return {"a " + colour + " square, front view",
                 {{colour, 0, StarterPart::Object}, {"square", 0, StarterPart::Object}}};
     }
     std::vector<std::string> vocabulary() const override {
-        return {"a", "red", "green", "blue", "square", "front", "view"};
+        std::vector<std::string> words{"a", "red", "green", "blue", "square", "front", "view"};
+        words.insert(words.end(), more_.begin(), more_.end());
+        return words;
     }
     std::string identity() const override { return "toy"; }
 
@@ -95,6 +100,7 @@ private:
         }
     };
     ToyTwins twins_;
+    std::vector<std::string> more_;
 };
 
 StarterTrainParameters toy_parameters() {
@@ -189,6 +195,60 @@ DOCTEST_TEST_CASE("a run goes on from a finished model and keeps the parts it ha
     parameters.clip_lr = 0;
     train_starter(parameters, source, scratch.path() / "work4", scratch.path() / "same", {});
     DOCTEST_CHECK(unchanged(scratch.path() / "same", "clip/model.safetensors"));
+}
+
+DOCTEST_TEST_CASE("a run that knows more words keeps what the model before it made of the old ones") {
+    const gse::test::ScratchFolder scratch;
+    const auto first = scratch.path() / "first", second = scratch.path() / "second";
+    auto parameters = toy_parameters();
+    parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 2;
+    train_starter(parameters, ToySource(), scratch.path() / "work1", first, {});
+    parameters.initial = first.string();
+    parameters.vae_minutes = parameters.unet_minutes = parameters.clip_minutes = 0;
+    parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 0;
+    train_starter(parameters, ToySource({"left", "right"}), scratch.path() / "work2", second, {});
+
+    const auto before = read_json_file(first / "tokenizer/vocab.json"), now = read_json_file(second / "tokenizer/vocab.json");
+    DOCTEST_CHECK(now.contains("left</w>"));
+    DOCTEST_CHECK(now.size() > before.size());
+    for (const char* file : {"text_encoder/model.safetensors", "clip/model.safetensors"}) {
+        const SafetensorsFile a(first / file), b(second / file);
+        for (const auto& [name, entry] : a.entries()) {
+            if (!name.ends_with("token_embedding.weight")) {
+                DOCTEST_CHECK_MESSAGE(torch::equal(a.tensor(name), b.tensor(name)), name);
+                continue;
+            }
+            const auto rows_before = a.tensor(name), rows_now = b.tensor(name);
+            for (const auto& [token, id] : before.items())
+                DOCTEST_CHECK_MESSAGE(torch::equal(rows_before[id.get<std::int64_t>()], rows_now[now.at(token).get<std::int64_t>()]), token);
+        }
+    }
+    // What it was taught it says of itself; the first one was not.
+    DOCTEST_CHECK(read_json_file(second / "gseditpro.json").at("profile").at("request").at("sided_view_words") == Json(true));
+    DOCTEST_CHECK(!read_json_file(first / "gseditpro.json").contains("profile"));
+
+    // The other way words would be lost.
+    parameters.initial = second.string();
+    const auto forget = [&] { train_starter(parameters, ToySource(), scratch.path() / "work3", scratch.path() / "third", {}); };
+    DOCTEST_CHECK_THROWS_WITH_AS(forget(), doctest::Contains("\"right\""), gse::Error);
+}
+
+DOCTEST_TEST_CASE("mixed precision trains nearly as float does, and is not the same") {
+    const ToySource source;
+    const gse::test::ScratchFolder scratch;
+    auto parameters = toy_parameters();
+    parameters.clip_minutes = 0;
+    parameters.clip_steps = 1;
+    train_starter(parameters, source, scratch.path() / "float", scratch.path() / "out1", {});
+    parameters.bf16 = true;
+    train_starter(parameters, source, scratch.path() / "mixed", scratch.path() / "out2", {});
+    const auto single = column(scratch.path() / "float/unet.tsv", 4), mixed = column(scratch.path() / "mixed/unet.tsv", 4);
+    DOCTEST_REQUIRE(single.size() == mixed.size());
+    constexpr double EightBits = 1.0 / 64;   // bfloat16 has 8 bits; products of hundreds of them are summed in float
+    for (std::size_t i = 0; i < single.size(); ++i) {
+        DOCTEST_CHECK(mixed[i] == doctest::Approx(single[i]).epsilon(EightBits));
+        DOCTEST_CHECK(mixed[i] != single[i]);
+    }
 }
 
 DOCTEST_TEST_CASE("two models trained from one another are averaged, weight by weight") {
