@@ -74,15 +74,21 @@ void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const 
     rows_ = gaussians.size;
     at_least(records_, rows_);
     at_least(keys_, rows_);
+    at_least(ranges_, rows_);
+    at_least(pairs_, chunk_count());
+    at_least(chunk_pairs_, chunk_count() + 1);
     at_least(chunk_drawn_, chunk_count());
     at_least(chunk_unusable_, chunk_count());
     at_least(chunk_first_, chunk_count());
     at_least(scratch_, pool_.thread_count());
     pool_.parallel_for(chunk_count(), 1, [this](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t chunk = begin; chunk < end; ++chunk) project_chunk(chunk);
+        for (std::size_t chunk = begin; chunk < end; ++chunk) {
+            project_chunk(chunk);
+            bin_chunk(chunk);
+        }
     });
     collect_keys();
-    bin_all();
+    fill_tiles();
 }
 
 void Frame::project_chunk(std::size_t chunk) {
@@ -100,13 +106,41 @@ void Frame::project_chunk(std::size_t chunk) {
     chunk_unusable_[chunk] = job.unusable;
 }
 
+/// While the chunk's records are still in the cache.
+void Frame::bin_chunk(std::size_t chunk) {
+    std::vector<TilePair>& pairs = pairs_[chunk];
+    BinJob job{};
+    job.records = records_.data() + chunk * ChunkRows;
+    job.ranges = ranges_.data() + chunk * ChunkRows;
+    job.end = chunk_drawn_[chunk];
+    job.width = view_.width;
+    job.height = view_.height;
+    at_least(pairs, 4 * job.end);
+    for (;;) {
+        job.pairs = pairs.data();
+        job.capacity = pairs.size();
+        kernels_.bin(job);
+        if (job.begin == job.end) break;
+        at_least(pairs, 2 * pairs.size() + tile_count() + tile_rows_ + 4);  // room for any one Gaussian
+    }
+    chunk_pairs_[chunk] = static_cast<std::uint32_t>(job.written);
+}
+
 void Frame::collect_keys() {
     drawn_ = unusable_ = 0;
+    std::size_t pairs = 0;
     for (std::size_t chunk = 0; chunk < chunk_count(); ++chunk) {
         chunk_first_[chunk] = drawn_;
         drawn_ += chunk_drawn_[chunk];
         unusable_ += chunk_unusable_[chunk];
+        const std::uint32_t count = chunk_pairs_[chunk];
+        chunk_pairs_[chunk] = static_cast<std::uint32_t>(pairs);
+        pairs += count;
+        if (pairs > MostPairs)
+            throw Error(ErrorCode::Unsupported, "the view has too many large splats to be drawn at this size",
+                        "render a smaller image or prune the scene");
     }
+    chunk_pairs_[chunk_count()] = static_cast<std::uint32_t>(pairs);
     sort_.items(drawn_);
     pool_.parallel_for(chunk_count(), 32, [this](std::size_t begin, std::size_t end, unsigned) {
         std::vector<DepthSort::Item>& items = sort_.items(drawn_);
@@ -118,39 +152,39 @@ void Frame::collect_keys() {
     });
 }
 
-void Frame::bin_all() {
+void Frame::fill_tiles() {
     constexpr std::size_t worth_a_part = 4096;
-    const std::vector<std::uint32_t>& order = sort_.sort(drawn_);
-    order_.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(drawn_));
-    at_least(pair_counts_, drawn_);
+    order_ = std::span(sort_.sort(drawn_)).first(drawn_);
     parts_ = std::clamp<std::size_t>(drawn_ / worth_a_part, 1, std::size_t{2} * pool_.thread_count());
-    at_least(pairs_, parts_);
     at_least(tile_places_, parts_ * tile_count());
-    pool_.parallel_for(parts_, 1, [this](std::size_t begin, std::size_t, unsigned) { bin_part(begin); });
+    at_least(entries_, chunk_pairs_[chunk_count()]);
+    pool_.parallel_for(parts_, 1, [this](std::size_t begin, std::size_t, unsigned) { count_part(begin); });
     count_tiles();
     pool_.parallel_for(parts_, 1, [this](std::size_t begin, std::size_t, unsigned) { place_part(begin); });
 }
 
-void Frame::bin_part(std::size_t part) {
-    std::vector<TilePair>& pairs = pairs_[part];
-    BinJob job{};
-    job.records = records_.data();
-    job.order = order_.data();
-    job.begin = part_begin(part);
-    job.end = part_begin(part + 1);
-    job.width = view_.width;
-    job.height = view_.height;
-    job.tile_counts = &tile_places_[part * tile_count()];
-    job.pair_counts = pair_counts_.data();
-    std::fill_n(job.tile_counts, tile_count(), 0u);
-    at_least(pairs, 4 * (job.end - job.begin));
-    for (;;) {
-        job.pairs = pairs.data();
-        job.capacity = pairs.size();
-        kernels_.bin(job);
-        if (job.begin == job.end) break;
-        at_least(pairs, 2 * pairs.size() + tile_count() + tile_rows_ + 1);  // room for any one Gaussian
+/// Calls body(record, its range, its pairs) front to back. What a record points to is asked for some records before.
+template <class Body>
+void Frame::for_part(std::size_t part, const Body& body) const {
+    constexpr std::size_t far_ahead = 24, ahead = 8;
+    const std::size_t begin = part_begin(part), end = part_begin(part + 1);
+    const auto pairs_of = [&](std::uint32_t record) {
+        return pairs_[record / ChunkRows].data() + ranges_[record].begin;
+    };
+    for (std::size_t i = begin; i < end; ++i) {
+        if (i + far_ahead < end) __builtin_prefetch(&ranges_[order_[i + far_ahead]]);
+        if (i + ahead < end) __builtin_prefetch(pairs_of(order_[i + ahead]));
+        const std::uint32_t record = order_[i];
+        body(record, ranges_[record], pairs_of(record));
     }
+}
+
+void Frame::count_part(std::size_t part) {
+    std::uint32_t* counts = &tile_places_[part * tile_count()];
+    std::fill_n(counts, tile_count(), 0u);
+    for_part(part, [&](std::uint32_t, const PairRange& range, const TilePair* pair) {
+        for (std::uint32_t i = 0; i < range.count; ++i) ++counts[pair[i].tile];
+    });
 }
 
 /// Counts per part and tile -> the tiles' ranges and each part's first place in them.
@@ -167,19 +201,15 @@ void Frame::count_tiles() {
         }
     }
     offsets_[tile_count()] = place;
-    if (place > MostPairs)
-        throw Error(ErrorCode::Unsupported, "the view has too many large splats to be drawn at this size",
-                    "render a smaller image or prune the scene");
-    at_least(entries_, place);
 }
 
 void Frame::place_part(std::size_t part) {
     std::uint32_t* places = &tile_places_[part * tile_count()];
-    const TilePair* pair = pairs_[part].data();
-    const std::size_t end = part_begin(part + 1);
-    for (std::size_t i = part_begin(part); i < end; ++i)
-        for (std::uint32_t ordinal = 0; ordinal < pair_counts_[i]; ++ordinal, ++pair)
-            entries_[places[pair->tile]++] = {order_[i], ordinal, pair->blocks};
+    for_part(part, [&](std::uint32_t record, const PairRange& range, const TilePair* pair) {
+        const std::uint32_t slot = chunk_pairs_[record / ChunkRows] + range.begin;
+        for (std::uint32_t i = 0; i < range.count; ++i)
+            entries_[places[pair[i].tile]++] = {record, slot + i, pair[i].blocks};
+    });
 }
 
 std::size_t Frame::tile_chunk() const {
@@ -229,31 +259,13 @@ void Frame::assign_slots(std::size_t first_row) {
             begin, end, first_row, [](const Record& record, std::size_t row) { return record.row < row; });
         first_active_ = static_cast<std::uint32_t>(first - records_.data());
     }
-    at_least(chunk_slots_, chunk_count() + 1);
-    pool_.parallel_for(chunk_count(), 16, [this](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t i = begin; i < end; ++i) {
-            chunk_slots_[i] = 0;
-            for (const Record& record : active_records(i)) chunk_slots_[i] += record.pair_count;
-        }
-    });
-    std::size_t total = 0;
-    for (std::size_t i = 0; i < chunk_count(); ++i) {
-        const std::size_t count = chunk_slots_[i];
-        chunk_slots_[i] = total;
-        total += count;
+    const std::uint32_t end = chunk_pairs_[chunk_count()];
+    first_slot_ = end;
+    if (chunk < chunk_count()) {
+        const auto active = active_records(chunk);
+        first_slot_ = active.empty() ? chunk_pairs_[chunk + 1] : chunk_pairs_[chunk] + ranges(active.data())->begin;
     }
-    pool_.parallel_for(chunk_count(), 16, [this](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t i = begin; i < end; ++i) {
-            std::size_t slot = chunk_slots_[i];
-            const auto active = active_records(i);
-            Record* record = records_.data() + (active.data() - records_.data());
-            for (std::size_t k = 0; k < active.size(); ++k) {
-                record[k].partial_begin = static_cast<std::uint32_t>(slot);
-                slot += record[k].pair_count;
-            }
-        }
-    });
-    at_least(slots_, std::max<std::size_t>(total, 1));
+    at_least(slots_, std::max<std::size_t>(end - first_slot_, 1));
 }
 
 }  // namespace gse::raster

@@ -49,7 +49,7 @@ public:
         return {entries_.data() + offsets_[tile], offsets_[tile + 1] - offsets_[tile]};
     }
     /// The drawn records, front to back.
-    std::span<const std::uint32_t> order() const { return {order_.data(), drawn_}; }
+    std::span<const std::uint32_t> order() const { return order_; }
     std::size_t pair_count() const { return offsets_.empty() ? 0 : offsets_.back(); }
     std::size_t unusable_rows() const { return unusable_; }
     std::size_t drawn_rows() const { return drawn_; }
@@ -60,21 +60,28 @@ public:
     std::size_t row_count() const { return rows_; }
     std::uint32_t first_active() const { return first_active_; }
     PartialSlot* slots() { return slots_.data(); }
+    std::uint32_t first_slot() const { return first_slot_; }
 
     /// Rows are handled in chunks; a chunk's records lie densely at its first row's place.
     static constexpr std::size_t ChunkRows = 1024;
     std::size_t chunk_count() const { return (rows_ + ChunkRows - 1) / ChunkRows; }
     /// The chunk's records from first_active() on.
     std::span<const Record> active_records(std::size_t chunk) const;
+    /// The pairs of a record; places are in its chunk's, and slot_shift(chunk) makes slots of them (modulo 2^32).
+    const PairRange* ranges(const Record* record) const { return ranges_.data() + (record - records_.data()); }
+    std::uint32_t slot_shift(std::size_t chunk) const { return chunk_pairs_[chunk] - first_slot_; }
 
 private:
     void set_view(const Camera& camera, const Settings& settings, int scene_degree);
     void project_chunk(std::size_t chunk);
+    void bin_chunk(std::size_t chunk);
     void collect_keys();
-    void bin_part(std::size_t part);
+    template <class Body>
+    void for_part(std::size_t part, const Body& body) const;
+    void count_part(std::size_t part);
     void place_part(std::size_t part);
     void count_tiles();
-    void bin_all();
+    void fill_tiles();
     void blend_tiles(std::size_t begin, std::size_t end, unsigned worker);
     std::size_t part_begin(std::size_t part) const { return drawn_ * part / parts_; }
 
@@ -88,11 +95,12 @@ private:
 
     std::vector<Record> records_;      // [rows], with gaps
     std::vector<std::uint32_t> keys_;  // [rows], with the same gaps
+    std::vector<PairRange> ranges_;    // [rows], with the same gaps; places in the chunk's pairs
+    std::vector<std::vector<TilePair>> pairs_;  // per chunk
+    std::vector<std::uint32_t> chunk_pairs_;    // [chunks + 1]: pairs of all chunks before
     std::vector<std::size_t> chunk_drawn_, chunk_unusable_, chunk_first_;
-    std::vector<std::uint32_t> order_;          // records front to back
-    std::vector<std::uint32_t> pair_counts_;    // by place in order_
-    std::size_t parts_ = 1;                     // of the depth order, binned in parallel
-    std::vector<std::vector<TilePair>> pairs_;  // per part
+    std::span<const std::uint32_t> order_;      // records front to back
+    std::size_t parts_ = 1;                     // of the depth order, put into the tiles in parallel
     std::vector<std::uint32_t> tile_places_;    // [parts][tiles]: counts, then places
     std::vector<std::size_t> offsets_;          // [tiles + 1] into entries_
     std::vector<TileEntry> entries_;
@@ -100,8 +108,7 @@ private:
     std::vector<BlendScratch> scratch_;  // per worker
     TileDone finish_ = nullptr;
     void* finish_context_ = nullptr;
-    std::uint32_t first_active_ = 0;
-    std::vector<std::size_t> chunk_slots_;
+    std::uint32_t first_active_ = 0, first_slot_ = 0;
     std::vector<PartialSlot> slots_;
 };
 

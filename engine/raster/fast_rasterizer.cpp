@@ -117,7 +117,7 @@ private:
         return {{frame.records(), nullptr, NoSplit}, list.data(),        static_cast<std::uint32_t>(list.size()),
                 frame.tile_x(tile), frame.tile_y(tile), frame.width(),
                 frame.height(),     &scratch,           frame.first_active(),
-                frame.slots()->sums};
+                frame.first_slot(), frame.slots()->sums};
     }
 
     void backward_tile(std::size_t tile, BackwardScratch& scratch) {
@@ -134,9 +134,10 @@ private:
 
     void add_contributions(std::size_t chunk) {
         for (const Record& record : side_frame_.active_records(chunk)) {
-            const PartialSlot* slot = side_frame_.slots() + record.partial_begin;
+            const PairRange range = *side_frame_.ranges(&record);
+            const PartialSlot* slot = side_frame_.slots() + (range.begin + side_frame_.slot_shift(chunk));
             double weight = 0, masked = 0;
-            for (std::uint32_t pair = 0; pair < record.pair_count; ++pair) {
+            for (std::uint32_t pair = 0; pair < range.count; ++pair) {
                 weight += static_cast<double>(slot[pair].sums[SumWeight]);
                 masked += static_cast<double>(slot[pair].sums[SumMasked]);
             }

@@ -70,6 +70,8 @@ void write_gradients(const Kernels& kernels, Frame& frame, std::size_t chunk, st
                              &frame.view(),
                              records.data(),
                              records.data() + records.size(),
+                             frame.ranges(records.data()),
+                             frame.slot_shift(chunk),
                              frame.slots()->sums,
                              first_row,
                              {output.position.data(), output.log_scale.data(), output.rotation.data(),

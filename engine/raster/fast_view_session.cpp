@@ -167,7 +167,7 @@ void FastViewSession::merge(LiveTile& live) {
     };
     for (const TileEntry& entry : changing) {
         take_fixed(places_[entry.record]);
-        *to++ = {entry.record + split, entry.ordinal, entry.blocks};
+        *to++ = {entry.record + split, entry.slot, entry.blocks};
     }
     take_fixed(split);
     live.count = static_cast<std::uint32_t>(to - (merged_.data() + live.begin));
@@ -235,6 +235,7 @@ void FastViewSession::backward_tile(std::size_t index, BackwardScratch& scratch)
                              area.height,
                              &scratch,
                              split,
+                             frame_.first_slot(),
                              frame_.slots()->sums});
 }
 

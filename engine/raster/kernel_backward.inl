@@ -67,9 +67,7 @@ GSE_INLINE M weigh_pixels(const Record& r, int pixel, const PixelGrid& grid, Bac
 }
 
 GSE_INLINE float* slot_of(const BackwardJob& job, const TileEntry& entry) {
-    const std::size_t slot =
-        static_cast<std::size_t>(record_at(job.records, entry.record).partial_begin) + entry.ordinal;
-    return job.partials + slot * PartialStride;
+    return job.partials + static_cast<std::size_t>(entry.slot - job.first_slot) * PartialStride;
 }
 
 GSE_INLINE void clear_slot(float* slot) {
@@ -83,7 +81,10 @@ static void clear_rest(const BackwardJob& job, std::uint32_t begin, std::uint32_
 }
 
 GSE_INLINE void prefetch_entry(const BackwardJob& job, std::uint32_t i) {
-    if (i < job.count) __builtin_prefetch(&record_at(job.records, job.entries[i].record));
+    if (i >= job.count) return;
+    const TileEntry& entry = job.entries[i];
+    __builtin_prefetch(&record_at(job.records, entry.record));
+    if (entry.record >= job.first_record) __builtin_prefetch(slot_of(job, entry), 1);
 }
 
 /// Blocks of `blocks` in which light is left after the active record r.

@@ -246,11 +246,12 @@ static void finish_batch(const GradientJob& job, GradientBatch& batch) {
 static void gradient(const GradientJob& job) {
     GradientBatch batch;
     batch.raw.size = 0;
-    for (const Record* record = job.begin; record < job.end; ++record) {
+    const PairRange* range = job.ranges;
+    for (const Record* record = job.begin; record < job.end; ++record, ++range) {
         alignas(64) float sums[PartialStride];
         clear_slot(sums);
-        const float* slot = job.partials + static_cast<std::size_t>(record->partial_begin) * PartialStride;
-        for (std::uint32_t pair = 0; pair < record->pair_count; ++pair, slot += PartialStride)
+        const float* slot = job.partials + static_cast<std::size_t>(range->begin + job.slot_shift) * PartialStride;
+        for (std::uint32_t pair = 0; pair < range->count; ++pair, slot += PartialStride)
             for (int k = 0; k < PartialStride; k += F::W) store(sums + k, load(sums + k) + load(slot + k));
         if (!(sums[SumBlended] > 0.0f)) continue;
         const int lane = batch.raw.size++;

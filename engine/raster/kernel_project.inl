@@ -60,8 +60,6 @@ GSE_INLINE void write_record(const RecordBatch& from, int lane, std::uint32_t ro
     to.half_height = from.half_height[lane];
     to.lean = from.lean[lane];
     to.row = row;
-    to.pair_count = 0;
-    to.partial_begin = 0;
 }
 
 static void colour_batch(ColourBatch& batch, int sh_count) {

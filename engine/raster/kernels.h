@@ -26,8 +26,6 @@ struct alignas(64) Record {
     float half_width, half_height;  // pixels, a little more than where alpha falls below 1/255
     float lean;                     // dy of the ellipse's rightmost point
     std::uint32_t row;
-    std::uint32_t pair_count;     // tiles touched
-    std::uint32_t partial_begin;  // first slot of its partial gradients
 };
 static_assert(sizeof(Record) == 64);
 
@@ -70,22 +68,25 @@ struct TilePair {
     std::uint32_t blocks;  // bit 4 row + column of the 4x4 blocks touched
 };
 
-/// Gaussians order[begin..end) -> the tiles and blocks their ellipses touch.
+/// The pairs of one record: a place in its chunk's and a number.
+struct PairRange {
+    std::uint32_t begin, count;
+};
+
+/// Records [begin, end) -> the tiles and blocks their ellipses touch, record by record.
 struct BinJob {
-    Record* records;
-    const std::uint32_t* order;
+    const Record* records;
     std::size_t begin, end;  // begin is advanced; stops early when `pairs` may not suffice
     int width, height;
     TilePair* pairs;
     std::size_t capacity, written;
-    std::uint32_t* tile_counts;
-    std::uint32_t* pair_counts;  // of each Gaussian, by place in `order`
+    PairRange* ranges;  // of each record
 };
 
 /// An entry of a tile's list, front to back.
 struct TileEntry {
     std::uint32_t record;
-    std::uint32_t ordinal;  // which of the record's pairs this is
+    std::uint32_t slot;  // of its partial sums: the pairs of all records are numbered in order of rows
     std::uint32_t blocks;
 };
 
@@ -139,6 +140,7 @@ struct BackwardJob {
     int width, height;
     BackwardScratch* scratch;    // remaining, d_colour (or mask) filled by the driver
     std::uint32_t first_record;  // records from here on get gradients
+    std::uint32_t first_slot;    // the first of theirs, where `partials` begin
     float* partials;
 };
 
@@ -164,6 +166,8 @@ struct GradientJob {
     const Viewpoint* view;
     const Record* begin;
     const Record* end;
+    const PairRange* ranges;  // of begin
+    std::uint32_t slot_shift;  // slot of place 0 of the ranges, modulo 2^32: it may lie before the first
     const float* partials;
     std::size_t first_row;
     GradientArrays out;

@@ -54,6 +54,21 @@ GSE_INLINE I count(I a, M m) { return {_mm256_sub_epi32(a.v, _mm256_castps_si256
 GSE_INLINE void store_int(std::int32_t* p, F a) {
     _mm256_store_si256(reinterpret_cast<__m256i*>(p), _mm256_cvttps_epi32(a.v));
 }
+GSE_INLINE I only(M m, I a) { return {_mm256_and_si256(a.v, _mm256_castps_si256(m.v))}; }
+GSE_INLINE I set_int(int a) { return {_mm256_set1_epi32(a)}; }
+GSE_INLINE I operator&(I a, I b) { return {_mm256_and_si256(a.v, b.v)}; }
+GSE_INLINE I operator|(I a, I b) { return {_mm256_or_si256(a.v, b.v)}; }
+template <int N>
+GSE_INLINE I shift_left(I a) { return {_mm256_slli_epi32(a.v, N)}; }
+template <int N>
+GSE_INLINE I shift_right(I a) { return {_mm256_srli_epi32(a.v, N)}; }
+/// Bits first..last in the lanes of m.
+GSE_INLINE I bit_range(M m, F first, F last) {
+    const __m256i one = _mm256_set1_epi32(1), two = _mm256_set1_epi32(2);
+    const __m256i low = _mm256_sllv_epi32(one, _mm256_cvttps_epi32(first.v));
+    const __m256i bits = _mm256_sub_epi32(_mm256_sllv_epi32(two, _mm256_cvttps_epi32(last.v)), low);
+    return {_mm256_and_si256(bits, _mm256_castps_si256(m.v))};
+}
 /// 2^a: degree-5 minimax polynomial on [-1/2, 1/2], relative error 7.5e-8; the power goes into the exponent
 /// field.
 GSE_INLINE F exp2_lanes(F a) {

@@ -56,6 +56,20 @@ GSE_INLINE I load(const std::int32_t* p) { return {_mm512_load_si512(p)}; }
 GSE_INLINE void store(std::int32_t* p, I a) { _mm512_store_si512(p, a.v); }
 GSE_INLINE I count(I a, M m) { return {_mm512_mask_sub_epi32(a.v, m.v, a.v, _mm512_set1_epi32(-1))}; }
 GSE_INLINE void store_int(std::int32_t* p, F a) { _mm512_store_si512(p, _mm512_cvttps_epi32(a.v)); }
+GSE_INLINE I only(M m, I a) { return {_mm512_maskz_mov_epi32(m.v, a.v)}; }
+GSE_INLINE I set_int(int a) { return {_mm512_set1_epi32(a)}; }
+GSE_INLINE I operator&(I a, I b) { return {_mm512_and_si512(a.v, b.v)}; }
+GSE_INLINE I operator|(I a, I b) { return {_mm512_or_si512(a.v, b.v)}; }
+template <int N>
+GSE_INLINE I shift_left(I a) { return {_mm512_slli_epi32(a.v, N)}; }
+template <int N>
+GSE_INLINE I shift_right(I a) { return {_mm512_srli_epi32(a.v, N)}; }
+/// Bits first..last in the lanes of m.
+GSE_INLINE I bit_range(M m, F first, F last) {
+    const __m512i one = _mm512_set1_epi32(1), two = _mm512_set1_epi32(2);
+    const __m512i low = _mm512_sllv_epi32(one, _mm512_cvttps_epi32(first.v));
+    return {_mm512_maskz_sub_epi32(m.v, _mm512_sllv_epi32(two, _mm512_cvttps_epi32(last.v)), low)};
+}
 /// 2^a: degree-5 minimax polynomial on [-1/2, 1/2], relative error 7.5e-8.
 GSE_INLINE F exp2_lanes(F a) {
     const __m512 whole = _mm512_roundscale_ps(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);

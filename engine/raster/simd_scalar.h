@@ -56,6 +56,22 @@ GSE_INLINE I load(const std::int32_t* p) { return {*p}; }
 GSE_INLINE void store(std::int32_t* p, I a) { *p = a.v; }
 GSE_INLINE I count(I a, M m) { return {a.v + (m.v ? 1 : 0)}; }
 GSE_INLINE void store_int(std::int32_t* p, F a) { *p = static_cast<std::int32_t>(a.v); }
+GSE_INLINE I only(M m, I a) { return {m.v ? a.v : 0}; }
+GSE_INLINE I set_int(int a) { return {a}; }
+GSE_INLINE I operator&(I a, I b) { return {a.v & b.v}; }
+GSE_INLINE I operator|(I a, I b) { return {a.v | b.v}; }
+template <int N>
+GSE_INLINE I shift_left(I a) {
+    return {static_cast<std::int32_t>(static_cast<std::uint32_t>(a.v) << N)};
+}
+template <int N>
+GSE_INLINE I shift_right(I a) {
+    return {static_cast<std::int32_t>(static_cast<std::uint32_t>(a.v) >> N)};
+}
+/// Bits first..last in the lanes of m.
+GSE_INLINE I bit_range(M m, F first, F last) {
+    return {m.v ? (2 << static_cast<std::int32_t>(last.v)) - (1 << static_cast<std::int32_t>(first.v)) : 0};
+}
 /// 2^a for a in about [-100, 0]; anything else gives an arbitrary value.
 GSE_INLINE F exp2_lanes(F a) { return {a.v > -100.0f ? __builtin_exp2f(a.v) : 0.0f}; }
 
