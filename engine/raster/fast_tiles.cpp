@@ -118,20 +118,9 @@ void resize_gradients(std::size_t rows, std::size_t sh_stride, Gradients& output
 }
 
 void write_gradients(const Kernels& kernels, Frame& frame, std::size_t chunk, std::size_t first_row, Gradients& output) {
-    const std::size_t stride = frame.source().sh_stride;
-    const std::size_t begin = std::max(chunk * Frame::ChunkRows, first_row) - first_row;
-    const std::size_t end = std::min((chunk + 1) * Frame::ChunkRows, frame.row_count()) - first_row;
+    const std::size_t begin = std::max(chunk * Frame::ChunkRows, first_row);
+    const std::size_t end = std::min((chunk + 1) * Frame::ChunkRows, frame.row_count());
     if (begin >= end) return;
-    const auto clear = [&](auto& values, std::size_t width) {
-        std::memset(values.data() + begin * width, 0, (end - begin) * width * sizeof values[0]);
-    };
-    clear(output.position, 3);
-    clear(output.log_scale, 3);
-    clear(output.rotation, 4);
-    clear(output.opacity_logit, 1);
-    clear(output.sh, stride);
-    clear(output.mean2d_norm, 1);
-    clear(output.visible, 1);
     const auto records = frame.active_records(chunk);
     const GradientJob job = {frame.source(),
                              &frame.view(),
@@ -140,6 +129,8 @@ void write_gradients(const Kernels& kernels, Frame& frame, std::size_t chunk, st
                              frame.ranges(records.data()),
                              frame.slot_shift(chunk),
                              frame.slots()->sums,
+                             begin,
+                             end,
                              first_row,
                              {output.position.data(), output.log_scale.data(), output.rotation.data(),
                               output.opacity_logit.data(), output.sh.data(), output.mean2d_norm.data(),

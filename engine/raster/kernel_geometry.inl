@@ -40,6 +40,13 @@ GSE_INLINE D log2_lanes(D a) {
 }
 #endif
 
+/// Asks for the cache lines of `count` floats, to be written if Write is 1.
+template <int Write>
+GSE_INLINE void prefetch_floats(const float* from, int count) {
+    for (int k = 0; k < count; k += 16) __builtin_prefetch(from + k, Write);
+    __builtin_prefetch(from + count - 1, Write);
+}
+
 /// Raw parameters of F::W rows, component-major.
 struct alignas(64) RawBatch {
     float position[3][F::W], log_scale[3][F::W], rotation[4][F::W], opacity_logit[F::W];

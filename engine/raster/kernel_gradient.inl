@@ -210,7 +210,7 @@ static void colour_gradient(const Viewpoint& view, GradientBatch& batch) {
 static void write_gradients(const GradientJob& job, GradientBatch& batch) {
     float* sh[F::W];
     for (int lane = 0; lane < batch.raw.size; ++lane) {
-        const std::size_t row = batch.raw.row[lane] - job.first_row;
+        const std::size_t row = batch.raw.row[lane] - job.out_row;
         for (std::size_t k = 0; k < 3; ++k) job.out.position[row * 3 + k] = batch.position[k][lane];
         for (std::size_t k = 0; k < 3; ++k) job.out.log_scale[row * 3 + k] = batch.log_scale[k][lane];
         for (std::size_t k = 0; k < 4; ++k) job.out.rotation[row * 4 + k] = batch.rotation[k][lane];
@@ -218,8 +218,28 @@ static void write_gradients(const GradientJob& job, GradientBatch& batch) {
         job.out.mean2d_norm[row] = batch.mean2d[lane];
         job.out.visible[row] = 1;
         sh[lane] = job.out.sh + row * job.source.sh_stride;
+        for (auto k = static_cast<std::size_t>(job.view->sh_count) * 3; k < job.source.sh_stride; ++k) sh[lane][k] = 0.0f;
     }
     store_columns(batch.coefficient_gradients[0], job.view->sh_count * 3, sh, batch.raw.size);
+}
+
+/// Zeros for rows [begin, end).
+static void clear_rows(const GradientJob& job, std::size_t begin, std::size_t end) {
+    if (begin >= end) return;
+    const std::size_t first = begin - job.out_row, count = end - begin, stride = job.source.sh_stride;
+    __builtin_memset(job.out.position + first * 3, 0, count * 3 * sizeof(float));
+    __builtin_memset(job.out.log_scale + first * 3, 0, count * 3 * sizeof(float));
+    __builtin_memset(job.out.rotation + first * 4, 0, count * 4 * sizeof(float));
+    __builtin_memset(job.out.opacity_logit + first, 0, count * sizeof(float));
+    __builtin_memset(job.out.sh + first * stride, 0, count * stride * sizeof(float));
+    __builtin_memset(job.out.mean2d_norm + first, 0, count * sizeof(float));
+    __builtin_memset(job.out.visible + first, 0, count);
+}
+
+/// Asks for the coefficients of a row, read and written, some records before they are needed.
+GSE_INLINE void prefetch_gradient_row(const GradientJob& job, std::size_t row) {
+    prefetch_floats<0>(job.source.sh + row * job.source.sh_stride, job.view->sh_count * 3);
+    prefetch_floats<1>(job.out.sh + (row - job.out_row) * job.source.sh_stride, job.view->sh_count * 3);
 }
 
 static void finish_batch(const GradientJob& job, GradientBatch& batch) {
@@ -246,14 +266,19 @@ static void finish_batch(const GradientJob& job, GradientBatch& batch) {
 static void gradient(const GradientJob& job) {
     GradientBatch batch;
     batch.raw.size = 0;
+    constexpr std::ptrdiff_t ahead = 24;
     const PairRange* range = job.ranges;
+    std::size_t next = job.first_row;
     for (const Record* record = job.begin; record < job.end; ++record, ++range) {
+        if (job.end - record > ahead) prefetch_gradient_row(job, record[ahead].row);
         alignas(64) float sums[PartialStride];
         clear_slot(sums);
         const float* slot = job.partials + static_cast<std::size_t>(range->begin + job.slot_shift) * PartialStride;
         for (std::uint32_t pair = 0; pair < range->count; ++pair, slot += PartialStride)
             for (int k = 0; k < PartialStride; k += F::W) store(sums + k, load(sums + k) + load(slot + k));
         if (!(sums[SumBlended] > 0.0f)) continue;
+        clear_rows(job, next, record->row);
+        next = record->row + std::size_t{1};
         const int lane = batch.raw.size++;
         load_row(job.source, record->row, lane, batch.raw);
         for (int k = 0; k < 9; ++k) batch.sums[k][lane] = sums[k];
@@ -261,5 +286,6 @@ static void gradient(const GradientJob& job) {
         batch.sh[lane] = job.source.sh + static_cast<std::size_t>(record->row) * job.source.sh_stride;
         if (batch.raw.size == F::W) finish_batch(job, batch);
     }
+    clear_rows(job, next, job.end_row);
     finish_batch(job, batch);
 }

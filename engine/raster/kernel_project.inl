@@ -116,6 +116,12 @@ static void check_colours(ProjectJob& job) {
     job.drawn = kept;
 }
 
+/// Asks for the coefficients of the next batch, of which most are drawn.
+GSE_INLINE void prefetch_coefficients(const ProjectJob& job, std::size_t row) {
+    const std::size_t end = row + F::W < job.end ? row + F::W : job.end;
+    for (; row < end; ++row) prefetch_floats<0>(job.source.sh + row * job.source.sh_stride, job.view->sh_count * 3);
+}
+
 static void project(ProjectJob& job) {
     RawBatch raw;
     RecordBatch found;
@@ -128,6 +134,7 @@ static void project(ProjectJob& job) {
         raw.size = left < F::W ? static_cast<int>(left) : F::W;
         for (int lane = 0; lane < raw.size; ++lane)
             load_row(job.source, row + static_cast<std::size_t>(lane), lane, raw);
+        prefetch_coefficients(job, row + F::W);
         fill_batch(job.source, raw);
         unsigned drawn = 0, usable = 0;
         for (int at = 0; at < F::W; at += D::W) {

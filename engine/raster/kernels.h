@@ -149,7 +149,7 @@ enum PartialSum : int { SumG, SumGu, SumGv, SumGuu, SumGuv, SumGvv, SumRed, SumG
 /// Order in the slots of contributions.
 enum ContributionSum : int { SumWeight, SumMasked };
 
-/// Where the raw-parameter gradients go; index 0 is the job's first row.
+/// Where the raw-parameter gradients go.
 struct GradientArrays {
     float* position;
     float* log_scale;
@@ -160,7 +160,8 @@ struct GradientArrays {
     std::uint8_t* visible;
 };
 
-/// Sums the partial gradients of records [begin, end) and applies the chain rule. The arrays were zeroed.
+/// Sums the partial gradients of records [begin, end) and applies the chain rule; rows of [first_row, end_row) that no pixel
+/// shows get zeros.
 struct GradientJob {
     Source source;
     const Viewpoint* view;
@@ -169,7 +170,8 @@ struct GradientJob {
     const PairRange* ranges;  // of begin
     std::uint32_t slot_shift;  // slot of place 0 of the ranges, modulo 2^32: it may lie before the first
     const float* partials;
-    std::size_t first_row;
+    std::size_t first_row, end_row;
+    std::size_t out_row;  // the one that index 0 of the arrays belongs to
     GradientArrays out;
 };
 
