@@ -112,24 +112,24 @@ private:
         });
     }
 
-    BackwardJob tile_job(Frame& frame, std::size_t tile, BackwardScratch& scratch) const {
+    BackwardJob tile_job(Frame& frame, std::size_t tile, const std::uint32_t* ends, BackwardScratch& scratch) const {
         const auto list = frame.entries(tile);
         return {{frame.records(), nullptr, NoSplit}, list.data(),        static_cast<std::uint32_t>(list.size()),
                 frame.tile_x(tile), frame.tile_y(tile), frame.width(),
-                frame.height(),     &scratch,           frame.first_active(),
+                frame.height(),     ends,               &scratch,           frame.first_active(),
                 frame.first_slot(), frame.slots()->sums};
     }
 
     void backward_tile(std::size_t tile, BackwardScratch& scratch) {
         load_slopes(tile_area(frame_, tile), frame_.light(tile), slope_, scratch);
-        kernels_.backward(tile_job(frame_, tile, scratch));
+        kernels_.backward(tile_job(frame_, tile, frame_.light(tile).ends, scratch));
     }
 
     void contribute_tile(std::size_t tile, BackwardScratch& scratch) {
         std::memset(scratch.mask, 0, sizeof scratch.mask);
         for_pixels(tile_area(side_frame_, tile),
                    [&](std::size_t local, std::size_t pixel) { scratch.mask[local] = mask_->data[pixel]; });
-        kernels_.contribute(tile_job(side_frame_, tile, scratch));
+        kernels_.contribute(tile_job(side_frame_, tile, nullptr, scratch));
     }
 
     void add_contributions(std::size_t chunk) {

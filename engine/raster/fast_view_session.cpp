@@ -233,6 +233,7 @@ void FastViewSession::backward_tile(std::size_t index, BackwardScratch& scratch)
                              area.y,
                              area.width,
                              area.height,
+                             lights_[index].ends,
                              &scratch,
                              split,
                              frame_.first_slot(),

@@ -4,13 +4,13 @@
 
 /// Sums over pixels of g and w times what PartialSum names (g = dL/d ln alpha, w = alpha T).
 struct Sums {
-    F s[9];
+    F s[10];
 };
 
-/// One register of pixels of one active Gaussian; returns whether light is left. Remaining-light form of the
+/// One register of pixels of one active Gaussian. Remaining-light form of the
 /// derivative: dL/dalpha = T (c.v) - R / (1 - alpha) with R the gradient-weighted light behind the pair.
-GSE_INLINE M backward_pixels(const Record& r, int pixel, const PixelGrid& grid, BackwardScratch& scratch,
-                             Sums& sums, M& blended) {
+GSE_INLINE void backward_pixels(const Record& r, int pixel, const PixelGrid& grid, BackwardScratch& scratch,
+                                Sums& sums, M& blended) {
     const Sample s = sample(r, load(grid.x + pixel), load(grid.y + pixel));
     const F before = load(scratch.transmittance + pixel);
     const F after = fnma(s.alpha, before, before);
@@ -35,11 +35,10 @@ GSE_INLINE M backward_pixels(const Record& r, int pixel, const PixelGrid& grid, 
     sums.s[SumGreen] = fma(weight, green, sums.s[SumGreen]);
     sums.s[SumBlue] = fma(weight, blue, sums.s[SumBlue]);
     blended = blended | (live & s.touched);
-    return live;
 }
 
 /// The same pixels of a Gaussian that wants no gradient: it only takes its light.
-GSE_INLINE M pass_pixels(const Record& r, int pixel, const PixelGrid& grid, BackwardScratch& scratch) {
+GSE_INLINE void pass_pixels(const Record& r, int pixel, const PixelGrid& grid, BackwardScratch& scratch) {
     const Sample s = sample(r, load(grid.x + pixel), load(grid.y + pixel));
     const F before = load(scratch.transmittance + pixel);
     const F after = fnma(s.alpha, before, before);
@@ -50,7 +49,6 @@ GSE_INLINE M pass_pixels(const Record& r, int pixel, const PixelGrid& grid, Back
             blue = load(scratch.d_colour[2] + pixel);
     const F light = fma(set(r.colour[2]), blue, fma(set(r.colour[1]), green, set(r.colour[0]) * red));
     store(scratch.remaining + pixel, load(scratch.remaining + pixel) - weight * light);
-    return live;
 }
 
 GSE_INLINE M weigh_pixels(const Record& r, int pixel, const PixelGrid& grid, BackwardScratch& scratch,
@@ -87,94 +85,84 @@ GSE_INLINE void prefetch_entry(const BackwardJob& job, std::uint32_t i) {
     if (entry.record >= job.first_record) __builtin_prefetch(slot_of(job, entry), 1);
 }
 
-/// Blocks of `blocks` in which light is left after the active record r.
-static std::uint32_t backward_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid,
-                                     BackwardScratch& scratch, float* slot) {
+static void backward_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch, float* slot) {
     Sums sums;
     for (F& sum : sums.s) sum = zero();
     M blended = none();
-    std::uint32_t finished = 0;
     for (std::uint32_t left = blocks; left != 0; left &= left - 1) {
         const int block = __builtin_ctz(left);
-        M live = none();
-        for (int sub = 0; sub < Subs; ++sub)
-            live = live | backward_pixels(r, block * 16 + sub * F::W, grid, scratch, sums, blended);
-        if (!any(live)) finished |= 1u << block;
+        for (int sub = 0; sub < Subs; ++sub) backward_pixels(r, block * 16 + sub * F::W, grid, scratch, sums, blended);
     }
-    clear_slot(slot);
+    sums.s[SumBlended] = only(blended, set(1.0f));
     store_sums(sums.s, slot);
-    slot[SumBlended] = any(blended) ? 1.0f : 0.0f;
-    return finished;
 }
 
-static std::uint32_t pass_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid,
-                                 BackwardScratch& scratch) {
-    std::uint32_t finished = 0;
+static void pass_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch) {
     for (std::uint32_t left = blocks; left != 0; left &= left - 1) {
         const int block = __builtin_ctz(left);
-        M live = none();
-        for (int sub = 0; sub < Subs; ++sub)
-            live = live | pass_pixels(r, block * 16 + sub * F::W, grid, scratch);
-        if (!any(live)) finished |= 1u << block;
+        for (int sub = 0; sub < Subs; ++sub) pass_pixels(r, block * 16 + sub * F::W, grid, scratch);
     }
-    return finished;
 }
 
-/// The last active entry of each block: what lies behind it, and blocks without one, have nothing to say.
-struct LastActive {
-    std::uint32_t entry[16];
-    std::uint32_t blocks;   // that have one
-    std::uint32_t soonest;  // smallest of entry[]
-    std::uint32_t end;      // behind the largest of them
+/// Where each block has nothing more to say: behind its last active entry, and where its light ended. Blocks without an active
+/// entry say nothing at all.
+struct Reach {
+    std::uint32_t ends[16];
+    std::uint32_t last_active;  // behind the last active entry of the tile
 };
 
-GSE_INLINE LastActive find_last_active(const BackwardJob& job) {
-    LastActive last;
-    last.blocks = last.end = 0;
-    last.soonest = job.count;
-    for (std::uint32_t i = job.count; i > 0 && last.blocks != AllBlocks; --i) {
+GSE_INLINE Reach find_reach(const BackwardJob& job) {
+    Reach reach;
+    reach.last_active = 0;
+    for (std::uint32_t& end : reach.ends) end = 0;
+    std::uint32_t found = 0;
+    for (std::uint32_t i = job.count; i > 0 && found != AllBlocks; --i) {
         const TileEntry& entry = job.entries[i - 1];
         if (entry.record < job.first_record) continue;
-        if (last.end == 0) last.end = i;
-        const std::uint32_t found = entry.blocks & ~last.blocks;
-        if (found == 0) continue;
-        for (std::uint32_t left = found; left != 0; left &= left - 1) last.entry[__builtin_ctz(left)] = i - 1;
-        last.blocks |= found;
-        last.soonest = i - 1;
+        if (reach.last_active == 0) reach.last_active = i;
+        for (std::uint32_t left = entry.blocks & ~found; left != 0; left &= left - 1) {
+            const int block = __builtin_ctz(left);
+            reach.ends[block] = job.ends[block] < i ? job.ends[block] : i;
+        }
+        found |= entry.blocks;
     }
-    return last;
+    return reach;
 }
 
-/// Blocks of entry i, an active one, that have none behind it.
-GSE_INLINE std::uint32_t ended_blocks(const LastActive& last, std::uint32_t blocks, std::uint32_t i) {
-    std::uint32_t ended = 0;
-    if (i < last.soonest) return ended;
-    for (; blocks != 0; blocks &= blocks - 1)
-        if (last.entry[__builtin_ctz(blocks)] == i) ended |= blocks & (0u - blocks);
-    return ended;
+/// The blocks that reach beyond entry i; `until` becomes the entry where the first of them ends.
+GSE_INLINE std::uint32_t blocks_beyond(const Reach& reach, std::uint32_t i, std::uint32_t& until) {
+    std::uint32_t blocks = 0;
+    until = 0xffffffff;
+    for (int block = 0; block < 16; ++block) {
+        if (reach.ends[block] <= i) continue;
+        blocks |= 1u << block;
+        until = reach.ends[block] < until ? reach.ends[block] : until;
+    }
+    return blocks;
 }
 
 static void backward(const BackwardJob& job) {
-    const LastActive last = find_last_active(job);
-    if (last.end == 0) return;
+    const Reach reach = find_reach(job);
+    if (reach.last_active == 0) return;
     PixelGrid grid;
     fill_grid(job.x, job.y, grid);
     start_transmittance(job.width, job.height, grid, job.scratch->transmittance);
-    std::uint32_t alive = last.blocks, i = 0;
-    for (; i < last.end && alive != 0; ++i) {
+    std::uint32_t until = 0, alive = 0, i = 0;
+    for (;; ++i) {
+        if (i == until) alive = blocks_beyond(reach, i, until);
+        if (alive == 0) break;
         prefetch_entry(job, i + 8);
         const TileEntry& entry = job.entries[i];
         const Record& r = record_at(job.records, entry.record);
         const std::uint32_t blocks = entry.blocks & alive;
         if (entry.record < job.first_record)
-            alive &= ~pass_record(r, blocks, grid, *job.scratch);
+            pass_record(r, blocks, grid, *job.scratch);
         else if (blocks == 0)
             clear_slot(slot_of(job, entry));
         else
-            alive &= ~(backward_record(r, blocks, grid, *job.scratch, slot_of(job, entry)) |
-                       ended_blocks(last, blocks, i));
+            backward_record(r, blocks, grid, *job.scratch, slot_of(job, entry));
     }
-    clear_rest(job, i, last.end);
+    clear_rest(job, i, reach.last_active);
 }
 
 static void contribute(const BackwardJob& job) {

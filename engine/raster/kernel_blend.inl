@@ -54,21 +54,23 @@ GSE_INLINE Sample sample(const Record& r, F px, F py) {
     return s;
 }
 
-/// Runs a list over W pixels; returns whether any of them still lets light through.
-GSE_INLINE bool blend_pixels(const BlendJob& job, const std::uint16_t* list, std::uint32_t length, int pixel,
-                             const PixelGrid& grid) {
+/// Runs a list over W pixels; returns how many of its entries it took until none of them let light through, or the length if some
+/// still do, which `alive` says.
+GSE_INLINE std::uint32_t blend_pixels(const BlendJob& job, const std::uint16_t* list, std::uint32_t length, int pixel,
+                                      const PixelGrid& grid, bool& alive) {
     TileLight& light = *job.light;
     BlendScratch& scratch = *job.scratch;
     const F cut = set(CutTransmittance);
     F running = load(scratch.running + pixel);
-    if (!any(running > cut)) return false;
+    if (!any(running > cut)) return 0;
     const F px = load(grid.x + pixel), py = load(grid.y + pixel);
     F t = load(light.transmittance + pixel), depth = load(scratch.depth + pixel);
     F red = load(light.colour[0] + pixel), green = load(light.colour[1] + pixel),
       blue = load(light.colour[2] + pixel);
     I blended = load(scratch.blended + pixel);
-    bool alive = true;
-    for (std::uint32_t i = 0; alive && i < length; ++i) {
+    bool left = true;
+    std::uint32_t i = 0;
+    for (; left && i < length; ++i) {
         const Record& r = scratch.records[list[i]];
         const Sample s = sample(r, px, py);
         // `running` goes on shrinking behind the cut; it is monotone, so a finished pixel stays finished.
@@ -82,7 +84,7 @@ GSE_INLINE bool blend_pixels(const BlendJob& job, const std::uint16_t* list, std
         t = select(live, after, t);
         blended = count(blended, live & s.touched);
         running = after;
-        alive = any(live);
+        left = any(live);
     }
     store(scratch.running + pixel, running);
     store(light.transmittance + pixel, t);
@@ -91,7 +93,8 @@ GSE_INLINE bool blend_pixels(const BlendJob& job, const std::uint16_t* list, std
     store(light.colour[2] + pixel, blue);
     store(scratch.depth + pixel, depth);
     store(scratch.blended + pixel, blended);
-    return alive;
+    alive |= left;
+    return i;
 }
 
 /// Copies a batch of records together and sorts its entries into one list per block.
@@ -130,6 +133,7 @@ static void blend(const BlendJob& job) {
         store(scratch.depth + pixel, zero());
         for (int lane = 0; lane < F::W; ++lane) scratch.blended[pixel + lane] = 0;
     }
+    for (int block = 0; block < 16; ++block) light.ends[block] = (job.blocks >> block & 1u) != 0 ? job.count : 0u;
     std::uint32_t alive = job.blocks;
     std::uint32_t lengths[16];
     for (std::uint32_t begin = 0; begin < job.count && alive != 0; begin += BatchEntries) {
@@ -138,10 +142,15 @@ static void blend(const BlendJob& job) {
         for (std::uint32_t left = alive; left != 0; left &= left - 1) {
             const int block = __builtin_ctz(left);
             bool any_alive = false;
-            for (int sub = 0; sub < Subs; ++sub)
-                any_alive |=
-                    blend_pixels(job, scratch.lists[block], lengths[block], block * 16 + sub * F::W, grid);
-            if (!any_alive) alive &= ~(1u << block);
+            std::uint32_t taken = 0;
+            for (int sub = 0; sub < Subs; ++sub) {
+                const std::uint32_t by_sub = blend_pixels(job, scratch.lists[block], lengths[block], block * 16 + sub * F::W,
+                                                          grid, any_alive);
+                taken = by_sub > taken ? by_sub : taken;
+            }
+            if (any_alive) continue;
+            alive &= ~(1u << block);
+            light.ends[block] = taken == 0 ? begin : begin + scratch.lists[block][taken - 1] + 1u;
         }
     }
 }

@@ -94,6 +94,7 @@ struct TileEntry {
 struct alignas(64) TileLight {
     float transmittance[TilePixels];
     float colour[3][TilePixels];  // without the background
+    std::uint32_t ends[16];       // of each block: the first entry that finds no light left in it; 0 if it was not blended
 };
 
 struct alignas(64) BlendScratch {
@@ -138,6 +139,7 @@ struct BackwardJob {
     std::uint32_t count;
     int x, y;
     int width, height;
+    const std::uint32_t* ends;   // of the tile's light (not for contributions)
     BackwardScratch* scratch;    // remaining, d_colour (or mask) filled by the driver
     std::uint32_t first_record;  // records from here on get gradients
     std::uint32_t first_slot;    // the first of theirs, where `partials` begin

@@ -139,10 +139,11 @@ GSE_INLINE __m128 four_sums(__m256 a, __m256 b, __m256 c, __m256 d) {
     const __m256 abcd = _mm256_hadd_ps(_mm256_hadd_ps(a, b), _mm256_hadd_ps(c, d));
     return _mm_add_ps(_mm256_castps256_ps128(abcd), _mm256_extractf128_ps(abcd, 1));
 }
-/// Horizontal sums of nine registers, into the first nine floats of `to`; the next three become 0.
+/// Horizontal sums of ten registers, into the first ten floats of `to`; the other six become 0.
 GSE_INLINE void store_sums(const F* a, float* to) {
     const __m256 nought = _mm256_setzero_ps();
     _mm_store_ps(to, four_sums(a[0].v, a[1].v, a[2].v, a[3].v));
     _mm_store_ps(to + 4, four_sums(a[4].v, a[5].v, a[6].v, a[7].v));
-    _mm_store_ps(to + 8, four_sums(a[8].v, nought, nought, nought));
+    _mm_store_ps(to + 8, four_sums(a[8].v, a[9].v, nought, nought));
+    _mm_store_ps(to + 12, _mm_setzero_ps());
 }

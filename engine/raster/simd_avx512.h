@@ -166,12 +166,12 @@ GSE_INLINE __m512 quarter_sums(__m512 a, __m512 b, __m512 c, __m512 d) {
     return _mm512_castpd_ps(_mm512_unpacklo_pd(_mm512_castps_pd(ab), _mm512_castps_pd(cd))) +
            _mm512_castpd_ps(_mm512_unpackhi_pd(_mm512_castps_pd(ab), _mm512_castps_pd(cd)));
 }
-/// Horizontal sums of nine registers, into the first nine floats of `to` (the other seven become 0).
+/// Horizontal sums of ten registers, into the first ten floats of `to`; the other six become 0.
 GSE_INLINE void store_sums(const F* a, float* to) {
     const __m512 x = quarter_sums(a[0].v, a[1].v, a[2].v, a[3].v);
     const __m512 y = quarter_sums(a[4].v, a[5].v, a[6].v, a[7].v);
     const __m512 nought = _mm512_setzero_ps();
-    const __m512 z = quarter_sums(a[8].v, nought, nought, nought);
+    const __m512 z = quarter_sums(a[8].v, a[9].v, nought, nought);
     const __m512 xy = _mm512_add_ps(_mm512_shuffle_f32x4(x, y, 0x44), _mm512_shuffle_f32x4(x, y, 0xee));
     const __m512 zz =
         _mm512_add_ps(_mm512_shuffle_f32x4(z, nought, 0x44), _mm512_shuffle_f32x4(z, nought, 0xee));

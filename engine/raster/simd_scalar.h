@@ -107,7 +107,7 @@ GSE_INLINE void store_columns(const float* from, int columns, float* const* rows
     if (row_count < 1) return;
     for (int k = 0; k < columns; ++k) rows[0][k] = from[k];
 }
-/// Horizontal sums of nine registers, into the first nine floats of `to`.
+/// Horizontal sums of ten registers, into the first ten floats of `to`; the other six become 0.
 GSE_INLINE void store_sums(const F* a, float* to) {
-    for (int k = 0; k < 9; ++k) to[k] = a[k].v;
+    for (int k = 0; k < 16; ++k) to[k] = k < 10 ? a[k].v : 0.0f;
 }
