@@ -9,6 +9,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/process_memory.h"
 #include "engine/raster/bench_tools.h"
+#include "engine/raster/kernels.h"
 #include "engine/raster/plain.h"
 #include "engine/raster/rasterizer.h"
 
@@ -72,6 +73,14 @@ void compare_with_plain(const Case& c, Rasterizer& fast, RasterBench& result) {
                                       relative_error(found.sh, expected.sh)});
 }
 
+void compare_with_floor(const KernelFloor& floor, std::size_t sh_floats, RasterBench& result) {
+    result.kernel_floor = floor;
+    result.floor = floor_step(floor, {result.splats, sh_floats, result.pairs_reached, result.block_pairs, result.threads});
+    const double least = result.floor.total();
+    result.floor_ratio = (result.forward.wall_min_ms + result.backward.wall_min_ms) / least;
+    result.floor_ratio_cpu = (result.forward.cpu_min_ms + result.backward.cpu_min_ms) / result.threads / least;
+}
+
 }  // namespace
 
 RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera> cameras,
@@ -85,15 +94,19 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     const Settings image_settings;
     ForwardOutput image;
     Gradients gradients;
+    FloorBench floor(choose_kernels(settings.kernels.c_str()), pool);
     std::vector<Round> forward, backward;
-    std::size_t pairs = 0, blended = 0;
+    std::size_t pairs = 0, blended = 0, reached = 0, blocks = 0;
     for (int round = -1; round < settings.repetitions; ++round) {  // round -1 warms up
         Round forward_round, backward_round;
-        pairs = blended = 0;
+        pairs = blended = reached = blocks = 0;
+        floor.measure();
         for (const Camera& view : views) {
             time_into(forward_round, [&] { rasterizer->forward(gaussians, view, image_settings, image); });
             time_into(backward_round, [&] { rasterizer->backward(d_colour, {}, 0, gradients); });
             pairs += image.pairs;
+            reached += image.pairs_reached;
+            blocks += image.block_pairs;
             for (const std::int32_t count : image.blended) blended += static_cast<std::size_t>(count);
         }
         if (round < 0) continue;
@@ -115,6 +128,9 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     result.backward_min_ms = result.backward.wall_min_ms;
     result.pairs = pairs / views.size();
     result.blended_pairs = blended / views.size();
+    result.pairs_reached = reached / views.size();
+    result.block_pairs = blocks / views.size();
+    compare_with_floor(floor.least(), static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3, result);
     const double per_pair = 1e6 / std::max(1.0, static_cast<double>(result.blended_pairs));
     result.forward_ns_per_pair = result.forward.cpu_min_ms * per_pair;
     result.backward_ns_per_pair = result.backward.cpu_min_ms * per_pair;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/math/camera.h"
+#include "engine/raster/floor_bench.h"
 #include "engine/scene/gaussian_set.h"
 
 namespace gse::raster {
@@ -28,6 +29,12 @@ struct RasterBench {
     BenchTimes forward, backward;
     std::size_t pairs = 0;           // tile-Gaussian pairs per view (mean)
     std::size_t blended_pairs = 0;   // pixel-Gaussian pairs blended per view (mean)
+    std::size_t pairs_reached = 0, block_pairs = 0;  // ForwardOutput, per view (mean)
+    // The floor of the same run (floor_bench.h), and forward plus backward over it: least wall time, and least processor time
+    // divided by the threads.
+    KernelFloor kernel_floor;
+    FloorStep floor;
+    double floor_ratio = 0, floor_ratio_cpu = 0;
     double forward_ns_per_pair = 0;  // CPU time over blended pairs, minimum
     double backward_ns_per_pair = 0;
     double peak_rss_mb = 0;  // of the process

@@ -31,6 +31,11 @@ public:
                 static_cast<FastRasterizer*>(self)->write_tile(tile, scratch);
             },
             this);
+        output.pairs_reached = output.block_pairs = 0;
+        for (std::size_t tile = 0; tile < frame_.tile_count(); ++tile) {
+            output.pairs_reached += frame_.light(tile).reached;
+            output.block_pairs += frame_.light(tile).block_pairs;
+        }
     }
 
     void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row,

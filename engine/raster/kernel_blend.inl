@@ -134,6 +134,7 @@ static void blend(const BlendJob& job) {
         for (int lane = 0; lane < F::W; ++lane) scratch.blended[pixel + lane] = 0;
     }
     for (int block = 0; block < 16; ++block) light.ends[block] = (job.blocks >> block & 1u) != 0 ? job.count : 0u;
+    light.block_pairs = light.reached = 0;
     std::uint32_t alive = job.blocks;
     std::uint32_t lengths[16];
     for (std::uint32_t begin = 0; begin < job.count && alive != 0; begin += BatchEntries) {
@@ -148,9 +149,11 @@ static void blend(const BlendJob& job) {
                                                           grid, any_alive);
                 taken = by_sub > taken ? by_sub : taken;
             }
+            light.block_pairs += taken;
             if (any_alive) continue;
             alive &= ~(1u << block);
             light.ends[block] = taken == 0 ? begin : begin + scratch.lists[block][taken - 1] + 1u;
         }
     }
+    for (const std::uint32_t end : light.ends) light.reached = end > light.reached ? end : light.reached;
 }

@@ -95,6 +95,8 @@ struct alignas(64) TileLight {
     float transmittance[TilePixels];
     float colour[3][TilePixels];  // without the background
     std::uint32_t ends[16];       // of each block: the first entry that finds no light left in it; 0 if it was not blended
+    std::uint32_t reached;        // entries in front of the last of them
+    std::uint32_t block_pairs;    // pairs of block and entry in front of them
 };
 
 struct alignas(64) BlendScratch {
@@ -177,6 +179,28 @@ struct GradientJob {
     GradientArrays out;
 };
 
+/// The innermost loops, for floor_bench.h.
+enum class FloorLoop { Forward, Backward, Mask, Gather };
+inline constexpr std::uint32_t FloorRecords = 64;
+
+struct FloorScratch {
+    Record records[FloorRecords];
+    TileEntry entries[FloorRecords];   // of record i, with as many blocks as are to be timed
+    TileLight light;
+    BlendScratch blend;
+    BackwardScratch backward;
+    alignas(64) float partials[FloorRecords * PartialStride];
+    TilePair pairs[16 * FloorRecords];
+    PairRange ranges[FloorRecords];
+};
+
+struct FloorJob {
+    FloorLoop loop;
+    std::uint32_t rounds;
+    FloorScratch* scratch;
+    std::size_t work;   // result: pairs of block and Gaussian, or of tile and Gaussian
+};
+
 /// The kernels of one instruction set.
 struct Kernels {
     const char* name;
@@ -186,6 +210,7 @@ struct Kernels {
     void (*backward)(const BackwardJob&);
     void (*contribute)(const BackwardJob&);
     void (*gradient)(const GradientJob&);
+    void (*floor)(FloorJob&);
 };
 
 extern const Kernels ScalarKernels;

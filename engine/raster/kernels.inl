@@ -7,4 +7,5 @@
 #include "engine/raster/kernel_blend.inl"
 #include "engine/raster/kernel_backward.inl"
 #include "engine/raster/kernel_gradient.inl"
+#include "engine/raster/kernel_floor.inl"
 // clang-format on

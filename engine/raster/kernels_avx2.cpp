@@ -17,6 +17,6 @@ namespace {
 }  // namespace avx2
 
 const Kernels Avx2Kernels = {"avx2",         avx2::project,    avx2::bin,     avx2::blend,
-                             avx2::backward, avx2::contribute, avx2::gradient};
+                             avx2::backward, avx2::contribute, avx2::gradient, avx2::floor_loops};
 
 }  // namespace gse::raster

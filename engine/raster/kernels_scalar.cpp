@@ -17,6 +17,6 @@ namespace {
 }  // namespace scalar
 
 const Kernels ScalarKernels = {"scalar",         scalar::project,    scalar::bin,     scalar::blend,
-                               scalar::backward, scalar::contribute, scalar::gradient};
+                               scalar::backward, scalar::contribute, scalar::gradient, scalar::floor_loops};
 
 }  // namespace gse::raster

@@ -1,0 +1,64 @@
+// The least time that forward and backward could take on this machine: the innermost loops alone with everything in the first
+// cache, the handling of lists, and memory bandwidth, times the work that was counted.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+
+#include "engine/base/thread_pool.h"
+
+namespace gse::raster {
+
+struct Kernels;
+
+/// Blocks per (tile, Gaussian) for which the backward loop is timed; its sums are added up once per (tile, Gaussian).
+inline constexpr std::array<int, 5> FloorBlocks{1, 2, 4, 8, 16};
+
+/// Nanoseconds of one thread while all of them run, and what they read from memory together.
+struct KernelFloor {
+    double forward_ns = 0;                                   // per 4x4 block and Gaussian
+    std::array<double, FloorBlocks.size()> backward_ns{};    // the same, by FloorBlocks
+    double mask_ns = 0, gather_ns = 0;                       // per tile and Gaussian
+    double gigabytes_per_second = 0;
+};
+
+/// Counted work of a picture.
+struct FloorWork {
+    std::size_t splats = 0;
+    std::size_t sh_floats = 48;   // per splat
+    std::size_t pairs = 0, blocks = 0;   // ForwardOutput::pairs_reached, block_pairs
+    unsigned threads = 1;
+};
+
+/// Milliseconds, the work shared evenly among the threads.
+struct FloorStep {
+    double forward_blend = 0, backward_blend = 0;
+    double lists = 0;                                  // block masks and records, forward and backward
+    double parameters = 0, parameter_gradients = 0;    // read once; read and written once
+    double total() const { return forward_blend + backward_blend + lists + parameters + parameter_gradients; }
+};
+
+FloorStep floor_step(const KernelFloor& kernel, const FloorWork& work);
+
+/// Times the loops, each for some milliseconds on all threads at once.
+class FloorBench {
+public:
+    FloorBench(const Kernels& kernels, ThreadPool& pool);
+    ~FloorBench();
+    /// Measures once more; what was least stays.
+    void measure();
+    const KernelFloor& least() const { return least_; }
+
+private:
+    struct Data;
+    void measure_loops();
+    void measure_bandwidth();
+
+    const Kernels& kernels_;
+    ThreadPool& pool_;
+    std::unique_ptr<Data> data_;
+    KernelFloor least_;
+};
+
+}  // namespace gse::raster
