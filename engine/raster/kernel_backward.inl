@@ -85,7 +85,7 @@ GSE_INLINE void prefetch_entry(const BackwardJob& job, std::uint32_t i) {
     if (entry.record >= job.first_record) __builtin_prefetch(slot_of(job, entry), 1);
 }
 
-static void backward_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch, float* slot) {
+GSE_INLINE void backward_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch, float* slot) {
     Sums sums;
     for (F& sum : sums.s) sum = zero();
     M blended = none();
@@ -97,7 +97,7 @@ static void backward_record(const Record& r, std::uint32_t blocks, const PixelGr
     store_sums(sums.s, slot);
 }
 
-static void pass_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch) {
+GSE_INLINE void pass_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch) {
     for (std::uint32_t left = blocks; left != 0; left &= left - 1) {
         const int block = __builtin_ctz(left);
         for (int sub = 0; sub < Subs; ++sub) pass_pixels(r, block * 16 + sub * F::W, grid, scratch);
