@@ -81,10 +81,11 @@ void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const 
     at_least(chunk_unusable_, chunk_count());
     at_least(chunk_first_, chunk_count());
     at_least(scratch_, pool_.thread_count());
-    pool_.parallel_for(chunk_count(), 1, [this](std::size_t begin, std::size_t end, unsigned) {
+    tile_counts_.assign(pool_.thread_count() * tile_count(), 0u);
+    pool_.parallel_for(chunk_count(), 1, [this](std::size_t begin, std::size_t end, unsigned worker) {
         for (std::size_t chunk = begin; chunk < end; ++chunk) {
             project_chunk(chunk);
-            bin_chunk(chunk);
+            bin_chunk(chunk, worker);
         }
     });
     collect_keys();
@@ -107,7 +108,7 @@ void Frame::project_chunk(std::size_t chunk) {
 }
 
 /// While the chunk's records are still in the cache.
-void Frame::bin_chunk(std::size_t chunk) {
+void Frame::bin_chunk(std::size_t chunk, unsigned worker) {
     std::vector<TilePair>& pairs = pairs_[chunk];
     BinJob job{};
     job.records = records_.data() + chunk * ChunkRows;
@@ -124,6 +125,8 @@ void Frame::bin_chunk(std::size_t chunk) {
         at_least(pairs, 2 * pairs.size() + tile_count() + tile_rows_ + 4);  // room for any one Gaussian
     }
     chunk_pairs_[chunk] = static_cast<std::uint32_t>(job.written);
+    std::uint32_t* counts = &tile_counts_[worker * tile_count()];
+    for (std::size_t i = 0; i < job.written; ++i) ++counts[pairs[i].tile];
 }
 
 void Frame::collect_keys() {
@@ -153,62 +156,81 @@ void Frame::collect_keys() {
 }
 
 void Frame::fill_tiles() {
-    constexpr std::size_t worth_a_part = 4096;
+    constexpr std::size_t worth_a_group = 8192;
     order_ = std::span(sort_.sort(drawn_)).first(drawn_);
-    parts_ = std::clamp<std::size_t>(drawn_ / worth_a_part, 1, std::size_t{2} * pool_.thread_count());
-    at_least(tile_places_, parts_ * tile_count());
+    const std::size_t most = (std::size_t{pool_.thread_count()} + 1) / 2;
+    groups_ = std::clamp<std::size_t>(drawn_ / worth_a_group, 1, most);
+    at_least(tile_places_, 2 * groups_ * tile_count());
     at_least(entries_, chunk_pairs_[chunk_count()]);
-    pool_.parallel_for(parts_, 1, [this](std::size_t begin, std::size_t, unsigned) { count_part(begin); });
+    if (groups_ > 1)
+        pool_.parallel_for(groups_, 1, [this](std::size_t begin, std::size_t, unsigned) { count_group(begin); });
     count_tiles();
-    pool_.parallel_for(parts_, 1, [this](std::size_t begin, std::size_t, unsigned) { place_part(begin); });
+    pool_.parallel_for(2 * groups_, 1, [this](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t part = begin; part < end; ++part)
+            if (part % 2 == 0) place_part(part);
+            else place_back_part(part);
+    });
 }
 
-/// Calls body(record, its range, its pairs) front to back. What a record points to is asked for some records before.
+/// Calls body(record, its range, its pairs) for places of the depth order from `begin` to `end`, which may be the lower one. What a
+/// record points to is asked for some records before.
 template <class Body>
-void Frame::for_part(std::size_t part, const Body& body) const {
+void Frame::for_places(std::size_t begin, std::size_t end, const Body& body) const {
     constexpr std::size_t far_ahead = 24, ahead = 8;
-    const std::size_t begin = part_begin(part), end = part_begin(part + 1);
+    const std::size_t count = begin < end ? end - begin : begin - end;
+    const auto record_at = [&](std::size_t i) { return order_[begin < end ? begin + i : begin - 1 - i]; };
     const auto pairs_of = [&](std::uint32_t record) {
         return pairs_[record / ChunkRows].data() + ranges_[record].begin;
     };
-    for (std::size_t i = begin; i < end; ++i) {
-        if (i + far_ahead < end) __builtin_prefetch(&ranges_[order_[i + far_ahead]]);
-        if (i + ahead < end) __builtin_prefetch(pairs_of(order_[i + ahead]));
-        const std::uint32_t record = order_[i];
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i + far_ahead < count) __builtin_prefetch(&ranges_[record_at(i + far_ahead)]);
+        if (i + ahead < count) __builtin_prefetch(pairs_of(record_at(i + ahead)));
+        const std::uint32_t record = record_at(i);
         body(record, ranges_[record], pairs_of(record));
     }
 }
 
-void Frame::count_part(std::size_t part) {
-    std::uint32_t* counts = &tile_places_[part * tile_count()];
+void Frame::count_group(std::size_t group) {
+    std::uint32_t* counts = first_places(group);
     std::fill_n(counts, tile_count(), 0u);
-    for_part(part, [&](std::uint32_t, const PairRange& range, const TilePair* pair) {
+    for_places(part_begin(2 * group), part_begin(2 * group + 2), [&](std::uint32_t, const PairRange& range, const TilePair* pair) {
         for (std::uint32_t i = 0; i < range.count; ++i) ++counts[pair[i].tile];
     });
 }
 
-/// Counts per part and tile -> the tiles' ranges and each part's first place in them.
+/// Counts -> the tiles' ranges and those of each group in them.
 void Frame::count_tiles() {
     offsets_.resize(tile_count() + 1);
     std::size_t place = 0;
     for (std::size_t tile = 0; tile < tile_count(); ++tile) {
         offsets_[tile] = place;
-        for (std::size_t part = 0; part < parts_; ++part) {
-            std::uint32_t& entry = tile_places_[part * tile_count() + tile];
-            const std::uint32_t count = entry;
-            entry = static_cast<std::uint32_t>(place);
+        for (std::size_t group = 0; group < groups_; ++group) {
+            std::uint32_t count = first_places(group)[tile];
+            if (groups_ == 1) {
+                count = 0;
+                for (unsigned worker = 0; worker < pool_.thread_count(); ++worker) count += tile_counts_[worker * tile_count() + tile];
+            }
+            first_places(group)[tile] = static_cast<std::uint32_t>(place);
             place += count;
+            last_places(group)[tile] = static_cast<std::uint32_t>(place);
         }
     }
     offsets_[tile_count()] = place;
 }
 
 void Frame::place_part(std::size_t part) {
-    std::uint32_t* places = &tile_places_[part * tile_count()];
-    for_part(part, [&](std::uint32_t record, const PairRange& range, const TilePair* pair) {
+    std::uint32_t* places = first_places(part / 2);
+    for_places(part_begin(part), part_begin(part + 1), [&](std::uint32_t record, const PairRange& range, const TilePair* pair) {
         const std::uint32_t slot = chunk_pairs_[record / ChunkRows] + range.begin;
-        for (std::uint32_t i = 0; i < range.count; ++i)
-            entries_[places[pair[i].tile]++] = {record, slot + i, pair[i].blocks};
+        for (std::uint32_t i = 0; i < range.count; ++i) entries_[places[pair[i].tile]++] = {record, slot + i, pair[i].blocks};
+    });
+}
+
+void Frame::place_back_part(std::size_t part) {
+    std::uint32_t* places = last_places(part / 2);
+    for_places(part_begin(part + 1), part_begin(part), [&](std::uint32_t record, const PairRange& range, const TilePair* pair) {
+        const std::uint32_t slot = chunk_pairs_[record / ChunkRows] + range.begin;
+        for (std::uint32_t i = 0; i < range.count; ++i) entries_[--places[pair[i].tile]] = {record, slot + i, pair[i].blocks};
     });
 }
 

@@ -74,16 +74,19 @@ public:
 private:
     void set_view(const Camera& camera, const Settings& settings, int scene_degree);
     void project_chunk(std::size_t chunk);
-    void bin_chunk(std::size_t chunk);
+    void bin_chunk(std::size_t chunk, unsigned worker);
     void collect_keys();
     template <class Body>
-    void for_part(std::size_t part, const Body& body) const;
-    void count_part(std::size_t part);
+    void for_places(std::size_t begin, std::size_t end, const Body& body) const;
+    void count_group(std::size_t group);
     void place_part(std::size_t part);
+    void place_back_part(std::size_t part);
     void count_tiles();
     void fill_tiles();
     void blend_tiles(std::size_t begin, std::size_t end, unsigned worker);
-    std::size_t part_begin(std::size_t part) const { return drawn_ * part / parts_; }
+    std::size_t part_begin(std::size_t part) const { return drawn_ * part / (2 * groups_); }
+    std::uint32_t* first_places(std::size_t group) { return &tile_places_[2 * group * tile_count()]; }
+    std::uint32_t* last_places(std::size_t group) { return first_places(group) + tile_count(); }
 
     const Kernels& kernels_;
     ThreadPool& pool_;
@@ -100,8 +103,11 @@ private:
     std::vector<std::uint32_t> chunk_pairs_;    // [chunks + 1]: pairs of all chunks before
     std::vector<std::size_t> chunk_drawn_, chunk_unusable_, chunk_first_;
     std::span<const std::uint32_t> order_;      // records front to back
-    std::size_t parts_ = 1;                     // of the depth order, put into the tiles in parallel
-    std::vector<std::uint32_t> tile_places_;    // [parts][tiles]: counts, then places
+    // The depth order is put into the tiles in parts, in parallel. Two of them are a group: the first fills the group's places in
+    // a tile from the front, the second from the back, so that only groups have to be counted. One group needs no counting at all.
+    std::size_t groups_ = 1;
+    std::vector<std::uint32_t> tile_counts_;    // [threads][tiles], from binning
+    std::vector<std::uint32_t> tile_places_;    // [groups][2][tiles]: counts, then first places and ends
     std::vector<std::size_t> offsets_;          // [tiles + 1] into entries_
     std::vector<TileEntry> entries_;
     std::vector<TileLight> lights_;

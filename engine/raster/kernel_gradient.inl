@@ -223,23 +223,26 @@ static void write_gradients(const GradientJob& job, GradientBatch& batch) {
     store_columns(batch.coefficient_gradients[0], job.view->sh_count * 3, sh, batch.raw.size);
 }
 
-/// Zeros for rows [begin, end).
+/// Zeros for rows [begin, end), of which there are few at a time.
 static void clear_rows(const GradientJob& job, std::size_t begin, std::size_t end) {
     if (begin >= end) return;
-    const std::size_t first = begin - job.out_row, count = end - begin, stride = job.source.sh_stride;
-    __builtin_memset(job.out.position + first * 3, 0, count * 3 * sizeof(float));
-    __builtin_memset(job.out.log_scale + first * 3, 0, count * 3 * sizeof(float));
-    __builtin_memset(job.out.rotation + first * 4, 0, count * 4 * sizeof(float));
-    __builtin_memset(job.out.opacity_logit + first, 0, count * sizeof(float));
-    __builtin_memset(job.out.sh + first * stride, 0, count * stride * sizeof(float));
-    __builtin_memset(job.out.mean2d_norm + first, 0, count * sizeof(float));
-    __builtin_memset(job.out.visible + first, 0, count);
+    const std::size_t stride = job.source.sh_stride;
+    for (std::size_t row = begin - job.out_row; row < end - job.out_row; ++row) {
+        for (std::size_t k = 0; k < 3; ++k) job.out.position[row * 3 + k] = 0.0f;
+        for (std::size_t k = 0; k < 3; ++k) job.out.log_scale[row * 3 + k] = 0.0f;
+        for (std::size_t k = 0; k < 4; ++k) job.out.rotation[row * 4 + k] = 0.0f;
+        job.out.opacity_logit[row] = 0.0f;
+        job.out.mean2d_norm[row] = 0.0f;
+        job.out.visible[row] = 0;
+    }
+    __builtin_memset(job.out.sh + (begin - job.out_row) * stride, 0, (end - begin) * stride * sizeof(float));
 }
 
-/// Asks for the coefficients of a row, read and written, some records before they are needed.
-GSE_INLINE void prefetch_gradient_row(const GradientJob& job, std::size_t row) {
-    prefetch_floats<0>(job.source.sh + row * job.source.sh_stride, job.view->sh_count * 3);
-    prefetch_floats<1>(job.out.sh + (row - job.out_row) * job.source.sh_stride, job.view->sh_count * 3);
+/// Asks for the coefficients of a row, and for the places of its gradients and of those before it from `asked` on.
+GSE_INLINE void prefetch_gradients(const GradientJob& job, std::size_t row, std::size_t& asked) {
+    const std::size_t stride = job.source.sh_stride;
+    prefetch_floats<0>(job.source.sh + row * stride, job.view->sh_count * 3);
+    for (; asked <= row; ++asked) prefetch_floats<1>(job.out.sh + (asked - job.out_row) * stride, static_cast<int>(stride));
 }
 
 static void finish_batch(const GradientJob& job, GradientBatch& batch) {
@@ -268,9 +271,9 @@ static void gradient(const GradientJob& job) {
     batch.raw.size = 0;
     constexpr std::ptrdiff_t ahead = 24;
     const PairRange* range = job.ranges;
-    std::size_t next = job.first_row;
+    std::size_t next = job.first_row, asked = job.first_row;
     for (const Record* record = job.begin; record < job.end; ++record, ++range) {
-        if (job.end - record > ahead) prefetch_gradient_row(job, record[ahead].row);
+        if (job.end - record > ahead) prefetch_gradients(job, record[ahead].row, asked);
         alignas(64) float sums[PartialStride];
         clear_slot(sums);
         const float* slot = job.partials + static_cast<std::size_t>(range->begin + job.slot_shift) * PartialStride;
