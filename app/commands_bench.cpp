@@ -63,6 +63,7 @@ struct RasterBenchOptions {
 
 void add_raster_bench(CLI::App& bench, CommandContext& context) {
     auto options = std::make_shared<RasterBenchOptions>();
+    options->settings.floor = true;
     auto* command = bench.add_subcommand("raster", "Forward and backward of the rasterizer, with its error");
     command->add_option("scene", options->scene, SceneHelp);
     command->add_option("--cameras", options->cameras, "Camera file; found beside the scene, \"none\" for an orbit");
@@ -70,6 +71,7 @@ void add_raster_bench(CLI::App& bench, CommandContext& context) {
         ->capture_default_str()
         ->check(CLI::Range(0, 256));
     command->add_flag("--compare,!--no-compare", options->settings.compare_plain, "Measure the error against the plain version");
+    command->add_flag("--floor,!--no-floor", options->settings.floor, "Also measure what this machine could do at best");
     command->add_flag("--skips,!--no-skips", options->skips, "Also time an edit's iterations with and without what may be skipped");
     command->add_option("--labelled-shares", options->labelled_shares, "Shares of the splats that those iterations change")
         ->capture_default_str()

@@ -10,9 +10,9 @@
 #include <memory>
 #include <vector>
 
-#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/bench/setting_points.h"
+#include "engine/bench/turn_timer.h"
 #include "engine/localize/clusters.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/preview/moving_scale.h"
@@ -182,6 +182,7 @@ public:
 
 private:
     void sweep(const std::string& name, SweptRenderer& renderer, const PreviewTruth& truth, bool usual) {
+        TurnTimer timer;
         for (const auto& setting : settings_) {
             if (job_.stop_requested()) throw Error(ErrorCode::Cancelled, "the measurement was stopped");
             job_.report("drawing previews", static_cast<int>(points_.size()),
@@ -190,7 +191,9 @@ private:
             point.settings = {{"sh_degree", setting.sh_degree}, {"antialiased", setting.antialiased}, {"scale", setting.scale}};
             const auto error = rms_error(renderer.light(scaled(cameras_.front(), setting), setting),
                                          setting.antialiased ? truth.antialiased : truth.plain);
-            const auto times = time_turn(renderer, setting);
+            const auto times = timer.time(cameras_.size(), [&](std::size_t view) {
+                renderer.draw(scaled(cameras_[view], setting), setting);
+            });
             point.figures = {{"ms", times.front()}, {"median_ms", times[times.size() / 2]}, {"rms_error", error},
                              {"psnr_db", error > 0 ? Json(-20 * std::log10(error)) : Json(nullptr)}};
             points_.push_back(std::move(point));
@@ -202,20 +205,6 @@ private:
         Camera small = camera.resized(side(camera.width), side(camera.height));
         small.fy = camera.fy * small.height / camera.height;   // rounding of the height must not bend the picture
         return small;
-    }
-
-    /// Milliseconds, ascending.
-    std::vector<double> time_turn(SweptRenderer& renderer, const PreviewSetting& setting) const {
-        std::vector<double> times;
-        renderer.draw(scaled(cameras_.back(), setting), setting);   // to warm up
-        for (const auto& camera : cameras_) {
-            const auto view = scaled(camera, setting);
-            const double start = wall_seconds();
-            renderer.draw(view, setting);
-            times.push_back(1e3 * (wall_seconds() - start));
-        }
-        std::sort(times.begin(), times.end());
-        return times;
     }
 
     PreviewSweepParameters parameters_;

@@ -19,6 +19,31 @@ Json skip_times_json(const raster::SkipTimes& times, std::size_t pairs) {
 
 }  // namespace
 
+Json floor_report(const raster::RasterBench& bench) {
+    const auto& kernel = bench.kernel_floor;
+    const auto& step = bench.floor;
+    Json backward;
+    for (std::size_t i = 0; i < raster::FloorBlocks.size(); ++i)
+        backward[std::to_string(raster::FloorBlocks[i])] = kernel.backward_ns[i];
+    Json json;
+    json["threads"] = bench.threads;
+    json["ns_per_block"] = {{"forward", kernel.forward_ns}, {"backward_by_blocks_per_tile_pair", backward}};
+    json["ns_per_tile_pair"] = {{"mask", kernel.mask_ns}, {"gather", kernel.gather_ns}};
+    json["gigabytes_per_second"] = kernel.gigabytes_per_second;
+    json["tile_pairs_reached"] = bench.pairs_reached;
+    json["block_pairs"] = bench.block_pairs;
+    json["ms"] = {{"forward_blend", step.forward_blend},
+                  {"backward_blend", step.backward_blend},
+                  {"lists", step.lists},
+                  {"parameters", step.parameters},
+                  {"parameter_gradients", step.parameter_gradients},
+                  {"total", step.total()}};
+    json["measured_ms"] = {{"wall", bench.forward_min_ms + bench.backward_min_ms},
+                           {"processor_per_thread", (bench.forward.cpu_min_ms + bench.backward.cpu_min_ms) / bench.threads}};
+    json["ratio"] = {{"wall", bench.floor_ratio}, {"processor", bench.floor_ratio_cpu}};
+    return json;
+}
+
 Json raster_report(const raster::RasterBench& bench) {
     Json json;
     json["kernels"] = bench.kernels;
@@ -37,6 +62,7 @@ Json raster_report(const raster::RasterBench& bench) {
     json["forward_ns_per_pair"] = bench.forward_ns_per_pair;
     json["backward_ns_per_pair"] = bench.backward_ns_per_pair;
     json["peak_rss_mb"] = bench.peak_rss_mb;
+    if (bench.floor_ratio > 0) json["floor"] = floor_report(bench);
     json["error"] = {{"max_abs", bench.max_abs_error},
                      {"psnr_db", bench.psnr_db},
                      {"gradient_relative_l2", bench.gradient_error}};

@@ -15,4 +15,7 @@ nlohmann::ordered_json raster_report(const raster::RasterBench& bench);
 /// Of an edit's iterations with and without skips: processor time in milliseconds, memory in MiB, and what they differ by.
 nlohmann::ordered_json skip_report(const std::vector<raster::SkipBench>& shares);
 
+/// The floor of forward and backward, what it is made of, and how far the rasterizer is from it.
+nlohmann::ordered_json floor_report(const raster::RasterBench& bench);
+
 }  // namespace gse::bench

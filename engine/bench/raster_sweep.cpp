@@ -9,6 +9,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/thread_pool.h"
+#include "engine/bench/floor_cases.h"
 #include "engine/bench/setting_points.h"
 #include "engine/raster/bench.h"
 #include "engine/raster/rasterizer.h"
@@ -100,6 +101,7 @@ std::vector<std::string> kernels_in_list(const std::string& list) {
 }
 
 Subject bench_raster_sweep(const RasterSweepParameters& parameters, const JobControl& job) {
+    const auto floor_cases = floor_cases_in_list(parameters.floor_cases);
     const Scene scene = synth::timing_scene(static_cast<std::size_t>(parameters.splats), parameters.seed);
     const auto cameras = synth::timing_cameras(parameters.views, parameters.width, parameters.height);
     const auto points = raster_points(parameters, scene, cameras, job);
@@ -107,6 +109,7 @@ Subject bench_raster_sweep(const RasterSweepParameters& parameters, const JobCon
     Subject subject{"raster", "Rasterizer: error against time, by instruction set and threads", {}, {}, {}, {}};
     subject.report = {{"parameters", fields_to_json(parameters)}, {"plain", plain}, {"points", points_json(points)}};
     subject.report["fronts"] = fronts_of(points, raster_facets());
+    subject.report["floor"] = bench_floor_cases(floor_cases, parameters.seed, parameters.views, parameters.repetitions, job);
     Chart chart;
     chart.title = subject.title;
     for (const auto& facet : raster_facets()) chart.panels.push_back(panel_of(points, facet));
@@ -125,6 +128,7 @@ Subject bench_raster_sweep(const RasterSweepParameters& parameters, const JobCon
                                     {"backward_ms", "backward ms"},
                                     {"backward_cpu_ms", "processor ms"},
                                     {"gradient_error", "gradient error"}})};
+    if (!floor_cases.empty()) subject.tables.push_back(floor_table(subject.report["floor"]));
     subject.remarks = front_remarks(subject.report["fronts"], {"Forward", "Backward"});
     return subject;
 }

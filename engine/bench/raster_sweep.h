@@ -19,6 +19,7 @@ struct RasterSweepParameters {
     int repetitions = 5;
     std::string kernels = "all";
     std::string thread_counts = "1 2";
+    std::string floor_cases = "100000@512x512 500000@512x512 100000@1024x768";
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
@@ -30,6 +31,8 @@ struct RasterSweepParameters {
         f("repetitions", self.repetitions, "Timed rounds over them, after one to warm up.", Range{1, 10000});
         f("kernels", self.kernels, "Instruction sets: all that run here, or some of scalar avx2 avx512.");
         f("thread_counts", self.thread_counts, "Numbers of threads; one per core is always among them.");
+        f("floor_cases", self.floor_cases,
+          "Scenes and pictures, SPLATS@WIDTHxHEIGHT, for which forward and backward are compared with the floor of this machine.");
     }
 };
 

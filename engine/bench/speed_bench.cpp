@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "engine/bench/floor_cases.h"
+#include "engine/bench/raster_report.h"
 #include "engine/io/cameras.h"
 #include "engine/io/scene_io.h"
 #include "engine/raster/bench.h"
@@ -44,16 +46,18 @@ void write_scene(const SpeedBenchOptions& options, const Scene& scene, const std
     save_cameras_json(folder / "cameras.json", views);
 }
 
-std::string raster_lines(const SpeedBenchOptions& options, const Scene& scene, std::string& kernels) {
+std::string raster_lines(const SpeedBenchOptions& options, const Scene& scene, std::string& kernels, std::string& floors) {
     raster::BenchSettings settings;
     settings.width = options.raster_width;
     settings.height = options.raster_height;
     settings.repetitions = options.repetitions;
+    settings.floor = true;
     const auto cameras = synth::timing_cameras(options.views, settings.width, settings.height);
     write_scene(options, scene, cameras);
     const auto bench = raster::bench_raster(scene.gaussians.spans(), cameras, settings);
     kernels = fmt::format("{} kernels, {} threads", bench.kernels, bench.threads);
     const auto picture = size_text(settings.width, settings.height);
+    floors += fmt::format("{} splats, {}: {}.\n", grouped(bench.splats), picture, floor_text(floor_report(bench)));
     return line({"rasterizer, forward", picture, bench.splats, bench.forward.cpu_median_ms,
                  fmt::format("{:.0f} dB, largest {:.1e}", bench.psnr_db, bench.max_abs_error)}) +
            line({"rasterizer, backward", picture, bench.splats, bench.backward.cpu_median_ms,
@@ -81,17 +85,17 @@ std::string preview_lines(const SpeedBenchOptions& options, const Scene& scene) 
 }  // namespace
 
 std::string speed_table(const SpeedBenchOptions& options) {
-    std::string rows, kernels;
+    std::string rows, kernels, floors;
     for (const std::size_t count : options.splats) {
         const Scene scene = synth::timing_scene(count, options.seed);
-        rows += raster_lines(options, scene, kernels);
+        rows += raster_lines(options, scene, kernels, floors);
 #ifdef GSE_WINDOW
         rows += preview_lines(options, scene);
 #endif
     }
     return fmt::format("Scenes of seed {}, SH degree 3, {} cameras on a circle, {}; median processor time of a picture, all threads together.\n\n"
-                       "| what | splats | picture | processor time | error against double precision |\n|---|---|---|---|---|\n{}",
-                       options.seed, options.views, kernels, rows);
+                       "| what | splats | picture | processor time | error against double precision |\n|---|---|---|---|---|\n{}\n{}",
+                       options.seed, options.views, kernels, rows, floors);
 }
 
 }  // namespace gse::bench

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "engine/base/check.h"
@@ -94,13 +95,14 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     const Settings image_settings;
     ForwardOutput image;
     Gradients gradients;
-    FloorBench floor(choose_kernels(settings.kernels.c_str()), pool);
+    std::optional<FloorBench> floor;
+    if (settings.floor) floor.emplace(choose_kernels(settings.kernels.c_str()), pool);
     std::vector<Round> forward, backward;
     std::size_t pairs = 0, blended = 0, reached = 0, blocks = 0;
     for (int round = -1; round < settings.repetitions; ++round) {  // round -1 warms up
         Round forward_round, backward_round;
         pairs = blended = reached = blocks = 0;
-        floor.measure();
+        if (floor) floor->measure();
         for (const Camera& view : views) {
             time_into(forward_round, [&] { rasterizer->forward(gaussians, view, image_settings, image); });
             time_into(backward_round, [&] { rasterizer->backward(d_colour, {}, 0, gradients); });
@@ -130,7 +132,7 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     result.blended_pairs = blended / views.size();
     result.pairs_reached = reached / views.size();
     result.block_pairs = blocks / views.size();
-    compare_with_floor(floor.least(), static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3, result);
+    if (floor) compare_with_floor(floor->least(), static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3, result);
     const double per_pair = 1e6 / std::max(1.0, static_cast<double>(result.blended_pairs));
     result.forward_ns_per_pair = result.forward.cpu_min_ms * per_pair;
     result.backward_ns_per_pair = result.backward.cpu_min_ms * per_pair;

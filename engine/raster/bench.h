@@ -30,14 +30,14 @@ struct RasterBench {
     std::size_t pairs = 0;           // tile-Gaussian pairs per view (mean)
     std::size_t blended_pairs = 0;   // pixel-Gaussian pairs blended per view (mean)
     std::size_t pairs_reached = 0, block_pairs = 0;  // ForwardOutput, per view (mean)
-    // The floor of the same run (floor_bench.h), and forward plus backward over it: least wall time, and least processor time
-    // divided by the threads.
+    // With BenchSettings::floor: the floor in the same run (floor_bench.h), and forward plus backward over it: least wall time,
+    // and least processor time divided by the threads.
     KernelFloor kernel_floor;
     FloorStep floor;
     double floor_ratio = 0, floor_ratio_cpu = 0;
     double forward_ns_per_pair = 0;  // CPU time over blended pairs, minimum
     double backward_ns_per_pair = 0;
-    double peak_rss_mb = 0;  // of the process
+    double peak_rss_mb = 0;  // of the process, with 128 MiB for the floor
     // Against the plain version, first view; pixels where rounding may decide a cut otherwise are left out of
     // the maximum but not of the PSNR.
     double max_abs_error = 0;
@@ -51,6 +51,7 @@ struct BenchSettings {
     unsigned threads = 0;       // 0 = one per hardware thread
     std::string kernels;        // instruction set; empty = the best
     bool compare_plain = true;  // the plain version takes seconds on large scenes
+    bool floor = false;         // also measure the floor, before every round
 };
 
 /// Runs the fast rasterizer on every camera (resized to the settings' size), after one round of warming up.
