@@ -30,7 +30,8 @@ void add_training_command(CLI::App& app, CommandContext& context) {
     bind_fields(*command, options->parameters, "Training");
     command->callback([options, &context] {
         if (options->record) return write_training_record(options->work, options->output, context.job());
-        const auto source = make_starter_source(options->parameters.seed);
+        const auto seed = options->parameters.seed;
+        const auto source = options->parameters.shapes ? make_shape_source(seed) : make_starter_source(seed);
         neural_api().train_starter(options->parameters, *source, options->work, options->output, context.job());
         write_training_record(options->work, options->output, context.job());
     });

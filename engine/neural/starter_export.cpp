@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "engine/base/file.h"
+#include "engine/neural/key_map.h"
+#include "engine/neural/lora.h"
 #include "engine/neural/safetensors.h"
 #include "engine/neural/starter_stages.h"
 
@@ -43,11 +45,28 @@ Json facts_of(const UNetTraining& training) {
                {"attention_absent_timesteps", {0.3, 0.5, 0.7}}};
     const auto before = std::filesystem::path(training.parameters.initial) / "gseditpro.json";
     if (!training.parameters.initial.empty() && std::filesystem::exists(before)) facts.update(read_json_file(before));
+    if (training.parameters.shapes) {   // what it knows of words is what it knew
+        facts["shape_lora"] = ShapeLoraFile;
+        facts["shape_training"] = fields_to_json(training.parameters);
+        return facts;
+    }
     const auto words = training.source.vocabulary();
     facts["vocabulary"] = words;
     if (std::find(words.begin(), words.end(), "left") != words.end()) facts["profile"]["request"]["sided_view_words"] = true;
     facts["training"] = fields_to_json(training.parameters);
     return facts;
+}
+
+/// The initial model's weights as they are, and the way from there to the trained ones.
+void write_shapes(const UNetTraining& training, StarterNetworks& networks, const std::filesystem::path& output) {
+    UNet before(training.configs.unet);
+    const auto file = std::filesystem::path(training.parameters.initial) / "unet/diffusion_pytorch_model.safetensors";
+    load_weights(*before, SafetensorsFile(file), unet_plan());
+    write_weights(output / "unet/diffusion_pytorch_model.safetensors", before);
+    UNet trained(training.configs.unet);   // on the CPU
+    auto values = trained->parameters();
+    copy_parameters(networks.unet->parameters(), values);
+    write_lora(output / ShapeLoraFile, {lora_between(*before, *trained, training.parameters.shape_rank), {}}, torch::kHalf);
 }
 
 }  // namespace
@@ -62,7 +81,8 @@ void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNet
     const auto& configs = training.configs;
     const auto& vocabulary = training.vocabulary;
     write_weights(output / "vae/diffusion_pytorch_model.safetensors", vae);
-    write_weights(output / "unet/diffusion_pytorch_model.safetensors", networks.unet);
+    if (training.parameters.shapes) write_shapes(training, networks, output);
+    else write_weights(output / "unet/diffusion_pytorch_model.safetensors", networks.unet);
     write_weights(output / "text_encoder/model.safetensors", networks.text);
     write_json(output / "vae/config.json", configs.vae.to_json());
     write_json(output / "unet/config.json", configs.unet.to_json());

@@ -129,6 +129,14 @@ StarterParts initial_parts(const std::filesystem::path& folder, const StarterCon
     return parts;
 }
 
+std::vector<std::int64_t> fresh_tokens(const std::filesystem::path& folder, const StarterVocabulary& vocabulary) {
+    const auto rows = rows_before(folder, vocabulary);
+    std::vector<std::int64_t> fresh;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] < 0) fresh.push_back(static_cast<std::int64_t>(row));
+    return fresh;
+}
+
 void average_networks(StarterParts& parts, StarterParts& other, const std::filesystem::path& folder) {
     const torch::NoGradGuard no_grad;
     if (!same_weights(*parts.vae, *other.vae) || parts.scaling_factor != other.scaling_factor)

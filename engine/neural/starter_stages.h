@@ -48,6 +48,9 @@ StarterParts fresh_parts(const StarterConfigs& configs, std::uint64_t seed);
 StarterParts initial_parts(const std::filesystem::path& folder, const StarterConfigs& configs,
                            const StarterVocabulary& vocabulary);
 
+/// Ids of the tokens of `vocabulary` that are new to the folder's model. Throws Error as initial_parts() does.
+std::vector<std::int64_t> fresh_tokens(const std::filesystem::path& folder, const StarterVocabulary& vocabulary);
+
 /// The image-text encoder of a starter folder, or fresh weights where it has none. Throws Error as initial_parts() does.
 ClipModel initial_clip(const std::filesystem::path& folder, const ClipConfig& config, const StarterVocabulary& vocabulary);
 
@@ -71,6 +74,11 @@ struct UNetTraining {
 void train_unet(StarterNetworks& networks, const UNetTraining& training, const std::filesystem::path& work,
                 const JobControl& job);
 
+/// Trains the UNet's weights (not its biases and norms) and the embeddings of the tokens `fresh` for pictures that are asked for
+/// from an exact side, and leaves the averaged ones in `networks`. The text encoder's other weights stay as they are.
+void train_shapes(StarterNetworks& networks, const UNetTraining& training, const std::vector<std::int64_t>& fresh,
+                  const std::filesystem::path& work, const JobControl& job);
+
 /// What the contrastive stage works on; `pictures` are those of `twins`.
 struct ClipTraining {
     const StarterTrainParameters& parameters;
@@ -85,7 +93,10 @@ void train_clip(ClipModel& clip, const ClipTraining& training, const std::filesy
 /// Writes config.json and model.safetensors (fp16) as transformers does; the tokenizer is the bundle's.
 void export_clip(const ClipModel& clip, const std::filesystem::path& folder);
 
-/// Writes the diffusers folder in fp16.
+/// What a starter's gseditpro.json names and its folder holds where there is one: a LoRA for drawing new things.
+inline constexpr const char* ShapeLoraFile = "shapes.safetensors";
+
+/// Writes the diffusers folder in fp16; with `parameters.shapes`, `networks.unet` as the difference to the initial model's.
 void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNetworks& networks,
                     const std::filesystem::path& output);
 

@@ -77,6 +77,8 @@ StarterTrainParameters checked(StarterTrainParameters parameters, const StarterS
     if (parameters.initial.empty() && !all)
         throw Error(ErrorCode::InvalidArgument, "a part of the model would stay untrained",
                     "give every stage minutes or steps, or name the model to keep it from with --initial");
+    if (parameters.initial.empty() && parameters.shapes)
+        throw Error(ErrorCode::InvalidArgument, "a LoRA for shapes needs a model beside which it works", "name it with --initial");
     if (parameters.initial.empty() && !parameters.average.empty())
         throw Error(ErrorCode::InvalidArgument, "there is nothing to average with", "name the other model with --initial");
     return parameters;
@@ -131,7 +133,10 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
     training.preview = [&](StarterNetworks& averaged) {
         export_starter(training, parts.vae, averaged, work / "preview");
     };
-    if (new_unet) train_unet(parts.networks, training, work, job);
+    if (new_unet && parameters.shapes)
+        train_shapes(parts.networks, training, fresh_tokens(parameters.initial, vocabulary), work, job);
+    else if (new_unet)
+        train_unet(parts.networks, training, work, job);
     export_starter(training, parts.vae, parts.networks, output);
     pictures = {};
     add_clip(parameters, source, work, output / "clip", job);

@@ -34,6 +34,9 @@ struct StarterCaption {
     };
     std::string text;
     std::vector<Grounding> groundings;
+    /// A picture taken from between two sides has two sentences: the other one, and how much it holds, in [0,1].
+    std::string next_text = {};
+    double next_share = 0;
 };
 
 class StarterTwins;
@@ -102,6 +105,8 @@ struct StarterTrainParameters {
     double spread_weight = 0.03;
     double insertion_share = 0.3;
     double caption_dropout = 0.1;
+    bool shapes = false;
+    int shape_rank = 32;
     bool bf16 = false;
     std::string device = "cpu";
     std::uint64_t seed = 1;
@@ -150,6 +155,9 @@ struct StarterTrainParameters {
           "Share of pictures without accessory that are shown with a caption naming one (attention only).",
           Range{0, 1});
         f("caption_dropout", self.caption_dropout, "Share of empty captions (classifier-free guidance).", Range{0, 1});
+        f("shapes", self.shapes,
+          "Leave the initial model as it is and train a LoRA beside it for views in which a new thing is drawn, told exactly from where.");
+        f("shape_rank", self.shape_rank, "Rank of that LoRA.", Range{1, 1024});
         f("bf16", self.bf16, "Convolutions and matrix products of text encoder and UNet in bfloat16, norms and losses in float.");
         f("device", self.device, "cpu or cuda.");
         f("seed", self.seed, "Seed of pictures, weights, wording and noise.");

@@ -6,13 +6,12 @@
 //   spread: KL from the part's coverage to each word's own attention over the image, so a word covers its part evenly.
 // Pictures without an accessory are also shown with a caption that names one ("insertion"): there only the attention
 // losses count, with the mask of the twin scene, so the words learn where a thing belongs before it is there.
-#include <ATen/autocast_mode.h>
-
 #include <cmath>
 #include <unordered_map>
 
 #include "engine/base/error.h"
 #include "engine/base/random.h"
+#include "engine/neural/mixed_precision.h"
 #include "engine/neural/schedulers.h"
 #include "engine/neural/starter_stages.h"
 #include "engine/neural/starter_words.h"
@@ -160,32 +159,6 @@ void move_to(Batch& batch, const torch::Device& device) {
                          &batch.diffusion})
         *tensor = tensor->to(device);
 }
-
-/// While it lives, convolutions and matrix products of this thread compute in bfloat16 (mixed precision, Micikevicius et al.
-/// 2018; bfloat16 has the range of float, so losses need no scaling). Weights and their gradients stay in float.
-class MixedPrecision {
-public:
-    explicit MixedPrecision(bool on, bool cuda) : on_(on), cuda_(cuda) { set(on_); }
-    ~MixedPrecision() {
-        set(false);
-        if (on_) at::autocast::clear_cache();
-    }
-    MixedPrecision(const MixedPrecision&) = delete;
-    MixedPrecision& operator=(const MixedPrecision&) = delete;
-
-private:
-    void set(bool value) const {
-        if (!on_) return;
-        if (cuda_) {
-            at::autocast::set_autocast_gpu_dtype(at::kBFloat16);
-            at::autocast::set_enabled(value);
-        } else {
-            at::autocast::set_autocast_cpu_dtype(at::kBFloat16);
-            at::autocast::set_cpu_enabled(value);
-        }
-    }
-    bool on_, cuda_;
-};
 
 /// Training loss of one batch: v-prediction (Salimans and Ho 2022) plus the attention losses.
 std::pair<torch::Tensor, std::vector<double>> batch_loss(StarterNetworks& networks, Batch& batch,

@@ -189,8 +189,9 @@ Caption full_caption(const SceneSpec& spec) {
     return writer.take();
 }
 
-Caption random_caption(const SceneSpec& spec, double azimuth, Random& random) {
-    CaptionWriter writer;
+namespace {
+
+void random_phrases(CaptionWriter& writer, const SceneSpec& spec, Random& random) {
     const bool accessory = !spec.accessory.empty();
     const double kind = random.uniform();
     const bool only_accessory = accessory && kind < 0.06;
@@ -208,6 +209,19 @@ Caption random_caption(const SceneSpec& spec, double azimuth, Random& random) {
             accessory_phrase(writer, spec, chance(random, 0.85), random);
         if (!only_object && chance(random, 0.82)) ground_phrase(writer, spec, random);
     }
+}
+
+}  // namespace
+
+Caption random_caption(const SceneSpec& spec, Random& random) {
+    CaptionWriter writer;
+    random_phrases(writer, spec, random);
+    return writer.take();
+}
+
+Caption random_caption(const SceneSpec& spec, double azimuth, Random& random) {
+    CaptionWriter writer;
+    random_phrases(writer, spec, random);
     if (chance(random, 0.65)) {
         writer.comma();
         writer.say(chance(random, 0.75) ? sided_view_words(azimuth) : view_words(azimuth));

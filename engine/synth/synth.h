@@ -79,6 +79,13 @@ std::string view_words(double azimuth);
 /// positive azimuths is on the left.
 std::string sided_view_words(double azimuth);
 
+/// An azimuth between the middles of two of the eight sides: their words, and how far it is from the first to the second, in [0,1).
+struct SideBlend {
+    std::string words, next_words;
+    double share = 0;
+};
+SideBlend side_blend(double azimuth);
+
 /// A caption and, for every word of it that names something visible, which part it names.
 struct Caption {
     std::string text;
@@ -96,6 +103,8 @@ Caption full_caption(const SceneSpec& spec);
 /// Random template with words left out (each kind 10-20 % of the time) and view words appended half of the
 /// time.
 Caption random_caption(const SceneSpec& spec, double azimuth, Random& random);
+/// The same without a word about the side it is seen from.
+Caption random_caption(const SceneSpec& spec, Random& random);
 
 /// Applies an edit sentence ("a blue bear", "a bear wearing a red hat", "a golden statue on the sand", "turn
 /// the bear into a wooden dog", "a bear made of stone", "remove the hat") to a spec: words the sentence names

@@ -24,6 +24,15 @@ void require_known(const Words& words, const std::string& word, const char* what
 
 const std::string& pick(const Words& words, Random& random) { return words[random.below(words.size())]; }
 
+constexpr double SectorWidth = std::numbers::pi / 4;
+
+/// Words for one of the eight sides, counted from the front to the left.
+const std::string& sector(long index) {
+    static const std::array<std::string, 8> sectors{"front view", "front left view",  "left side view",  "back left view",
+                                                    "back view",  "back right view", "right side view", "front right view"};
+    return sectors[static_cast<std::size_t>((index % 8 + 8) % 8)];
+}
+
 /// Accessories with few pixels come more often.
 const std::string& pick_accessory(Random& random) {
     static const Words weighted{"hat",        "hat",        "hat",        "crown",      "crown", "crown",
@@ -165,10 +174,14 @@ std::string view_words(double azimuth) {
 }
 
 std::string sided_view_words(double azimuth) {
-    static const std::array<std::string, 8> sectors{"front view", "front left view",  "left side view",  "back left view",
-                                                    "back view",  "back right view", "right side view", "front right view"};
-    const double turn = std::remainder(azimuth, 2 * std::numbers::pi) / (std::numbers::pi / 4);
-    return sectors[static_cast<std::size_t>(std::lround(turn) + 8) % 8];
+    const double turn = std::remainder(azimuth, 2 * std::numbers::pi) / SectorWidth;
+    return sector(std::lround(turn));
+}
+
+SideBlend side_blend(double azimuth) {
+    const double turn = std::remainder(azimuth, 2 * std::numbers::pi) / SectorWidth, first = std::floor(turn);
+    const auto index = static_cast<long>(first);
+    return {sector(index), sector(index + 1), turn - first};
 }
 
 }  // namespace gse::synth

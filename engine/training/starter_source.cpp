@@ -21,7 +21,11 @@ struct Shot {
     bool bare_twin = false;
     double azimuth = 0, elevation = 0, zoom = 1;
     std::array<float, 3> background{};
+    double close_share = 0;   // of the picture that the accessory takes; 0 = the whole thing is in the picture
+    Vec3 aside;               // of its middle, in its diagonals
 };
+
+constexpr double MostClose = 0.7;   // distance of a close camera, where a thing is 1 high
 
 Shot make_shot(std::uint64_t seed, std::uint64_t index) {
     Random random = Random::stream(seed, index / 2);
@@ -80,6 +84,82 @@ struct ShotPainter {
     }
 };
 
+/// A picture of `scene`; its parts' coverage, too.
+neural::StarterPicture painted(ShotPainter& painter, const synth::SynthScene& scene, const Camera& camera,
+                               const std::array<float, 3>& background) {
+    neural::StarterPicture picture;
+    raster::Settings settings;
+    settings.background = background;
+    painter.rasterizer->forward(scene.scene.gaussians.spans(), camera, settings, painter.output);
+    picture.rgb = to_bytes(painter.output.colour);
+    painter.paint_parts(scene, camera, picture);
+    return picture;
+}
+
+/// A camera that sees the accessory large: what is added is redrawn in a section of the picture.
+Camera close_camera(const synth::SynthScene& scene, const Shot& shot, int size) {
+    constexpr double Fov = std::numbers::pi / 4;
+    Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+    const auto positions = scene.scene.gaussians.position();
+    for (std::size_t row = 0; row < scene.parts.size(); ++row) {
+        if (scene.parts[row] != synth::Part::Accessory) continue;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double at = positions[row * 3 + static_cast<std::size_t>(axis)];
+            low[axis] = std::min(low[axis], at), high[axis] = std::max(high[axis], at);
+        }
+    }
+    const Vec3 span = high - low;
+    OrbitParameters orbit;
+    orbit.centre = (low + high) * 0.5 + shot.aside * length(span);
+    orbit.radius = std::max(0.5 * length(span) / (std::tan(0.5 * Fov) * shot.close_share), MostClose);
+    orbit.elevation = shot.elevation;
+    orbit.fov_x = Fov;
+    return orbit_camera(orbit, shot.azimuth, size, size);
+}
+
+/// Every scene once, with the accessory that it has, from any side; half of the accessories from close by.
+class ShapeSource : public neural::StarterSource {
+public:
+    explicit ShapeSource(std::uint64_t seed) : seed_(seed) {}
+
+    neural::StarterPicture picture(std::uint64_t index, int size) const override {
+        thread_local ShotPainter painter;
+        const Shot shot = shot_of(index);
+        const synth::SynthScene scene = synth::generate(shot.spec);
+        const auto camera = shot.close_share > 0 ? close_camera(scene, shot, size)
+                                                 : synth::scene_camera(scene, shot.azimuth, shot.elevation, shot.zoom, size, size);
+        return painted(painter, scene, camera, shot.background);
+    }
+    neural::StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool) const override {
+        constexpr double Plain = 0.6, AnySide = 0.05;   // shares: the sentence in its plainest form; one that does not say from where
+        const Shot shot = shot_of(index);
+        Random random(seed);
+        const auto text = random.uniform() < Plain ? synth::full_caption(shot.spec).text : synth::random_caption(shot.spec, random).text;
+        if (random.uniform() < AnySide) return {text, {}};
+        const auto side = synth::side_blend(shot.azimuth);
+        return {text + ", " + side.words, {}, text + ", " + side.next_words, side.share};
+    }
+    std::vector<std::string> vocabulary() const override { return synth::vocabulary(); }
+    std::string identity() const override { return "synthetic shapes 2 " + std::to_string(seed_); }
+
+private:
+    Shot shot_of(std::uint64_t index) const {
+        Random random = Random::stream(seed_, index);
+        Shot shot;
+        shot.spec = synth::training_spec(random);
+        shot.azimuth = random.uniform(-std::numbers::pi, std::numbers::pi);
+        shot.elevation = random.uniform(0.05, 0.75);
+        shot.zoom = random.uniform(0.8, 1.6);
+        shot.background = random_background(random);
+        if (!shot.spec.accessory.empty() && random.uniform() < 0.5) {
+            shot.close_share = random.uniform(0.3, 0.75);
+            shot.aside = {random.uniform(-0.15, 0.15), random.uniform(-0.15, 0.15), random.uniform(-0.15, 0.15)};
+        }
+        return shot;
+    }
+    std::uint64_t seed_;
+};
+
 class SyntheticSource : public neural::StarterSource {
 public:
     explicit SyntheticSource(std::uint64_t seed) : seed_(seed), twins_(make_starter_twins(seed)) {}
@@ -89,12 +169,7 @@ public:
         const Shot shot = make_shot(seed_, index);
         const synth::SynthScene scene = synth::generate(shot.spec);
         const Camera camera = synth::scene_camera(scene, shot.azimuth, shot.elevation, shot.zoom, size, size);
-        neural::StarterPicture picture;
-        raster::Settings settings;
-        settings.background = shot.background;
-        painter.rasterizer->forward(scene.scene.gaussians.spans(), camera, settings, painter.output);
-        picture.rgb = to_bytes(painter.output.colour);
-        painter.paint_parts(scene, camera, picture);
+        neural::StarterPicture picture = painted(painter, scene, camera, shot.background);
         if (shot.bare_twin) add_twin_accessory(painter, shot, camera, picture);
         return picture;
     }
@@ -160,6 +235,8 @@ std::vector<std::uint8_t> to_bytes(const Image& image) {
     });
     return bytes;
 }
+
+std::unique_ptr<neural::StarterSource> make_shape_source(std::uint64_t seed) { return std::make_unique<ShapeSource>(seed); }
 
 std::unique_ptr<neural::StarterSource> make_starter_source(std::uint64_t seed) {
     return std::make_unique<SyntheticSource>(seed);

@@ -10,6 +10,7 @@
 #include "engine/base/file.h"
 #include "engine/base/random.h"
 #include "engine/neural/config.h"
+#include "engine/neural/lora.h"
 #include "engine/neural/safetensors.h"
 #include "engine/neural/starter_data.h"
 #include "engine/neural/starter_trainer.h"
@@ -231,6 +232,43 @@ DOCTEST_TEST_CASE("a run that knows more words keeps what the model before it ma
     parameters.initial = second.string();
     const auto forget = [&] { train_starter(parameters, ToySource(), scratch.path() / "work3", scratch.path() / "third", {}); };
     DOCTEST_CHECK_THROWS_WITH_AS(forget(), doctest::Contains("\"right\""), gse::Error);
+}
+
+DOCTEST_TEST_CASE("a LoRA for shapes leaves the model beside it as it is") {
+    const gse::test::ScratchFolder scratch;
+    const auto first = scratch.path() / "first", second = scratch.path() / "second";
+    auto parameters = toy_parameters();
+    parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 2;
+    train_starter(parameters, ToySource(), scratch.path() / "work1", first, {});
+    parameters.shapes = true;
+    DOCTEST_CHECK_THROWS_WITH_AS(train_starter(parameters, ToySource(), scratch.path() / "none", second, {}), doctest::Contains("beside"),
+                                 gse::Error);
+    parameters.initial = first.string();
+    parameters.vae_minutes = parameters.unet_minutes = parameters.clip_minutes = 0;
+    parameters.vae_steps = parameters.clip_steps = 0;
+    parameters.unet_steps = 4;
+    train_starter(parameters, ToySource({"left", "right"}), scratch.path() / "work2", second, {});
+
+    for (const char* file : {"vae/diffusion_pytorch_model.safetensors", "unet/diffusion_pytorch_model.safetensors"})
+        DOCTEST_CHECK_MESSAGE(gse::read_file(first / file) == gse::read_file(second / file), file);
+    const auto before = read_json_file(first / "tokenizer/vocab.json"), now = read_json_file(second / "tokenizer/vocab.json");
+    const SafetensorsFile a(first / "text_encoder/model.safetensors"), b(second / "text_encoder/model.safetensors");
+    for (const auto& [name, entry] : a.entries()) {
+        if (!name.ends_with("token_embedding.weight")) {
+            DOCTEST_CHECK_MESSAGE(torch::equal(a.tensor(name), b.tensor(name)), name);
+            continue;
+        }
+        for (const auto& [token, id] : before.items())
+            DOCTEST_CHECK_MESSAGE(torch::equal(a.tensor(name)[id.get<std::int64_t>()], b.tensor(name)[now.at(token).get<std::int64_t>()]), token);
+    }
+    auto facts = read_json_file(second / "gseditpro.json");
+    const auto lora = read_lora(second / facts.at("shape_lora").get<std::string>());
+    DOCTEST_CHECK(lora.text.empty());
+    DOCTEST_CHECK(lora.unet.size() > 10);
+    for (const auto& factor : lora.unet) DOCTEST_CHECK(factor.rank() <= parameters.shape_rank);
+    // Words that only tell it a side are none that it knows things by.
+    DOCTEST_CHECK(facts.at("vocabulary") == read_json_file(first / "gseditpro.json").at("vocabulary"));
+    DOCTEST_CHECK(!facts.contains("profile"));
 }
 
 DOCTEST_TEST_CASE("mixed precision trains nearly as float does, and is not the same") {
