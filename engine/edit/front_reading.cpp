@@ -34,14 +34,25 @@ std::vector<std::array<double, 3>> centred_fits(Recognition& recognition, const 
     return fits;
 }
 
+constexpr double SectorWidth = Pi / 4;
+
+/// Words for one of the eight sides, counted from the front to the left.
+const std::string& sector(long index) {
+    static const std::array<std::string, 8> sectors{"front view", "front left view",  "left side view",  "back left view",
+                                                    "back view",  "back right view", "right side view", "front right view"};
+    return sectors[static_cast<std::size_t>((index % 8 + 8) % 8)];
+}
+
 }  // namespace
 
 std::string view_words(double azimuth, bool sided) {
-    if (!sided) return Sides[side_at(azimuth)];
-    static const std::array<std::string, 8> sectors{"front view", "front left view",  "left side view",  "back left view",
-                                                    "back view",  "back right view", "right side view", "front right view"};
-    const auto turned = std::lround(std::remainder(azimuth, 2 * Pi) / (Pi / 4));
-    return sectors[static_cast<std::size_t>(turned + 8) % 8];
+    return sided ? sector(std::lround(std::remainder(azimuth, 2 * Pi) / SectorWidth)) : Sides[side_at(azimuth)];
+}
+
+SideBlend side_blend(double azimuth) {
+    const double turn = std::remainder(azimuth, 2 * Pi) / SectorWidth, first = std::floor(turn);
+    const auto index = static_cast<long>(first);
+    return {sector(index), sector(index + 1), turn - first};
 }
 
 FrontReading read_front(Recognition& recognition, const std::string& sentence, const std::vector<Image>& pictures,

@@ -12,6 +12,13 @@ namespace gse::edit {
 /// degrees each, from "front view" by "front left view" (at positive azimuths) and "left side view" to "front right view".
 std::string view_words(double azimuth, bool sided);
 
+/// An azimuth between the middles of two of the eight sides: their words, and how far it is from the first to the second, in [0,1).
+struct SideBlend {
+    std::string words, next_words;
+    double share = 0;
+};
+SideBlend side_blend(double azimuth);
+
 struct FrontReading {
     double azimuth = 0;   // of the cameras that see the front, radians in [-pi, pi)
     double lead = 0;      // how much better the pictures fit it than its opposite: mean difference of cosines

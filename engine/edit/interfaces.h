@@ -51,6 +51,7 @@ struct RoundView {
     Mask mask;                     // where the picture may change
     View view;
     std::string view_words = {};   // as in GuidanceInput
+    std::optional<double> azimuth = {};   // of the camera from the thing's front, radians, positive to its left; nothing = not known
     Backdrop backdrop = {};        // the scene without what may change, its holes filled; empty unless the round draws anew
 };
 

@@ -65,7 +65,7 @@ public:
         return std::make_unique<SdsGuidance>(slow_, prompt, parameters);
     }
     std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const SdsParameters& parameters) const override {
-        return std::make_unique<DiffusionViews>(bundle_, prompt, parameters);
+        return std::make_unique<DiffusionViews>(bundle_, prompt, parameters, with_shapes());
     }
     std::vector<std::string> known_words() const override { return bundle_->facts.vocabulary; }
     int image_size() const override { return static_cast<int>(bundle_->image_size()); }
@@ -125,6 +125,14 @@ public:
     }
 
 private:
+    /// The weights in use with the LoRA for new things that the model brings along; null where it brings none.
+    Bundle with_shapes() const {
+        const auto& file = loaded_->facts.shape_lora;
+        if (file.empty()) return nullptr;
+        return guard_torch("merging the model's LoRA for shapes", [&] {
+            return std::make_shared<const ModelBundle>(with_lora(*bundle_, read_lora(loaded_->path / file), 1));
+        });
+    }
     Image run(const Image* image, const SampleRequest& request) const {
         return guard_torch("sampling", [&] {
             const torch::NoGradGuard no_grad;

@@ -269,6 +269,7 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
     get("vocabulary", facts.vocabulary);
     get("kind", facts.kind);
     get("taesd", facts.taesd);
+    get("shape_lora", facts.shape_lora);
     if (facts.image_size < 0 || facts.image_size > 8192)
         throw Error(ErrorCode::Malformed, "\"image_size\" is outside 0..8192", {}, path);
     return facts;

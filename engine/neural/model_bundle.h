@@ -38,6 +38,9 @@ struct ModelFacts {
     std::string kind;
     /// Folder of the tiny autoencoder, relative to the model's; "none" = the one beside it is not used.
     std::string taesd;
+    /// LoRA for redrawing views in which a new thing comes to be, relative to the model's folder. Such a model is told the side exactly:
+    /// it knows the eight of edit::side_blend(), and what lies between two by the mixture of both sentences. Empty = it has none.
+    std::string shape_lora;
 
     static ModelFacts from_json(const Json& json, const std::filesystem::path& path);
 };

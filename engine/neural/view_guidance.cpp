@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "engine/base/error.h"
+#include "engine/edit/front_reading.h"
 #include "engine/edit/surface_noise.h"
+#include "engine/edit/view_section.h"
 #include "engine/neural/attention_source.h"
 #include "engine/neural/buffer_cache.h"
 #include "engine/neural/images.h"
@@ -79,10 +81,12 @@ struct DiffusionViews::Batch {
     torch::Tensor x;          // what the steps have made of it
 };
 
-DiffusionViews::DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters)
-    : bundle_(std::move(bundle)), prompt_(std::move(prompt)), parameters_(std::move(parameters)) {}
+DiffusionViews::DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters,
+                               std::shared_ptr<const ModelBundle> shapes)
+    : bundle_(std::move(bundle)), shapes_(std::move(shapes)), prompt_(std::move(prompt)), parameters_(std::move(parameters)) {}
 
-torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views, const std::string& prompt) {
+/// `exact`: the model knows every azimuth by the mixture of the sentences for the two sides beside it.
+torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views, const std::string& prompt, bool exact) {
     const auto encoded = [&](const std::string& sentence) {
         auto& known = encoded_[sentence];
         if (!known.defined()) known = bundle_->encode_prompts({sentence});
@@ -92,8 +96,12 @@ torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views
     for (const auto& view : views) {
         // An instruction says what to do, whatever the picture shows of the thing.
         const bool says_view = parameters_.view_words && bundle_->kind != BundleKind::InstructPix2Pix;
-        const auto sentence = says_view ? with_view_words(prompt, view.view_words) : prompt;
-        rows.push_back(torch::cat({encoded(parameters_.negative_prompt), encoded(sentence)}));
+        auto sentence = encoded(says_view && !exact ? with_view_words(prompt, view.view_words) : prompt);
+        if (says_view && exact && view.azimuth) {
+            const auto side = edit::side_blend(*view.azimuth);
+            sentence = torch::lerp(encoded(with_view_words(prompt, side.words)), encoded(with_view_words(prompt, side.next_words)), side.share);
+        }
+        rows.push_back(torch::cat({encoded(parameters_.negative_prompt), sentence}));
     }
     return torch::stack(rows);
 }
@@ -116,7 +124,7 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
     batch.noise = noise(views, input.seed);
     batch.mask = torch::cat(masks);
     const bool edits = takes_picture(bundle_->unet->config());   // such a model is told what to do, not what there is
-    batch.contexts = contexts(views, edits || input.sentence.empty() ? prompt_ : input.sentence);
+    batch.contexts = contexts(views, edits || input.sentence.empty() ? prompt_ : input.sentence, input.anew && shapes_ != nullptr);
     if (edits) batch.picture = batch.original / bundle_->scaling_factor();   // as the model is used to it: not scaled
     return batch;
 }
@@ -131,7 +139,7 @@ torch::Tensor DiffusionViews::noise(const std::vector<edit::RoundView>& views, s
     return torch::cat(parts);
 }
 
-torch::Tensor DiffusionViews::output(const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning) const {
+torch::Tensor DiffusionViews::output(const UNet& unet, const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning) const {
     const auto side = bundle_->image_size();
     const auto at_once = std::max<std::int64_t>(1, PixelsAtOnce / (side * side));
     std::vector<torch::Tensor> parts;
@@ -141,7 +149,7 @@ torch::Tensor DiffusionViews::output(const torch::Tensor& x, std::int64_t timest
         some.context = conditioning.context.narrow(0, first, count);
         if (some.picture.defined()) some.picture = conditioning.picture.narrow(0, first, count);
         const auto t = torch::full({1}, timestep, torch::kFloat32);
-        parts.push_back(guided_output(bundle_->unet, x.narrow(0, first, count), t, some));
+        parts.push_back(guided_output(unet, x.narrow(0, first, count), t, some));
     }
     return torch::cat(parts);
 }
@@ -154,6 +162,7 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
     Conditioning edited{batch.contexts, scale, batch.picture, parameters_.image_guidance_scale};
     // Others hold guidance themselves, or follow a picture.
     const bool pairs = !batch.picture.defined() && row_parts(bundle_->unet->config(), edited) == 2;
+    const UNet& unet = input.anew && shapes_ != nullptr ? shapes_->unet : bundle_->unet;
     const auto roots = [&](std::int64_t t) {
         const double a = schedule.alpha_cumprod(t);
         return std::pair{std::sqrt(a), std::sqrt(1 - a)};
@@ -165,7 +174,7 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
         const auto t = torch::full({1}, timesteps[i], torch::kInt64);
         const double level = static_cast<double>(timesteps[i] + 1) / static_cast<double>(schedule.steps());
         if (pairs && level <= input.guided_until) edited.guidance_scale = 1;
-        auto x0 = schedule.to_x0(output(batch.x, timesteps[i], edited), batch.x, t);
+        auto x0 = schedule.to_x0(output(unet, batch.x, timesteps[i], edited), batch.x, t);
         x0 = batch.mask * x0 + (1 - batch.mask) * batch.original;   // the surroundings stay, and keep the steps in place
         const auto [now, spread] = roots(timesteps[i]);
         if (i + 1 == timesteps.size()) {
@@ -210,8 +219,23 @@ edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<
     return targets;
 }
 
+/// What learned to draw new things learned to draw them from close by, too.
 edit::RoundTargets DiffusionViews::edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
                                         const JobControl& job) {
+    if (!input.anew || shapes_ == nullptr) return redraw(views, input, job);
+    std::vector<edit::ViewSection> sections;
+    std::vector<edit::RoundView> parts;
+    for (const auto& view : views) {
+        sections.push_back(edit::section_around(view.mask));
+        parts.push_back(edit::cut_out_section(view, sections.back()));
+    }
+    auto targets = redraw(parts, input, job);
+    for (std::size_t v = 0; v < views.size(); ++v)
+        targets.images[v] = edit::with_section(views[v].rendered, targets.images[v], sections[v]);
+    return targets;
+}
+
+edit::RoundTargets DiffusionViews::redraw(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) {
     return guard_torch("redrawing the views", [&] {
         const torch::NoGradGuard no_grad;
         Batch batch = prepare(views, input);

@@ -23,23 +23,26 @@ std::vector<std::int64_t> redraw_levels(BundleKind kind, const NoiseSchedule& sc
 
 class DiffusionViews final : public edit::ViewGuidance {
 public:
-    DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters);
+    /// `shapes`: the same model with what it learned for drawing new things; null = it has learned nothing of that kind.
+    DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters,
+                   std::shared_ptr<const ModelBundle> shapes = nullptr);
     edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
                             const JobControl& job) override;
 
 private:
     struct Batch;
+    edit::RoundTargets redraw(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job);
     Batch prepare(const std::vector<edit::RoundView>& views, const edit::RoundInput& input);
     void denoise(Batch& batch, const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) const;
     edit::RoundTargets finish(const Batch& batch, const std::vector<edit::RoundView>& views, const edit::RoundInput& input) const;
-    torch::Tensor contexts(const std::vector<edit::RoundView>& views, const std::string& prompt);
+    torch::Tensor contexts(const std::vector<edit::RoundView>& views, const std::string& prompt, bool exact);
     /// Noise [K,C,h,w] on the scene's surface.
     torch::Tensor noise(const std::vector<edit::RoundView>& views, std::uint64_t seed) const;
     /// Guided output of the UNet for latents [K,C,h,w], in pieces that fit into memory.
-    torch::Tensor output(const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning) const;
+    torch::Tensor output(const UNet& unet, const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning) const;
 
     BufferHolder buffers_;   // goes last
-    std::shared_ptr<const ModelBundle> bundle_;
+    std::shared_ptr<const ModelBundle> bundle_, shapes_;
     std::string prompt_;
     SdsParameters parameters_;
     std::map<std::string, torch::Tensor> encoded_;   // [1,T,D], one per sentence

@@ -43,7 +43,11 @@ edit::EditPlan plan_of(Workplace& workplace, const Located& located, const EditR
     const auto* label = located.by_label() ? &located.label : nullptr;
     auto plan = edit::make_plan(question(workplace, recipe, located.views, label), located.result, workplace.painter().rasterizer());
     // A thing that is drawn anew needs to know its sides; where none was said, its front is where the views begin.
-    if (plan.mode == edit::EditMode::Replace && plan.view_words.empty()) plan.view_words = words_around(located.views, recipe.request.sided_view_words);
+    plan.azimuths = located.views.azimuths;
+    if (plan.mode == edit::EditMode::Replace && plan.view_words.empty()) {
+        plan.azimuths = azimuths_around(located.views);
+        plan.view_words = words_around(located.views, recipe.request.sided_view_words);
+    }
     return plan;
 }
 

@@ -59,8 +59,10 @@ Views finished(Views views, const EditRecipe& recipe, const std::map<std::string
     for (const auto& view : views.views) {
         if (!words.empty())
             views.words.push_back(words.at(view.name));
-        else if (front)
-            views.words.push_back(edit::view_words(azimuth_of(view.camera, views.orbit) - *front, recipe.request.sided_view_words));
+        else if (front) {
+            views.azimuths.push_back(azimuth_of(view.camera, views.orbit) - *front);
+            views.words.push_back(edit::view_words(views.azimuths.back(), recipe.request.sided_view_words));
+        }
     }
     views.key = key_of(views, recipe);
     return views;
@@ -78,6 +80,7 @@ double azimuth_of(const Camera& camera, const OrbitParameters& orbit) {
 Views facing(Views views, double front, const EditRecipe& recipe) {
     views.front = direction_at(views.orbit, front);
     views.front_read = front;
+    views.azimuths = azimuths_around(views);
     views.words = words_around(views, recipe.request.sided_view_words);
     views.key = key_of(views, recipe);
     return views;
@@ -100,13 +103,19 @@ std::vector<View> farthest_views(const std::vector<View>& views, std::size_t cou
     return result;
 }
 
-std::vector<std::string> words_around(const Views& views, bool sided) {
+std::vector<double> azimuths_around(const Views& views) {
     const Vec3 side = cross(normalized(views.orbit.up), views.front);
-    std::vector<std::string> words;
+    std::vector<double> azimuths;
     for (const auto& view : views.views) {
         const Vec3 direction = view.camera.centre() - views.orbit.centre;
-        words.push_back(edit::view_words(std::atan2(dot(direction, side), dot(direction, views.front)), sided));
+        azimuths.push_back(std::atan2(dot(direction, side), dot(direction, views.front)));
     }
+    return azimuths;
+}
+
+std::vector<std::string> words_around(const Views& views, bool sided) {
+    std::vector<std::string> words;
+    for (const double azimuth : azimuths_around(views)) words.push_back(edit::view_words(azimuth, sided));
     return words;
 }
 

@@ -16,6 +16,7 @@ namespace gse::pipeline {
 struct Views {
     std::vector<View> views;          // squares of the request's image_size
     std::vector<std::string> words;   // "front view" and so on per view, or empty
+    std::vector<double> azimuths;     // of the cameras from the front that the words go by, radians, positive to the left; or empty
     OrbitParameters orbit;            // that they lie on; for given cameras, the one fitted to the scene
     Vec3 front;                       // where the scene's front looks, world, unit length
     std::optional<double> front_read; // azimuth of the front on the orbit, radians, where the pictures said it
@@ -37,6 +38,9 @@ Views views_on(const OrbitParameters& orbit, const EditRecipe& recipe);
 
 /// "front view" and so on of every view, with the front where `views.front` looks; `sided` as in edit::view_words.
 std::vector<std::string> words_around(const Views& views, bool sided);
+
+/// Azimuths of every view from `views.front`, radians.
+std::vector<double> azimuths_around(const Views& views);
 
 /// The same views of a scene whose front is seen from an azimuth of their orbit (radians), with words for what each sees.
 Views facing(Views views, double front, const EditRecipe& recipe);

@@ -90,6 +90,33 @@ DOCTEST_TEST_CASE("redrawn views: settings of the guidance that are said to have
     });
 }
 
+DOCTEST_TEST_CASE("redrawn views: what was learned for new things draws only those, and is told the side exactly") {
+    const TinyModel model;
+    const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
+    LoraWeights learned;
+    for (auto factors = new_lora(lora_targets(*bundle->unet), 2, 7); auto& factor : factors) {
+        factor.up.fill_(0.05);
+        learned.unet.push_back(factor);
+    }
+    const auto shapes = std::make_shared<const ModelBundle>(with_lora(*bundle, learned, 1));
+    auto views = wall_views();
+    edit::RoundInput input;
+    input.steps = 2;
+    const auto drawn = [&](bool with) { return DiffusionViews(bundle, "a bear", {}, with ? shapes : nullptr).edit(views, input, {}).images[0].data; };
+    DOCTEST_CHECK(drawn(true) == drawn(false));
+    input.anew = true;
+    DOCTEST_CHECK(drawn(true) != drawn(false));
+    // In the middle of a side it is the sentence with that side; between two it is neither.
+    const auto at = [&](std::optional<double> azimuth, const std::string& prompt) {
+        for (auto& view : views) view.azimuth = azimuth;
+        return DiffusionViews(bundle, prompt, {}, shapes).edit(views, input, {}).images[0].data;
+    };
+    const double sector = std::acos(-1.0) / 4;
+    DOCTEST_CHECK(at(0.0, "a bear") == at(std::nullopt, "a bear, front view"));
+    DOCTEST_CHECK(at(sector / 2, "a bear") != at(0.0, "a bear"));
+    DOCTEST_CHECK(at(sector / 2, "a bear") != at(sector, "a bear"));
+}
+
 DOCTEST_TEST_CASE("redrawing views can be stopped") {
     const TinyModel model;
     DiffusionViews guidance(std::make_shared<const ModelBundle>(load_bundle(model.path())), "a red bear", {});
