@@ -141,9 +141,10 @@ torch::Tensor DiffusionViews::output(const torch::Tensor& x, std::int64_t timest
     const auto side = bundle_->image_size();
     const auto at_once = std::max<std::int64_t>(1, PixelsAtOnce / (side * side));
     auto result = torch::empty_like(x);
-    for_parts(x.size(0), apart_, [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t first = begin; first < end; first += at_once) {
-            const auto count = std::min(at_once, end - first);
+    // Whole pieces: products round differently with another number of rows.
+    for_parts((x.size(0) + at_once - 1) / at_once, apart_, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t first = begin * at_once; first < std::min(end * at_once, x.size(0)); first += at_once) {
+            const auto count = std::min(at_once, x.size(0) - first);
             auto some = conditioning;
             some.context = conditioning.context.narrow(0, first, count);
             if (some.picture.defined()) some.picture = conditioning.picture.narrow(0, first, count);
