@@ -18,7 +18,11 @@ constexpr double LikelyLabel = 0.25;   // share of the splats, while there is no
 ui::NetworkCost cost_of(const neural::NetworkUse& use) { return {use.unet, use.encoder, use.decoder, use.flop * 1e-12}; }
 
 std::string Application::measured_key() const {
-    return fmt::format("{} at {} px", model_in_use(), model_.request.image_size);
+    // A LoRA takes time to read, memory of its own where it is distilled, and another number of passes per step.
+    std::string key = fmt::format("{} at {} px", model_in_use(), model_.request.image_size);
+    for (const auto& lora : loras_) key += fmt::format(" with {}", lora);
+    if (const auto& precision = model_.model_settings.precision; precision != "auto") key += " in " + precision;
+    return key;
 }
 
 Measured Application::measured_now() const {

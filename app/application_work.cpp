@@ -256,7 +256,7 @@ namespace {
 
 /// Parts of what a run can only tell the sum of.
 void begin_with_known(Measured& measured, const Measured& known) {
-    measured.redraw = known.redraw, measured.redraw_view = known.redraw_view;
+    measured.redraw = known.redraw, measured.redraw_view = known.redraw_view, measured.redraw_early = known.redraw_early;
     measured.question_tflop = known.question_tflop;
 }
 

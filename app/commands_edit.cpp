@@ -159,7 +159,7 @@ void require_search(EditJob& job, const std::filesystem::path& output) {
     const std::filesystem::path place = std::filesystem::absolute(output).lexically_normal().string() + ".search";
     try {
         StagedFolder folder(place, {"report.json", {"report.json", "evidence"}});
-        write_evidence(folder.path() / "evidence", job.located(), job.views());
+        write_evidence(folder.path() / "evidence", job.painter().pool(), job.located(), job.views());
         auto report = locate_report(job);
         report["files"] = folder.listing();
         write_file(folder.path() / "report.json", json_text(report, 2) + "\n");
@@ -191,8 +191,8 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
     save_scene(folder.path() / "scene.ply", edited, {.format = "ply"});
     write_file(folder.path() / "recipe.json", json_text(recipe_to_json(job.recipe()), 2) + "\n");
     write_labelled_source(folder.path() / "source.ply", job);
-    write_evidence(folder.path() / "evidence", job.located(), job.views());
-    write_targets(folder.path() / "evidence", job.targets(), job.views());
+    write_evidence(folder.path() / "evidence", job.painter().pool(), job.located(), job.views());
+    write_targets(folder.path() / "evidence", job.painter().pool(), job.targets(), job.views());
     write_before_after(folder.path(), job);
     job.times().end();
     auto report = make_report(job);
@@ -226,7 +226,7 @@ void run_locate_command(EditOptions& options, const CommandContext& context) {
     EditJob job(options.recipe, context.job(), options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
     job.locate();
     write_labelled_source(folder.path() / "source.ply", job);
-    write_evidence(folder.path() / "evidence", job.located(), job.views());
+    write_evidence(folder.path() / "evidence", job.painter().pool(), job.located(), job.views());
     auto report = locate_report(job);
     report["nonfinite_before"] = job.unusable();
     add_optional_parts(report, folder.path(), job, std::nullopt);

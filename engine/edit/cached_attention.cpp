@@ -4,9 +4,8 @@
 #include "engine/base/hash.h"
 
 namespace gse::edit {
-namespace {
 
-std::uint64_t hash_of(const AttentionQuery& query) {
+std::uint64_t question_hash(const AttentionQuery& query) {
     Hash hash;
     hash.text(query.prompt);
     hash.text(query.view_words);
@@ -18,16 +17,21 @@ std::uint64_t hash_of(const AttentionQuery& query) {
     return hash.value();
 }
 
-}  // namespace
-
 CachedAttention::CachedAttention(std::unique_ptr<AttentionSource> source) : source_(std::move(source)) {}
 
 std::vector<Image> CachedAttention::locate(const AttentionQuery& query) {
-    const auto key = hash_of(query);
+    const auto key = question_hash(query);
     const auto found = answers_.find(key);
     if (found != answers_.end()) return found->second;
     ++asked_;
     return answers_.emplace(key, source_->locate(query)).first->second;
+}
+
+void CachedAttention::prepare(std::span<const AttentionQuery> queries) {
+    std::vector<AttentionQuery> unknown;
+    for (const auto& query : queries)
+        if (!answers_.contains(question_hash(query))) unknown.push_back(query);
+    if (!unknown.empty()) source_->prepare(unknown);
 }
 
 }  // namespace gse::edit

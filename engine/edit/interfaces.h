@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -97,6 +98,11 @@ class AttentionSource {
 public:
     virtual ~AttentionSource() = default;
     virtual std::vector<Image> locate(const AttentionQuery& query) = 0;
+    /// Tells what locate() is asked next: a source that is quicker with several queries works them out together. One that fails is
+    /// left to locate(), which says why.
+    virtual void prepare(std::span<const AttentionQuery> queries) { static_cast<void>(queries); }
+    /// How many queries are worth preparing together; no longer than a stop request may wait.
+    virtual std::size_t at_once() const { return 1; }
     /// Binarisation threshold the model was measured to work best with; 0.5 (the paper's) unless it states its own.
     virtual double threshold() const { return 0.5; }
     /// Side in pixels of the square images the model works at.

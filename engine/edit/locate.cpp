@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
@@ -31,6 +32,7 @@ constexpr double AttentionSoftness = 0.05;  // how far from there it counts a qu
 constexpr float LabelSeen = 0.5f;           // share of a pixel from which it shows the artist's label
 constexpr std::uint64_t SearchSeed = 0;      // one for all: what is found does not follow the loop's dice
 constexpr double AtOdds = 0.6;              // IoU of a view's mask and the common label, below which the view is asked again
+constexpr std::uint64_t FirstAsking = 5000;
 constexpr std::uint64_t SecondAsking = 9000;   // other noise than the first time
 // Of the threshold (at most half-way from it to the most there is): attention of what is not there yet reaches wider than what will be.
 // Of 8 added things each on seeds 55 | 56 | 57 | 58 (`gseditpro eval --kinds add --edits 8`) 1 changed 2.5 | 2.5 | 1.9 | 1.0 % of the
@@ -180,8 +182,11 @@ private:
 
     std::vector<ViewEvidence> look(const Search& search) {
         std::vector<ViewEvidence> views;
+        std::vector<std::size_t> all(input_.views.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
         for (std::size_t v = 0; v < input_.views.size(); ++v) {
             check_stop();
+            prepare(search, all, v, request().attention_repeats, FirstAsking);
             views.push_back(attend(search, v));
             tools_.job.report(fmt::format("looking for \"{}\"", search.word), static_cast<int>(v + 1),
                               static_cast<int>(input_.views.size()));
@@ -210,23 +215,37 @@ private:
     ViewEvidence attend(const Search& search, std::size_t v) {
         ViewEvidence view;
         view.render = renders_[v];
-        auto maps = maps_of(search, v, request().attention_repeats, 5000 + v);
+        auto maps = maps_of(search, v, request().attention_repeats, FirstAsking + v);
         view.map = std::move(maps.front());
         compete(view, maps, search.rivals_given);
         return view;
     }
 
-    /// Of the word and its rivals, each divided by its maximum.
-    std::vector<Image> maps_of(const Search& search, std::size_t v, int repeats, std::uint64_t stream) {
+    AttentionQuery query_of(const Search& search, std::size_t v, int repeats, std::uint64_t stream) const {
         std::vector<std::string> words{search.word};
         words.insert(words.end(), search.rivals.begin(), search.rivals.end());
-        AttentionQuery query{renders_[v],
-                             search.prompt,
-                             std::move(words),
-                             input_.view_words.empty() ? std::string() : input_.view_words[v],
-                             search.absent,
-                             repeats,
-                             Random::stream(SearchSeed, stream).next()};
+        return {renders_[v],
+                search.prompt,
+                std::move(words),
+                input_.view_words.empty() ? std::string() : input_.view_words[v],
+                search.absent,
+                repeats,
+                Random::stream(SearchSeed, stream).next()};
+    }
+
+    /// Of these views the first one and those that are worth asking with it.
+    void prepare(const Search& search, const std::vector<std::size_t>& views, std::size_t first, int repeats, std::uint64_t stream) {
+        const std::size_t at_once = tools_.attention.at_once();
+        if (at_once < 2 || first % at_once != 0) return;
+        std::vector<AttentionQuery> queries;
+        for (std::size_t i = first; i < std::min(first + at_once, views.size()); ++i)
+            queries.push_back(query_of(search, views[i], repeats, stream + views[i]));
+        tools_.attention.prepare(queries);
+    }
+
+    /// Of the word and its rivals, each divided by its maximum.
+    std::vector<Image> maps_of(const Search& search, std::size_t v, int repeats, std::uint64_t stream) {
+        AttentionQuery query = query_of(search, v, repeats, stream);
         auto maps = ask(query, search.rivals_given);
         GSE_CHECK_EQ(maps.size(), query.words.size());
         for (auto& map : maps) {
@@ -246,14 +265,16 @@ private:
         if (odd.empty()) return found;
         std::vector<ViewEvidence> again;
         const auto first = static_cast<float>(request().attention_repeats), more = static_cast<float>(request().second_look);
-        for (const auto v : odd) {
+        for (std::size_t i = 0; i < odd.size(); ++i) {
             check_stop();
+            const auto v = odd[i];
+            prepare(search, odd, i, request().second_look, SecondAsking);
             auto maps = maps_of(search, v, request().second_look, SecondAsking + v);
             ViewEvidence view;
             view.render = renders_[v];
             view.map = std::move(maps.front());
-            for (std::size_t i = 0; i < view.map.data.size(); ++i)
-                view.map.data[i] = (first * views[v].map.data[i] + more * view.map.data[i]) / (first + more);
+            for (std::size_t p = 0; p < view.map.data.size(); ++p)
+                view.map.data[p] = (first * views[v].map.data[p] + more * view.map.data[p]) / (first + more);
             normalise_maximum(view.map);
             compete(view, maps, search.rivals_given);
             again.push_back(std::move(view));

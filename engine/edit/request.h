@@ -114,6 +114,7 @@ struct LoopSettings {
     int view_steps = 3;
     int fit_steps = 40;
     double view_strength = 0.75;
+    int polish_steps = 0;
     // Shapes by views: a thing that becomes another, or is new
     int shape_views = 12;
     int shape_rounds = 2;
@@ -201,6 +202,10 @@ private:
         f("view_steps", self.view_steps, "Denoising steps of a redrawn view.", Range{1, 100});
         f("fit_steps", self.fit_steps, "Optimisation steps after each round.", Range{1, 1e5});
         f("view_strength", self.view_strength, "How far from the render a view is redrawn: 0 = not at all, 1 = from nothing.", Range{0.02, 1});
+        f("polish_steps", self.polish_steps,
+          "Steps of score distillation at low noise after the last round; kept only where views that were not redrawn come nearer to what the "
+          "model makes of them. 0 = none.",
+          Range{0, 1e5});
         visit_shapes(self, f);
         f("guidance_weight", self.guidance_weight, "How hard the model pulls, against keeping the rest.", Range{0, 1e6});
         f("strength", self.strength,
@@ -336,7 +341,7 @@ struct RoundPlan {
 /// With the quality in it; at least one view and one step.
 RoundPlan round_plan(const LoopSettings& settings, EditMode mode);
 
-/// Optimisation steps of an edit.
+/// Optimisation steps of an edit, the polish among them.
 int loop_steps(const LoopSettings& settings, EditMode mode);
 
 /// How far masks are grown, in pixels of a 512-pixel picture: what is new needs room.

@@ -14,6 +14,7 @@
 #include "engine/base/progress.h"
 #include "engine/edit/add_region.h"
 #include "engine/edit/interfaces.h"
+#include "engine/edit/polish.h"
 #include "engine/edit/request.h"
 #include "engine/edit/snapshot.h"
 #include "engine/edit/view_targets.h"
@@ -59,6 +60,7 @@ struct EditResult {
     std::size_t skipped_rows = 0;            // rows whose gradient was not finite, summed over the steps
     std::size_t continued_pictures = 0;      // for which only the labelled rows were prepared
     std::size_t redrawn_views = 0;           // pictures that view guidance has asked for
+    std::optional<PolishOutcome> polish;     // where redrawn views were followed by one
     double kept_chroma = -1;                 // of the colour that they have, see view_agreement.h; negative = not known
     std::size_t cloned = 0, split = 0, pruned = 0;
     std::size_t changed_outside_label = 0;   // rows outside the label that differ from the base in any bit; always 0
@@ -89,7 +91,7 @@ struct EditTools {
     /// Goes on from this state of an earlier run over the same base, at its iteration; what it says of rows outside the
     /// label does not count. Null = from the base.
     const EditSnapshot* start = nullptr;
-    ViewGuidance* views = nullptr;      // leads the edit in place of `guidance`: it redraws views, the rows are fitted to them
+    ViewGuidance* views = nullptr;      // leads the edit in place of `guidance`, which polishes: it redraws views, the rows are fitted to them
     double snapshot_seconds = 0;        // above 0: a snapshot whenever this much time has passed (more where they take long), instead of by iterations
     /// Of view guidance: shows the redrawn views, as soon as a round is redrawn and whenever something about them changes.
     std::function<void(const ViewTargets&)> targets = {};

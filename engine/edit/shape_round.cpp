@@ -61,8 +61,12 @@ Image over(const Image& picture, const Image& share, const Image& backdrop) {
 ShapeFinder::ShapeFinder(const EditPlan& plan, const EditRequest& request, std::string word, AttentionSource& attention)
     : plan_(plan), request_(request), word_(std::move(word)), attention_(attention) {}
 
+AttentionQuery ShapeFinder::query_of(const RoundView& view, const Image& picture, std::uint64_t seed) const {
+    return {picture, as_told(request_.prompt), {word_}, view.view_words, false, 1, seed};
+}
+
 Image ShapeFinder::outline_of(const RoundView& view, const Image& picture, std::uint64_t seed) const {
-    const AttentionQuery query{picture, as_told(request_.prompt), {word_}, view.view_words, false, 1, seed};
+    const auto query = query_of(view, picture, seed);
     auto maps = attention_.locate(query);
     GSE_CHECK_EQ(maps.size(), std::size_t{1});
     normalise_maximum(maps.front());
@@ -95,9 +99,16 @@ std::string ShapeFinder::colour_in(const RoundView& view, const Image& picture, 
 CutOut ShapeFinder::cut_out(const std::vector<RoundView>& views, std::vector<Image>& pictures, int round, const JobControl& job) {
     GSE_CHECK_EQ(views.size(), pictures.size());
     CutOut found;
+    const auto seed_of = [&](std::size_t v) { return Random::stream(request_.seed, 60000 + static_cast<std::uint64_t>(round) * 1000 + v).next(); };
+    const std::size_t at_once = attention_.at_once();
     for (std::size_t v = 0; v < views.size(); ++v) {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "cutting out the new thing was stopped");
-        const auto seed = Random::stream(request_.seed, 60000 + static_cast<std::uint64_t>(round) * 1000 + v).next();
+        if (at_once > 1 && v % at_once == 0) {
+            std::vector<AttentionQuery> queries;
+            for (std::size_t i = v; i < std::min(v + at_once, views.size()); ++i) queries.push_back(query_of(views[i], pictures[i], seed_of(i)));
+            attention_.prepare(queries);
+        }
+        const auto seed = seed_of(v);
         const Image drawn = pictures[v];
         Image outline;
         if (take_out(views[v], pictures[v], seed, &outline)) {

@@ -41,6 +41,7 @@ public:
     GaussianData seeds(const CutOut& found, const HullBox& box, int sh_degree) const;
 
 private:
+    AttentionQuery query_of(const RoundView& view, const Image& picture, std::uint64_t seed) const;
     /// Where a picture shows the thing, by the word's attention and by what differs from the view's backdrop; [H,W,1] in [0,1], all
     /// zero where it does not.
     Image outline_of(const RoundView& view, const Image& picture, std::uint64_t seed) const;

@@ -54,7 +54,8 @@ ViewPhase::ViewPhase(const EditPlan& plan, const EditRequest& request, const Edi
 
 /// Whether the edit goes on in the middle of this round, with the same settings from the same cameras.
 bool ViewPhase::resumes(const RoundState& start, const std::vector<std::size_t>& visible) const {
-    if (start.key != key_ || start.round != tools_.start->iteration / request_.fit_steps) return false;
+    const int round = std::min(tools_.start->iteration / request_.fit_steps, request_.rounds - 1);   // a polish comes behind the last one
+    if (start.key != key_ || start.round != round || (request_.polish_steps > 0 && !start.held)) return false;
     for (std::size_t i = 0; i < start.views.size(); ++i) {
         const auto view = start.views[i];
         if (view >= plan_.views.size() || index_of(visible, view) < 0) return false;
@@ -78,6 +79,10 @@ void ViewPhase::choose(const std::vector<std::size_t>& visible) {
     state_ = tools_.start->round;
     weigh();
     begin_sheet();
+}
+
+std::vector<HeldOutView> ViewPhase::draw_held_out() {
+    return state_ && state_->held ? rounds_.draw_held_out(*state_->held, tools_.job) : std::vector<HeldOutView>{};
 }
 
 std::vector<std::size_t> ViewPhase::fitted() const {
@@ -127,6 +132,12 @@ std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpa
     state->warnings = rounds_.warnings();
     state->raised = rounds_.raised();
     state->begun = begun;
+    if (request_.polish_steps > 0) {
+        auto held = std::make_shared<std::vector<RoundView>>();
+        for (const auto v : rounds_.held_out()) held->push_back(begin_view(v, rows, unlabelled, settings));
+        state->held = std::move(held);
+        state->held_out = rounds_.held_out();
+    }
     for (const auto view : state->views) state->edited.push_back(std::make_shared<const Image>(rounds_.edited(view)));
     state->attempts.assign(state->views.size(), 0);
     state->dropped.assign(state->views.size(), anew_);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int CoarseCells = 32;        // along the longest side of the box
 constexpr int MostCells = 128;         // the same of the second grid
-constexpr double LeastPart = 0.1;      // of the largest connected part
+constexpr double LeastHullPart = 0.1;      // of the largest connected part
 constexpr double HiddenSlack = 1.5;    // sides of a cube behind a surface: it may lie on it
 constexpr double Footprint = 0.75;     // half of a cube's width as it is seen, over its side: between face and corner
 
@@ -111,7 +111,7 @@ void keep_large_parts(Cubes& cubes) {
     }
     const std::size_t largest = sizes.empty() ? 0 : *std::max_element(sizes.begin(), sizes.end());
     for (std::size_t cube = 0; cube < part.size(); ++cube)
-        if (part[cube] >= 0 && static_cast<double>(sizes[static_cast<std::size_t>(part[cube])]) < LeastPart * static_cast<double>(largest))
+        if (part[cube] >= 0 && static_cast<double>(sizes[static_cast<std::size_t>(part[cube])]) < LeastHullPart * static_cast<double>(largest))
             cubes.inside[cube] = 0;
 }
 

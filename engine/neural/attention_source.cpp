@@ -10,7 +10,9 @@
 #include <sstream>
 
 #include "engine/base/error.h"
+#include "engine/edit/cached_attention.h"
 #include "engine/neural/images.h"
+#include "engine/neural/parallel_parts.h"
 #include "engine/neural/torch_errors.h"
 
 namespace gse::neural {
@@ -23,6 +25,7 @@ const std::vector<double> AbsentLevels{0.85};
 constexpr double AbsentStrength = 0.9;      // img2img must begin at least this noisy for an absent thing ...
 constexpr double AbsentLowestLevel = 0.75;  // ... and only steps above this level are looked at
 constexpr std::int64_t LargestAffinitySide = 32;   // 1024 x 1024 numbers per head and picture (views.md 6)
+constexpr int QueriesPerThread = 4;                // prepared together: a stop request waits for them
 constexpr std::int64_t BatchPixels =
     64 * 64;  // latent cells per UNet call: one SD image, 16 of the starter's
 
@@ -189,7 +192,7 @@ void BundleAttentionSource::run_img2img(const edit::AttentionQuery& query, const
                                         const torch::Tensor& context, AttentionCapture& capture,
                                         AttentionAccumulator& sum) {
     const auto& schedule = bundle_->schedule;
-    const auto& negative = context_of("");
+    const auto negative = context_of("");
     const double lowest = query.absent ? AbsentLowestLevel * static_cast<double>(schedule.steps()) : 0;
     for (int repeat = 0; repeat < std::max(1, query.repeats); ++repeat) {
         const auto sampler = make_sampler(SamplerKind::Ddim, schedule, parameters_.steps);
@@ -221,13 +224,51 @@ void BundleAttentionSource::run_img2img(const edit::AttentionQuery& query, const
     }
 }
 
-const torch::Tensor& BundleAttentionSource::context_of(const std::string& sentence) {
+torch::Tensor BundleAttentionSource::context_of(const std::string& sentence) {
+    const std::lock_guard lock(mutex_);
     auto& context = contexts_[sentence];
     if (!context.defined()) context = bundle_->encode_prompts({sentence});
     return context;
 }
 
+torch::Tensor BundleAttentionSource::latents_of(const Image& picture) {
+    return latents_.of(picture, [&](const Image& unknown) {
+        return image_to_latents(*bundle_, resize_square(to_tensor(unknown, bundle_->device), bundle_->image_size()), Codec::Quick);
+    });
+}
+
+std::size_t BundleAttentionSource::at_once() const {
+    const bool apart = is_small(bundle_->unet->config()) && bundle_->device.is_cpu();
+    return apart ? static_cast<std::size_t>(QueriesPerThread * part_threads()) : 1;
+}
+
+void BundleAttentionSource::prepare(std::span<const edit::AttentionQuery> queries) {
+    if (at_once() == 1) return;
+    prepared_.clear();   // what nobody came for
+    std::vector<std::vector<Image>> answers(queries.size());
+    guard_torch("finding the words in the images", [&] {
+        for_parts(static_cast<std::int64_t>(queries.size()), true, [&](std::int64_t begin, std::int64_t end) {
+            for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+                try {
+                    answers[i] = maps_of(queries[i]);
+                } catch (const Error&) {   // locate() says it where it is asked
+                }
+            }
+        });
+    });
+    for (std::size_t i = 0; i < queries.size(); ++i)
+        if (!answers[i].empty()) prepared_[edit::question_hash(queries[i])] = std::move(answers[i]);
+}
+
 std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& query) {
+    if (!prepared_.empty())
+        if (auto known = prepared_.extract(edit::question_hash(query))) return std::move(known.mapped());
+    std::vector<Image> maps;
+    for_parts(1, at_once() > 1, [&](std::int64_t, std::int64_t) { maps = maps_of(query); });   // as prepare() would have it, bit by bit
+    return maps;
+}
+
+std::vector<Image> BundleAttentionSource::maps_of(const edit::AttentionQuery& query) {
     const auto prompt = with_view_words(query.prompt, query.view_words);
     std::vector<std::vector<std::int64_t>> columns;
     AttentionCapture capture = make_capture();
@@ -238,8 +279,7 @@ std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& que
     if (columns.empty()) return {};
     return guard_torch("finding the words in the image", [&] {
         const torch::NoGradGuard no_grad;
-        const auto image = resize_square(to_tensor(query.image, bundle_->device), bundle_->image_size());
-        const auto latents = image_to_latents(*bundle_, image, Codec::Quick);
+        const auto latents = latents_of(query.image);
         const auto context = context_of(prompt);
         AttentionAccumulator sum(latents.size(2), static_cast<std::int64_t>(capture.columns.size()));
         if (parameters_.method == "probes")

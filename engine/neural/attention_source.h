@@ -4,12 +4,15 @@
 
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "engine/edit/interfaces.h"
 #include "engine/neural/attention_parameters.h"
 #include "engine/neural/buffer_cache.h"
+#include "engine/neural/kept_latents.h"
 #include "engine/neural/pipelines.h"
 
 namespace gse::neural {
@@ -42,10 +45,15 @@ class BundleAttentionSource final : public edit::AttentionSource {
 public:
     BundleAttentionSource(std::shared_ptr<const ModelBundle> bundle, AttentionParameters parameters);
     std::vector<Image> locate(const edit::AttentionQuery& query) override;
+    void prepare(std::span<const edit::AttentionQuery> queries) override;
+    std::size_t at_once() const override;
     double threshold() const override { return bundle_->facts.attention_threshold; }
     int image_size() const override { return static_cast<int>(bundle_->image_size()); }
 
 private:
+    std::vector<Image> maps_of(const edit::AttentionQuery& query);
+    /// Of a picture, kept for other questions about it.
+    torch::Tensor latents_of(const Image& picture);
     AttentionCapture make_capture() const;
     torch::Tensor checked(const AttentionAccumulator& sum) const;
     void probe(const edit::AttentionQuery& query, const torch::Tensor& latents, const torch::Tensor& context,
@@ -54,13 +62,16 @@ private:
                      const torch::Tensor& context, AttentionCapture& capture,
                      AttentionAccumulator& sum);
     /// [1,T,D], encoded once per sentence (method E6).
-    const torch::Tensor& context_of(const std::string& sentence);
+    torch::Tensor context_of(const std::string& sentence);
 
     BufferHolder buffers_;   // goes last
     std::shared_ptr<const ModelBundle> bundle_;
     AttentionParameters parameters_;
     std::vector<double> levels_;   // of the parameters
+    std::mutex mutex_;   // of the contexts
     std::map<std::string, torch::Tensor> contexts_;
+    KeptLatents latents_;
+    std::unordered_map<std::uint64_t, std::vector<Image>> prepared_;      // by the question; until it is asked
 };
 
 /// "a bear" and "front view" to "a bear, front view".

@@ -8,10 +8,12 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include "engine/base/error.h"
 #include "engine/base/random.h"
+#include "engine/neural/parallel_parts.h"
 #include "engine/neural/safetensors.h"
 
 namespace gse::neural {
@@ -67,6 +69,23 @@ std::map<std::string, torch::Tensor> weights_by_layer(const torch::nn::Module& n
             weights.emplace(flat_name(name.substr(0, name.size() - ending.size())), item.value());
     }
     return weights;
+}
+
+/// The weight with its change, some rows after the other, so that what is in between stays near the processor: as whole matrices it
+/// goes to memory and back five times.
+torch::Tensor changed_in_parts(const torch::Tensor& weight, const LoraFactor& factor, double strength) {
+    constexpr std::int64_t numbers_at_once = 1 << 18;
+    const auto up = factor.up.to(torch::kFloat32).flatten(1) * (factor.scale() * strength), down = factor.down.to(torch::kFloat32).flatten(1);
+    const auto before = weight.flatten(1);
+    auto changed = torch::empty_like(weight);
+    auto after = changed.view({before.size(0), before.size(1)});
+    const auto rows = std::max<std::int64_t>(1, numbers_at_once / before.size(1));
+    for (std::int64_t first = 0; first < before.size(0); first += rows) {
+        const auto count = std::min(rows, before.size(0) - first);
+        auto part = before.narrow(0, first, count).to(torch::kFloat32, false, true);
+        after.narrow(0, first, count).copy_(part.addmm_(up.narrow(0, first, count), down));
+    }
+    return changed;
 }
 
 std::string shape_text(const torch::Tensor& tensor) { return fmt::format("[{}]", fmt::join(tensor.sizes(), ",")); }
@@ -139,14 +158,22 @@ void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& facto
     const torch::NoGradGuard no_grad;
     check_lora(network, factors);
     auto weights = weights_by_layer(network);
-    for (const auto& factor : factors) {
+    const auto merge = [&](const LoraFactor& factor) {
         auto& weight = weights.at(factor.layer);
         auto here = factor;
         for (auto* part : {&here.down, &here.up, &here.mid})
             if (part->defined()) *part = part->to(weight.device());
-        const auto changed = weight.to(torch::kFloat32) + here.change_of(weight) * strength;
-        weight.set_data(changed.to(weight.scalar_type()));
-    }
+        weight.set_data(here.mid.defined() ? (weight.to(torch::kFloat32) + here.change_of(weight) * strength).to(weight.scalar_type())
+                                           : changed_in_parts(weight, here, strength));
+    };
+    std::set<std::string> layers;
+    for (const auto& factor : factors) layers.insert(factor.layer);
+    const bool apart = layers.size() == factors.size() && (weights.empty() || weights.begin()->second.device().is_cpu());
+    const std::int64_t threads = apart ? part_threads() : 1;   // layers are of all sizes: each takes every n-th
+    for_parts(threads, apart, [&](std::int64_t begin, std::int64_t end) {
+        for (auto first = begin; first < end; ++first)
+            for (auto i = static_cast<std::size_t>(first); i < factors.size(); i += static_cast<std::size_t>(threads)) merge(factors[i]);
+    });
 }
 
 std::vector<LoraFactor> lora_between(const torch::nn::Module& before, const torch::nn::Module& after, std::int64_t rank) {

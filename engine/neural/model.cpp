@@ -13,6 +13,7 @@
 #include "engine/neural/clip_score.h"
 #include "engine/neural/dreambooth.h"
 #include "engine/neural/images.h"
+#include "engine/neural/parallel_parts.h"
 #include "engine/neural/safetensors.h"
 #include "engine/neural/sds_guidance.h"
 #include "engine/neural/torch_errors.h"
@@ -23,10 +24,6 @@ extern "C" void openblas_set_num_threads(int count) __attribute__((weak));
 
 namespace gse::neural {
 namespace {
-
-/// Channels of the widest level up to which matrices are too small for OpenBLAS to share them out. Its second thread would
-/// wait for them in a loop all the same, on the processor that the viewport needs.
-constexpr std::int64_t WidestSmallModel = 256;
 
 /// A LoRA that makes the model another kind.
 struct Distilled {
@@ -208,9 +205,9 @@ std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const
                       mark == LoraMark::Tcd ? "tcd" : "lcm");
         }
     }
-    const auto& widths = bundle.unet->config().block_out_channels;
-    const bool small = *std::max_element(widths.begin(), widths.end()) <= WidestSmallModel;
-    set_blas_threads(small ? 1 : torch::get_num_threads());
+    // Matrices of a small model are too small for OpenBLAS to share them out; its second thread would wait for them in a loop all the
+    // same, on the processor that the viewport needs.
+    set_blas_threads(is_small(bundle.unet->config()) ? 1 : torch::get_num_threads());
     return std::make_unique<Model>(std::move(bundle), std::move(fast));
 }
 

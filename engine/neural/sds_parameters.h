@@ -56,4 +56,12 @@ struct SdsParameters {
     }
 };
 
+/// Of a polish (views.md 10): low noise levels, at which a model changes details only, and nothing taken off.
+inline SdsParameters polishing(SdsParameters parameters) {
+    parameters.t_min = 0.02;
+    parameters.t_max_start = parameters.t_max_end = 0.3;
+    parameters.delta = 0;
+    return parameters;
+}
+
 }  // namespace gse::neural

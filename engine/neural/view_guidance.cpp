@@ -11,6 +11,7 @@
 #include "engine/neural/attention_source.h"
 #include "engine/neural/buffer_cache.h"
 #include "engine/neural/images.h"
+#include "engine/neural/parallel_parts.h"
 #include "engine/neural/torch_errors.h"
 
 namespace gse::neural {
@@ -83,7 +84,11 @@ struct DiffusionViews::Batch {
 
 DiffusionViews::DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters,
                                std::shared_ptr<const ModelBundle> shapes)
-    : bundle_(std::move(bundle)), shapes_(std::move(shapes)), prompt_(std::move(prompt)), parameters_(std::move(parameters)) {}
+    : bundle_(std::move(bundle)),
+      shapes_(std::move(shapes)),
+      prompt_(std::move(prompt)),
+      parameters_(std::move(parameters)),
+      apart_(is_small(bundle_->unet->config()) && bundle_->device.is_cpu()) {}
 
 /// `exact`: the model knows every azimuth by the mixture of the sentences for the two sides beside it.
 torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views, const std::string& prompt, bool exact) {
@@ -109,16 +114,18 @@ torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views
 DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>& views, const edit::RoundInput& input) {
     const auto cells = bundle_->latent_size();
     Batch batch;
-    std::vector<torch::Tensor> clean, original, masks;
+    std::vector<torch::Tensor> clean(views.size()), original(views.size()), masks;
     const auto latents = [&](const Image& image) {
         return image_to_latents(*bundle_, resize_square(to_tensor(image, bundle_->device), bundle_->image_size()), Codec::Quick);
     };
-    for (std::size_t v = 0; v < views.size(); ++v) {
-        const auto& view = views[v];
-        clean.push_back(latents(view.rendered));
-        original.push_back(view.rendered.data == view.original.data ? clean.back() : latents(view.original));
-        masks.push_back(latent_mask(view.mask, cells, bundle_->device, input.anew));
-    }
+    for_parts(static_cast<std::int64_t>(views.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
+        for (auto v = static_cast<std::size_t>(begin); v < static_cast<std::size_t>(end); ++v) {
+            const auto& view = views[v];
+            clean[v] = latents(view.rendered);
+            original[v] = view.rendered.data == view.original.data ? clean[v] : originals_.of(view.original, latents);
+        }
+    });
+    for (const auto& view : views) masks.push_back(latent_mask(view.mask, cells, bundle_->device, input.anew));
     batch.clean = torch::cat(clean);
     batch.original = torch::cat(original);
     batch.noise = noise(views, input.seed);
@@ -142,16 +149,19 @@ torch::Tensor DiffusionViews::noise(const std::vector<edit::RoundView>& views, s
 torch::Tensor DiffusionViews::output(const UNet& unet, const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning) const {
     const auto side = bundle_->image_size();
     const auto at_once = std::max<std::int64_t>(1, PixelsAtOnce / (side * side));
-    std::vector<torch::Tensor> parts;
-    for (std::int64_t first = 0; first < x.size(0); first += at_once) {
-        const auto count = std::min(at_once, x.size(0) - first);
-        auto some = conditioning;
-        some.context = conditioning.context.narrow(0, first, count);
-        if (some.picture.defined()) some.picture = conditioning.picture.narrow(0, first, count);
-        const auto t = torch::full({1}, timestep, torch::kFloat32);
-        parts.push_back(guided_output(unet, x.narrow(0, first, count), t, some));
-    }
-    return torch::cat(parts);
+    auto result = torch::empty_like(x);
+    // Whole pieces: products round differently with another number of rows.
+    for_parts((x.size(0) + at_once - 1) / at_once, apart_, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t first = begin * at_once; first < std::min(end * at_once, x.size(0)); first += at_once) {
+            const auto count = std::min(at_once, x.size(0) - first);
+            auto some = conditioning;
+            some.context = conditioning.context.narrow(0, first, count);
+            if (some.picture.defined()) some.picture = conditioning.picture.narrow(0, first, count);
+            const auto t = torch::full({1}, timestep, torch::kFloat32);
+            result.narrow(0, first, count).copy_(guided_output(unet, x.narrow(0, first, count), t, some));
+        }
+    });
+    return result;
 }
 
 void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
@@ -199,22 +209,25 @@ edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<
     const bool anew = input.anew || bundle_->kind == BundleKind::InstructPix2Pix ||
                       (bundle_->kind == BundleKind::Lcm && input.strength >= LcmPlainDecode);
     edit::RoundTargets targets;
+    targets.images.resize(views.size());
+    for_parts(static_cast<std::int64_t>(views.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
+        for (auto row = begin; row < end; ++row) {
+            auto decoded = latents_to_image(*bundle_, batch.x.narrow(0, row, 1), codec);
+            if (!anew) decoded = decoded - latents_to_image(*bundle_, batch.clean.narrow(0, row, 1), codec);
+            const Image& rendered = views[static_cast<std::size_t>(row)].rendered;
+            auto enlarged = torch::upsample_bilinear2d(decoded, {rendered.height, rendered.width}, false);
+            if (!anew) enlarged = to_tensor(rendered, bundle_->device) + enlarged;
+            targets.images[static_cast<std::size_t>(row)] = to_image(enlarged.clamp(0, 1));
+        }
+    });
     double change = 0, pixels = 0;
-    for (std::size_t v = 0; v < views.size(); ++v) {
-        const auto row = static_cast<std::int64_t>(v);
-        auto decoded = latents_to_image(*bundle_, batch.x.narrow(0, row, 1), codec);
-        if (!anew) decoded = decoded - latents_to_image(*bundle_, batch.clean.narrow(0, row, 1), codec);
-        const Image& rendered = views[v].rendered;
-        auto enlarged = torch::upsample_bilinear2d(decoded, {rendered.height, rendered.width}, false);
-        if (!anew) enlarged = to_tensor(rendered, bundle_->device) + enlarged;
-        targets.images.push_back(to_image(enlarged.clamp(0, 1)));
+    for (std::size_t v = 0; v < views.size(); ++v)
         for (std::size_t i = 0; i < views[v].mask.data.size(); ++i) {
             if (views[v].mask.data[i] == 0) continue;
             for (std::size_t c = 0; c < 3; ++c)
-                change += std::abs(targets.images.back().data[i * 3 + c] - rendered.data[i * 3 + c]) / 3;
+                change += std::abs(targets.images[v].data[i * 3 + c] - views[v].rendered.data[i * 3 + c]) / 3;
             pixels += 1;
         }
-    }
     targets.scalars["redrawn_change"] = pixels > 0 ? change / pixels : 0;   // mean over what may change
     return targets;
 }

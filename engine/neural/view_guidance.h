@@ -7,6 +7,7 @@
 
 #include "engine/edit/interfaces.h"
 #include "engine/neural/buffer_cache.h"
+#include "engine/neural/kept_latents.h"
 #include "engine/neural/pipelines.h"
 #include "engine/neural/sds_parameters.h"
 
@@ -45,7 +46,9 @@ private:
     std::shared_ptr<const ModelBundle> bundle_, shapes_;
     std::string prompt_;
     SdsParameters parameters_;
+    const bool apart_;   // views are shared out among threads, not operations
     std::map<std::string, torch::Tensor> encoded_;   // [1,T,D], one per sentence
+    KeptLatents originals_;                          // of the unedited views: the same in every round
 };
 
 }  // namespace gse::neural

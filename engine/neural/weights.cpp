@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include "engine/base/error.h"
+#include "engine/neural/parallel_parts.h"
 
 namespace gse::neural {
 namespace {
@@ -84,18 +85,22 @@ std::set<std::string> check_weights(const torch::nn::Module& module, const KeySh
 std::set<std::string> load_weights(torch::nn::Module& module, const SafetensorsFile& file,
                                    const LoadPlan& plan) {
     auto used = check_weights(module, key_shapes(file), plan, file.path());
-    const torch::NoGradGuard no_grad;
-    for (auto& item : module.named_parameters()) {
-        const auto source = source_of(plan, item.key());
-        if (source.row < 0 && !source.transpose) {
-            file.copy_to(source.key, item.value());
-            continue;
-        }
+    const auto parameters = module.named_parameters().pairs();
+    const auto load = [&](const std::string& name, torch::Tensor value) {
+        const auto source = source_of(plan, name);
+        if (source.row < 0 && !source.transpose) return file.copy_to(source.key, value);
         auto tensor = file.tensor(source.key);
         if (source.transpose) tensor = tensor.t();
         if (source.row >= 0) tensor = tensor.chunk(source.rows, 0)[static_cast<std::size_t>(source.row)];
-        item.value().copy_(tensor.reshape(item.value().sizes()));
-    }
+        value.copy_(tensor.reshape(value.sizes()));
+    };
+    // Reading, converting and the pages of the new weights take one thread each their time; every n-th, because sizes grow with the level.
+    const std::int64_t threads = part_threads();
+    for_parts(threads, true, [&](std::int64_t begin, std::int64_t end) {
+        for (auto first = begin; first < end; ++first)
+            for (auto i = static_cast<std::size_t>(first); i < parameters.size(); i += static_cast<std::size_t>(threads))
+                load(parameters[i].first, parameters[i].second);
+    });
     return used;
 }
 

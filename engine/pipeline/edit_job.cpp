@@ -270,15 +270,20 @@ Edited EditJob::probe(const ProbeSize& size) {
     plain.request.iterations = plain.request.fit_steps = size.steps;
     plain.request.dynamic_mask = plain.request.look_again = plain.request.early_stop = false;
     plain.request.densify_every = 0;
-    plain.request.rounds = plain.request.shape_rounds = 1;
+    plain.request.rounds = plain.request.shape_rounds = size.early ? 2 : 1;
     plain.request.shape_fit_steps = size.steps;
     plain.request.edited_views = plain.request.shape_views = size.edited_views;
     plain.request.view_steps = plain.request.shape_steps = size.view_steps;
+    plain.request.polish_steps = size.polish;
     JobControl quiet;
-    quiet.stop = control_.stop;
+    std::stop_source redrawn;
+    const std::stop_callback stopped(control_.stop, [&] { redrawn.request_stop(); });
+    quiet.stop = redrawn.get_token();
+    EditObserver observer;
+    if (size.early) observer.targets = [&](const edit::ViewTargets&) { redrawn.request_stop(); };
     const ProbeScene part = probe_scene(scene().gaussians, plan());
     const double start = wall_seconds();
-    Edited edited = edit_scene(*workplace_, part.set, *located_, part.plan, plain, {}, quiet);
+    Edited edited = edit_scene(*workplace_, part.set, *located_, part.plan, plain, observer, quiet);
     edited.seconds = wall_seconds() - start;
     return edited;
 }

@@ -48,6 +48,14 @@ Image with_points(const Image& render, const std::vector<edit::PointPrompt>& poi
 
 void write_json(const fs::path& path, const nlohmann::ordered_json& json) { write_file(path, json_text(json, 2) + "\n"); }
 
+void write_evidence_pictures(const fs::path& folder, const edit::ViewEvidence& evidence, std::size_t view) {
+    const std::string stem = fmt::format("view_{:03}", view);
+    write_png(folder / (stem + "_render.png"), evidence.render);
+    write_png(folder / (stem + "_attention.png"), heat_map(evidence.map));
+    write_png(folder / (stem + "_points.png"), with_points(evidence.render, evidence.points));
+    if (!evidence.mask.data.empty()) write_mask_png(folder / (stem + "_mask.png"), evidence.mask);
+}
+
 }  // namespace
 
 Image heat_map(const Image& map) {
@@ -59,15 +67,13 @@ Image heat_map(const Image& map) {
     return picture;
 }
 
-void write_evidence(const fs::path& folder, const edit::LocateResult& located, const std::vector<View>& views) {
+void write_evidence(const fs::path& folder, ThreadPool& threads, const edit::LocateResult& located, const std::vector<View>& views) {
+    threads.parallel_for(located.views.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t v = begin; v < end; ++v) write_evidence_pictures(folder, located.views[v], v);
+    });
     nlohmann::ordered_json index = nlohmann::ordered_json::array();
     for (std::size_t v = 0; v < located.views.size(); ++v) {
         const auto& evidence = located.views[v];
-        const std::string stem = fmt::format("view_{:03}", v);
-        write_png(folder / (stem + "_render.png"), evidence.render);
-        write_png(folder / (stem + "_attention.png"), heat_map(evidence.map));
-        write_png(folder / (stem + "_points.png"), with_points(evidence.render, evidence.points));
-        if (!evidence.mask.data.empty()) write_mask_png(folder / (stem + "_mask.png"), evidence.mask);
         nlohmann::ordered_json entry;
         entry["view"] = views[v].name;
         entry["word"] = located.word;
@@ -203,6 +209,8 @@ nlohmann::ordered_json make_report(EditJob& job) {
     report["skipped_steps"] = result.skipped_steps;
     report["skipped_rows"] = result.skipped_rows;
     if (result.kept_chroma >= 0) report["kept_chroma"] = result.kept_chroma;
+    if (const auto& polish = result.polish)
+        report["polish"] = {{"steps", polish->steps}, {"kept", polish->kept}, {"held_out_error_before", polish->before}, {"held_out_error_after", polish->after}};
     report["cloned"] = result.cloned;
     report["split"] = result.split;
     report["pruned"] = result.pruned;

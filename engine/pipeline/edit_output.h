@@ -12,7 +12,7 @@ namespace gse::pipeline {
 Image heat_map(const Image& map);
 
 /// Per view: render, attention map, points and mask as PNG, and index.json.
-void write_evidence(const std::filesystem::path& folder, const edit::LocateResult& located,
+void write_evidence(const std::filesystem::path& folder, ThreadPool& threads, const edit::LocateResult& located,
                     const std::vector<View>& views);
 
 /// The input as loaded, same row order, with label and label_weight columns.

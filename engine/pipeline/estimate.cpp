@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/colour_word.h"
+#include "engine/edit/view_round.h"
 #include "engine/pipeline/gate.h"
 
 namespace gse::pipeline {
@@ -41,18 +42,34 @@ bool draws_key_view(const edit::EditRequest& request, edit::EditMode mode) {
 
 /// What the rounds that begin after an iteration ask of the model; one that was begun is not begun again.
 struct Redrawing {
-    double views = 0, steps = 0;   // pictures, and denoising steps of single pictures; those that are not guided count half
+    double views = 0, early = 0;   // pictures of the last round, and of those before it
+    double steps = 0;              // denoising steps of single pictures; those that are not guided count half
+    double pictures() const { return views + early; }
+    Redrawing& operator+=(const Redrawing& more) {
+        views += more.views;
+        early += more.early;
+        steps += more.steps;
+        return *this;
+    }
 };
 
 Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, int first_iteration) {
     const auto plan = edit::round_plan(request, mode);
     Redrawing left;
-    if (first_iteration == 0 && draws_key_view(request, mode)) left = {1, plan.guided_steps_of(0)};
-    for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds; ++round) {
-        left.views += plan.views;
-        left.steps += plan.views * plan.guided_steps_of(round);
-    }
+    const auto draw = [&](int round, double views) {
+        (round + 1 < plan.rounds ? left.early : left.views) += views;
+        left.steps += views * plan.guided_steps_of(round);
+    };
+    if (first_iteration == 0 && draws_key_view(request, mode)) draw(0, 1);
+    for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds; ++round) draw(round, plan.views);
     return left;
+}
+
+/// What a polish asks for beside its steps: the views that it is judged by.
+Redrawing held_out(const edit::EditRequest& request, edit::EditMode mode) {
+    const auto plan = edit::round_plan(request, mode);
+    constexpr double views = edit::HeldOutViews;
+    return {views, 0, views * plan.guided_steps_of(plan.rounds - 1)};
 }
 
 bool led_by_views(const EditJob& job) { return edit::edits_by_views(job.recipe().request); }
@@ -107,8 +124,14 @@ Cost estimated_cost(const Measured& measured, const edit::EditRequest& request, 
     const double size = static_cast<double>(work.rows) / measured.rows;
     sum.add(size, std::max(0.0, measured.begin));
     if (by_views) {
-        const auto left = redrawing_from(request, work.mode, work.first_iteration);
+        auto left = redrawing_from(request, work.mode, work.first_iteration);
+        const int polish = std::min(steps, request.polish_steps);
+        sum.add(polish, measured.polish, measured.polish_tflop);
+        if (polish > 0) left += held_out(request, work.mode);
         sum.add(left.views, std::max(0.0, measured.redraw_view), std::max(0.0, measured.redraw_view_tflop));
+        const bool apart = measured.redraw_early >= 0;   // else as in the last round
+        sum.add(left.early, std::max(0.0, apart ? measured.redraw_early : measured.redraw_view),
+                std::max(0.0, apart ? measured.redraw_early_tflop : measured.redraw_view_tflop));
         sum.add(left.steps, measured.redraw, measured.redraw_tflop);
     } else {
         sum.add(steps, measured.guidance, measured.guidance_tflop);
@@ -174,9 +197,9 @@ void measure_redrawing(Measured& measured, const EditJob& job) {
     const auto& result = job.result();
     const double views = static_cast<double>(result.redrawn_views);
     const auto all = redrawing_from(job.recipe().request, job.located().mode, 0);
-    if (views <= 0 || all.views <= 0) return;
-    const double steps = all.steps / all.views;
-    const double seconds = stage_seconds(result, "guidance") / views;
+    if (views <= 0 || all.pictures() <= 0) return;
+    const double seconds = stage_seconds(result, "guidance") / views;   // of a picture, over all rounds
+    const double steps = all.steps / all.pictures();
     if (measured.redraw < 0 || measured.redraw_view < 0) {
         measured.redraw = seconds / steps;
         measured.redraw_view = 0;
@@ -184,10 +207,11 @@ void measure_redrawing(Measured& measured, const EditJob& job) {
         measured.redraw_view_tflop = 0;
         return;
     }
-    const double expected = measured.redraw_view + steps * measured.redraw;
+    const double early = measured.redraw_early >= 0 ? measured.redraw_early : measured.redraw_view;
+    const double expected = (all.views * measured.redraw_view + all.early * early) / all.pictures() + steps * measured.redraw;
     if (expected <= 0) return;
-    measured.redraw *= seconds / expected;
-    measured.redraw_view *= seconds / expected;
+    for (auto* part : {&measured.redraw, &measured.redraw_view, &measured.redraw_early})
+        if (*part > 0) *part *= seconds / expected;
 }
 
 void measure_pulling(Measured& measured, const EditJob& job, const Edited& edited, int steps) {
@@ -211,6 +235,7 @@ void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
     const auto& result = job.result();
     const int steps = static_cast<int>(result.history.size());
     if (steps < least_steps || steps == 0) return;
+    if (result.polish && result.polish->steps > 0) measured.polish = stage_seconds(result, "polish") / result.polish->steps;
     if (led_by_views(job)) measure_redrawing(measured, job);
     else measure_pulling(measured, job, job.edited(), steps);
     measured.raster = raster_seconds(result) / steps;
@@ -218,7 +243,8 @@ void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
 }
 
 bool steps_measured(const Measured& measured, const EditJob& job) {
-    return led_by_views(job) ? measured.redraw >= 0 && measured.redraw_view >= 0 : measured.guidance >= 0;
+    if (!led_by_views(job)) return measured.guidance >= 0;
+    return measured.redraw >= 0 && measured.redraw_view >= 0 && (job.recipe().request.polish_steps == 0 || measured.polish >= 0);
 }
 
 namespace {
@@ -230,25 +256,42 @@ double guided_steps(const EditJob& job, int view_steps) {
     return plan.guided_steps_of(0);
 }
 
-/// Redraws with one step and with three: what a step takes, and what a view takes beside its steps.
+/// A short polish behind one step; `redrawn`: of the same without it.
+void probe_polish(Measured& measured, EditJob& job, const EditJob::ProbeSize& size, const Edited& redrawn) {
+    constexpr int polish_steps = 2;
+    const Edited edited = job.probe({size.steps, size.edited_views, size.view_steps, polish_steps});
+    const auto& polish = edited.result.polish;
+    if (!polish || polish->steps == 0) return;
+    const double judging = edit::HeldOutViews * (measured.redraw_view_tflop + guided_steps(job, size.view_steps) * measured.redraw_tflop);
+    measured.polish = stage_seconds(edited.result, "polish") / polish->steps;
+    measured.polish_tflop = std::max(0.0, tflop_of(edited.use) - tflop_of(redrawn.use) - judging) / polish->steps;
+}
+
+/// Redraws with one step and with three: what a step takes, and what a view takes beside its steps, in the last round and in others.
 Edited probe_views(Measured& measured, EditJob& job) {
     constexpr double pixels_at_once = 8 * 64 * 64;   // as many as the model takes in one piece
-    constexpr int more_steps = 3;
+    constexpr int more_steps = 3, least_outlines = 3;
+    const auto plan = edit::round_plan(job.recipe().request, job.located().mode);
     const double side = job.model().image_size();
-    const int views = std::clamp(static_cast<int>(pixels_at_once / (side * side)), 1,
-                                 edit::round_plan(job.recipe().request, job.located().mode).views);
-    job.probe({1, views, 1});   // the first pass of a model takes longer than the others
-    const Edited many = job.probe({1, views, more_steps});
+    const int views = std::clamp(static_cast<int>(pixels_at_once / (side * side)), std::min(plan.anew ? least_outlines : 1, plan.views), plan.views);
+    const bool early = plan.rounds > 1;
+    job.probe({1, views, 1, 0, early});   // the first pass of a model takes longer than the others
+    const Edited many = job.probe({1, views, more_steps, 0, early});
     Edited one = job.probe({ProbeSteps, views, 1});
+    const Edited first_round = early ? job.probe({1, views, 1, 0, true}) : one;
     const auto redrawn = static_cast<double>(one.result.redrawn_views);
-    if (redrawn <= 0 || many.result.redrawn_views != one.result.redrawn_views) return one;
+    if (redrawn <= 0 || many.result.redrawn_views != one.result.redrawn_views || first_round.result.redrawn_views != one.result.redrawn_views)
+        return one;
     const double first = guided_steps(job, 1), more = guided_steps(job, more_steps) - first;
-    const auto step = [&](double of_many, double of_one) { return std::max(0.0, (of_many - of_one) / more / redrawn); };
-    const double seconds = stage_seconds(one.result, "guidance"), tflop = tflop_of(one.use);
-    measured.redraw = step(stage_seconds(many.result, "guidance"), seconds);
-    measured.redraw_tflop = step(tflop_of(many.use), tflop);
-    measured.redraw_view = std::max(0.0, seconds / redrawn - first * measured.redraw);
-    measured.redraw_view_tflop = std::max(0.0, tflop / redrawn - first * measured.redraw_tflop);
+    const auto seconds_of = [&](const Edited& edited) { return stage_seconds(edited.result, "guidance") / redrawn; };
+    const auto work_of = [&](const Edited& edited) { return tflop_of(edited.use) / redrawn; };
+    measured.redraw = std::max(0.0, (seconds_of(many) - seconds_of(first_round)) / more);
+    measured.redraw_tflop = std::max(0.0, (work_of(many) - work_of(first_round)) / more);
+    measured.redraw_view = std::max(0.0, seconds_of(one) - first * measured.redraw);
+    measured.redraw_view_tflop = std::max(0.0, work_of(one) - first * measured.redraw_tflop);
+    measured.redraw_early = std::max(0.0, seconds_of(first_round) - first * measured.redraw);
+    measured.redraw_early_tflop = std::max(0.0, work_of(first_round) - first * measured.redraw_tflop);
+    if (job.recipe().request.polish_steps > 0) probe_polish(measured, job, {ProbeSteps, views, 1}, one);
     return one;
 }
 

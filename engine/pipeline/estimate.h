@@ -22,6 +22,8 @@ struct Measured {
     double guidance = -1, guidance_tflop = -1;
     double redraw = -1, redraw_tflop = -1;
     double redraw_view = -1, redraw_view_tflop = -1;
+    double redraw_early = -1, redraw_early_tflop = -1;
+    double polish = -1, polish_tflop = -1;
     double raster = -1;
     double rows = 1;
     double refresh = -1;
@@ -49,6 +51,10 @@ struct Measured {
         f("redraw_tflop", self.redraw_tflop, "Operations of that.", any);
         f("redraw_view", self.redraw_view, "One redrawn view beside its steps: encoding and decoding.", any);
         f("redraw_view_tflop", self.redraw_view_tflop, "Operations of that.", any);
+        f("redraw_early", self.redraw_early, "The same in a round that is not the last: a tiny autoencoder does for it.", any);
+        f("redraw_early_tflop", self.redraw_early_tflop, "Operations of that.", any);
+        f("polish", self.polish, "The model's part of a step of a polish, with what it is judged by.", any);
+        f("polish_tflop", self.polish_tflop, "Operations of that.", any);
         f("raster", self.raster, "The rest of a step.", any);
         f("rows", self.rows, "Splats of the scene that was measured.", Range{1, 1e12});
         f("refresh", self.refresh, "One mask that follows the edit.", any);

@@ -64,8 +64,9 @@ Edited edit_scene(Workplace& workplace, const GaussianSet& scene, const Located&
     const bool editor = model.kind() == neural::BundleKind::InstructPix2Pix;
     const auto prompt = editor ? told_to_editor(request) : edit::as_told(request.prompt);
     const auto settings = with_sentence_before(recipe.guidance, request);
-    const auto guidance = model.guidance(prompt, settings);
-    const auto views = edit::edits_by_views(request) ? model.views(prompt, settings) : nullptr;
+    const bool by_views = edit::edits_by_views(request);
+    const auto guidance = model.guidance(prompt, by_views ? neural::polishing(settings) : settings);
+    const auto views = by_views ? model.views(prompt, settings) : nullptr;
     edit::EditTools tools{workplace.painter().rasterizer(), *guidance, observer.snapshot, control, observer.iteration};
     tools.snapshot_seconds = observer.snapshot_seconds;
     tools.new_label = observer.new_label;

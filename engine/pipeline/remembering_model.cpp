@@ -211,15 +211,26 @@ public:
         if (const auto answer = model_->cache().find(question))
             if (auto maps = images_in(*answer, query.words.size())) return count_cached_answer(), std::move(*maps);
         if (!source_) source_ = model_->real().attention(parameters_);
-        auto maps = source_->locate(query);
+        auto maps = source_->locate(query);   // the source may have prepared it
         if (std::all_of(maps.begin(), maps.end(), [](const Image& map) { return finite(map.data); }))
             model_->cache().keep(question, bytes_of(maps));
         return maps;
     }
     double threshold() const override { return model_->facts().threshold; }
     int image_size() const override { return model_->facts().attention_size; }
+    void prepare(std::span<const edit::AttentionQuery> queries) override {
+        std::vector<edit::AttentionQuery> unknown;
+        for (const auto& query : queries)
+            if (!model_->cache().find(model_->question("attention", question_of(query, parameters_)))) unknown.push_back(query);
+        if (unknown.empty()) return;
+        if (!source_) source_ = model_->real().attention(parameters_);
+        source_->prepare(unknown);
+    }
+    std::size_t at_once() const override { return source_ ? source_->at_once() : UsuallyAtOnce; }
 
 private:
+    static constexpr std::size_t UsuallyAtOnce = 8;   // the source says how many it takes once it is loaded
+
     std::shared_ptr<const RememberingModel> model_;
     const neural::AttentionParameters parameters_;
     std::unique_ptr<edit::AttentionSource> source_;   // when it is needed

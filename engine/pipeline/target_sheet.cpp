@@ -59,8 +59,11 @@ Image target_sheet(const edit::ViewTargets& round, const std::vector<View>& view
     return sheet;
 }
 
-void write_targets(const std::filesystem::path& folder, const std::vector<edit::ViewTargets>& rounds, const std::vector<View>& views) {
-    for (const auto& round : rounds) write_png(folder / file_name(round), target_sheet(round, views));
+void write_targets(const std::filesystem::path& folder, ThreadPool& threads, const std::vector<edit::ViewTargets>& rounds,
+                   const std::vector<View>& views) {
+    threads.parallel_for(rounds.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t i = begin; i < end; ++i) write_png(folder / file_name(rounds[i]), target_sheet(rounds[i], views));
+    });
 }
 
 nlohmann::ordered_json targets_to_json(const std::vector<edit::ViewTargets>& rounds, const std::vector<View>& views) {

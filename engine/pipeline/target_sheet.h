@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "engine/base/thread_pool.h"
 #include "engine/edit/view_targets.h"
 #include "engine/scene/scene.h"
 
@@ -14,7 +15,7 @@ namespace gse::pipeline {
 Image target_sheet(const edit::ViewTargets& round, const std::vector<View>& views);
 
 /// targets_0.png, ...: one per round.
-void write_targets(const std::filesystem::path& folder, const std::vector<edit::ViewTargets>& rounds, const std::vector<View>& views);
+void write_targets(const std::filesystem::path& folder, ThreadPool& threads, const std::vector<edit::ViewTargets>& rounds, const std::vector<View>& views);
 /// [{"round", "file", "views": [{"view", "redrawn", "dropped"}]}].
 nlohmann::ordered_json targets_to_json(const std::vector<edit::ViewTargets>& rounds, const std::vector<View>& views);
 

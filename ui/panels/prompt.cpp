@@ -194,7 +194,8 @@ void draw_iterations(Context& context) {
                  : "Optimisation steps. More = closer to the sentence, and longer.";
     row_label(context, "Iterations", help);
     const int least = 1;
-    int steps = edit::loop_steps(request, mode);
+    const int polish = by_views ? request.polish_steps : 0;   // set under "All settings"
+    int steps = edit::loop_steps(request, mode) - polish;
     if (ImGui::DragInt("##prompt.iterations", &steps, by_views ? 1.0f : 5.0f, least, 100000, "%d", ImGuiSliderFlags_AlwaysClamp)) {
         if (by_views) (plan.anew ? request.shape_fit_steps : request.fit_steps) = std::max(1, (steps + plan.rounds - 1) / plan.rounds);
         else request.iterations = steps;
@@ -325,7 +326,9 @@ void nothing_before(const char*, bool&) {}
 
 /// Which settings count for nothing with the method that the edit is led by.
 UnusedField unused_by_method(const Context& context) {
-    return [by_views = edit::edits_by_views(context.request)](const char* name) { return edit::why_unused(name, by_views); };
+    return [by_views = edit::edits_by_views(context.request), polishes = context.request.polish_steps > 0](const char* name) {
+        return edit::why_unused(name, by_views, polishes);
+    };
 }
 
 /// Fields of the request under the headers of their groups.

@@ -102,6 +102,49 @@ DOCTEST_TEST_CASE("an estimate of redrawn views: what a view takes, and each of 
     DOCTEST_CHECK(seconds(known, request, work) < 0);
 }
 
+DOCTEST_TEST_CASE("an estimate tells rounds for which a tiny autoencoder does from the last one") {
+    edit::EditRequest request;
+    request.method = "views";
+    request.rounds = 3;
+    request.edited_views = 8;
+    request.view_steps = 4;
+    request.fit_steps = 10;
+    auto known = measured();
+    known.redraw = 1;
+    known.redraw_tflop = 0.8;
+    known.redraw_view = 20;
+    known.redraw_view_tflop = 5;
+    known.redraw_early = 2;
+    known.redraw_early_tflop = 0.3;
+    auto work = located();
+    work.shows_idea = false;
+    const double rest = 30 * 0.01 + 1;
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(8 * (20 + 2 * 2 + 3 * 4 * 1) + rest));
+    DOCTEST_CHECK(pipeline::estimated_cost(known, request, work).tflop == doctest::Approx(8 * (5 + 2 * 0.3 + 3 * 4 * 0.8)));
+    work.first_iteration = 15;   // the third round is left
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(8 * (20 + 4) + 15 * 0.01 + 1));
+}
+
+DOCTEST_TEST_CASE("an estimate counts the steps of a polish, and the views that it is judged by") {
+    edit::EditRequest request;
+    request.method = "views";
+    request.edited_views = 4;
+    request.view_steps = 3;
+    request.fit_steps = 10;
+    auto known = measured();
+    known.redraw = 0.02;
+    known.redraw_view = 0.05;
+    auto work = located();
+    work.shows_idea = false;
+    const double without = seconds(known, request, work);
+    request.polish_steps = 20;
+    DOCTEST_CHECK(seconds(known, request, work) < 0);   // not measured yet
+    known.polish = 0.1;
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(without + 20 * (0.1 + 0.01) + 2 * (0.05 + 3 * 0.02)));
+    work.first_iteration = 25;   // in its middle
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(5 * (0.1 + 0.01) + 2 * (0.05 + 3 * 0.02) + 1));
+}
+
 DOCTEST_TEST_CASE("an estimate counts the view that is drawn first for the colour of a new thing") {
     edit::EditRequest request;
     request.prompt = "a bear with white wings on the grass";
