@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "engine/edit/method_fields.h"
+#include "engine/neural/dreambooth.h"
 #include "engine/neural/network_use.h"
 #include "engine/neural/view_guidance.h"
 #include "tests/unit/neural/tiny_model.h"
