@@ -66,9 +66,15 @@ namespace {
 bool trains(int steps, double minutes) { return steps > 0 || minutes > 0; }
 
 StarterTrainParameters checked(StarterTrainParameters parameters, const StarterSource& source) {
+    if (parameters.initial.empty() && parameters.shapes)
+        throw Error(ErrorCode::InvalidArgument, "a LoRA for shapes needs a model beside which it works", "name it with --initial");
     if (parameters.threads == 0)
         parameters.threads =
             parameters.device == "cpu" ? static_cast<int>(std::max(1u, std::thread::hardware_concurrency())) : 1;
+    if (parameters.shapes) {   // the model beside the LoRA stays as it is
+        parameters.vae_minutes = parameters.clip_minutes = 0;
+        parameters.vae_steps = parameters.clip_steps = 0;
+    }
     const bool all = trains(parameters.vae_steps, parameters.vae_minutes) &&
                      trains(parameters.unet_steps, parameters.unet_minutes);
     if (trains(parameters.clip_steps, parameters.clip_minutes) && source.twins() == nullptr)
@@ -77,8 +83,6 @@ StarterTrainParameters checked(StarterTrainParameters parameters, const StarterS
     if (parameters.initial.empty() && !all)
         throw Error(ErrorCode::InvalidArgument, "a part of the model would stay untrained",
                     "give every stage minutes or steps, or name the model to keep it from with --initial");
-    if (parameters.initial.empty() && parameters.shapes)
-        throw Error(ErrorCode::InvalidArgument, "a LoRA for shapes needs a model beside which it works", "name it with --initial");
     if (parameters.initial.empty() && !parameters.average.empty())
         throw Error(ErrorCode::InvalidArgument, "there is nothing to average with", "name the other model with --initial");
     return parameters;

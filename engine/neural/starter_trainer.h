@@ -156,7 +156,8 @@ struct StarterTrainParameters {
           Range{0, 1});
         f("caption_dropout", self.caption_dropout, "Share of empty captions (classifier-free guidance).", Range{0, 1});
         f("shapes", self.shapes,
-          "Leave the initial model as it is and train a LoRA beside it for views in which a new thing is drawn, told exactly from where.");
+          "Leave the initial model as it is and train a LoRA beside it for views in which a new thing is drawn, told exactly from where; neither "
+          "VAE nor image-text encoder are trained then.");
         f("shape_rank", self.shape_rank, "Rank of that LoRA.", Range{1, 1024});
         f("bf16", self.bf16, "Convolutions and matrix products of text encoder and UNet in bfloat16, norms and losses in float.");
         f("device", self.device, "cpu or cuda.");
