@@ -1,24 +1,19 @@
-// Image files: PNG is written here, everything is read through OpenCV.
+// Image files: PNG is written here, everything is read by the media library.
 #include "engine/io/image_file.h"
 
 #include <fmt/core.h>
 
-#include <array>
 #include <span>
 #include <vector>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
-#include "engine/base/memory.h"
 #include "engine/io/byte_reader.h"
 #include "engine/io/claims.h"
 #include "engine/io/encoding.h"
+#include "engine/io/media.h"
 #include "engine/io/png.h"
-
-#ifdef GSE_HAVE_OPENCV
-#include <opencv2/imgcodecs.hpp>
-#endif
 
 namespace gse {
 namespace {
@@ -28,69 +23,15 @@ constexpr std::size_t HeaderBytes = std::size_t{1} << 20;  // a JPEG's size may 
 
 }  // namespace
 
-#ifdef GSE_HAVE_OPENCV
-namespace {
-
-/// OpenCV's blue-green-red rows to red-green-blue floats.
-template <class T>
-void copy_pixels(const cv::Mat& from, double scale, Image& to) {
-    const int channels = to.channels;
-    float* out = to.data.data();
-    for (int y = 0; y < to.height; ++y) {
-        const T* row = from.ptr<T>(y);
-        for (int x = 0; x < to.width; ++x, row += channels)
-            for (int c = 0; c < channels; ++c) {
-                const int source = channels >= 3 && c < 3 ? 2 - c : c;
-                *out++ = static_cast<float>(static_cast<double>(row[source]) * scale);
-            }
-    }
-}
-
-cv::Mat decode(std::span<const std::byte> bytes) {
+Image decode_image(std::span<const std::byte> bytes) {
     if (bytes.empty()) throw Error(ErrorCode::Malformed, "the image file is empty");
     if (const auto size = io::parse_image_size(bytes)) {
         const std::uint64_t pixels = static_cast<std::uint64_t>(size->width) * static_cast<std::uint64_t>(size->height);
         io::check_claim({io::saturating_product(pixels, BytesPerPixel), io::saturating_product(bytes.size(), 4)},
                         fmt::format("the image of {} x {} pixels", size->width, size->height));
     }
-    try {
-        const cv::Mat raw(1, static_cast<int>(bytes.size()), CV_8U, const_cast<std::byte*>(bytes.data()));
-        return cv::imdecode(raw, cv::IMREAD_UNCHANGED);
-    } catch (const cv::Exception& failure) {
-        if (failure.code == cv::Error::StsNoMem) throw out_of_memory();
-        throw Error(ErrorCode::Malformed, "the image cannot be decoded (" + failure.err + ")");
-    }
+    return io::media().decode(bytes);
 }
-
-}  // namespace
-
-Image decode_image(std::span<const std::byte> bytes) {
-    const cv::Mat pixels = decode(bytes);
-    if (pixels.empty()) throw Error(ErrorCode::Malformed, "the file is no image that can be read");
-    const int channels = pixels.channels();
-    if (channels == 2 || channels > 4)
-        throw Error(ErrorCode::Unsupported, fmt::format("an image of {} channels is not handled", channels));
-    Image image(pixels.cols, pixels.rows, channels);
-    switch (pixels.depth()) {
-        case CV_8U:
-            copy_pixels<std::uint8_t>(pixels, 1.0 / 255, image);
-            break;
-        case CV_16U:
-            copy_pixels<std::uint16_t>(pixels, 1.0 / 65535, image);
-            break;
-        case CV_32F:
-            copy_pixels<float>(pixels, 1, image);
-            break;
-        default:
-            throw Error(ErrorCode::Unsupported, "the pixel type of the image is not handled");
-    }
-    return image;
-}
-#else
-Image decode_image(std::span<const std::byte>) {
-    throw Error(ErrorCode::Unsupported, "this build reads no image files", "build it with GSE_OPENCV=ON");
-}
-#endif
 
 Image read_image(const std::filesystem::path& path) {
     const FileBytes file(path);

@@ -56,36 +56,62 @@ int paeth(int left, int up, int corner) {
     return by_up <= by_corner ? up : corner;
 }
 
-/// One filtered row for each filter type 0 to 4; the one with the least sum of absolute differences is taken.
-void append_filtered_row(std::string& out, const std::uint8_t* row, const std::uint8_t* above,
-                         std::size_t size, std::size_t step) {
-    std::array<std::vector<std::uint8_t>, 5> candidates;
-    std::array<std::size_t, 5> costs{};
-    for (std::size_t filter = 0; filter < candidates.size(); ++filter) {
-        candidates[filter].resize(size);
-        for (std::size_t i = 0; i < size; ++i) {
-            const int left = i >= step ? row[i - step] : 0;
-            const int up = above != nullptr ? above[i] : 0;
-            const int corner = i >= step && above != nullptr ? above[i - step] : 0;
-            const std::array<int, 5> guesses = {0, left, up, (left + up) / 2, paeth(left, up, corner)};
-            const auto difference = static_cast<std::uint8_t>(row[i] - guesses[filter]);
-            candidates[filter][i] = difference;
-            costs[filter] += static_cast<std::size_t>(std::abs(static_cast<std::int8_t>(difference)));
-        }
-    }
-    const auto best = static_cast<std::size_t>(std::min_element(costs.begin(), costs.end()) - costs.begin());
-    out += static_cast<char>(best);
-    out.append(reinterpret_cast<const char*>(candidates[best].data()), size);
+using Row = std::vector<std::uint8_t>;
+
+/// How far the bytes are from zero, read as signed numbers: the usual guess of what compresses best.
+std::size_t cost_of(const Row& row) {
+    std::size_t sum = 0;
+    for (const auto byte : row) sum += static_cast<std::size_t>(byte < 128 ? byte : 256 - byte);
+    return sum;
 }
+
+/// Chooses for every row the filter, of the five, whose bytes have the least sum of absolute values (PNG specification 12.8).
+class RowFilter {
+public:
+    RowFilter(std::size_t row_bytes, std::size_t step) : step_(step), zeros_(row_bytes, 0) { candidates_.fill(Row(row_bytes)); }
+
+    /// Appends the filter's number and the filtered row; `above` is null for the first.
+    void append(std::string& out, const std::uint8_t* row, const std::uint8_t* above) {
+        filter(row, above != nullptr ? above : zeros_.data());
+        std::size_t best = 0, least = cost_of(candidates_[0]);
+        for (std::size_t i = 1; i < candidates_.size(); ++i)
+            if (const auto cost = cost_of(candidates_[i]); cost < least) best = i, least = cost;
+        out += static_cast<char>(best);
+        out.append(reinterpret_cast<const char*>(candidates_[best].data()), candidates_[best].size());
+    }
+
+private:
+    /// None, sub, up, average, Paeth.
+    void filter(const std::uint8_t* row, const std::uint8_t* above) {
+        const std::size_t size = zeros_.size(), first = std::min(step_, size);
+        auto& [none, sub, up, average, paeth_row] = candidates_;
+        std::copy(row, row + size, none.begin());
+        for (std::size_t i = 0; i < size; ++i) up[i] = static_cast<std::uint8_t>(row[i] - above[i]);
+        for (std::size_t i = 0; i < first; ++i) {   // nothing to the left
+            sub[i] = row[i];
+            average[i] = static_cast<std::uint8_t>(row[i] - above[i] / 2);
+            paeth_row[i] = up[i];
+        }
+        for (std::size_t i = first; i < size; ++i) sub[i] = static_cast<std::uint8_t>(row[i] - row[i - step_]);
+        for (std::size_t i = first; i < size; ++i) average[i] = static_cast<std::uint8_t>(row[i] - (row[i - step_] + above[i]) / 2);
+        for (std::size_t i = first; i < size; ++i)
+            paeth_row[i] = static_cast<std::uint8_t>(row[i] - paeth(row[i - step_], above[i], above[i - step_]));
+    }
+
+    std::size_t step_;
+    Row zeros_;
+    std::array<Row, 5> candidates_;
+};
 
 std::string compressed_pixels(const BytePixels& pixels) {
     const auto step = static_cast<std::size_t>(pixels.channels);
     const std::size_t row_bytes = static_cast<std::size_t>(pixels.width) * step;
+    RowFilter filter(row_bytes, step);
     std::string filtered;
     filtered.reserve((row_bytes + 1) * static_cast<std::size_t>(pixels.height));
     for (std::size_t y = 0; y < static_cast<std::size_t>(pixels.height); ++y) {
         const std::uint8_t* row = pixels.data.data() + y * row_bytes;
-        append_filtered_row(filtered, row, y > 0 ? row - row_bytes : nullptr, row_bytes, step);
+        filter.append(filtered, row, y > 0 ? row - row_bytes : nullptr);
     }
     uLongf size = compressBound(static_cast<uLong>(filtered.size()));
     std::string out(size, '\0');

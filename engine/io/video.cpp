@@ -1,11 +1,11 @@
-// MP4 and WebM through OpenCV's FFmpeg, on a thread of their own while the next frames are painted: H.264 where the system can encode it, MPEG-4 elsewhere; VP9 or VP8 for WebM.
+// Films are encoded on a thread of their own while the next frames are painted.
 #include "engine/io/video.h"
 
 #include <fmt/core.h>
 #include <sys/statvfs.h>
 
-#include <array>
 #include <cerrno>
+#include <cstdint>
 #include <condition_variable>
 #include <deque>
 #include <exception>
@@ -13,6 +13,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
@@ -20,15 +21,9 @@
 #include "engine/base/pending_file.h"
 #include "engine/io/encoding.h"
 #include "engine/io/film_check.h"
-
-#ifdef GSE_HAVE_OPENCV
-#include <opencv2/core/utils/logger.hpp>
-#include <opencv2/videoio.hpp>
-#endif
+#include "engine/io/media.h"
 
 namespace gse {
-
-#ifdef GSE_HAVE_OPENCV
 
 struct VideoWriter::State {
     explicit State(const std::filesystem::path& name) : path(name), file(name) {}
@@ -36,13 +31,15 @@ struct VideoWriter::State {
     std::filesystem::path path;
     PendingFile file;
     int width = 0, height = 0;  // of the frames handed in
-    cv::Size size;              // of the film: even
-    cv::VideoWriter writer;
+    io::FilmSize size;          // of the film: even
+    std::unique_ptr<io::FilmEncoder> writer;   // closes its file before that disappears
     std::string codec;
     bool finished = false;
 
-    /// Hands a frame (blue-green-red) to the encoder; waits when it has enough to do. Throws what encoding has thrown.
-    void hand_over(cv::Mat frame) {
+    using Frame = std::vector<std::uint8_t>;   // rows of blue, green, red
+
+    /// Hands a frame to the encoder; waits when it has enough to do. Throws what encoding has thrown.
+    void hand_over(Frame frame) {
         std::unique_lock lock(mutex);
         changed.wait(lock, [&] { return waiting.size() < MostWaiting || failure; });
         if (failure) std::rethrow_exception(failure);
@@ -71,7 +68,7 @@ private:
             std::unique_lock lock(mutex);
             changed.wait(lock, stop, [&] { return !waiting.empty() || ended; });
             if (stop.stop_requested() || waiting.empty()) return;
-            const cv::Mat frame = std::move(waiting.front());
+            const Frame frame = std::move(waiting.front());
             waiting.pop_front();
             changed.notify_all();
             lock.unlock();
@@ -85,8 +82,8 @@ private:
             }
         }
     }
-    void write(const cv::Mat& frame) {
-        writer.write(frame);
+    void write(const Frame& frame) {
+        writer->write(frame);
         // The encoder passes over a full disk; without this the rest of a long film would be made for nothing.
         struct statvfs disk {};
         if (statvfs(file.temporary().c_str(), &disk) == 0 && disk.f_blocks > 0 && disk.f_bfree == 0)
@@ -95,7 +92,7 @@ private:
 
     std::mutex mutex;
     std::condition_variable_any changed;
-    std::deque<cv::Mat> waiting;
+    std::deque<Frame> waiting;
     bool ended = false;
     std::exception_ptr failure;
     std::jthread encoder;   // ends before what it uses goes
@@ -104,27 +101,6 @@ private:
 namespace {
 
 constexpr std::size_t ProbeBytes = std::size_t{1} << 20;
-
-/// Tries the codecs in order; OpenCV says on stderr what it misses, which is no news to the user.
-bool open_any_codec(cv::VideoWriter& writer, const std::filesystem::path& file, double rate, cv::Size size,
-                    std::string& codec) {
-    const auto level = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-    bool opened = false;
-    static constexpr std::array<const char*, 2> mp4{"avc1", "mp4v"}, webm{"VP90", "VP80"};
-    for (const char* name : file.extension() == ".webm" ? webm : mp4) {
-        try {
-            opened =
-                writer.open(file.string(), cv::CAP_FFMPEG,
-                            cv::VideoWriter::fourcc(name[0], name[1], name[2], name[3]), rate, size, true);
-        } catch (const cv::Exception&) {
-            opened = false;
-        }
-        codec = name;
-        if (opened) break;
-    }
-    cv::utils::logging::setLogLevel(level);
-    return opened;
-}
 
 }  // namespace
 
@@ -137,35 +113,37 @@ VideoWriter::VideoWriter(const std::filesystem::path& path, int width, int heigh
     state_->width = width;
     state_->height = height;
     state_->size = {width / 2 * 2, height / 2 * 2};
-    if (!open_any_codec(state_->writer, state_->file.temporary(), frames_per_second, state_->size, state_->codec)) {
+    state_->writer = io::media().open_film(state_->file.temporary(), state_->size, frames_per_second);
+    if (!state_->writer) {
         state_->file.write(std::string(ProbeBytes, '\0'));  // if the disk is the reason, this says so
         throw Error(ErrorCode::Unwritable, "the film cannot be written: no codec opens this file",
                     "name it .mp4 or .webm, and check that OpenCV has FFmpeg", path);
     }
+    state_->codec = state_->writer->codec();
     state_->start();
 }
 
-VideoWriter::~VideoWriter() = default;  // the writer closes its file before that disappears
+VideoWriter::~VideoWriter() = default;
 
 void VideoWriter::add(const Image& frame) {
     GSE_CHECK(!state_->finished);
     GSE_CHECK_EQ(frame.width, state_->width);
     GSE_CHECK_EQ(frame.height, state_->height);
     const int colours = frame.channels >= 3 ? 3 : 1;
-    cv::Mat picture(state_->size, CV_8UC3);
-    for (int y = 0; y < picture.rows; ++y) {
-        std::uint8_t* out = picture.ptr<std::uint8_t>(y);
-        for (int x = 0; x < picture.cols; ++x)
+    const auto [width, height] = state_->size;
+    State::Frame picture;
+    picture.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
             for (int c = 2; c >= 0; --c)
-                *out++ = io::to_byte(static_cast<double>(frame.at(x, y, colours == 3 ? c : 0)) * 255);
-    }
+                picture.push_back(io::to_byte(static_cast<double>(frame.at(x, y, colours == 3 ? c : 0)) * 255));
     state_->hand_over(std::move(picture));
 }
 
 void VideoWriter::finish() {
     GSE_CHECK(!state_->finished);
     state_->end();
-    state_->writer.release();
+    state_->writer.reset();
     if (!io::film_is_whole(FileBytes(state_->file.temporary()).bytes())) {
         state_->file.write(std::string(ProbeBytes, '\0'));  // as above
         throw Error(ErrorCode::Unwritable, "the film was not written whole", "check the free space of the disk and write it again",
@@ -176,21 +154,5 @@ void VideoWriter::finish() {
 }
 
 const std::string& VideoWriter::codec() const { return state_->codec; }
-
-#else
-
-struct VideoWriter::State {
-    std::string codec;
-};
-
-VideoWriter::VideoWriter(const std::filesystem::path& path, int, int, double) {
-    throw Error(ErrorCode::Unsupported, "this build writes no films", "build it with GSE_OPENCV=ON", path);
-}
-VideoWriter::~VideoWriter() = default;
-void VideoWriter::add(const Image&) {}
-void VideoWriter::finish() {}
-const std::string& VideoWriter::codec() const { return state_->codec; }
-
-#endif
 
 }  // namespace gse

@@ -1,12 +1,9 @@
-// dlopen of the networks' library beside the program, above it (tests) or in ../lib/gseditpro.
+// The networks' library, and what is counted and wanted whether it is loaded or not.
 #include "engine/pipeline/neural_loader.h"
 
-#include <dlfcn.h>
-
-#include <array>
 #include <atomic>
 
-#include "engine/base/error.h"
+#include "engine/base/plugin.h"
 
 namespace gse::pipeline {
 namespace {
@@ -15,38 +12,18 @@ std::atomic<neural::Api*> loaded_api = nullptr;
 std::atomic<int> wanted_threads = 1;
 thread_local std::uint64_t cached_answers = 0;
 
-std::array<std::filesystem::path, 3> candidates() {
-    const auto program = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-    return {program / "libgse_neural.so", program / "../libgse_neural.so", program / "../lib/gseditpro/libgse_neural.so"};
-}
-
-neural::Api* load() {
-    const auto path = neural_library();
-    if (path.empty())
-        throw Error(ErrorCode::NotFound, "this build has no networks (libgse_neural.so is missing)",
-                    "build with -DGSE_NEURAL=ON", candidates()[0]);
-    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (library == nullptr)
-        throw Error(ErrorCode::Foreign, std::string("the networks' library cannot be loaded (") + dlerror() + ")",
-                    "install libtorch1.13", path);
-    auto* entry = reinterpret_cast<neural::Api* (*)()>(dlsym(library, "gse_neural_api"));
-    if (entry == nullptr)
-        throw Error(ErrorCode::Foreign, "the networks' library has no entry point", "build it again", path);
-    return entry();
-}
+constexpr PluginName Networks{"libgse_neural.so",          "gse_neural_api",
+                              "the networks' library",     "this build has no networks",
+                              "build with -DGSE_NEURAL=ON", "install libtorch1.13"};
 
 }  // namespace
 
 neural::Api& neural_api() {
-    static neural::Api* const api = loaded_api = load();
+    static neural::Api* const api = loaded_api = reinterpret_cast<neural::Api* (*)()>(load_plugin(Networks))();
     return *api;
 }
 
-std::filesystem::path neural_library() {
-    for (const auto& candidate : candidates())
-        if (std::filesystem::exists(candidate)) return candidate;
-    return {};
-}
+std::filesystem::path neural_library() { return find_plugin(Networks.file); }
 
 void set_network_threads(int count) {
     wanted_threads = count;

@@ -54,8 +54,11 @@ if(GSE_OPENCV)
   target_compile_definitions(gse_opencv INTERFACE GSE_HAVE_OPENCV=1)
   foreach(part core imgproc imgcodecs videoio)
     find_library(GSE_OPENCV_${part} opencv_${part} REQUIRED)
-    target_link_libraries(gse_opencv INTERFACE ${GSE_OPENCV_${part}})
   endforeach()
+  target_link_libraries(gse_opencv INTERFACE ${GSE_OPENCV_core} ${GSE_OPENCV_imgproc})
+  # Files: what these bring along is only loaded when one is read or a film is written.
+  add_library(gse_opencv_files INTERFACE)
+  target_link_libraries(gse_opencv_files INTERFACE gse_opencv ${GSE_OPENCV_imgcodecs} ${GSE_OPENCV_videoio})
 endif()
 if(GSE_NEURAL)
   # Here and not in engine/neural: imported targets are only visible below the folder that asks for them.

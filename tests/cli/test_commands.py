@@ -1,9 +1,11 @@
 """info, convert, render, turntable, synth and bench do what their help says."""
 import json
+import os
 import re
+import subprocess
 import unittest
 
-from program import SHARED, ProgramTest, grid_rows, ply_bytes, run
+from program import PROGRAM, SHARED, ProgramTest, grid_rows, ply_bytes, run
 
 
 class Commands(ProgramTest):
@@ -19,6 +21,12 @@ class Commands(ProgramTest):
                 # Every option says what it does, beside a short name or under a long one.
                 text = line.split() if len(line.split()) > 2 else following.split()
                 self.assertGreater(len(text), 2, f"{command}: {line}")
+
+    def test_starting_loads_neither_networks_nor_codecs(self):
+        linked = subprocess.run([PROGRAM], env={**os.environ, "LD_TRACE_LOADED_OBJECTS": "1"}, capture_output=True, text=True).stdout
+        self.assertIn("libc.so", linked)
+        for library in ["torch", "gomp", "opencv_imgcodecs", "opencv_videoio", "avcodec", "gdal"]:
+            self.assertNotIn(f"lib{library}", linked)
 
     def test_info_counts_and_lints(self):
         rows = grid_rows(4)

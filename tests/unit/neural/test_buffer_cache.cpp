@@ -3,6 +3,9 @@
 #include <doctest/doctest.h>
 #include <torch/torch.h>
 
+#include <fstream>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include "engine/neural/buffer_cache.h"
@@ -25,7 +28,38 @@ bool keeps() {
     return false;
 }
 
+/// Flags that the system shows of the mapping around an address, as in /proc/self/smaps; empty where it shows none.
+std::string mapping_flags(const void* address) {
+    const auto wanted = reinterpret_cast<std::uintptr_t>(address);
+    std::ifstream maps("/proc/self/smaps");
+    bool inside = false;
+    for (std::string line; std::getline(maps, line);) {
+        std::uintptr_t begin = 0, end = 0;
+        char dash = 0;
+        if (std::istringstream range(line); range >> std::hex >> begin >> dash >> end && dash == '-') inside = begin <= wanted && wanted < end;
+        if (inside && line.starts_with("VmFlags:")) return line + ' ';
+    }
+    return {};
+}
+
+bool has_huge_pages() {
+    std::ifstream file("/sys/kernel/mm/transparent_hugepage/enabled");
+    std::string choice;
+    return std::getline(file, choice) && choice.find("[never]") == std::string::npos;
+}
+
 }  // namespace
+
+DOCTEST_TEST_CASE("a large tensor asks for huge pages") {
+    if (!keeps()) return;
+    const auto tensor = tensor_of(2 * LeastKeptBuffer);
+    const auto flags = mapping_flags(static_cast<const char*>(tensor.data_ptr()) + LeastKeptBuffer);
+    if (flags.empty() || !has_huge_pages()) {
+        DOCTEST_MESSAGE("[skip] the system has no huge pages, or does not show them");
+        return;
+    }
+    DOCTEST_CHECK_MESSAGE(flags.find(" hg ") != std::string::npos, flags);
+}
 
 DOCTEST_TEST_CASE("a large tensor's memory is used again for the next one of its size, aligned as torch promises") {
     if (!keeps()) return;
