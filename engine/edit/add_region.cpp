@@ -154,6 +154,17 @@ AddRegion around_region(const Frame& frame, const std::vector<Vec3>& points, int
     });
 }
 
+/// Whether a neighbour by a face is not among the cells (1 in `inside`).
+bool on_surface(const Grid& grid, const std::vector<std::uint8_t>& inside, std::size_t cell) {
+    const auto nx = static_cast<std::size_t>(grid.count[0]), ny = static_cast<std::size_t>(grid.count[1]);
+    const std::array<std::size_t, 3> at{cell % nx, cell / nx % ny, cell / (nx * ny)}, step{1, nx, nx * ny};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (at[axis] == 0 || inside[cell - step[axis]] == 0) return true;
+        if (at[axis] + 1 == static_cast<std::size_t>(grid.count[axis]) || inside[cell + step[axis]] == 0) return true;
+    }
+    return false;
+}
+
 /// The connected cells on which at least `level` of the views agree; empty when they are too few, or too many to be a place.
 AddRegion region_at(const Grid& grid, const Frame& frame, const std::vector<double>& agreement, double level,
                     const RegionParameters& parameters) {
@@ -165,8 +176,11 @@ AddRegion region_at(const Grid& grid, const Frame& frame, const std::vector<doub
     AddRegion region;
     region.side = grid.side;
     region.origin = "attention";
+    std::fill(chosen.begin(), chosen.end(), std::uint8_t{0});
+    for (const std::size_t cell : cells) chosen[cell] = 1;
     for (const std::size_t cell : cells) {
         region.centres.push_back(frame.to_world(grid.centre(cell)));
+        if (on_surface(grid, chosen, cell)) region.shell.push_back(region.centres.back());
         region.agreement += agreement[cell] / static_cast<double>(cells.size());
     }
     return region;
@@ -321,20 +335,20 @@ GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std:
 Mask region_mask(const AddRegion& region, const Camera& camera) {
     Mask mask(camera.width, camera.height);
     constexpr double Corner = 0.87;  // half the diagonal of a cube of side 1
-    for (const auto& centre : region.centres) {
+    // A ray that meets an inner cube meets one of the shell before, and what is drawn of a cube reaches as far as its corners.
+    for (const auto& centre : region.shell.empty() ? region.centres : region.shell) {
         const Vec3 p = camera.to_camera(centre);
         if (p.z <= region.side) continue;
         const double x = camera.fx * p.x / p.z + camera.cx, y = camera.fy * p.y / p.z + camera.cy;
         const double radius = Corner * region.side * camera.fx / p.z;
-        const auto limit = [](double value, int size) {
-            return static_cast<int>(std::clamp(value, 0.0, size + 0.0));
-        };
+        const auto limit = [](double value, int size) { return static_cast<int>(std::clamp(value, 0.0, size + 0.0)); };
         const double reach = std::max(radius, 0.71) * std::max(radius, 0.71);
-        for (int v = limit(y - radius, mask.height); v < limit(y + radius + 1, mask.height); ++v)
-            for (int u = limit(x - radius, mask.width); u < limit(x + radius + 1, mask.width); ++u) {
-                const double dx = u + 0.5 - x, dy = v + 0.5 - y;
-                if (dx * dx + dy * dy <= reach) mask.at(u, v) = 1;
-            }
+        for (int v = limit(y - radius, mask.height); v < limit(y + radius + 1, mask.height); ++v) {   // pixel centres in the circle
+            const double rest = reach - (v + 0.5 - y) * (v + 0.5 - y), half = std::sqrt(rest);
+            if (rest < 0) continue;
+            const int first = limit(std::ceil(x - half - 0.5), mask.width), end = limit(std::floor(x + half - 0.5) + 1, mask.width);
+            for (int u = first; u < end; ++u) mask.at(u, v) = 1;
+        }
     }
     return mask;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "engine/base/check.h"
@@ -205,10 +206,7 @@ private:
                                                    {tools_.segmenter, tools_.text_segmenter}, !search.absent));
             }
         };
-        if (tools_.threads != nullptr)
-            tools_.threads->parallel_for(views.size(), 1, some);
-        else
-            some(0, views.size(), 0);
+        over_views(views.size(), some);
     }
 
     /// Attention map of a view.
@@ -501,6 +499,27 @@ private:
         }
     }
 
+    /// The region as the views see it takes the place of what each of them said.
+    void show_region(LocateResult& result, bool attended) {
+        const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
+            for (std::size_t v = begin; v < end; ++v) {
+                auto& view = result.views[v];
+                view.mask = region_mask(result.region, input_.views[v].camera);
+                view.branch = attended ? "attention" : "anchor";
+                view.failed = view.mask.count() == 0;
+                view.step = view.failed ? ViewStep::Hidden : ViewStep::Found;
+            }
+        };
+        over_views(result.views.size(), some);
+    }
+
+    void over_views(std::size_t count, const std::function<void(std::size_t, std::size_t, unsigned)>& some) const {
+        if (tools_.threads != nullptr)
+            tools_.threads->parallel_for(count, 1, some);
+        else
+            some(0, count, 0);
+    }
+
     void add(LocateResult& result) {
         result.label = make_label(request().target, std::vector<float>(input_.gaussians.size(), 0.0f), 0.5f);
         find_source(result);
@@ -528,13 +547,7 @@ private:
             result.remedy = "name what it belongs to";
             return;
         }
-        for (std::size_t v = 0; v < result.views.size(); ++v) {
-            auto& view = result.views[v];
-            view.mask = region_mask(result.region, input_.views[v].camera);
-            view.branch = attended ? "attention" : "anchor";
-            view.failed = view.mask.count() == 0;
-            view.step = view.failed ? ViewStep::Hidden : ViewStep::Found;
-        }
+        show_region(result, attended);
         result.seeds =
             seed_splats(result.region, request().seed_splats, input_.gaussians.sh_degree(), SearchSeed);
     }

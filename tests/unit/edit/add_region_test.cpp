@@ -67,6 +67,16 @@ DOCTEST_TEST_CASE("masks of one place vote for that place") {
     }
 }
 
+DOCTEST_TEST_CASE("what is inside a place is hidden by its shell: its picture is the same without") {
+    const Search setup({-0.55, -0.55, 0.05}, 0.2);
+    const auto region = edit::vote_region(setup.search());
+    DOCTEST_REQUIRE_FALSE(region.shell.empty());
+    DOCTEST_CHECK(region.shell.size() < region.centres.size());
+    auto whole = region;
+    whole.shell.clear();
+    for (const auto& view : setup.views) DOCTEST_CHECK(edit::region_mask(region, view.camera).data == edit::region_mask(whole, view.camera).data);
+}
+
 DOCTEST_TEST_CASE("a place of two parts keeps both, specks do not count") {
     const Vec3 left{-0.55, -0.55, 0.05}, right{0.1, -0.55, 0.05}, speck{-0.2, -0.75, 0.05};
     Search setup(left, 0.2);
