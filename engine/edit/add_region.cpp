@@ -344,8 +344,9 @@ Mask region_mask(const AddRegion& region, const Camera& camera) {
         const auto limit = [](double value, int size) { return static_cast<int>(std::clamp(value, 0.0, size + 0.0)); };
         const double reach = std::max(radius, 0.71) * std::max(radius, 0.71);
         for (int v = limit(y - radius, mask.height); v < limit(y + radius + 1, mask.height); ++v) {   // pixel centres in the circle
-            const double rest = reach - (v + 0.5 - y) * (v + 0.5 - y), half = std::sqrt(rest);
+            const double rest = reach - (v + 0.5 - y) * (v + 0.5 - y);
             if (rest < 0) continue;
+            const double half = std::sqrt(rest);
             const int first = limit(std::ceil(x - half - 0.5), mask.width), end = limit(std::floor(x + half - 0.5) + 1, mask.width);
             for (int u = first; u < end; ++u) mask.at(u, v) = 1;
         }

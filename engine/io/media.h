@@ -31,7 +31,7 @@ struct FilmSize {
 class Media {
 public:
     virtual ~Media() = default;
-    /// Values in [0,1], 1, 3 (red, green, blue) or 4 channels. Throws Error (Malformed, Unsupported, NoMemory).
+    /// Values in [0,1], 1, 3 (red, green, blue) or 4 channels. Throws Error (Malformed, Unsupported), OutOfMemory.
     virtual Image decode(std::span<const std::byte> file) = 0;
     /// Null where no codec opens the file. Its extension says which are tried.
     virtual std::unique_ptr<FilmEncoder> open_film(const std::filesystem::path& file, FilmSize size, double frames_per_second) = 0;

@@ -5,8 +5,8 @@
 #include <sys/statvfs.h>
 
 #include <cerrno>
-#include <cstdint>
 #include <condition_variable>
+#include <cstdint>
 #include <deque>
 #include <exception>
 #include <mutex>
