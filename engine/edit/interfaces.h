@@ -53,6 +53,7 @@ struct RoundView {
     View view;
     std::string view_words = {};   // as in GuidanceInput
     std::optional<double> azimuth = {};   // of the camera from the thing's front, radians, positive to its left; nothing = not known
+    double elevation = 0;          // of the camera above the thing's horizon, radians; 0 where the azimuth is not known
     Backdrop backdrop = {};        // the scene without what may change, its holes filled; empty unless the round draws anew
 };
 

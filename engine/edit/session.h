@@ -27,6 +27,7 @@ struct EditPlan {
     std::vector<View> views;               // cameras at the size of the pictures
     std::vector<std::string> view_words;   // per view, or empty
     std::vector<double> azimuths;          // per view, as in RoundView, or empty
+    std::vector<double> elevations;        // of as many views
     std::vector<Mask> masks;               // per view, dilated: 1 = the picture may change here
     std::vector<std::uint8_t> label;       // [N] 1 = the row may change
     GaussianData seeds;                    // new rows (add mode), may be empty

@@ -107,7 +107,7 @@ RoundView ViewPhase::begin_view(std::size_t v, const GaussianSpans& rows, const 
                                 const raster::Settings& settings) {
     RoundView view{{}, originals_[v], {}, masks_.mask(v), plan_.views[v],
                    plan_.view_words.empty() ? std::string() : plan_.view_words[v]};
-    if (!plan_.azimuths.empty()) view.azimuth = plan_.azimuths[v];
+    if (!plan_.azimuths.empty()) view.azimuth = plan_.azimuths[v], view.elevation = plan_.elevations[v];
     draw(rows, view.view.camera, settings, view.rendered, view.depth);
     for (auto& value : view.original.data) value = std::clamp(value, 0.0f, 1.0f);
     if (anew_) {

@@ -55,7 +55,9 @@ torch::Tensor combine_rows(const torch::Tensor& output, int parts, const Conditi
 torch::Tensor guided_output(const UNet& unet, const torch::Tensor& latents, const torch::Tensor& t, const Conditioning& conditioning,
                             AttentionCapture* capture) {
     const auto rows = unet_rows(unet->config(), latents, conditioning);
-    return combine_rows(unet->forward(rows.input, t, rows.context, capture, rows.time_condition), rows.parts, conditioning);
+    auto views = conditioning.views;
+    if (views.cameras.defined()) views.cameras = views.cameras.repeat({rows.parts, 1});
+    return combine_rows(unet->forward(rows.input, t, rows.context, capture, rows.time_condition, views), rows.parts, conditioning);
 }
 
 }  // namespace gse::neural

@@ -12,6 +12,7 @@ struct Conditioning {
     double guidance_scale = 7.5;        // 1 = the positive text alone
     torch::Tensor picture = {};         // [B,C,h,w] of a model that takes one: the posterior's mean, NOT scaled (views.md 3)
     double image_guidance_scale = 1.5;  // of such a model: 1 = two rows for each picture, others three
+    SceneViews views = {};              // where the B pictures are of one scene, or of several with as many each
 };
 
 /// Guidance scale that a network distilled with it (LCM) is told where nobody asks for one: its reference's.
@@ -28,8 +29,7 @@ struct UNetRows {
     torch::Tensor input;           // [parts * B,C or 2C,h,w]
     torch::Tensor context;         // [parts * B,T,D]
     torch::Tensor time_condition;  // [parts * B,D], or undefined
-    int parts = 1;
-};
+    int parts = 1;};
 
 /// Rows for latents [B,C,h,w] as the UNet sees them. Classifier-free guidance: [negative; positive]. With a picture (Brooks et
 /// al. 2023, section 3.2): [text and picture; picture; neither], where neither has a picture of zeros; [picture; text and

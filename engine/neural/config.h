@@ -33,6 +33,8 @@ struct UNetConfig {
     bool upcast_attention = false;
     /// Width of the embedding of a guidance scale that the network takes beside the timestep (LCM); 0 = none.
     std::int64_t time_cond_proj_dim = 0;
+    /// Width of what it is told of each picture's camera (camera_features()); 0 = nothing. Not in the file: a LoRA for shapes brings it.
+    std::int64_t camera_dim = 0;
 
     /// Throws Error (Model, Malformed) naming the key that is wrong or not supported.
     static UNetConfig from_json(const Json& json, const std::filesystem::path& path);

@@ -15,6 +15,7 @@
 #include "engine/neural/images.h"
 #include "engine/neural/parallel_parts.h"
 #include "engine/neural/safetensors.h"
+#include "engine/neural/scene_views.h"
 #include "engine/neural/sds_guidance.h"
 #include "engine/neural/torch_errors.h"
 #include "engine/neural/view_guidance.h"
@@ -127,7 +128,10 @@ private:
         const auto& file = loaded_->facts.shape_lora;
         if (file.empty()) return nullptr;
         return guard_torch("merging the model's LoRA for shapes", [&] {
-            return std::make_shared<const ModelBundle>(with_lora(*bundle_, read_lora(loaded_->path / file), 1));
+            auto merged = with_lora(*bundle_, read_lora(loaded_->path / file), 1);
+            if (const auto& cameras = loaded_->facts.shape_cameras; !cameras.empty())
+                merged.unet = with_cameras(merged.unet, SafetensorsFile(loaded_->path / cameras));
+            return std::make_shared<const ModelBundle>(std::move(merged));
         });
     }
     Image run(const Image* image, const SampleRequest& request) const {

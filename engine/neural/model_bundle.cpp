@@ -270,8 +270,12 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
     get("kind", facts.kind);
     get("taesd", facts.taesd);
     get("shape_lora", facts.shape_lora);
+    get("shape_cameras", facts.shape_cameras);
+    get("shape_views", facts.shape_views);
     if (facts.image_size < 0 || facts.image_size > 8192)
         throw Error(ErrorCode::Malformed, "\"image_size\" is outside 0..8192", {}, path);
+    if (facts.shape_views < 1 || facts.shape_views > 64)
+        throw Error(ErrorCode::Malformed, "\"shape_views\" is outside 1..64", {}, path);
     return facts;
 }
 

@@ -41,6 +41,10 @@ struct ModelFacts {
     /// LoRA for redrawing views in which a new thing comes to be, relative to the model's folder. Such a model is told the side exactly:
     /// it knows the eight of edit::side_blend(), and what lies between two by the mixture of both sentences. Empty = it has none.
     std::string shape_lora;
+    /// The embedding of cameras that goes with it, relative to the model's folder; empty = it is not told of cameras.
+    std::string shape_cameras;
+    /// Views of a scene that are denoised together with it (SceneViews).
+    std::int64_t shape_views = 1;
 
     static ModelFacts from_json(const Json& json, const std::filesystem::path& path);
 };

@@ -87,11 +87,12 @@ torch::Tensor TransformerBlockImpl::forward(torch::Tensor tokens, const torch::T
                                             const CaptureSite& site) const {
     const bool wanted = site.capture != nullptr &&
                         (!site.capture->wants || site.capture->wants(site.layer, site.height, site.width));
-    const bool affine = wanted && std::max(site.height, site.width) <= site.capture->self_attention_side;
-    const auto normed = norm1->forward(tokens);
+    const bool affine = wanted && site.together == 1 && std::max(site.height, site.width) <= site.capture->self_attention_side;
+    auto normed = norm1->forward(tokens);
+    if (site.together > 1) normed = normed.reshape({tokens.size(0) / site.together, -1, tokens.size(2)});   // the tokens of all views
     const auto attended = attn1->forward(normed, normed, affine);
     if (affine) store_affinity(attended.probabilities, site);
-    tokens = tokens + attended.output;
+    tokens = tokens + attended.output.reshape(tokens.sizes());
     const auto crossed = attn2->forward(norm2->forward(tokens), context, wanted);
     if (wanted) store(crossed.probabilities, site);
     tokens = tokens + crossed.output;
@@ -107,12 +108,12 @@ SpatialTransformerImpl::SpatialTransformerImpl(const TransformerShape& shape, co
 }
 
 torch::Tensor SpatialTransformerImpl::forward(const torch::Tensor& x, const torch::Tensor& context,
-                                              AttentionCapture* capture) const {
+                                              AttentionCapture* capture, std::int64_t together) const {
     const auto height = x.size(2), width = x.size(3);
     auto tokens = proj_in->forward(image_to_tokens(norm->forward(x)));
     tokens = block->forward(
         tokens, context,
-        {capture, capture == nullptr ? std::string() : capture_name(), height, width});
+        {capture, capture == nullptr ? std::string() : capture_name(), height, width, together});
     return x + tokens_to_image(proj_out->forward(tokens), height, width);
 }
 

@@ -64,6 +64,12 @@ UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : con
         time_cond_proj = time->register_module(
             "cond_proj", Linear(LinearImpl::Shape{config_.time_cond_proj_dim, widths[0], false}, options));
     register_module("time_embedding", time);
+    if (config_.camera_dim > 0) {
+        auto camera = std::make_shared<torch::nn::Module>();
+        camera_linear_1 = camera->register_module("linear_1", Linear(LinearImpl::Shape{config_.camera_dim, build.time_width()}, options));
+        camera_linear_2 = camera->register_module("linear_2", Linear(LinearImpl::Shape{build.time_width(), build.time_width()}, options));
+        register_module("camera_embedding", camera);
+    }
 
     std::vector<std::int64_t> skips = {widths[0]};  // channels of the stored activations
     build_down(build, skips);
@@ -183,19 +189,23 @@ std::pair<std::size_t, std::size_t> UNetImpl::last_wanted(const AttentionCapture
 
 torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor& timesteps,
                                 const torch::Tensor& words, AttentionCapture* capture,
-                                const torch::Tensor& time_condition) const {
+                                const torch::Tensor& time_condition, const SceneViews& views) const {
     GSE_CHECK_EQ(sample.dim(), std::int64_t{4});
+    GSE_CHECK_EQ(sample.size(0) % views.together, std::int64_t{0});
     const auto type = conv_in->weight.scalar_type();
     const auto context = words.to(type);
     thread_use().unet += static_cast<std::uint64_t>(sample.size(0));
-    const auto time =
-        apply_silu(time_embedding(time_projection(timesteps, sample.size(0)).to(type), time_condition));
+    auto embedded = time_embedding(time_projection(timesteps, sample.size(0)).to(type), time_condition);
+    if (views.cameras.defined() && !camera_linear_1.is_empty())
+        embedded = embedded + camera_linear_2->forward(apply_silu(camera_linear_1->forward(views.cameras.to(type))));
+    const auto time = apply_silu(embedded);
+    const auto together = [&](const torch::Tensor& map) { return map.size(2) < sample.size(2) ? views.together : 1; };
     auto x = conv_in->forward(sample.to(type).contiguous(torch::MemoryFormat::ChannelsLast));
     std::vector<torch::Tensor> skips = {x};
     for (const auto& level : down_) {
         for (std::size_t j = 0; j < level.resnets.size(); ++j) {
             x = level.resnets[j]->forward(x, time);
-            if (!level.attentions.empty()) x = level.attentions[j]->forward(x, context, capture);
+            if (!level.attentions.empty()) x = level.attentions[j]->forward(x, context, capture, together(x));
             skips.push_back(x);
         }
         if (level.downsampler.is_empty()) continue;
@@ -203,7 +213,7 @@ torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor
         skips.push_back(x);
     }
     x = mid_->resnets[0]->forward(x, time);
-    x = mid_->attentions[0]->forward(x, context, capture);
+    x = mid_->attentions[0]->forward(x, context, capture, together(x));
     x = mid_->resnets[1]->forward(x, time);
     const bool stops = capture != nullptr && capture->stop_after_last;
     const auto last = stops ? last_wanted(*capture, skips) : std::pair<std::size_t, std::size_t>{};
@@ -212,7 +222,7 @@ torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor
         for (std::size_t j = 0; j < level.resnets.size(); ++j) {
             x = level.resnets[j]->forward(torch::cat({x, skips.back()}, 1), time);
             skips.pop_back();
-            if (!level.attentions.empty()) x = level.attentions[j]->forward(x, context, capture);
+            if (!level.attentions.empty()) x = level.attentions[j]->forward(x, context, capture, together(x));
             if (stops && last == std::pair{i, j}) return {};
         }
         // To the next skip's size: latents need not be a multiple of 2^levels.

@@ -35,6 +35,14 @@ struct AttentionCapture {
     std::vector<Map> affinities;
 };
 
+/// Pictures of one scene that are denoised together, each seeing what becomes of the others: self-attention goes across all of their
+/// tokens, and each is told its camera (MVDream, Shi et al. 2023, sections 3.1 and 3.2). Maps of the latents' own size stay apart: their
+/// scores would be most of a pass.
+struct SceneViews {
+    std::int64_t together = 1;   // consecutive rows of the batch that show one scene; divides the batch
+    torch::Tensor cameras = {};  // [B,camera_dim]; undefined = nothing is known of them
+};
+
 /// Embedding [B,width] of guidance scales w [B] (LCM's is the scale - 1), fp32: sines, then cosines, of 1000 w f_i with
 /// f_i = 10000^(-i / (width/2 - 1)) (Luo et al. 2023, section 4.2; an odd width ends in 0).
 torch::Tensor guidance_embedding(const torch::Tensor& w, std::int64_t width);
@@ -48,7 +56,7 @@ public:
     /// [B,time_cond_proj_dim] or undefined: guidance_embedding(), for networks that were distilled with it. Computes in the weights'
     /// type; returns the prediction [B,out,h,w] in the sample's, undefined where the capture stopped the pass.
     torch::Tensor forward(const torch::Tensor& sample, const torch::Tensor& timesteps, const torch::Tensor& words,
-                          AttentionCapture* capture = nullptr, const torch::Tensor& time_condition = {}) const;
+                          AttentionCapture* capture = nullptr, const torch::Tensor& time_condition = {}, const SceneViews& views = {}) const;
 
     /// Sinusoid [B,C0] in fp32, and what the two linear layers make of it (for tests).
     torch::Tensor time_projection(const torch::Tensor& timesteps, std::int64_t batch) const;
@@ -68,6 +76,7 @@ private:
     UNetConfig config_;
     Conv2d conv_in{nullptr}, conv_out{nullptr};
     Linear time_linear_1{nullptr}, time_linear_2{nullptr}, time_cond_proj{nullptr};
+    Linear camera_linear_1{nullptr}, camera_linear_2{nullptr};   // where it is told of cameras
     GroupNorm conv_norm_out{nullptr};
     std::vector<Level> down_, up_;
     std::unique_ptr<Level> mid_;

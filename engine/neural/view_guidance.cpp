@@ -12,6 +12,7 @@
 #include "engine/neural/buffer_cache.h"
 #include "engine/neural/images.h"
 #include "engine/neural/parallel_parts.h"
+#include "engine/neural/scene_views.h"
 #include "engine/neural/torch_errors.h"
 
 namespace gse::neural {
@@ -29,6 +30,16 @@ torch::Tensor latent_mask(const Mask& mask, std::int64_t cells, const torch::Dev
     for (std::size_t i = 0; i < mask.data.size(); ++i) image.data[i] = mask.data[i] != 0 ? 1.0f : 0.0f;
     const auto small = resize_square(to_tensor(image, device), cells);
     return anew ? small : torch::max_pool2d(small, 3, 1, 1);
+}
+
+/// [K,CameraFeatures].
+torch::Tensor cameras_of(const std::vector<edit::RoundView>& views) {
+    auto cameras = torch::empty({static_cast<std::int64_t>(views.size()), CameraFeatures});
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        const auto features = camera_features(views[v].azimuth, views[v].elevation);
+        std::copy(features.begin(), features.end(), cameras[static_cast<std::int64_t>(v)].data_ptr<float>());
+    }
+    return cameras;
 }
 
 }  // namespace
@@ -164,6 +175,22 @@ torch::Tensor DiffusionViews::output(const UNet& unet, const torch::Tensor& x, s
     return result;
 }
 
+torch::Tensor DiffusionViews::output_together(const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning,
+                                              const std::vector<std::vector<std::int64_t>>& groups) const {
+    auto result = torch::empty_like(x);
+    const auto t = torch::full({1}, timestep, torch::kFloat32);
+    for_parts(static_cast<std::int64_t>(groups.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
+        for (auto g = static_cast<std::size_t>(begin); g < static_cast<std::size_t>(end); ++g) {
+            const auto rows = torch::tensor(groups[g], torch::kInt64).to(x.device());
+            auto some = conditioning;
+            some.context = conditioning.context.index_select(0, rows);
+            some.views = {static_cast<std::int64_t>(groups[g].size()), conditioning.views.cameras.index_select(0, rows)};
+            result.index_copy_(0, rows, guided_output(shapes_->unet, x.index_select(0, rows), t, some));
+        }
+    });
+    return result;
+}
+
 void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
                              const JobControl& job) const {
     const auto& schedule = bundle_->schedule;
@@ -172,7 +199,17 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
     Conditioning edited{batch.contexts, scale, batch.picture, parameters_.image_guidance_scale};
     // Others hold guidance themselves, or follow a picture.
     const bool pairs = !batch.picture.defined() && row_parts(bundle_->unet->config(), edited) == 2;
-    const UNet& unet = input.anew && shapes_ != nullptr ? shapes_->unet : bundle_->unet;
+    const bool shapes = input.anew && shapes_ != nullptr;
+    std::vector<std::optional<double>> azimuths;
+    if (shapes) {
+        edited.views.cameras = cameras_of(views).to(bundle_->device);
+        for (const auto& view : views) azimuths.push_back(view.azimuth);
+    }
+    const auto predicted = [&](std::size_t step) {
+        if (!shapes) return output(bundle_->unet, batch.x, timesteps[step], edited);
+        // In turns with those far around the thing and with neighbours, so that every view comes to know of all.
+        return output_together(batch.x, timesteps[step], edited, view_groups(azimuths, shapes_->facts.shape_views, step % 2 == 0));
+    };
     const auto roots = [&](std::int64_t t) {
         const double a = schedule.alpha_cumprod(t);
         return std::pair{std::sqrt(a), std::sqrt(1 - a)};
@@ -184,7 +221,7 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
         const auto t = torch::full({1}, timesteps[i], torch::kInt64);
         const double level = static_cast<double>(timesteps[i] + 1) / static_cast<double>(schedule.steps());
         if (pairs && level <= input.guided_until) edited.guidance_scale = 1;
-        auto x0 = schedule.to_x0(output(unet, batch.x, timesteps[i], edited), batch.x, t);
+        auto x0 = schedule.to_x0(predicted(i), batch.x, t);
         x0 = batch.mask * x0 + (1 - batch.mask) * batch.original;   // the surroundings stay, and keep the steps in place
         const auto [now, spread] = roots(timesteps[i]);
         if (i + 1 == timesteps.size()) {

@@ -48,6 +48,7 @@ edit::EditPlan plan_of(Workplace& workplace, const Located& located, const EditR
         plan.azimuths = azimuths_around(located.views);
         plan.view_words = words_around(located.views, recipe.request.sided_view_words);
     }
+    if (!plan.azimuths.empty()) plan.elevations = elevations_above(located.views);
     return plan;
 }
 

@@ -113,6 +113,13 @@ std::vector<double> azimuths_around(const Views& views) {
     return azimuths;
 }
 
+std::vector<double> elevations_above(const Views& views) {
+    std::vector<double> elevations;
+    for (const auto& view : views.views)
+        elevations.push_back(std::asin(dot(normalized(view.camera.centre() - views.orbit.centre), normalized(views.orbit.up))));
+    return elevations;
+}
+
 std::vector<std::string> words_around(const Views& views, bool sided) {
     std::vector<std::string> words;
     for (const double azimuth : azimuths_around(views)) words.push_back(edit::view_words(azimuth, sided));

@@ -42,6 +42,9 @@ std::vector<std::string> words_around(const Views& views, bool sided);
 /// Azimuths of every view from `views.front`, radians.
 std::vector<double> azimuths_around(const Views& views);
 
+/// Elevations of every camera above the orbit's centre, radians.
+std::vector<double> elevations_above(const Views& views);
+
 /// The same views of a scene whose front is seen from an azimuth of their orbit (radians), with words for what each sees.
 Views facing(Views views, double front, const EditRecipe& recipe);
 

@@ -1,0 +1,88 @@
+// Camera features, and networks that share weights.
+#include "engine/neural/scene_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "engine/base/error.h"
+
+namespace gse::neural {
+namespace {
+
+constexpr std::string_view CameraEmbedding = "camera_embedding.";
+
+UNet sharing(const UNet& from, const UNetConfig& config) {
+    WeightOptions options;
+    options.device = from->parameters().front().device();
+    UNet unet(config, options);
+    const auto weights = from->named_parameters();
+    for (auto& item : unet->named_parameters())
+        if (const auto* weight = weights.find(item.key())) item.value().set_data(*weight);
+    unet->to(from->parameters().front().scalar_type());
+    return unet;
+}
+
+}  // namespace
+
+std::array<float, CameraFeatures> camera_features(std::optional<double> azimuth, double elevation) {
+    if (!azimuth) return {};
+    const auto f = [](double value) { return static_cast<float>(value); };
+    return {f(std::sin(*azimuth)), f(std::cos(*azimuth)), f(std::sin(2 * *azimuth)), f(std::cos(2 * *azimuth)), f(std::sin(elevation)), 1.0f};
+}
+
+UNet with_cameras(const UNet& plain) {
+    auto config = plain->config();
+    config.camera_dim = CameraFeatures;
+    auto unet = sharing(plain, config);
+    const torch::NoGradGuard no_grad;
+    for (auto& item : unet->named_parameters())
+        if (item.key().starts_with(std::string(CameraEmbedding) + "linear_2")) item.value().zero_();
+    return unet;
+}
+
+UNet with_cameras(const UNet& plain, const SafetensorsFile& file) {
+    auto unet = with_cameras(plain);
+    const torch::NoGradGuard no_grad;
+    for (auto& [name, weight] : camera_weights(unet)) {
+        if (!file.contains(name)) throw Error(ErrorCode::Model, "the embedding of cameras has no \"" + name + "\"", {}, file.path());
+        const auto value = file.tensor(name);
+        if (value.sizes() != weight.sizes())
+            throw Error(ErrorCode::Model, "\"" + name + "\" of the embedding of cameras has another shape", {}, file.path());
+        weight.copy_(value);
+    }
+    for (auto& parameter : unet->parameters()) parameter.set_requires_grad(false);
+    return unet;
+}
+
+UNet without_cameras(const UNet& unet) {
+    auto config = unet->config();
+    config.camera_dim = 0;
+    return sharing(unet, config);
+}
+
+std::vector<std::pair<std::string, torch::Tensor>> camera_weights(const UNet& unet) {
+    std::vector<std::pair<std::string, torch::Tensor>> weights;
+    for (auto& item : unet->named_parameters())
+        if (item.key().starts_with(CameraEmbedding)) weights.emplace_back(item.key(), item.value());
+    return weights;
+}
+
+std::vector<std::vector<std::int64_t>> view_groups(const std::vector<std::optional<double>>& azimuths, std::int64_t together, bool around) {
+    const auto count = static_cast<std::int64_t>(azimuths.size());
+    std::vector<std::int64_t> order(azimuths.size());
+    std::iota(order.begin(), order.end(), std::int64_t{0});
+    if (std::all_of(azimuths.begin(), azimuths.end(), [](const auto& azimuth) { return azimuth.has_value(); }))
+        std::stable_sort(order.begin(), order.end(), [&](std::int64_t a, std::int64_t b) {
+            const auto turned = [&](std::int64_t v) { return std::remainder(*azimuths[static_cast<std::size_t>(v)], 2 * std::numbers::pi); };
+            return turned(a) < turned(b);
+        });
+    const std::int64_t groups = (count + together - 1) / std::max<std::int64_t>(together, 1);
+    std::vector<std::vector<std::int64_t>> result(static_cast<std::size_t>(groups));
+    for (std::int64_t i = 0; i < count; ++i)
+        result[static_cast<std::size_t>(around ? i % groups : i * groups / count)].push_back(order[static_cast<std::size_t>(i)]);
+    return result;
+}
+
+}  // namespace gse::neural

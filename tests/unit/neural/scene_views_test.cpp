@@ -1,0 +1,100 @@
+// Views of one scene that are denoised together.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "engine/neural/scene_views.h"
+
+namespace {
+
+using namespace gse::neural;
+
+UNet small_unet() {
+    UNetConfig config;
+    config.sample_size = 8;
+    config.block_out_channels = {16, 32};
+    config.down_block_types = {"CrossAttnDownBlock2D", "CrossAttnDownBlock2D"};
+    config.up_block_types = {"CrossAttnUpBlock2D", "CrossAttnUpBlock2D"};
+    config.layers_per_block = 1;
+    config.heads = {2, 2};
+    config.norm_num_groups = 8;
+    config.cross_attention_dim = 12;
+    torch::manual_seed(5);
+    return UNet(config);
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("views that are denoised together see each other, and no others") {
+    const torch::NoGradGuard no_grad;
+    const UNet unet = small_unet();
+    torch::manual_seed(6);
+    auto views = torch::randn({4, 4, 8, 8});
+    const auto words = torch::randn({4, 3, 12}), t = torch::full({1}, 400.0f);
+    const auto together = [&](std::int64_t count) { return unet->forward(views, t, words, nullptr, {}, {count, {}}); };
+    const auto apart = together(1), pairs = together(2);
+    DOCTEST_CHECK(torch::equal(apart, unet->forward(views, t, words)));
+    DOCTEST_CHECK(!torch::allclose(apart, pairs, 1e-4, 1e-5));
+    views[3] += 1;   // of the second pair
+    const auto changed = together(2);
+    DOCTEST_CHECK(torch::equal(pairs.narrow(0, 0, 2), changed.narrow(0, 0, 2)));
+    DOCTEST_CHECK(!torch::allclose(pairs[2], changed[2], 1e-4, 1e-5));
+    DOCTEST_CHECK(torch::equal(apart[2], together(1)[2]));
+}
+
+DOCTEST_TEST_CASE("views that are the same see nothing new in each other") {
+    const torch::NoGradGuard no_grad;
+    const UNet unet = small_unet();
+    torch::manual_seed(7);
+    const auto views = torch::randn({1, 4, 8, 8}).repeat({3, 1, 1, 1}), words = torch::randn({1, 3, 12}).repeat({3, 1, 1});
+    const auto t = torch::full({1}, 700.0f);
+    // Attention over copies is attention over one; sums of three times as many terms round otherwise.
+    DOCTEST_CHECK(torch::allclose(unet->forward(views, t, words), unet->forward(views, t, words, nullptr, {}, {3, {}}), 1e-4, 1e-5));
+}
+
+DOCTEST_TEST_CASE("an embedding of cameras says nothing before it was trained") {
+    const torch::NoGradGuard no_grad;
+    const UNet plain = small_unet(), told = with_cameras(plain);
+    torch::manual_seed(8);
+    const auto views = torch::randn({2, 4, 8, 8}), words = torch::randn({2, 3, 12}), t = torch::full({1}, 100.0f);
+    const auto cameras = torch::randn({2, CameraFeatures});
+    const auto before = plain->forward(views, t, words);
+    DOCTEST_CHECK(torch::equal(before, told->forward(views, t, words, nullptr, {}, {1, cameras})));
+    for (auto& [name, weight] : camera_weights(told)) weight.fill_(0.1);
+    DOCTEST_CHECK(!torch::allclose(before, told->forward(views, t, words, nullptr, {}, {1, cameras}), 1e-4, 1e-5));
+    DOCTEST_CHECK(torch::equal(before, told->forward(views, t, words)));   // where nothing is known of them
+    DOCTEST_CHECK(torch::equal(before, without_cameras(told)->forward(views, t, words)));
+    DOCTEST_CHECK(camera_weights(told).size() == 4);
+    DOCTEST_CHECK(camera_weights(plain).empty());
+}
+
+DOCTEST_TEST_CASE("camera features turn with the camera, and are zero where nothing is known") {
+    for (const float value : camera_features(std::nullopt, 0.3)) DOCTEST_CHECK(value == 0);
+    const auto front = camera_features(0.0, 0.2), round = camera_features(2 * std::numbers::pi, 0.2), back = camera_features(std::numbers::pi, 0.2);
+    for (std::size_t i = 0; i < front.size(); ++i) DOCTEST_CHECK(front[i] == doctest::Approx(round[i]).epsilon(1e-6));
+    DOCTEST_CHECK(front[1] == doctest::Approx(-back[1]));
+    DOCTEST_CHECK(front[4] == doctest::Approx(std::sin(0.2)));
+}
+
+DOCTEST_TEST_CASE("every view is in one group; around the thing or beside each other") {
+    std::vector<std::optional<double>> azimuths;
+    for (const int sixth : {3, 0, 5, 1, 4, 2}) azimuths.push_back(sixth * std::numbers::pi / 3);
+    for (const std::int64_t together : {1, 2, 3, 4, 6, 9})
+        for (const bool around : {false, true}) {
+            const auto groups = view_groups(azimuths, together, around);
+            std::set<std::int64_t> seen;
+            for (const auto& group : groups) {
+                DOCTEST_CHECK(static_cast<std::int64_t>(group.size()) <= together);
+                seen.insert(group.begin(), group.end());
+            }
+            DOCTEST_CHECK(seen.size() == azimuths.size());
+        }
+    const auto across = [&](const std::vector<std::int64_t>& group) {
+        return std::abs(std::remainder(*azimuths[static_cast<std::size_t>(group[0])] - *azimuths[static_cast<std::size_t>(group[1])], 2 * std::numbers::pi));
+    };
+    for (const auto& group : view_groups(azimuths, 2, true)) DOCTEST_CHECK(across(group) == doctest::Approx(std::numbers::pi));
+    for (const auto& group : view_groups(azimuths, 2, false)) DOCTEST_CHECK(across(group) == doctest::Approx(std::numbers::pi / 3));
+    DOCTEST_CHECK(view_groups({}, 4, true).empty());
+}
