@@ -92,7 +92,7 @@ StarterPictures load_or_render_pictures(const StarterTrainParameters& parameters
     allocate(pictures, parameters.image_size, static_cast<std::size_t>(parameters.pictures));
     ThreadPool pool(static_cast<unsigned>(parameters.threads));
     std::atomic<int> done{0};
-    pool.parallel_for(pictures.count, 1, [&](std::size_t begin, std::size_t end, unsigned worker) {
+    pool.parallel_for(pictures.count, static_cast<std::size_t>(source.views_of_scene()), [&](std::size_t begin, std::size_t end, unsigned worker) {
         for (std::size_t index = begin; index < end; ++index) {
             if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "stopped while rendering the training pictures");
             store(pictures, index, source.picture(index, parameters.image_size));

@@ -8,6 +8,7 @@
 #include "engine/neural/key_map.h"
 #include "engine/neural/lora.h"
 #include "engine/neural/safetensors.h"
+#include "engine/neural/scene_views.h"
 #include "engine/neural/starter_stages.h"
 
 namespace gse::neural {
@@ -47,6 +48,8 @@ Json facts_of(const UNetTraining& training) {
     if (!training.parameters.initial.empty() && std::filesystem::exists(before)) facts.update(read_json_file(before));
     if (training.parameters.shapes) {   // what it knows of words is what it knew
         facts["shape_lora"] = ShapeLoraFile;
+        facts["shape_cameras"] = ShapeCamerasFile;
+        facts["shape_views"] = std::min<std::int64_t>(ShapeViews, training.source.views_of_scene());
         facts["shape_training"] = fields_to_json(training.parameters);
         return facts;
     }
@@ -63,9 +66,13 @@ void write_shapes(const UNetTraining& training, StarterNetworks& networks, const
     const auto file = std::filesystem::path(training.parameters.initial) / "unet/diffusion_pytorch_model.safetensors";
     load_weights(*before, SafetensorsFile(file), unet_plan());
     write_weights(output / "unet/diffusion_pytorch_model.safetensors", before);
-    UNet trained(training.configs.unet);   // on the CPU
+    UNet trained(networks.unet->config());   // on the CPU
     auto values = trained->parameters();
     copy_parameters(networks.unet->parameters(), values);
+    auto cameras = camera_weights(trained);
+    for (auto& [name, weight] : cameras) weight = weight.detach().to(torch::kHalf).contiguous();
+    write_safetensors(output / ShapeCamerasFile, cameras);
+    trained = without_cameras(trained);
     write_lora(output / ShapeLoraFile, {lora_between(*before, *trained, training.parameters.shape_rank), {}}, torch::kHalf);
 }
 

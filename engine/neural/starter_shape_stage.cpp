@@ -1,10 +1,16 @@
-// Trains what draws new things: the UNet's weights, which become a LoRA beside those that look for things, and the words for the
-// sides of a thing. Every caption says from where the picture was taken; between two sides the encoded sentences are mixed, as
-// view-dependent prompting does (threestudio, Perp-Neg: Armandpour et al. 2023), so the model learns every azimuth. What counts of
-// a picture is mostly the thing, for of a redrawn view nothing else is kept.
+// Trains what draws new things: the UNet's weights, which become a LoRA beside those that look for things, the words for the
+// sides of a thing, and an embedding of cameras. Views of one scene are denoised together, self-attention going across all of them
+// (MVDream, Shi et al. 2023), so that they come to show one thing; in some groups one or two views are clean, as views that are drawn
+// already are where others follow. Every caption says from where the picture was taken; between two sides the encoded sentences are
+// mixed, as view-dependent prompting does (threestudio, Perp-Neg: Armandpour et al. 2023). What counts of a picture is mostly the
+// thing, for of a redrawn view nothing else is kept.
+#include <algorithm>
+#include <cmath>
+
 #include "engine/base/error.h"
 #include "engine/base/random.h"
 #include "engine/neural/mixed_precision.h"
+#include "engine/neural/scene_views.h"
 #include "engine/neural/schedulers.h"
 #include "engine/neural/starter_stages.h"
 #include "engine/neural/starter_words.h"
@@ -15,6 +21,9 @@ namespace {
 constexpr int ShapeTimesteps = 1000;
 // Weight of a latent cell: of the surroundings, what is added for the object and for an accessory, which is small.
 constexpr double Surroundings = 0.4, OfObject = 1, OfAccessory = 2;
+constexpr int CleanTimesteps = 20;      // below it a view counts as drawn
+constexpr double CleanShare = 0.25;     // of groups with such views, one or two of them
+constexpr double UnknownCameras = 0.1;  // of groups that are not told from where they were taken
 
 struct ShapeBatch {
     torch::Tensor ids;         // [2B,T] long: the sentences, then those of the next side
@@ -23,21 +32,28 @@ struct ShapeBatch {
     torch::Tensor noise;       // [B,C,G,G]
     torch::Tensor timesteps;   // [B] long
     torch::Tensor weights;     // [B,1,G,G], mean 1 per picture
+    torch::Tensor cameras;     // [B,CameraFeatures]
 };
 
 class ShapeBatches {
 public:
-    explicit ShapeBatches(const UNetTraining& training) : training_(training), table_(training.vocabulary) {}
+    explicit ShapeBatches(const UNetTraining& training)
+        : training_(training), table_(training.vocabulary), views_(static_cast<std::uint64_t>(training.source.views_of_scene())) {}
+
+    /// Views that are denoised together.
+    std::int64_t together() const { return std::min<std::int64_t>(ShapeViews, static_cast<std::int64_t>(views_)); }
 
     ShapeBatch make(Random& random) const {
-        const std::int64_t size = training_.parameters.unet_batch, cells = training_.pictures.cells;
+        const std::int64_t groups = std::max<std::int64_t>(1, training_.parameters.unet_batch / together());
+        const std::int64_t size = groups * together(), cells = training_.pictures.cells;
         ShapeBatch batch;
         batch.ids = torch::full({2 * size, StarterTokenCount}, table_.eos(), torch::kLong);
         batch.next_share = torch::zeros({size, 1, 1});
         batch.timesteps = torch::empty({size}, torch::kLong);
         batch.weights = torch::empty({size, 1, cells, cells});
+        batch.cameras = torch::zeros({size, CameraFeatures});
         std::vector<std::int64_t> rows;
-        for (std::int64_t i = 0; i < size; ++i) rows.push_back(fill_row(batch, i, random));
+        for (std::int64_t g = 0; g < groups; ++g) fill_group(batch, g * together(), rows, random);
         const auto index = torch::tensor(rows, torch::kLong);
         batch.latents = training_.latents.mean.index_select(0, index) / training_.latents.deviation;
         batch.weights = torch::max_pool2d(batch.weights, 3, 1, 1) + Surroundings;   // a thing's rim is drawn, too
@@ -48,21 +64,45 @@ public:
     }
 
 private:
-    std::int64_t fill_row(ShapeBatch& batch, std::int64_t i, Random& random) const {
-        const std::uint64_t picture = random.below(training_.pictures.count);
-        batch.timesteps[i] = static_cast<std::int64_t>(random.below(ShapeTimesteps));
+    /// Some views of a scene, none twice, at one noise level: more often a high one, where shapes are decided.
+    void fill_group(ShapeBatch& batch, std::int64_t first, std::vector<std::int64_t>& rows, Random& random) const {
+        const std::uint64_t scene = random.below(training_.pictures.count / views_), words = random.next();
+        std::vector<std::uint64_t> views(views_);
+        for (std::uint64_t v = 0; v < views_; ++v) views[v] = v;
+        const auto timestep = static_cast<std::int64_t>(ShapeTimesteps * std::sqrt(random.uniform()));
+        const bool silent = random.uniform() < training_.parameters.caption_dropout, unknown = random.uniform() < UnknownCameras;
+        const std::int64_t clean = together() > 2 && random.uniform() < CleanShare ? 1 + static_cast<std::int64_t>(random.below(2)) : 0;
+        for (std::int64_t k = 0; k < together(); ++k) {
+            const auto i = static_cast<std::size_t>(k);
+            std::swap(views[i], views[i + random.below(views_ - i)]);
+            const std::uint64_t picture = scene * views_ + views[i];
+            batch.timesteps[first + k] = k < clean ? static_cast<std::int64_t>(random.below(CleanTimesteps))
+                                                   : std::min<std::int64_t>(timestep, ShapeTimesteps - 1);
+            if (!unknown) {
+                const auto camera = training_.source.camera(picture);
+                const auto features = camera_features(camera.azimuth, camera.elevation);
+                std::copy(features.begin(), features.end(), batch.cameras[first + k].data_ptr<float>());
+            }
+            fill_weights(batch, first + k, picture);
+            if (!silent) fill_sentences(batch, first + k, picture, words);
+            rows.push_back(static_cast<std::int64_t>(picture));
+        }
+    }
+
+    void fill_weights(ShapeBatch& batch, std::int64_t i, std::uint64_t picture) const {
         const auto cells = static_cast<std::size_t>(training_.pictures.cells * training_.pictures.cells);
         const std::uint8_t* parts = &training_.pictures.coverage[picture * StarterPartCount * cells];
         float* weight = batch.weights[i].data_ptr<float>();
         for (std::size_t k = 0; k < cells; ++k)
             weight[k] = static_cast<float>((OfObject * parts[cells + k] + OfAccessory * parts[2 * cells + k]) / 255);
-        const StarterCaption caption = training_.source.caption(picture, random.next(), false);
-        if (random.uniform() < training_.parameters.caption_dropout) return static_cast<std::int64_t>(picture);
+    }
+
+    void fill_sentences(ShapeBatch& batch, std::int64_t i, std::uint64_t picture, std::uint64_t words) const {
+        const StarterCaption caption = training_.source.caption(picture, words, false);
         const bool two = !caption.next_text.empty();
         fill_words(batch, i, caption.text);
-        fill_words(batch, training_.parameters.unet_batch + i, two ? caption.next_text : caption.text);
+        fill_words(batch, batch.ids.size(0) / 2 + i, two ? caption.next_text : caption.text);
         batch.next_share[i] = two ? caption.next_share : 0.0;
-        return static_cast<std::int64_t>(picture);
     }
 
     void fill_words(ShapeBatch& batch, std::int64_t row, const std::string& text) const {
@@ -77,11 +117,12 @@ private:
 
     const UNetTraining& training_;
     WordTable table_;
+    std::uint64_t views_;
 };
 
 /// v-prediction (Salimans and Ho 2022).
 std::pair<torch::Tensor, std::vector<double>> shape_loss(StarterNetworks& networks, const ShapeBatch& batch,
-                                                         const torch::Tensor& alphas_cumprod, bool bf16) {
+                                                         std::int64_t together, const torch::Tensor& alphas_cumprod, bool bf16) {
     const auto alpha = alphas_cumprod.index_select(0, batch.timesteps).view({-1, 1, 1, 1});
     const auto signal = alpha.sqrt(), sigma = (1 - alpha).sqrt();
     const auto noisy = signal * batch.latents + sigma * batch.noise;
@@ -92,20 +133,22 @@ std::pair<torch::Tensor, std::vector<double>> shape_loss(StarterNetworks& networ
         const auto encoded = networks.text->forward(batch.ids).last_hidden;
         const auto size = batch.latents.size(0);
         const auto context = torch::lerp(encoded.narrow(0, 0, size), encoded.narrow(0, size, size), batch.next_share.to(encoded.scalar_type()));
-        predicted = networks.unet->forward(noisy, batch.timesteps, context).to(torch::kFloat);
+        predicted = networks.unet->forward(noisy, batch.timesteps, context, nullptr, {}, {together, batch.cameras}).to(torch::kFloat);
     }
     const auto squared = (predicted - velocity).square();
     const auto loss = (squared * batch.weights).mean();
     return {loss, {loss.item<double>(), squared.mean().item<double>()}};
 }
 
-/// The UNet's matrices and convolutions, and the token embeddings, of which only the rows of `fresh` ever get a gradient.
+/// The UNet's matrices and convolutions, all of the embedding of cameras, and the token embeddings, of which only the rows of `fresh`
+/// ever get a gradient.
 Parameters trained_parameters(StarterNetworks& networks, const std::vector<std::int64_t>& fresh) {
     for (auto& parameter : networks.text->parameters()) parameter.set_requires_grad(false);
     Parameters parameters;
-    for (auto& parameter : networks.unet->parameters()) {
-        parameter.set_requires_grad(parameter.dim() >= 2);
-        if (parameter.dim() >= 2) parameters.push_back(parameter);
+    for (auto& item : networks.unet->named_parameters()) {
+        const bool trained = item.value().dim() >= 2 || item.key().starts_with("camera_embedding.");
+        item.value().set_requires_grad(trained);
+        if (trained) parameters.push_back(item.value());
     }
     for (auto& item : networks.text->named_parameters()) {
         if (fresh.empty() || !item.key().ends_with("token_embedding.weight")) continue;
@@ -121,7 +164,7 @@ Parameters trained_parameters(StarterNetworks& networks, const std::vector<std::
 
 void to_device(ShapeBatch& batch, const torch::Device& device) {
     if (device.is_cpu()) return;
-    for (auto* tensor : {&batch.ids, &batch.next_share, &batch.latents, &batch.noise, &batch.timesteps, &batch.weights})
+    for (auto* tensor : {&batch.ids, &batch.next_share, &batch.latents, &batch.noise, &batch.timesteps, &batch.weights, &batch.cameras})
         *tensor = tensor->to(device);
 }
 
@@ -134,7 +177,7 @@ void train_shapes(StarterNetworks& networks, const UNetTraining& training, const
     const auto alphas_cumprod = NoiseSchedule(SchedulerConfig{}).alphas_cumprod().to(device);
     const ShapeBatches batches(training);
     const auto copy = [&] {
-        StarterNetworks other{ClipTextEncoder(training.configs.text), UNet(training.configs.unet)};
+        StarterNetworks other{ClipTextEncoder(training.configs.text), UNet(networks.unet->config())};
         auto text = other.text->parameters(), unet = other.unet->parameters();
         copy_parameters(networks.text->parameters(), text);
         copy_parameters(networks.unet->parameters(), unet);
@@ -162,7 +205,7 @@ void train_shapes(StarterNetworks& networks, const UNetTraining& training, const
         Random random = Random::stream(parameters.seed * 3 + 2, static_cast<std::uint64_t>(step) * replicas.size() + r);
         ShapeBatch batch = batches.make(random);
         to_device(batch, device);
-        return shape_loss(replicas[r], batch, alphas_cumprod, parameters.bf16);
+        return shape_loss(replicas[r], batch, batches.together(), alphas_cumprod, parameters.bf16);
     };
     run_stage(stage, StageClock(parameters.unet_steps, parameters.unet_minutes), work, job);
 }

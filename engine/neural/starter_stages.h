@@ -95,6 +95,9 @@ void export_clip(const ClipModel& clip, const std::filesystem::path& folder);
 
 /// What a starter's gseditpro.json names and its folder holds where there is one: a LoRA for drawing new things.
 inline constexpr const char* ShapeLoraFile = "shapes.safetensors";
+/// The embedding of cameras beside it, and how many views are denoised together.
+inline constexpr const char* ShapeCamerasFile = "shape_cameras.safetensors";
+inline constexpr std::int64_t ShapeViews = 4;
 
 /// Writes the diffusers folder in fp16; with `parameters.shapes`, `networks.unet` as the difference to the initial model's.
 void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNetworks& networks,

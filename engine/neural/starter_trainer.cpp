@@ -6,6 +6,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
+#include "engine/neural/scene_views.h"
 #include "engine/neural/starter_stages.h"
 
 namespace gse::neural {
@@ -121,6 +122,7 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
         auto other = initial_parts(parameters.average, configs, vocabulary);
         average_networks(parts, other, parameters.average);
     }
+    if (parameters.shapes) parts.networks.unet = with_cameras(parts.networks.unet);
     std::filesystem::create_directories(work);
     StarterPictures pictures;
     if (new_vae || new_unet) pictures = load_or_render_pictures(parameters, source, work, job);

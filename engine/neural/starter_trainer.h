@@ -39,6 +39,12 @@ struct StarterCaption {
     double next_share = 0;
 };
 
+/// Where a picture was taken from.
+struct StarterCamera {
+    double azimuth = 0;     // radians from the thing's front, positive to its left
+    double elevation = 0;   // radians above the horizontal
+};
+
 class StarterTwins;
 
 /// Where the pictures come from; every method is const, deterministic and callable from several threads.
@@ -49,6 +55,10 @@ public:
     /// A caption of picture `index`; `seed` varies the wording.
     virtual StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool insertion) const = 0;
     virtual std::vector<std::string> vocabulary() const = 0;
+    /// How many pictures there are of each scene: picture s * views_of_scene() + v is view v of scene s. Captions of one scene that are
+    /// asked for with one seed differ in the side only.
+    virtual int views_of_scene() const { return 1; }
+    virtual StarterCamera camera(std::uint64_t index) const { return static_cast<void>(index), StarterCamera{}; }
     /// Changes when the same index would give another picture (names the picture cache).
     virtual std::string identity() const = 0;
     /// Pictures for the image-text encoder; null = there are none.

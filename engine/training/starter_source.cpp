@@ -117,15 +117,20 @@ Camera close_camera(const synth::SynthScene& scene, const Shot& shot, int size) 
     return orbit_camera(orbit, shot.azimuth, size, size);
 }
 
-/// Every scene once, with the accessory that it has, from any side; half of the accessories from close by.
+/// Some views of every scene, with the accessory that it has, from any side; half of the accessories from close by.
 class ShapeSource : public neural::StarterSource {
 public:
     explicit ShapeSource(std::uint64_t seed) : seed_(seed) {}
 
     neural::StarterPicture picture(std::uint64_t index, int size) const override {
         thread_local ShotPainter painter;
+        thread_local std::pair<std::uint64_t, std::uint64_t> known{~0ull, ~0ull};   // views of a scene are asked for one after the other
+        thread_local synth::SynthScene scene;
         const Shot shot = shot_of(index);
-        const synth::SynthScene scene = synth::generate(shot.spec);
+        if (const std::pair wanted{seed_, index / Views}; known != wanted) {
+            scene = synth::generate(shot.spec);
+            known = wanted;
+        }
         const auto camera = shot.close_share > 0 ? close_camera(scene, shot, size)
                                                  : synth::scene_camera(scene, shot.azimuth, shot.elevation, shot.zoom, size, size);
         return painted(painter, scene, camera, shot.background);
@@ -140,21 +145,30 @@ public:
         return {text + ", " + side.words, {}, text + ", " + side.next_words, side.share};
     }
     std::vector<std::string> vocabulary() const override { return synth::vocabulary(); }
-    std::string identity() const override { return "synthetic shapes 2 " + std::to_string(seed_); }
+    int views_of_scene() const override { return Views; }
+    neural::StarterCamera camera(std::uint64_t index) const override {
+        const Shot shot = shot_of(index);
+        return {shot.azimuth, shot.elevation};
+    }
+    std::string identity() const override { return "synthetic shapes 3 " + std::to_string(seed_); }
 
 private:
+    static constexpr int Views = 8;   // of a scene
+
     Shot shot_of(std::uint64_t index) const {
-        Random random = Random::stream(seed_, index);
+        Random random = Random::stream(seed_, index / Views);
         Shot shot;
         shot.spec = synth::training_spec(random);
-        shot.azimuth = random.uniform(-std::numbers::pi, std::numbers::pi);
-        shot.elevation = random.uniform(0.05, 0.75);
-        shot.zoom = random.uniform(0.8, 1.6);
+        const double zoom = random.uniform(0.8, 1.6);
         shot.background = random_background(random);
         if (!shot.spec.accessory.empty() && random.uniform() < 0.5) {
             shot.close_share = random.uniform(0.3, 0.75);
             shot.aside = {random.uniform(-0.15, 0.15), random.uniform(-0.15, 0.15), random.uniform(-0.15, 0.15)};
         }
+        random = Random::stream(random.next(), index % Views);
+        shot.azimuth = random.uniform(-std::numbers::pi, std::numbers::pi);
+        shot.elevation = random.uniform(0.05, 0.75);
+        shot.zoom = zoom * random.uniform(0.9, 1.1);
         return shot;
     }
     std::uint64_t seed_;
