@@ -29,7 +29,8 @@ struct UNetRows {
     torch::Tensor input;           // [parts * B,C or 2C,h,w]
     torch::Tensor context;         // [parts * B,T,D]
     torch::Tensor time_condition;  // [parts * B,D], or undefined
-    int parts = 1;};
+    int parts = 1;
+};
 
 /// Rows for latents [B,C,h,w] as the UNet sees them. Classifier-free guidance: [negative; positive]. With a picture (Brooks et
 /// al. 2023, section 3.2): [text and picture; picture; neither], where neither has a picture of zeros; [picture; text and

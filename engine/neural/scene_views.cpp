@@ -13,14 +13,13 @@ namespace {
 
 constexpr std::string_view CameraEmbedding = "camera_embedding.";
 
+/// A network with the weights of another, each of the type it has; those that the other has not are left undrawn.
 UNet sharing(const UNet& from, const UNetConfig& config) {
-    WeightOptions options;
-    options.device = from->parameters().front().device();
-    UNet unet(config, options);
     const auto weights = from->named_parameters();
+    const auto& first = weights["conv_in.weight"];
+    UNet unet(config, WeightOptions{first.device(), first.scalar_type(), false});
     for (auto& item : unet->named_parameters())
         if (const auto* weight = weights.find(item.key())) item.value().set_data(*weight);
-    unet->to(from->parameters().front().scalar_type());
     return unet;
 }
 
@@ -37,20 +36,23 @@ UNet with_cameras(const UNet& plain) {
     config.camera_dim = CameraFeatures;
     auto unet = sharing(plain, config);
     const torch::NoGradGuard no_grad;
-    for (auto& item : unet->named_parameters())
-        if (item.key().starts_with(std::string(CameraEmbedding) + "linear_2")) item.value().zero_();
+    for (auto& item : unet->named_modules()) {
+        auto* layer = dynamic_cast<LinearImpl*>(item.value().get());
+        if (layer == nullptr || !item.key().starts_with(CameraEmbedding)) continue;
+        layer->reset();
+        if (item.key().ends_with("linear_2")) layer->weight.zero_(), layer->bias.zero_();
+    }
     return unet;
 }
 
 UNet with_cameras(const UNet& plain, const SafetensorsFile& file) {
     auto unet = with_cameras(plain);
-    const torch::NoGradGuard no_grad;
+    constexpr const char* Hint = "take it and the LoRA for shapes from one training run";
     for (auto& [name, weight] : camera_weights(unet)) {
-        if (!file.contains(name)) throw Error(ErrorCode::Model, "the embedding of cameras has no \"" + name + "\"", {}, file.path());
-        const auto value = file.tensor(name);
-        if (value.sizes() != weight.sizes())
-            throw Error(ErrorCode::Model, "\"" + name + "\" of the embedding of cameras has another shape", {}, file.path());
-        weight.copy_(value);
+        if (!file.contains(name)) throw Error(ErrorCode::Model, "the embedding of cameras has no \"" + name + "\"", Hint, file.path());
+        if (torch::IntArrayRef(file.entries().at(name).shape) != weight.sizes())
+            throw Error(ErrorCode::Model, "\"" + name + "\" of the embedding of cameras has another shape", Hint, file.path());
+        file.copy_to(name, weight);
     }
     for (auto& parameter : unet->parameters()) parameter.set_requires_grad(false);
     return unet;
