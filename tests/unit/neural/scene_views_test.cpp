@@ -5,7 +5,9 @@
 #include <numbers>
 #include <set>
 
+#include "engine/base/error.h"
 #include "engine/neural/scene_views.h"
+#include "tests/test_paths.h"
 
 namespace {
 
@@ -68,6 +70,23 @@ DOCTEST_TEST_CASE("an embedding of cameras says nothing before it was trained") 
     DOCTEST_CHECK(torch::equal(before, without_cameras(told)->forward(views, t, words)));
     DOCTEST_CHECK(camera_weights(told).size() == 4);
     DOCTEST_CHECK(camera_weights(plain).empty());
+}
+
+DOCTEST_TEST_CASE("an embedding of cameras is read as it was written, and refused where it does not fit") {
+    const gse::test::ScratchFolder scratch;
+    const auto path = scratch.path() / "cameras.safetensors";
+    const UNet plain = small_unet();
+    auto weights = camera_weights(with_cameras(plain));
+    for (auto& [name, weight] : weights) weight = torch::full_like(weight, 0.25).detach();
+    write_safetensors(path, weights);
+    const auto read = camera_weights(with_cameras(plain, SafetensorsFile(path)));
+    for (std::size_t i = 0; i < weights.size(); ++i) DOCTEST_CHECK(torch::equal(read[i].second, weights[i].second));
+    weights.back().second = torch::zeros({2, 2});
+    write_safetensors(path, weights);
+    DOCTEST_CHECK_THROWS_WITH_AS(with_cameras(plain, SafetensorsFile(path)), doctest::Contains("another shape"), gse::Error);
+    weights.pop_back();
+    write_safetensors(path, weights);
+    DOCTEST_CHECK_THROWS_WITH_AS(with_cameras(plain, SafetensorsFile(path)), doctest::Contains("has no"), gse::Error);
 }
 
 DOCTEST_TEST_CASE("camera features turn with the camera, and are zero where nothing is known") {

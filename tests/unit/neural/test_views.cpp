@@ -118,6 +118,24 @@ DOCTEST_TEST_CASE("redrawn views: what was learned for new things draws only tho
     DOCTEST_CHECK(at(sector / 2, "a bear") != at(sector, "a bear"));
 }
 
+DOCTEST_TEST_CASE("redrawn views: those in which a new thing comes to be see each other where the model says so") {
+    const TinyModel model;
+    const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
+    const auto second = [&](std::int64_t together, float seen_by_the_other, bool anew) {
+        auto shapes = *bundle;
+        shapes.facts.shape_views = together;
+        auto views = wall_views();
+        for (auto& value : views[0].rendered.data) value *= seen_by_the_other;
+        edit::RoundInput input;
+        input.steps = 2;
+        input.anew = anew;
+        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(std::move(shapes))).edit(views, input, {}).images[1].data;
+    };
+    DOCTEST_CHECK(second(2, 1.0f, true) != second(2, 0.3f, true));
+    DOCTEST_CHECK(second(1, 1.0f, true) == second(1, 0.3f, true));
+    DOCTEST_CHECK(second(2, 1.0f, false) == second(2, 0.3f, false));   // what was there is redrawn view by view
+}
+
 DOCTEST_TEST_CASE("redrawing views can be stopped") {
     const TinyModel model;
     DiffusionViews guidance(std::make_shared<const ModelBundle>(load_bundle(model.path())), "a red bear", {});

@@ -1,0 +1,28 @@
+// From where views look at what is in their middle.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "engine/pipeline/views.h"
+
+DOCTEST_TEST_CASE("azimuths and elevations of views are those of the orbit that they lie on") {
+    using namespace gse;
+    pipeline::Views views;
+    views.orbit.centre = {1, 2, 3};
+    views.orbit.radius = 4;
+    views.orbit.up = {0.3, -0.9, 0.2};
+    const std::vector<std::pair<double, double>> places{{0.0, 0.0}, {0.7, 0.4}, {-2.0, -0.3}, {3.0, 1.2}};
+    for (const auto& [azimuth, elevation] : places) {
+        auto orbit = views.orbit;
+        orbit.elevation = elevation;
+        views.views.push_back({});
+        views.views.back().camera = orbit_camera(orbit, azimuth, 32, 32);
+    }
+    const auto elevations = pipeline::elevations_above(views);
+    DOCTEST_REQUIRE(elevations.size() == places.size());
+    for (std::size_t v = 0; v < places.size(); ++v) {
+        DOCTEST_CHECK(pipeline::azimuth_of(views.views[v].camera, views.orbit) == doctest::Approx(places[v].first).epsilon(1e-9));
+        DOCTEST_CHECK(elevations[v] == doctest::Approx(places[v].second).epsilon(1e-9));
+    }
+}
