@@ -57,6 +57,7 @@ torch::Tensor guided_output(const UNet& unet, const torch::Tensor& latents, cons
     const auto rows = unet_rows(unet->config(), latents, conditioning);
     auto views = conditioning.views;
     if (views.cameras.defined()) views.cameras = views.cameras.repeat({rows.parts, 1});
+    if (views.inpaint.defined()) views.inpaint = views.inpaint.repeat({rows.parts, 1, 1, 1});
     return combine_rows(unet->forward(rows.input, t, rows.context, capture, rows.time_condition, views), rows.parts, conditioning);
 }
 

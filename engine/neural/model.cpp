@@ -130,7 +130,7 @@ private:
         return guard_torch("merging the model's LoRA for shapes", [&] {
             auto merged = with_lora(*bundle_, read_lora(loaded_->path / file), 1);
             if (const auto& cameras = loaded_->facts.shape_cameras; !cameras.empty())
-                merged.unet = with_cameras(merged.unet, SafetensorsFile(loaded_->path / cameras));
+                merged.unet = with_scene_inputs(merged.unet, SafetensorsFile(loaded_->path / cameras));
             return std::make_shared<const ModelBundle>(std::move(merged));
         });
     }

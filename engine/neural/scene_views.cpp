@@ -11,7 +11,7 @@
 namespace gse::neural {
 namespace {
 
-constexpr std::string_view CameraEmbedding = "camera_embedding.";
+constexpr std::string_view CameraEmbedding = "camera_embedding.", Inpaint = "conv_inpaint.";
 
 /// A network with the weights of another, each of the type it has; those that the other has not are left undrawn.
 UNet sharing(const UNet& from, const UNetConfig& config) {
@@ -31,24 +31,39 @@ std::array<float, CameraFeatures> camera_features(std::optional<double> azimuth,
     return {f(std::sin(*azimuth)), f(std::cos(*azimuth)), f(std::sin(2 * *azimuth)), f(std::cos(2 * *azimuth)), f(std::sin(elevation)), 1.0f};
 }
 
-UNet with_cameras(const UNet& plain) {
+torch::Tensor inpainting(const torch::Tensor& mask, const torch::Tensor& shown, const torch::Tensor& latents) {
+    return torch::cat({mask, shown, shown * latents}, 1);
+}
+
+namespace {
+
+UNet with_inputs(const UNet& plain, bool inpaint) {
     auto config = plain->config();
     config.camera_dim = CameraFeatures;
+    config.inpaint_channels = inpaint ? config.in_channels + 2 : 0;
     auto unet = sharing(plain, config);
     const torch::NoGradGuard no_grad;
     for (auto& item : unet->named_modules()) {
+        if (!item.key().starts_with(CameraEmbedding)) continue;
         auto* layer = dynamic_cast<LinearImpl*>(item.value().get());
-        if (layer == nullptr || !item.key().starts_with(CameraEmbedding)) continue;
         layer->reset();
         if (item.key().ends_with("linear_2")) layer->weight.zero_(), layer->bias.zero_();
     }
+    for (auto& [name, weight] : scene_input_weights(unet))
+        if (name.starts_with(Inpaint)) weight.zero_();
     return unet;
 }
 
-UNet with_cameras(const UNet& plain, const SafetensorsFile& file) {
-    auto unet = with_cameras(plain);
+}  // namespace
+
+UNet with_scene_inputs(const UNet& plain) { return with_inputs(plain, true); }
+
+UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool must_inpaint) {
+    const bool inpaints = file.contains(std::string(Inpaint) + "weight");
+    auto unet = with_inputs(plain, inpaints || must_inpaint);
     constexpr const char* Hint = "take it and the LoRA for shapes from one training run";
-    for (auto& [name, weight] : camera_weights(unet)) {
+    for (auto& [name, weight] : scene_input_weights(unet)) {
+        if (name.starts_with(Inpaint) && !inpaints) continue;   // says nothing yet
         if (!file.contains(name)) throw Error(ErrorCode::Model, "the embedding of cameras has no \"" + name + "\"", Hint, file.path());
         if (torch::IntArrayRef(file.entries().at(name).shape) != weight.sizes())
             throw Error(ErrorCode::Model, "\"" + name + "\" of the embedding of cameras has another shape", Hint, file.path());
@@ -58,16 +73,18 @@ UNet with_cameras(const UNet& plain, const SafetensorsFile& file) {
     return unet;
 }
 
-UNet without_cameras(const UNet& unet) {
+UNet without_scene_inputs(const UNet& unet) {
     auto config = unet->config();
-    config.camera_dim = 0;
+    config.camera_dim = config.inpaint_channels = 0;
     return sharing(unet, config);
 }
 
-std::vector<std::pair<std::string, torch::Tensor>> camera_weights(const UNet& unet) {
+bool is_scene_input(const std::string& name) { return name.starts_with(CameraEmbedding) || name.starts_with(Inpaint); }
+
+std::vector<std::pair<std::string, torch::Tensor>> scene_input_weights(const UNet& unet) {
     std::vector<std::pair<std::string, torch::Tensor>> weights;
     for (auto& item : unet->named_parameters())
-        if (item.key().starts_with(CameraEmbedding)) weights.emplace_back(item.key(), item.value());
+        if (is_scene_input(item.key())) weights.emplace_back(item.key(), item.value());
     return weights;
 }
 

@@ -1,4 +1,5 @@
-// What a UNet needs for denoising views of one scene together: what it is told of their cameras, and the network that takes it.
+// What a UNet needs for denoising views of one scene together: what it is told of their cameras and shown of the scene as it was, and
+// the network that takes it.
 #pragma once
 
 #include <array>
@@ -16,18 +17,26 @@ inline constexpr std::int64_t CameraFeatures = 6;
 /// (radians above the horizontal), 1. Zeros where the azimuth is not known.
 std::array<float, CameraFeatures> camera_features(std::optional<double> azimuth, double elevation);
 
-/// The same network, with an embedding of cameras that says nothing yet; shares all weights with `plain`.
-UNet with_cameras(const UNet& plain);
-/// The same with the embedding that a file holds. Throws Error (Model) where it does not fit.
-UNet with_cameras(const UNet& plain, const SafetensorsFile& file);
-/// The same network without that embedding; shares all weights.
-UNet without_cameras(const UNet& unet);
+/// What a network is shown of the picture before the edit, as inpainting models are (Rombach et al. 2022, section 4.5), [B,2+C,h,w]: where
+/// it may change (`mask`, [B,1,h,w], 1), where the latents [B,C,h,w] of what was there are shown (`shown`, [B,1,h,w], 1), and these.
+torch::Tensor inpainting(const torch::Tensor& mask, const torch::Tensor& shown, const torch::Tensor& latents);
+
+/// The same network, with an embedding of cameras and a convolution of what it is shown that say nothing yet; shares all weights with
+/// `plain`.
+UNet with_scene_inputs(const UNet& plain);
+/// The same with the weights that a file holds; one of before there was inpainting() has none for that, and the network then no such
+/// input, but where it `must_inpaint`. Throws Error (Model) where they do not fit.
+UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool must_inpaint = false);
+/// The same network without those inputs; shares all weights.
+UNet without_scene_inputs(const UNet& unet);
 
 /// Which views are denoised together in one step, each list at most `together` long: with `around`, those far from each other on
 /// the way around the thing, else neighbours. `azimuths` in radians; where one is not known, in the order of the views.
 std::vector<std::vector<std::int64_t>> view_groups(const std::vector<std::optional<double>>& azimuths, std::int64_t together, bool around);
 
-/// The embedding's weights by name, "camera_embedding.linear_1.weight" and so on.
-std::vector<std::pair<std::string, torch::Tensor>> camera_weights(const UNet& unet);
+/// Whether a weight of that name belongs to these inputs.
+bool is_scene_input(const std::string& name);
+/// The weights of these inputs by name, "camera_embedding.linear_1.weight", "conv_inpaint.weight" and so on.
+std::vector<std::pair<std::string, torch::Tensor>> scene_input_weights(const UNet& unet);
 
 }  // namespace gse::neural

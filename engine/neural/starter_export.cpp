@@ -69,10 +69,10 @@ void write_shapes(const UNetTraining& training, StarterNetworks& networks, const
     UNet trained(networks.unet->config());   // on the CPU
     auto values = trained->parameters();
     copy_parameters(networks.unet->parameters(), values);
-    auto cameras = camera_weights(trained);
+    auto cameras = scene_input_weights(trained);
     for (auto& [name, weight] : cameras) weight = weight.detach().to(torch::kHalf).contiguous();
     write_safetensors(output / ShapeCamerasFile, cameras);
-    trained = without_cameras(trained);
+    trained = without_scene_inputs(trained);
     write_lora(output / ShapeLoraFile, {lora_between(*before, *trained, training.parameters.shape_rank), {}}, torch::kHalf);
 }
 

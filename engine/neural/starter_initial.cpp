@@ -5,6 +5,8 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/neural/key_map.h"
+#include "engine/neural/lora.h"
+#include "engine/neural/scene_views.h"
 #include "engine/neural/starter_stages.h"
 
 namespace gse::neural {
@@ -127,6 +129,15 @@ StarterParts initial_parts(const std::filesystem::path& folder, const StarterCon
     fill(parts.networks.unet, folder / "unet/diffusion_pytorch_model.safetensors", unet_plan());
     parts.scaling_factor = scaling_factor;
     return parts;
+}
+
+UNet initial_shapes(const std::filesystem::path& folder, UNet unet) {
+    const auto path = folder / "gseditpro.json";
+    const Json facts = std::filesystem::exists(path) ? read_json_file(path) : Json::object();
+    if (!facts.contains("shape_lora")) return with_scene_inputs(unet);
+    merge_lora(*unet, read_lora(folder / facts.at("shape_lora").get<std::string>()).unet, 1);
+    const auto inputs = facts.value("shape_cameras", std::string());
+    return inputs.empty() ? with_scene_inputs(unet) : with_scene_inputs(unet, SafetensorsFile(folder / inputs), true);
 }
 
 std::vector<std::int64_t> fresh_tokens(const std::filesystem::path& folder, const StarterVocabulary& vocabulary) {

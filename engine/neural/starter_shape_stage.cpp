@@ -2,8 +2,9 @@
 // sides of a thing, and an embedding of cameras. Views of one scene are denoised together, self-attention going across all of them
 // (MVDream, Shi et al. 2023), so that they come to show one thing; in some groups one or two views are clean, as views that are drawn
 // already are where others follow. Every caption says from where the picture was taken; between two sides the encoded sentences are
-// mixed, as view-dependent prompting does (threestudio, Perp-Neg: Armandpour et al. 2023). What counts of a picture is mostly the
-// thing, for of a redrawn view nothing else is kept.
+// mixed, as view-dependent prompting does (threestudio, Perp-Neg: Armandpour et al. 2023). Most groups are shown the scene as it was
+// before the edit, as inpainting models are (Rombach et al. 2022). What counts of a picture is mostly the thing, then what may change: of
+// a redrawn view nothing else is kept.
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +13,7 @@
 #include "engine/neural/mixed_precision.h"
 #include "engine/neural/scene_views.h"
 #include "engine/neural/schedulers.h"
+#include "engine/neural/starter_inpainting.h"
 #include "engine/neural/starter_stages.h"
 #include "engine/neural/starter_words.h"
 
@@ -19,8 +21,8 @@ namespace gse::neural {
 namespace {
 
 constexpr int ShapeTimesteps = 1000;
-// Weight of a latent cell: of the surroundings, what is added for the object and for an accessory, which is small.
-constexpr double Surroundings = 0.4, OfObject = 1, OfAccessory = 2;
+// Weight of a latent cell: where nothing may change, where something may, what is added for the object and for an accessory, which is small.
+constexpr double Kept = 0.1, Changed = 0.4, OfObject = 1, OfAccessory = 2;
 constexpr int CleanTimesteps = 20;      // below it a view counts as drawn
 constexpr double CleanShare = 0.25;     // of groups with such views, one or two of them
 constexpr double UnknownCameras = 0.1;  // of groups that are not told from where they were taken
@@ -33,6 +35,7 @@ struct ShapeBatch {
     torch::Tensor timesteps;   // [B] long
     torch::Tensor weights;     // [B,1,G,G], mean 1 per picture
     torch::Tensor cameras;     // [B,CameraFeatures]
+    torch::Tensor inpaint;     // [B,2+C,G,G], inpainting(); undefined where there are no pictures of before
 };
 
 class ShapeBatches {
@@ -52,11 +55,20 @@ public:
         batch.timesteps = torch::empty({size}, torch::kLong);
         batch.weights = torch::empty({size, 1, cells, cells});
         batch.cameras = torch::zeros({size, CameraFeatures});
+        auto mask = torch::ones({size, 1, cells, cells}), shown = torch::zeros({size, 1, cells, cells});
         std::vector<std::int64_t> rows;
-        for (std::int64_t g = 0; g < groups; ++g) fill_group(batch, g * together(), rows, random);
+        for (std::int64_t g = 0; g < groups; ++g) {
+            fill_group(batch, g * together(), rows, random);
+            if (training_.before.mean.defined()) fill_cells(mask, shown, rows, g * together(), random);
+        }
         const auto index = torch::tensor(rows, torch::kLong);
         batch.latents = training_.latents.mean.index_select(0, index) / training_.latents.deviation;
-        batch.weights = torch::max_pool2d(batch.weights, 3, 1, 1) + Surroundings;   // a thing's rim is drawn, too
+        if (training_.before.mean.defined()) {
+            const auto before = training_.before.mean.index_select(0, index) / training_.latents.deviation;
+            batch.inpaint = inpainting(mask, shown, before);
+            batch.latents = torch::where(mask > 0, batch.latents, before);   // as views are redrawn: their surroundings stay
+        }
+        batch.weights = torch::max_pool2d(batch.weights, 3, 1, 1) + Kept + (Changed - Kept) * mask;   // a thing's rim is drawn, too
         batch.weights = batch.weights / batch.weights.mean({1, 2, 3}, true);
         auto generator = at::make_generator<at::CPUGeneratorImpl>(random.next());
         batch.noise = torch::randn(batch.latents.sizes(), generator);
@@ -86,6 +98,25 @@ private:
             fill_weights(batch, first + k, picture);
             if (!silent) fill_sentences(batch, first + k, picture, words);
             rows.push_back(static_cast<std::int64_t>(picture));
+        }
+    }
+
+    /// What may change and what is shown in each view of a group, whose pictures are the last of `rows`.
+    void fill_cells(torch::Tensor& mask, torch::Tensor& shown, const std::vector<std::int64_t>& rows, std::int64_t first, Random& random) const {
+        const auto cells = static_cast<std::size_t>(training_.pictures.cells * training_.pictures.cells);
+        const auto part = [&](std::int64_t row, StarterPart which) {
+            const auto place = static_cast<std::size_t>(rows[static_cast<std::size_t>(row)]) * StarterPartCount + static_cast<std::size_t>(which);
+            return std::span(training_.pictures.coverage).subspan(place * cells, cells);
+        };
+        bool accessory = false;
+        for (auto k = first; k < first + together(); ++k)
+            accessory = accessory || std::ranges::any_of(part(k, StarterPart::Accessory), [](auto covered) { return covered > 0; });
+        const auto task = draw_inpaint_task(accessory, random);
+        for (auto k = first; k < first + together(); ++k) {
+            const auto drawn = draw_inpaint_cells(task, part(k, accessory ? StarterPart::Accessory : StarterPart::Object),
+                                                  training_.pictures.cells, random);
+            std::copy(drawn.mask.begin(), drawn.mask.end(), mask[k].data_ptr<float>());
+            std::copy(drawn.shown.begin(), drawn.shown.end(), shown[k].data_ptr<float>());
         }
     }
 
@@ -133,20 +164,20 @@ std::pair<torch::Tensor, std::vector<double>> shape_loss(StarterNetworks& networ
         const auto encoded = networks.text->forward(batch.ids).last_hidden;
         const auto size = batch.latents.size(0);
         const auto context = torch::lerp(encoded.narrow(0, 0, size), encoded.narrow(0, size, size), batch.next_share.to(encoded.scalar_type()));
-        predicted = networks.unet->forward(noisy, batch.timesteps, context, nullptr, {}, {together, batch.cameras}).to(torch::kFloat);
+        predicted = networks.unet->forward(noisy, batch.timesteps, context, nullptr, {}, {together, batch.cameras, batch.inpaint}).to(torch::kFloat);
     }
     const auto squared = (predicted - velocity).square();
     const auto loss = (squared * batch.weights).mean();
     return {loss, {loss.item<double>(), squared.mean().item<double>()}};
 }
 
-/// The UNet's matrices and convolutions, all of the embedding of cameras, and the token embeddings, of which only the rows of `fresh`
+/// The UNet's matrices and convolutions, all of what it is told and shown of the scene, and the token embeddings, of which only the rows of `fresh`
 /// ever get a gradient.
 Parameters trained_parameters(StarterNetworks& networks, const std::vector<std::int64_t>& fresh) {
     for (auto& parameter : networks.text->parameters()) parameter.set_requires_grad(false);
     Parameters parameters;
     for (auto& item : networks.unet->named_parameters()) {
-        const bool trained = item.value().dim() >= 2 || item.key().starts_with("camera_embedding.");
+        const bool trained = item.value().dim() >= 2 || is_scene_input(item.key());
         item.value().set_requires_grad(trained);
         if (trained) parameters.push_back(item.value());
     }
@@ -164,8 +195,8 @@ Parameters trained_parameters(StarterNetworks& networks, const std::vector<std::
 
 void to_device(ShapeBatch& batch, const torch::Device& device) {
     if (device.is_cpu()) return;
-    for (auto* tensor : {&batch.ids, &batch.next_share, &batch.latents, &batch.noise, &batch.timesteps, &batch.weights, &batch.cameras})
-        *tensor = tensor->to(device);
+    for (auto* tensor : {&batch.ids, &batch.next_share, &batch.latents, &batch.noise, &batch.timesteps, &batch.weights, &batch.cameras, &batch.inpaint})
+        if (tensor->defined()) *tensor = tensor->to(device);
 }
 
 }  // namespace

@@ -48,6 +48,9 @@ StarterParts fresh_parts(const StarterConfigs& configs, std::uint64_t seed);
 StarterParts initial_parts(const std::filesystem::path& folder, const StarterConfigs& configs,
                            const StarterVocabulary& vocabulary);
 
+/// The folder's UNet with its LoRA for new things and the inputs that go with it, where it has them; else with inputs that say nothing.
+UNet initial_shapes(const std::filesystem::path& folder, UNet unet);
+
 /// Ids of the tokens of `vocabulary` that are new to the folder's model. Throws Error as initial_parts() does.
 std::vector<std::int64_t> fresh_tokens(const std::filesystem::path& folder, const StarterVocabulary& vocabulary);
 
@@ -68,6 +71,7 @@ struct UNetTraining {
     const StarterSource& source;
     const StarterVocabulary& vocabulary;
     std::function<void(StarterNetworks& networks)> preview;
+    StarterLatents before = {};   // of the pictures of source.before(), where there are any
 };
 
 /// Trains text encoder and UNet (v-prediction) with the attention losses and leaves the averaged weights in them.

@@ -122,7 +122,7 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
         auto other = initial_parts(parameters.average, configs, vocabulary);
         average_networks(parts, other, parameters.average);
     }
-    if (parameters.shapes) parts.networks.unet = with_cameras(parts.networks.unet);
+    if (parameters.shapes) parts.networks.unet = initial_shapes(parameters.initial, parts.networks.unet);
     std::filesystem::create_directories(work);
     StarterPictures pictures;
     if (new_vae || new_unet) pictures = load_or_render_pictures(parameters, source, work, job);
@@ -134,7 +134,9 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
     log::info("latents have a standard deviation of {:.3f}", latents.deviation);
 
     configs.vae.scaling_factor = new_vae ? 1.0 / latents.deviation : parts.scaling_factor;
-    UNetTraining training{configs, parameters, pictures, latents, source, vocabulary, {}};
+    UNetTraining training{configs, parameters, pictures, latents, source, vocabulary, {}, {}};
+    if (new_unet && parameters.shapes && source.before() != nullptr)
+        training.before = encode_pictures(parts.vae, parameters, load_or_render_pictures(parameters, *source.before(), work, job));
     // The unfinished model can be tried while the training goes on.
     training.preview = [&](StarterNetworks& averaged) {
         export_starter(training, parts.vae, averaged, work / "preview");

@@ -59,6 +59,8 @@ public:
     /// asked for with one seed differ in the side only.
     virtual int views_of_scene() const { return 1; }
     virtual StarterCamera camera(std::uint64_t index) const { return static_cast<void>(index), StarterCamera{}; }
+    /// The same views of the same scenes without what the caption's edit brings: the accessory, else the object. null = there are none.
+    virtual const StarterSource* before() const { return nullptr; }
     /// Changes when the same index would give another picture (names the picture cache).
     virtual std::string identity() const = 0;
     /// Pictures for the image-text encoder; null = there are none.
@@ -166,8 +168,8 @@ struct StarterTrainParameters {
           Range{0, 1});
         f("caption_dropout", self.caption_dropout, "Share of empty captions (classifier-free guidance).", Range{0, 1});
         f("shapes", self.shapes,
-          "Leave the initial model as it is and train a LoRA beside it for views in which a new thing is drawn, told exactly from where; neither "
-          "VAE nor image-text encoder are trained then.");
+          "Leave the initial model as it is and train a LoRA beside it for views in which a new thing is drawn, told exactly from where, on from "
+          "the one that it has, if any; neither VAE nor image-text encoder are trained then.");
         f("shape_rank", self.shape_rank, "Rank of that LoRA.", Range{1, 1024});
         f("bf16", self.bf16, "Convolutions and matrix products of text encoder and UNet in bfloat16, norms and losses in float.");
         f("device", self.device, "cpu or cuda.");

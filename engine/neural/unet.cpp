@@ -70,6 +70,8 @@ UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : con
         camera_linear_2 = camera->register_module("linear_2", Linear(LinearImpl::Shape{build.time_width(), build.time_width()}, options));
         register_module("camera_embedding", camera);
     }
+    if (config_.inpaint_channels > 0)
+        conv_inpaint = register_module("conv_inpaint", Conv2d(Conv2dImpl::Shape{config_.inpaint_channels, widths[0]}, options));
 
     std::vector<std::int64_t> skips = {widths[0]};  // channels of the stored activations
     build_down(build, skips);
@@ -201,6 +203,8 @@ torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor
     const auto time = apply_silu(embedded);
     const auto together = [&](const torch::Tensor& map) { return map.size(2) < sample.size(2) ? views.together : 1; };
     auto x = conv_in->forward(sample.to(type).contiguous(torch::MemoryFormat::ChannelsLast));
+    if (views.inpaint.defined() && !conv_inpaint.is_empty())
+        x = x + conv_inpaint->forward(views.inpaint.to(type).contiguous(torch::MemoryFormat::ChannelsLast));
     std::vector<torch::Tensor> skips = {x};
     for (const auto& level : down_) {
         for (std::size_t j = 0; j < level.resnets.size(); ++j) {

@@ -41,6 +41,7 @@ struct AttentionCapture {
 struct SceneViews {
     std::int64_t together = 1;   // consecutive rows of the batch that show one scene; divides the batch
     torch::Tensor cameras = {};  // [B,camera_dim]; undefined = nothing is known of them
+    torch::Tensor inpaint = {};  // [B,inpaint_channels,h,w], inpainting(); undefined = they are not shown what was there
 };
 
 /// Embedding [B,width] of guidance scales w [B] (LCM's is the scale - 1), fp32: sines, then cosines, of 1000 w f_i with
@@ -77,6 +78,7 @@ private:
     Conv2d conv_in{nullptr}, conv_out{nullptr};
     Linear time_linear_1{nullptr}, time_linear_2{nullptr}, time_cond_proj{nullptr};
     Linear camera_linear_1{nullptr}, camera_linear_2{nullptr};   // where it is told of cameras
+    Conv2d conv_inpaint{nullptr};                                // where it is shown what was there
     GroupNorm conv_norm_out{nullptr};
     std::vector<Level> down_, up_;
     std::unique_ptr<Level> mid_;

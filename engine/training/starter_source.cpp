@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "engine/base/thread_pool.h"
 #include "engine/raster/rasterizer.h"
@@ -86,11 +87,13 @@ struct ShotPainter {
 
 /// A picture of `scene`; its parts' coverage, too.
 neural::StarterPicture painted(ShotPainter& painter, const synth::SynthScene& scene, const Camera& camera,
-                               const std::array<float, 3>& background) {
+                               const std::array<float, 3>& background, std::span<const float> opacity_logit = {}) {
     neural::StarterPicture picture;
     raster::Settings settings;
     settings.background = background;
-    painter.rasterizer->forward(scene.scene.gaussians.spans(), camera, settings, painter.output);
+    auto spans = scene.scene.gaussians.spans();
+    if (!opacity_logit.empty()) spans.opacity_logit = opacity_logit;
+    painter.rasterizer->forward(spans, camera, settings, painter.output);
     picture.rgb = to_bytes(painter.output.colour);
     painter.paint_parts(scene, camera, picture);
     return picture;
@@ -117,23 +120,47 @@ Camera close_camera(const synth::SynthScene& scene, const Shot& shot, int size) 
     return orbit_camera(orbit, shot.azimuth, size, size);
 }
 
+/// A scene before the edit of which it is the result: without its accessory, else with the shadow of another thing, which itself is gone.
+struct SceneBefore {
+    synth::SynthScene scene;
+    std::vector<float> opacity_logit;   // [N]
+
+    explicit SceneBefore(synth::SceneSpec spec, Random random) {
+        constexpr float Nothing = -20;
+        const bool replaced = spec.accessory.empty();
+        if (replaced) spec.object = synth::object_words()[random.below(synth::object_words().size())];
+        spec.accessory.clear(), spec.accessory_colour.clear();
+        scene = synth::generate(spec);
+        const auto given = scene.scene.gaussians.opacity_logit();
+        opacity_logit.assign(given.begin(), given.end());
+        for (std::size_t row = 0; replaced && row < opacity_logit.size(); ++row)
+            if (scene.parts[row] == synth::Part::Object) opacity_logit[row] = Nothing;
+    }
+};
+
 /// Some views of every scene, with the accessory that it has, from any side; half of the accessories from close by.
 class ShapeSource : public neural::StarterSource {
 public:
-    explicit ShapeSource(std::uint64_t seed) : seed_(seed) {}
+    /// `edited`: with what is new in it; else as it was before.
+    explicit ShapeSource(std::uint64_t seed, bool edited = true) : seed_(seed), edited_(edited) {
+        if (edited) before_ = std::make_unique<ShapeSource>(seed, false);
+    }
 
     neural::StarterPicture picture(std::uint64_t index, int size) const override {
         thread_local ShotPainter painter;
         thread_local std::pair<std::uint64_t, std::uint64_t> known{~0ull, ~0ull};   // views of a scene are asked for one after the other
         thread_local synth::SynthScene scene;
+        thread_local std::optional<SceneBefore> before;
         const Shot shot = shot_of(index);
-        if (const std::pair wanted{seed_, index / Views}; known != wanted) {
+        if (const std::pair wanted{seed_ * 2 + (edited_ ? 1 : 0), index / Views}; known != wanted) {
             scene = synth::generate(shot.spec);
+            if (!edited_) before.emplace(shot.spec, Random::stream(seed_ + 1, index / Views));
             known = wanted;
         }
         const auto camera = shot.close_share > 0 ? close_camera(scene, shot, size)
                                                  : synth::scene_camera(scene, shot.azimuth, shot.elevation, shot.zoom, size, size);
-        return painted(painter, scene, camera, shot.background);
+        return edited_ ? painted(painter, scene, camera, shot.background)
+                       : painted(painter, before->scene, camera, shot.background, before->opacity_logit);
     }
     neural::StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool) const override {
         constexpr double Plain = 0.6, AnySide = 0.05;   // shares: the sentence in its plainest form; one that does not say from where
@@ -150,7 +177,8 @@ public:
         const Shot shot = shot_of(index);
         return {shot.azimuth, shot.elevation};
     }
-    std::string identity() const override { return "synthetic shapes 3 " + std::to_string(seed_); }
+    const StarterSource* before() const override { return before_.get(); }
+    std::string identity() const override { return (edited_ ? "synthetic shapes 3 " : "synthetic shapes 3 before ") + std::to_string(seed_); }
 
 private:
     static constexpr int Views = 8;   // of a scene
@@ -172,6 +200,8 @@ private:
         return shot;
     }
     std::uint64_t seed_;
+    bool edited_;
+    std::unique_ptr<ShapeSource> before_;
 };
 
 class SyntheticSource : public neural::StarterSource {

@@ -58,35 +58,72 @@ DOCTEST_TEST_CASE("views that are the same see nothing new in each other") {
 
 DOCTEST_TEST_CASE("an embedding of cameras says nothing before it was trained") {
     const torch::NoGradGuard no_grad;
-    const UNet plain = small_unet(), told = with_cameras(plain);
+    const UNet plain = small_unet(), told = with_scene_inputs(plain);
     torch::manual_seed(8);
     const auto views = torch::randn({2, 4, 8, 8}), words = torch::randn({2, 3, 12}), t = torch::full({1}, 100.0f);
     const auto cameras = torch::randn({2, CameraFeatures});
     const auto before = plain->forward(views, t, words);
     DOCTEST_CHECK(torch::equal(before, told->forward(views, t, words, nullptr, {}, {1, cameras})));
-    for (auto& [name, weight] : camera_weights(told)) weight.fill_(0.1);
+    for (auto& [name, weight] : scene_input_weights(told)) weight.fill_(0.1);
     DOCTEST_CHECK(!torch::allclose(before, told->forward(views, t, words, nullptr, {}, {1, cameras}), 1e-4, 1e-5));
     DOCTEST_CHECK(torch::equal(before, told->forward(views, t, words)));   // where nothing is known of them
-    DOCTEST_CHECK(torch::equal(before, without_cameras(told)->forward(views, t, words)));
-    DOCTEST_CHECK(camera_weights(told).size() == 4);
-    DOCTEST_CHECK(camera_weights(plain).empty());
+    DOCTEST_CHECK(torch::equal(before, without_scene_inputs(told)->forward(views, t, words)));
+    DOCTEST_CHECK(scene_input_weights(told).size() == 6);
+    DOCTEST_CHECK(scene_input_weights(plain).empty());
+}
+
+DOCTEST_TEST_CASE("what was there is shown where it may be, and says nothing before that was trained") {
+    const torch::NoGradGuard no_grad;
+    const UNet plain = small_unet(), shown_it = with_scene_inputs(plain);
+    torch::manual_seed(9);
+    const auto views = torch::randn({2, 4, 8, 8}), words = torch::randn({2, 3, 12}), t = torch::full({1}, 100.0f);
+    auto mask = torch::zeros({2, 1, 8, 8}), shown = torch::ones({2, 1, 8, 8});
+    mask.slice(2, 2, 5) = 1;
+    shown.slice(2, 3, 4) = 0;
+    auto latents = torch::randn({2, 4, 8, 8});
+    const auto output = [&] { return shown_it->forward(views, t, words, nullptr, {}, {1, {}, inpainting(mask, shown, latents)}); };
+    DOCTEST_CHECK(torch::equal(plain->forward(views, t, words), output()));
+    for (auto& [name, weight] : scene_input_weights(shown_it)) weight.normal_();
+    const auto told = output();
+    DOCTEST_CHECK(!torch::allclose(plain->forward(views, t, words), told, 1e-4, 1e-5));
+    latents.slice(2, 3, 4) += 1;   // not shown
+    DOCTEST_CHECK(torch::equal(told, output()));
+    latents.slice(2, 4, 5) += 1;
+    DOCTEST_CHECK(!torch::allclose(told, output(), 1e-4, 1e-5));
+}
+
+DOCTEST_TEST_CASE("inputs of before there was inpainting are read without it, or with one to train") {
+    const gse::test::ScratchFolder scratch;
+    const auto path = scratch.path() / "cameras.safetensors";
+    const UNet plain = small_unet();
+    auto weights = scene_input_weights(with_scene_inputs(plain));
+    std::erase_if(weights, [](const auto& weight) { return weight.first.starts_with("conv_inpaint."); });
+    for (auto& [name, weight] : weights) weight = torch::full_like(weight, 0.25).detach();
+    write_safetensors(path, weights);
+    const SafetensorsFile file(path);
+    DOCTEST_CHECK(with_scene_inputs(plain, file)->config().inpaint_channels == 0);
+    DOCTEST_CHECK(scene_input_weights(with_scene_inputs(plain, file)).size() == 4);
+    const auto more = with_scene_inputs(plain, file, true);
+    DOCTEST_CHECK(more->config().inpaint_channels == 6);
+    for (const auto& [name, weight] : scene_input_weights(more))
+        DOCTEST_CHECK_MESSAGE((weight == (name.starts_with("conv_inpaint.") ? 0.0 : 0.25)).all().item<bool>(), name);
 }
 
 DOCTEST_TEST_CASE("an embedding of cameras is read as it was written, and refused where it does not fit") {
     const gse::test::ScratchFolder scratch;
     const auto path = scratch.path() / "cameras.safetensors";
     const UNet plain = small_unet();
-    auto weights = camera_weights(with_cameras(plain));
+    auto weights = scene_input_weights(with_scene_inputs(plain));
     for (auto& [name, weight] : weights) weight = torch::full_like(weight, 0.25).detach();
     write_safetensors(path, weights);
-    const auto read = camera_weights(with_cameras(plain, SafetensorsFile(path)));
+    const auto read = scene_input_weights(with_scene_inputs(plain, SafetensorsFile(path)));
     for (std::size_t i = 0; i < weights.size(); ++i) DOCTEST_CHECK(torch::equal(read[i].second, weights[i].second));
-    weights.back().second = torch::zeros({2, 2});
+    weights[1].second = torch::zeros({2, 2});
     write_safetensors(path, weights);
-    DOCTEST_CHECK_THROWS_WITH_AS(with_cameras(plain, SafetensorsFile(path)), doctest::Contains("another shape"), gse::Error);
-    weights.pop_back();
+    DOCTEST_CHECK_THROWS_WITH_AS(with_scene_inputs(plain, SafetensorsFile(path)), doctest::Contains("another shape"), gse::Error);
+    weights.erase(weights.begin() + 1);
     write_safetensors(path, weights);
-    DOCTEST_CHECK_THROWS_WITH_AS(with_cameras(plain, SafetensorsFile(path)), doctest::Contains("has no"), gse::Error);
+    DOCTEST_CHECK_THROWS_WITH_AS(with_scene_inputs(plain, SafetensorsFile(path)), doctest::Contains("has no"), gse::Error);
 }
 
 DOCTEST_TEST_CASE("camera features turn with the camera, and are zero where nothing is known") {

@@ -76,8 +76,9 @@ public:
             }
         return picture;
     }
-    /// `more`: words beside those of its captions.
-    explicit ToySource(std::vector<std::string> more = {}) : more_(std::move(more)) {}
+    /// `more`: words beside those of its captions. `blank`: what there is to see before its squares.
+    explicit ToySource(std::vector<std::string> more = {}, const StarterSource* blank = nullptr) : more_(std::move(more)), blank_(blank) {}
+    const StarterSource* before() const override { return blank_; }
     StarterCaption caption(std::uint64_t index, std::uint64_t, bool) const override {
         const std::string colour = ToyColours[Layout(index, 32).colour];
         return {"a " + colour + " square, front view",
@@ -102,6 +103,7 @@ private:
     };
     ToyTwins twins_;
     std::vector<std::string> more_;
+    const StarterSource* blank_;
 };
 
 StarterTrainParameters toy_parameters() {
@@ -267,6 +269,38 @@ DOCTEST_TEST_CASE("a LoRA for shapes leaves the model beside it as it is") {
     // Words that only tell it a side are none that it knows things by.
     DOCTEST_CHECK(facts.at("vocabulary") == read_json_file(first / "gseditpro.json").at("vocabulary"));
     DOCTEST_CHECK(!facts.contains("profile"));
+}
+
+DOCTEST_TEST_CASE("training of new shapes goes on from those that the model has, and shows it what was there") {
+    const gse::test::ScratchFolder scratch;
+    const auto folder = [&](const char* name) { return scratch.path() / name; };
+    auto parameters = toy_parameters();
+    parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 2;
+    train_starter(parameters, ToySource(), folder("work1"), folder("first"), {});
+    const ToyTwins blank;
+    parameters.shapes = true;
+    parameters.shape_rank = 1024;   // holds all of the change
+    parameters.unet_steps = 4;
+    parameters.initial = folder("first").string();
+    train_starter(parameters, ToySource({}, &blank), folder("work2"), folder("second"), {});
+    const SafetensorsFile inputs(folder("second") / "shape_cameras.safetensors");
+    DOCTEST_CHECK(inputs.tensor("conv_inpaint.weight").abs().sum().item<double>() > 0);
+    // So small a step goes nowhere: what comes out is what went in.
+    parameters.unet_lr = 1e-12;
+    parameters.unet_steps = 1;
+    parameters.initial = folder("second").string();
+    train_starter(parameters, ToySource({}, &blank), folder("work3"), folder("third"), {});
+    const auto second = read_lora(folder("second") / "shapes.safetensors"), third = read_lora(folder("third") / "shapes.safetensors");
+    DOCTEST_REQUIRE(second.unet.size() == third.unet.size());
+    constexpr double Half = 2e-3;   // both factors are written with 11 bits
+    for (std::size_t i = 0; i < second.unet.size(); ++i) {
+        const auto change = [](const LoraFactor& f) { return f.scale() * torch::matmul(f.up.flatten(1).to(torch::kFloat), f.down.flatten(1).to(torch::kFloat)); };
+        const auto a = change(second.unet[i]), b = change(third.unet[i]);
+        DOCTEST_CHECK_MESSAGE((a - b).norm().item<double>() <= Half * a.norm().item<double>() + 1e-6, second.unet[i].layer);
+    }
+    const SafetensorsFile kept(folder("third") / "shape_cameras.safetensors");
+    for (const auto& [name, entry] : inputs.entries())
+        DOCTEST_CHECK_MESSAGE(torch::allclose(inputs.tensor(name).to(torch::kFloat), kept.tensor(name).to(torch::kFloat), Half, 1e-6), name);
 }
 
 DOCTEST_TEST_CASE("mixed precision trains nearly as float does, and is not the same") {

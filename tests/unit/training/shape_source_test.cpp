@@ -1,6 +1,7 @@
 // Pictures for drawing new things: several of one scene, each with its camera.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <numbers>
 #include <set>
 
@@ -48,4 +49,28 @@ DOCTEST_TEST_CASE("a picture of a scene does not depend on which was asked for b
     DOCTEST_CHECK(source->picture(1, Size).rgb == picture);
     DOCTEST_CHECK(other->picture(1, Size).rgb != picture);
     DOCTEST_CHECK(source->picture(1, Size).rgb == picture);
+}
+
+DOCTEST_TEST_CASE("a view of before lacks what the caption's edit brings, and nothing else where that is something worn") {
+    const auto source = gse::training::make_shape_source(6);
+    DOCTEST_REQUIRE(source->before() != nullptr);
+    DOCTEST_CHECK(source->before()->before() == nullptr);
+    DOCTEST_CHECK(source->before()->identity() != source->identity());
+    const auto views = static_cast<std::uint64_t>(source->views_of_scene());
+    constexpr int Cells = Size / 4;
+    std::size_t worn = 0, replaced = 0;
+    for (std::uint64_t index = 0; index < 24 * views; index += views + 1) {
+        const auto after = source->picture(index, Size), before = source->before()->picture(index, Size);
+        DOCTEST_CHECK(before.rgb != after.rgb);
+        const std::uint8_t* accessory = &after.coverage[2 * Cells * Cells];
+        const bool wears = std::any_of(accessory, accessory + Cells * Cells, [](int covered) { return covered > 0; });
+        (wears ? worn : replaced) += 1;
+        if (!wears) continue;
+        // Away from what is worn and from its shadow most pixels are the same.
+        std::size_t same = 0;
+        for (std::size_t i = 0; i < after.rgb.size(); ++i) same += after.rgb[i] == before.rgb[i];
+        DOCTEST_CHECK(same > after.rgb.size() / 4);
+    }
+    DOCTEST_CHECK(worn > 3);
+    DOCTEST_CHECK(replaced > 3);
 }
