@@ -12,6 +12,7 @@ namespace {
 
 constexpr double NothingShare = 0.2;       // of groups that are shown nothing
 constexpr double BackgroundShare = 0.45;   // of other groups without an accessory: those in which what lies behind is known
+constexpr double RoomShare = 0.8;          // of regions where another thing takes a place
 constexpr double BoxShare = 0.5, EllipseShare = 0.25;   // of regions; the others are grown outlines
 constexpr std::uint64_t LargestMargin = 4;              // cells
 constexpr int LeastCover = 13;                          // of 255: less is the soft rim of a splat
@@ -84,14 +85,17 @@ InpaintTask draw_inpaint_task(bool accessory, Random& random) {
     return random.uniform() < BackgroundShare ? InpaintTask::Background : InpaintTask::Around;
 }
 
-InpaintCells draw_inpaint_cells(InpaintTask task, std::span<const std::uint8_t> covered, int side, Random& random) {
+InpaintCells draw_inpaint_cells(InpaintTask task, std::span<const std::uint8_t> covered, std::span<const std::uint8_t> room, int side,
+                                Random& random) {
     const auto count = static_cast<std::size_t>(side) * static_cast<std::size_t>(side);
-    GSE_CHECK_EQ(covered.size(), count);
+    GSE_CHECK(covered.size() == count && room.size() == count);
     if (task == InpaintTask::Nothing) return {std::vector<float>(count, 1.0f), std::vector<float>(count, 0.0f)};
     InpaintCells cells{std::vector<float>(count), std::vector<float>(count, 1.0f)};
-    for (std::size_t i = 0; i < count; ++i) cells.mask[i] = covered[i] >= LeastCover ? 1.0f : 0.0f;
+    const bool takes_place = task != InpaintTask::Scene && std::ranges::any_of(room, [](auto cell) { return cell > 0; });
+    const bool in_room = takes_place && random.uniform() < RoomShare;
+    for (std::size_t i = 0; i < count; ++i) cells.mask[i] = (in_room ? room[i] > 0 : covered[i] >= LeastCover) ? 1.0f : 0.0f;
     const Cells mask{side, cells.mask};
-    add_region(mask, random);
+    if (!in_room) add_region(mask, random);
     if (task == InpaintTask::Around) {
         for (std::size_t i = 0; i < count; ++i) cells.shown[i] = 1 - cells.mask[i];
     } else if (task == InpaintTask::Background) {

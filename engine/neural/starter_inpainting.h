@@ -26,8 +26,10 @@ struct InpaintCells {
     std::vector<float> shown;   // what was there is shown
 };
 
-/// `covered` [G,G]: how much of each cell what is new covers, 0..255. The mask holds all of it and a cell around it: a box, an ellipse or a
-/// grown outline of random extent, since the place of an edit says little about the outline of what comes there.
-InpaintCells draw_inpaint_cells(InpaintTask task, std::span<const std::uint8_t> covered, int side, Random& random);
+/// `covered` [G,G]: how much of each cell what is new covers, 0..255; `room` [G,G]: of that of an old thing. Where another thing takes
+/// its place the mask mostly is the room. Otherwise it holds all that is covered and a cell around it: a box, an ellipse or a grown
+/// outline of random extent, since the place of an edit says little about the outline of what comes there.
+InpaintCells draw_inpaint_cells(InpaintTask task, std::span<const std::uint8_t> covered, std::span<const std::uint8_t> room, int side,
+                                Random& random);
 
 }  // namespace gse::neural

@@ -59,12 +59,12 @@ public:
         std::vector<std::int64_t> rows;
         for (std::int64_t g = 0; g < groups; ++g) {
             fill_group(batch, g * together(), rows, random);
-            if (training_.before.mean.defined()) fill_cells(mask, shown, rows, g * together(), random);
+            if (training_.before_latents.mean.defined()) fill_cells(mask, shown, rows, g * together(), random);
         }
         const auto index = torch::tensor(rows, torch::kLong);
         batch.latents = training_.latents.mean.index_select(0, index) / training_.latents.deviation;
-        if (training_.before.mean.defined()) {
-            const auto before = training_.before.mean.index_select(0, index) / training_.latents.deviation;
+        if (training_.before_latents.mean.defined()) {
+            const auto before = training_.before_latents.mean.index_select(0, index) / training_.latents.deviation;
             batch.inpaint = inpainting(mask, shown, before);
             batch.latents = torch::where(mask > 0, batch.latents, before);   // as views are redrawn: their surroundings stay
         }
@@ -104,17 +104,17 @@ private:
     /// What may change and what is shown in each view of a group, whose pictures are the last of `rows`.
     void fill_cells(torch::Tensor& mask, torch::Tensor& shown, const std::vector<std::int64_t>& rows, std::int64_t first, Random& random) const {
         const auto cells = static_cast<std::size_t>(training_.pictures.cells * training_.pictures.cells);
-        const auto part = [&](std::int64_t row, StarterPart which) {
+        const auto part = [&](const StarterPictures& pictures, std::int64_t row, StarterPart which) {
             const auto place = static_cast<std::size_t>(rows[static_cast<std::size_t>(row)]) * StarterPartCount + static_cast<std::size_t>(which);
-            return std::span(training_.pictures.coverage).subspan(place * cells, cells);
+            return std::span(pictures.coverage).subspan(place * cells, cells);
         };
         bool accessory = false;
         for (auto k = first; k < first + together(); ++k)
-            accessory = accessory || std::ranges::any_of(part(k, StarterPart::Accessory), [](auto covered) { return covered > 0; });
+            accessory = accessory || std::ranges::any_of(part(training_.pictures, k, StarterPart::Accessory), [](auto covered) { return covered > 0; });
         const auto task = draw_inpaint_task(accessory, random);
         for (auto k = first; k < first + together(); ++k) {
-            const auto drawn = draw_inpaint_cells(task, part(k, accessory ? StarterPart::Accessory : StarterPart::Object),
-                                                  training_.pictures.cells, random);
+            const auto drawn = draw_inpaint_cells(task, part(training_.pictures, k, accessory ? StarterPart::Accessory : StarterPart::Object),
+                                                  part(training_.before, k, StarterPart::Object), training_.pictures.cells, random);
             std::copy(drawn.mask.begin(), drawn.mask.end(), mask[k].data_ptr<float>());
             std::copy(drawn.shown.begin(), drawn.shown.end(), shown[k].data_ptr<float>());
         }

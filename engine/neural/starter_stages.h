@@ -71,7 +71,8 @@ struct UNetTraining {
     const StarterSource& source;
     const StarterVocabulary& vocabulary;
     std::function<void(StarterNetworks& networks)> preview;
-    StarterLatents before = {};   // of the pictures of source.before(), where there are any
+    StarterPictures before = {};           // those of source.before(), where there are any
+    StarterLatents before_latents = {};
 };
 
 /// Trains text encoder and UNet (v-prediction) with the attention losses and leaves the averaged weights in them.

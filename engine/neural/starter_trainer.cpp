@@ -134,9 +134,11 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
     log::info("latents have a standard deviation of {:.3f}", latents.deviation);
 
     configs.vae.scaling_factor = new_vae ? 1.0 / latents.deviation : parts.scaling_factor;
-    UNetTraining training{configs, parameters, pictures, latents, source, vocabulary, {}, {}};
-    if (new_unet && parameters.shapes && source.before() != nullptr)
-        training.before = encode_pictures(parts.vae, parameters, load_or_render_pictures(parameters, *source.before(), work, job));
+    UNetTraining training{configs, parameters, pictures, latents, source, vocabulary, {}, {}, {}};
+    if (new_unet && parameters.shapes && source.before() != nullptr) {
+        training.before = load_or_render_pictures(parameters, *source.before(), work, job);
+        training.before_latents = encode_pictures(parts.vae, parameters, training.before);
+    }
     // The unfinished model can be tried while the training goes on.
     training.preview = [&](StarterNetworks& averaged) {
         export_starter(training, parts.vae, averaged, work / "preview");

@@ -59,7 +59,8 @@ public:
     /// asked for with one seed differ in the side only.
     virtual int views_of_scene() const { return 1; }
     virtual StarterCamera camera(std::uint64_t index) const { return static_cast<void>(index), StarterCamera{}; }
-    /// The same views of the same scenes without what the caption's edit brings: the accessory, else the object. null = there are none.
+    /// The same views of the same scenes without what the caption's edit brings: the accessory, else the object, whose coverage then is that
+    /// of the room in which another thing took its place. null = there are none.
     virtual const StarterSource* before() const { return nullptr; }
     /// Changes when the same index would give another picture (names the picture cache).
     virtual std::string identity() const = 0;

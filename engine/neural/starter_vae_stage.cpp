@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "engine/base/random.h"
+#include "engine/neural/parallel_parts.h"
 #include "engine/neural/starter_stages.h"
 
 namespace gse::neural {
@@ -79,7 +80,7 @@ StarterLatents encode_pictures(AutoencoderKl& vae, const StarterTrainParameters&
     constexpr std::int64_t batch = 64;
     StarterLatents latents;
     latents.mean = torch::empty({count, vae->config().latent_channels, cells, cells});
-    for (std::int64_t begin = 0; begin < count; begin += batch) {
+    const auto encode = [&](std::int64_t begin) {
         const std::int64_t size = std::min(batch, count - begin);
         auto* bytes = const_cast<std::uint8_t*>(&pictures.rgb[static_cast<std::size_t>(begin * side * side * 3)]);
         const auto images = torch::from_blob(bytes, {size, side, side, 3}, torch::kUInt8)
@@ -90,7 +91,10 @@ StarterLatents encode_pictures(AutoencoderKl& vae, const StarterTrainParameters&
                                 .contiguous()
                                 .to(device);
         latents.mean.slice(0, begin, begin + size).copy_(vae->encode_moments(images).mean);
-    }
+    };
+    for_parts((count + batch - 1) / batch, device.is_cpu(), [&](std::int64_t first, std::int64_t end) {
+        for (auto k = first; k < end; ++k) encode(k * batch);
+    });
     latents.deviation = latents.mean.std().item<double>();
     return latents;
 }

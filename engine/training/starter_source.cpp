@@ -120,10 +120,39 @@ Camera close_camera(const synth::SynthScene& scene, const Shot& shot, int size) 
     return orbit_camera(orbit, shot.azimuth, size, size);
 }
 
+/// An upright cylinder around a thing, as edits redraw it where another takes its place (edit::room_around()).
+struct Room {
+    Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+
+    static constexpr double LeastWidth = 0.4;   // of its height, half the width of a room
+    double half_width(double share) const {
+        return (1 + share) * std::max({0.5 * (high.x - low.x), 0.5 * (high.z - low.z), LeastWidth * (high.y - low.y)});
+    }
+    /// Which latent cells see some of it, if it is `share` wider and higher than the thing.
+    void store(const Camera& camera, double share, std::uint8_t* cells) const {
+        constexpr int Points = 32;   // per axis: closer than cells
+        const int side = camera.width / LatentCell;
+        const double wide = half_width(share), height = (1 + share) * (high.y - low.y);
+        for (int k = 0; k < Points * Points * Points; ++k) {
+            const double x = 2.0 * (k % Points) / (Points - 1) - 1, z = 2.0 * (k / Points % Points) / (Points - 1) - 1;
+            if (x * x + z * z > 1) continue;
+            // Up is -y: it stands where the thing stands.
+            const Vec3 point{(low.x + high.x) / 2 + wide * x, high.y - height * (k / (Points * Points)) / (Points - 1), (low.z + high.z) / 2 + wide * z};
+            const Vec3 seen = camera.to_camera(point);
+            if (seen.z <= 0) continue;
+            const int u = static_cast<int>(std::floor((camera.fx * seen.x / seen.z + camera.cx) / LatentCell));
+            const int v = static_cast<int>(std::floor((camera.fy * seen.y / seen.z + camera.cy) / LatentCell));
+            if (u >= 0 && v >= 0 && u < side && v < side) cells[v * side + u] = 255;
+        }
+    }
+};
+
 /// A scene before the edit of which it is the result: without its accessory, else with the shadow of another thing, which itself is gone.
 struct SceneBefore {
     synth::SynthScene scene;
     std::vector<float> opacity_logit;   // [N]
+    std::optional<Room> room;           // of the thing that is gone
+    double share = 0;                   // by which it is larger
 
     explicit SceneBefore(synth::SceneSpec spec, Random random) {
         constexpr float Nothing = -20;
@@ -133,8 +162,18 @@ struct SceneBefore {
         scene = synth::generate(spec);
         const auto given = scene.scene.gaussians.opacity_logit();
         opacity_logit.assign(given.begin(), given.end());
-        for (std::size_t row = 0; replaced && row < opacity_logit.size(); ++row)
-            if (scene.parts[row] == synth::Part::Object) opacity_logit[row] = Nothing;
+        if (!replaced) return;
+        room.emplace();
+        share = random.uniform(0.1, 0.3);
+        const auto positions = scene.scene.gaussians.position();
+        for (std::size_t row = 0; row < opacity_logit.size(); ++row) {
+            if (scene.parts[row] != synth::Part::Object) continue;
+            opacity_logit[row] = Nothing;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double at = positions[row * 3 + static_cast<std::size_t>(axis)];
+                room->low[axis] = std::min(room->low[axis], at), room->high[axis] = std::max(room->high[axis], at);
+            }
+        }
     }
 };
 
@@ -159,8 +198,14 @@ public:
         }
         const auto camera = shot.close_share > 0 ? close_camera(scene, shot, size)
                                                  : synth::scene_camera(scene, shot.azimuth, shot.elevation, shot.zoom, size, size);
-        return edited_ ? painted(painter, scene, camera, shot.background)
-                       : painted(painter, before->scene, camera, shot.background, before->opacity_logit);
+        if (edited_) return painted(painter, scene, camera, shot.background);
+        auto picture = painted(painter, before->scene, camera, shot.background, before->opacity_logit);
+        if (before->room) {
+            const std::size_t cells = picture.coverage.size() / neural::StarterPartCount;
+            std::fill_n(picture.coverage.begin() + static_cast<std::ptrdiff_t>(cells), cells, std::uint8_t{0});
+            before->room->store(camera, before->share, &picture.coverage[cells]);
+        }
+        return picture;
     }
     neural::StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool) const override {
         constexpr double Plain = 0.6, AnySide = 0.05;   // shares: the sentence in its plainest form; one that does not say from where
