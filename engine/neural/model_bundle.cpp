@@ -150,6 +150,10 @@ void read_facts(Parts& parts) {
     if (!fs::exists(file)) return;
     auto facts = ModelFacts::from_json(read_json_file(file), file);
     if (!parts.single_file) {
+        for (const auto& named : {facts.shape_lora, facts.shape_cameras})   // read when something new is drawn: too late to learn of it
+            if (!named.empty() && !fs::exists(parts.folder() / named))
+                throw Error(ErrorCode::NotFound, fmt::format("the model has no \"{}\", which this file names", named),
+                            "copy the whole folder of the model, or take the line out", file);
         parts.facts = std::move(facts);
     } else {
         parts.facts.kind = std::move(facts.kind);

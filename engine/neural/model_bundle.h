@@ -41,7 +41,8 @@ struct ModelFacts {
     /// LoRA for redrawing views in which a new thing comes to be, relative to the model's folder. Such a model is told the side exactly:
     /// it knows the eight of edit::side_blend(), and what lies between two by the mixture of both sentences. Empty = it has none.
     std::string shape_lora;
-    /// The embedding of cameras that goes with it, relative to the model's folder; empty = it is not told of cameras.
+    /// The embedding of cameras that goes with it, and the convolution in which it is shown the scene without what may change
+    /// (with_scene_inputs()), relative to the model's folder; empty = it is told and shown nothing.
     std::string shape_cameras;
     /// Views of a scene that are denoised together with it (SceneViews).
     std::int64_t shape_views = 1;

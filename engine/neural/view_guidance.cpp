@@ -89,6 +89,7 @@ struct DiffusionViews::Batch {
     torch::Tensor noise;
     torch::Tensor mask;       // [K,1,h,w]
     torch::Tensor contexts;   // [K,2,T,D] negative, positive
+    torch::Tensor inpaint;    // [K,2+C,h,w] what draws new things is shown of the scene without what may change; else undefined
     torch::Tensor picture;    // [K,C,h,w] what a model that edits pictures is shown: the unedited views; else undefined
     torch::Tensor x;          // what the steps have made of it
 };
@@ -125,7 +126,8 @@ torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views
 DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>& views, const edit::RoundInput& input) {
     const auto cells = bundle_->latent_size();
     Batch batch;
-    std::vector<torch::Tensor> clean(views.size()), original(views.size()), masks;
+    std::vector<torch::Tensor> clean(views.size()), original(views.size()), behind(views.size()), masks;
+    const bool inpaints = input.anew && shapes_ != nullptr && shapes_->unet->config().inpaint_channels > 0;
     const auto latents = [&](const Image& image) {
         return image_to_latents(*bundle_, resize_square(to_tensor(image, bundle_->device), bundle_->image_size()), Codec::Quick);
     };
@@ -134,6 +136,7 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
             const auto& view = views[v];
             clean[v] = latents(view.rendered);
             original[v] = view.rendered.data == view.original.data ? clean[v] : originals_.of(view.original, latents);
+            if (inpaints) behind[v] = view.backdrop.picture.data.empty() ? original[v] : originals_.of(view.backdrop.picture, latents);
         }
     });
     for (const auto& view : views) masks.push_back(latent_mask(view.mask, cells, bundle_->device, input.anew));
@@ -141,6 +144,10 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
     batch.original = torch::cat(original);
     batch.noise = noise(views, input.seed);
     batch.mask = torch::cat(masks);
+    if (inpaints) {
+        const auto may_change = (batch.mask > 0).to(batch.mask.scalar_type());
+        batch.inpaint = inpainting(may_change, torch::ones_like(may_change), torch::cat(behind));
+    }
     const bool edits = takes_picture(bundle_->unet->config());   // such a model is told what to do, not what there is
     batch.contexts = contexts(views, edits || input.sentence.empty() ? prompt_ : input.sentence, input.anew && shapes_ != nullptr);
     if (edits) batch.picture = batch.original / bundle_->scaling_factor();   // as the model is used to it: not scaled
@@ -184,7 +191,9 @@ torch::Tensor DiffusionViews::output_together(const torch::Tensor& x, std::int64
             const auto rows = torch::tensor(groups[g], torch::kInt64).to(x.device());
             auto some = conditioning;
             some.context = conditioning.context.index_select(0, rows);
-            some.views = {static_cast<std::int64_t>(groups[g].size()), conditioning.views.cameras.index_select(0, rows)};
+            some.views.together = static_cast<std::int64_t>(groups[g].size());
+            some.views.cameras = conditioning.views.cameras.index_select(0, rows);
+            if (some.views.inpaint.defined()) some.views.inpaint = conditioning.views.inpaint.index_select(0, rows);
             result.index_copy_(0, rows, guided_output(shapes_->unet, x.index_select(0, rows), t, some));
         }
     });
@@ -203,6 +212,7 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
     std::vector<std::optional<double>> azimuths;
     if (shapes) {
         edited.views.cameras = cameras_of(views).to(bundle_->device);
+        edited.views.inpaint = batch.inpaint;
         for (const auto& view : views) azimuths.push_back(view.azimuth);
     }
     const auto predicted = [&](std::size_t step) {

@@ -4,6 +4,7 @@
 #include "engine/edit/method_fields.h"
 #include "engine/neural/dreambooth.h"
 #include "engine/neural/network_use.h"
+#include "engine/neural/scene_views.h"
 #include "engine/neural/view_guidance.h"
 #include "tests/unit/neural/tiny_model.h"
 #include "tests/unit/neural/wall_views.h"
@@ -134,6 +135,36 @@ DOCTEST_TEST_CASE("redrawn views: those in which a new thing comes to be see eac
     DOCTEST_CHECK(second(2, 1.0f, true) != second(2, 0.3f, true));
     DOCTEST_CHECK(second(1, 1.0f, true) == second(1, 0.3f, true));
     DOCTEST_CHECK(second(2, 1.0f, false) == second(2, 0.3f, false));   // what was there is redrawn view by view
+}
+
+DOCTEST_TEST_CASE("redrawn views: what draws new things is shown what lies behind them, where the model takes that") {
+    const TinyModel model;
+    const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
+    const auto drawn = [&](bool takes, float behind, bool anew) {
+        auto shapes = *bundle;
+        if (takes) shapes.unet = with_scene_inputs(shapes.unet);
+        torch::manual_seed(3);
+        const torch::NoGradGuard no_grad;
+        for (auto& [name, weight] : scene_input_weights(shapes.unet))
+            if (name.starts_with("conv_inpaint.")) weight.normal_(0, 0.1);
+        auto views = wall_views();
+        for (auto& view : views) view.backdrop.picture = Image(40, 40, 3, behind);
+        edit::RoundInput input;
+        input.steps = 2;
+        input.anew = anew;
+        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(std::move(shapes))).edit(views, input, {}).images[1].data;
+    };
+    DOCTEST_CHECK(drawn(true, 0.2f, true) != drawn(true, 0.7f, true));
+    DOCTEST_CHECK(drawn(false, 0.2f, true) == drawn(false, 0.7f, true));
+    DOCTEST_CHECK(drawn(true, 0.2f, false) == drawn(true, 0.7f, false));   // what was there is redrawn as it is
+}
+
+DOCTEST_TEST_CASE("a model that names a LoRA for new things and has none is refused at once") {
+    const TinyModel model;
+    for (const char* key : {"shape_lora", "shape_cameras"}) {
+        gse::write_file(model.path() / "gseditpro.json", std::string("{\"") + key + "\": \"gone.safetensors\"}");
+        DOCTEST_CHECK_THROWS_WITH_AS(load_bundle(model.path()), doctest::Contains("gone.safetensors"), Error);
+    }
 }
 
 DOCTEST_TEST_CASE("redrawing views can be stopped") {
