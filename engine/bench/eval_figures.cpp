@@ -196,6 +196,8 @@ void add_silhouette(const EvalSetting& setting, const edit::EditResult& result, 
         overlap.add(mask_of_rows(painter, result.set, result.label, camera, PartShare), seen.part[v]);
     }
     json["silhouette_iou"] = overlap.iou();
+    json["silhouette_recall"] = overlap.recall();
+    json["silhouette_precision"] = overlap.precision();
 }
 
 /// Share of the old thing's pixels that are still nearer to what they were than to what they should be; of those where the two
