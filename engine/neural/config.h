@@ -35,7 +35,7 @@ struct UNetConfig {
     std::int64_t time_cond_proj_dim = 0;
     /// Width of what it is told of each picture's camera (camera_features()); 0 = nothing. Not in the file: a LoRA for shapes brings it.
     std::int64_t camera_dim = 0;
-    /// Channels in which it is shown the picture that is to change (inpaint_channels()); 0 = none. Not in the file either.
+    /// Channels in which it is shown the picture that is to change (inpainting()); 0 = none. Not in the file either.
     std::int64_t inpaint_channels = 0;
 
     /// Throws Error (Model, Malformed) naming the key that is wrong or not supported.
