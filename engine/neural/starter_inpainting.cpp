@@ -12,9 +12,10 @@ namespace {
 
 constexpr double NothingShare = 0.2;       // of groups that are shown nothing
 constexpr double BackgroundShare = 0.45;   // of other groups without an accessory: those in which what lies behind is known
+constexpr double PlaceShare = 0.45;        // of other groups with an accessory: those in which its place is not known
 constexpr double RoomShare = 0.8;          // of regions where another thing takes a place
 constexpr double BoxShare = 0.5, EllipseShare = 0.25;   // of regions; the others are grown outlines
-constexpr std::uint64_t LargestMargin = 4;              // cells
+constexpr std::uint64_t LargestMargin = 5;              // cells
 constexpr int LeastCover = 13;                          // of 255: less is the soft rim of a splat
 
 struct Cells {
@@ -81,7 +82,7 @@ void add_region(const Cells& cells, Random& random) {
 
 InpaintTask draw_inpaint_task(bool accessory, Random& random) {
     if (random.uniform() < NothingShare) return InpaintTask::Nothing;
-    if (accessory) return InpaintTask::Scene;
+    if (accessory) return random.uniform() < PlaceShare ? InpaintTask::Place : InpaintTask::Scene;
     return random.uniform() < BackgroundShare ? InpaintTask::Background : InpaintTask::Around;
 }
 
@@ -92,7 +93,7 @@ InpaintCells draw_inpaint_cells(InpaintTask task, std::span<const std::uint8_t> 
     if (task == InpaintTask::Nothing) return {std::vector<float>(count, 1.0f), std::vector<float>(count, 0.0f)};
     InpaintCells cells{std::vector<float>(count), std::vector<float>(count, 1.0f)};
     const bool takes_place = task != InpaintTask::Scene && std::ranges::any_of(room, [](auto cell) { return cell > 0; });
-    const bool in_room = takes_place && random.uniform() < RoomShare;
+    const bool in_room = takes_place && (task == InpaintTask::Place || random.uniform() < RoomShare);
     for (std::size_t i = 0; i < count; ++i) cells.mask[i] = (in_room ? room[i] > 0 : covered[i] >= LeastCover) ? 1.0f : 0.0f;
     const Cells mask{side, cells.mask};
     if (!in_room) add_region(mask, random);

@@ -120,7 +120,7 @@ Camera close_camera(const synth::SynthScene& scene, const Shot& shot, int size) 
     return orbit_camera(orbit, shot.azimuth, size, size);
 }
 
-/// An upright cylinder around a thing, as edits redraw it where another takes its place (edit::room_around()).
+/// An upright cylinder around a thing, as edits redraw it where another takes its place, or is looked for a place on it (edit::room_around()).
 struct Room {
     Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
 
@@ -151,7 +151,7 @@ struct Room {
 struct SceneBefore {
     synth::SynthScene scene;
     std::vector<float> opacity_logit;   // [N]
-    std::optional<Room> room;           // of the thing that is gone
+    Room room;                          // of the thing that is gone, or that the accessory belongs to
     double share = 0;                   // by which it is larger
 
     explicit SceneBefore(synth::SceneSpec spec, Random random) {
@@ -162,16 +162,14 @@ struct SceneBefore {
         scene = synth::generate(spec);
         const auto given = scene.scene.gaussians.opacity_logit();
         opacity_logit.assign(given.begin(), given.end());
-        if (!replaced) return;
-        room.emplace();
-        share = random.uniform(0.1, 0.3);
+        share = replaced ? random.uniform(0.1, 0.3) : random.uniform(0.3, 0.8);   // something worn reaches beyond
         const auto positions = scene.scene.gaussians.position();
         for (std::size_t row = 0; row < opacity_logit.size(); ++row) {
             if (scene.parts[row] != synth::Part::Object) continue;
-            opacity_logit[row] = Nothing;
+            if (replaced) opacity_logit[row] = Nothing;
             for (int axis = 0; axis < 3; ++axis) {
                 const double at = positions[row * 3 + static_cast<std::size_t>(axis)];
-                room->low[axis] = std::min(room->low[axis], at), room->high[axis] = std::max(room->high[axis], at);
+                room.low[axis] = std::min(room.low[axis], at), room.high[axis] = std::max(room.high[axis], at);
             }
         }
     }
@@ -200,11 +198,9 @@ public:
                                                  : synth::scene_camera(scene, shot.azimuth, shot.elevation, shot.zoom, size, size);
         if (edited_) return painted(painter, scene, camera, shot.background);
         auto picture = painted(painter, before->scene, camera, shot.background, before->opacity_logit);
-        if (before->room) {
-            const std::size_t cells = picture.coverage.size() / neural::StarterPartCount;
-            std::fill_n(picture.coverage.begin() + static_cast<std::ptrdiff_t>(cells), cells, std::uint8_t{0});
-            before->room->store(camera, before->share, &picture.coverage[cells]);
-        }
+        const std::size_t cells = picture.coverage.size() / neural::StarterPartCount;
+        std::fill_n(picture.coverage.begin() + static_cast<std::ptrdiff_t>(cells), cells, std::uint8_t{0});
+        before->room.store(camera, before->share, &picture.coverage[cells]);
         return picture;
     }
     neural::StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool) const override {
@@ -223,15 +219,16 @@ public:
         return {shot.azimuth, shot.elevation};
     }
     const StarterSource* before() const override { return before_.get(); }
-    std::string identity() const override { return (edited_ ? "synthetic shapes 3 " : "synthetic shapes 3 before ") + std::to_string(seed_); }
+    std::string identity() const override { return (edited_ ? "synthetic shapes 4 " : "synthetic shapes 4 before ") + std::to_string(seed_); }
 
 private:
     static constexpr int Views = 8;   // of a scene
+    static constexpr double WithAccessory = 0.6;   // of the scenes
 
     Shot shot_of(std::uint64_t index) const {
         Random random = Random::stream(seed_, index / Views);
         Shot shot;
-        shot.spec = synth::training_spec(random);
+        shot.spec = synth::training_spec(random, WithAccessory);
         const double zoom = random.uniform(0.8, 1.6);
         shot.background = random_background(random);
         if (!shot.spec.accessory.empty() && random.uniform() < 0.5) {

@@ -58,7 +58,7 @@ DOCTEST_TEST_CASE("at times nothing is shown, or there is nothing new to see") {
         with.insert(draw_inpaint_task(true, random));
         without.insert(draw_inpaint_task(false, random));
     }
-    DOCTEST_CHECK((with == std::set{InpaintTask::Nothing, InpaintTask::Scene}));
+    DOCTEST_CHECK((with == std::set{InpaintTask::Nothing, InpaintTask::Scene, InpaintTask::Place}));
     DOCTEST_CHECK((without == std::set{InpaintTask::Nothing, InpaintTask::Around, InpaintTask::Background}));
 }
 
@@ -72,4 +72,14 @@ DOCTEST_TEST_CASE("where another thing takes a place, what is hidden mostly is t
     }
     DOCTEST_CHECK(rooms > 60);
     DOCTEST_CHECK(rooms < 100);
+}
+
+DOCTEST_TEST_CASE("what is added somewhere on a thing may change all around it, and all of the scene is shown") {
+    gse::Random random(4);
+    const auto room = square(2, 3, 9);
+    for (int k = 0; k < 20; ++k) {
+        const auto cells = draw_inpaint_cells(InpaintTask::Place, square(5, 6, 4), room, Side, random);
+        DOCTEST_CHECK(std::equal(room.begin(), room.end(), cells.mask.begin(), [](auto in_room, float hidden) { return (in_room > 0) == (hidden > 0); }));
+        DOCTEST_CHECK(sum(cells.shown) == Side * Side);
+    }
 }
