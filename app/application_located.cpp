@@ -49,9 +49,11 @@ ui::AttentionView refreshed_view(ui::AttentionView shown, const edit::ViewEviden
 ui::AttentionView attention_view(const edit::ViewEvidence& evidence, const View& view) {
     ui::AttentionView shown;
     shown.name = view.name;
-    shown.render = std::make_shared<const Image>(evidence.render);
+    const Image& picture = evidence.drawn.data.empty() ? evidence.render : evidence.drawn;
+    shown.drawn = !evidence.drawn.data.empty();
+    shown.render = std::make_shared<const Image>(picture);
     shown.map = std::make_shared<const Image>(evidence.map);
-    shown.map_coloured = coloured_map(evidence.render, evidence.map);
+    shown.map_coloured = coloured_map(picture, evidence.map);
     shown.camera = view.camera;
     return refreshed_view(std::move(shown), evidence);
 }

@@ -108,6 +108,7 @@ struct SnapshotView {
 struct AttentionView {
     std::string name;
     std::shared_ptr<const Image> render;         // [H,W,3]
+    bool drawn = false;                          // it shows what was drawn into the view to see where it goes
     std::shared_ptr<const Image> map;            // [H,W,1] attention in [0,1]
     std::shared_ptr<const Image> map_coloured;   // [H,W,3] the map in false colour over the render
     std::shared_ptr<const Image> mask_picture;   // [H,W,3] mask over the render

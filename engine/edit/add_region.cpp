@@ -332,7 +332,7 @@ GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std:
     return data;
 }
 
-Mask region_mask(const AddRegion& region, const Camera& camera) {
+Mask region_mask(const AddRegion& region, const Camera& camera, const Image* depth) {
     Mask mask(camera.width, camera.height);
     constexpr double Corner = 0.87;  // half the diagonal of a cube of side 1
     // A ray that meets an inner cube meets one of the shell before, and what is drawn of a cube reaches as far as its corners.
@@ -348,7 +348,10 @@ Mask region_mask(const AddRegion& region, const Camera& camera) {
             if (rest < 0) continue;
             const double half = std::sqrt(rest);
             const int first = limit(std::ceil(x - half - 0.5), mask.width), end = limit(std::floor(x + half - 0.5) + 1, mask.width);
-            for (int u = first; u < end; ++u) mask.at(u, v) = 1;
+            for (int u = first; u < end; ++u) {
+                const float surface = depth != nullptr ? depth->at(u, v, 0) : 0;
+                if (surface <= 0 || p.z <= surface + region.side) mask.at(u, v) = 1;
+            }
         }
     }
     return mask;

@@ -68,7 +68,8 @@ bool has_usual_place(const std::string& thing);
 GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std::uint64_t seed,
                          double opacity = 0.1);
 
-/// Pixels that the region covers in a view.
-Mask region_mask(const AddRegion& region, const Camera& camera);
+/// Pixels that the region covers in a view; with `depth` ([H,W,1] of the surface, 0 = nothing there) those in which something of it lies
+/// before the surface, or a cube's side behind it.
+Mask region_mask(const AddRegion& region, const Camera& camera, const Image* depth = nullptr);
 
 }  // namespace gse::edit

@@ -14,6 +14,8 @@
 #include "engine/base/log.h"
 #include "engine/base/random.h"
 #include "engine/edit/confidence.h"
+#include "engine/edit/shape_room.h"
+#include "engine/edit/view_vote.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/edit/word_mask.h"
 #include "engine/localize/clusters.h"
@@ -27,46 +29,16 @@ constexpr std::size_t RecognisedViews = 6;   // pictures that are compared with 
 constexpr int LeastViews = 3;                // fewer voting views cannot tell front from back
 constexpr double LargestLabelShare = 0.97;   // of what the views see, where the sentence names other things too
 constexpr double LeastEvidenceShare = 0.2;  // of the mean evidence of the rows that are seen at all
-constexpr double AttentionShare = 0.5;      // of a vote: the attention itself, beside the mask cut out of it
-constexpr double AttentionLevel = 0.85;     // of the threshold: attention that counts half
-constexpr double AttentionSoftness = 0.05;  // how far from there it counts a quarter more or less
 constexpr float LabelSeen = 0.5f;           // share of a pixel from which it shows the artist's label
 constexpr std::uint64_t SearchSeed = 0;      // one for all: what is found does not follow the loop's dice
 constexpr double AtOdds = 0.6;              // IoU of a view's mask and the common label, below which the view is asked again
 constexpr std::uint64_t FirstAsking = 5000;
+constexpr std::uint64_t Drawing = 8000;
 constexpr std::uint64_t SecondAsking = 9000;   // other noise than the first time
 // Of the threshold (at most half-way from it to the most there is): attention of what is not there yet reaches wider than what will be.
 // Of 8 added things each on seeds 55 | 56 | 57 | 58 (`gseditpro eval --kinds add --edits 8`) 1 changed 2.5 | 2.5 | 1.9 | 1.0 % of the
 // pixels outside the true part, 1.2 changed 1.8 | 1.4 | 1.8 | 0.7 %; outlines (mean IoU .40) and error removed (13 %) were the same.
 constexpr double AbsentLevel = 1.2;
-constexpr double RivalLead = 0.5;           // another thing that has so much more takes the pixel from the mask
-
-Image mask_image(const Mask& mask) {
-    Image image(mask.width, mask.height, 1);
-    for (std::size_t i = 0; i < mask.data.size(); ++i) image.data[i] = mask.data[i] != 0 ? 1.0f : 0.0f;
-    return image;
-}
-
-/// Whether the attention is above a level, in [0,1].
-double above(double attention, double level) {
-    return 1 / (1 + std::exp((level - attention) / AttentionSoftness));
-}
-
-/// What a view says about its pixels, [H,W,1] in [0,1]. A mask cut out by colours has sharp edges but leaves out what has
-/// another colour (a mushroom's stem, a car's windows); the attention is blurred but knows that they belong. Where the
-/// two disagree, the other views and the cut between neighbours decide; what another named thing has for sure (the white
-/// legs of a dog on snow) the mask does not take from it. The mask of a segmenter that is trusted is believed as it is.
-Image vote_of(const ViewEvidence& view, double threshold) {
-    Image vote = mask_image(view.mask);
-    if (view.failed || view.trusted) return vote;
-    for (std::size_t i = 0; i < vote.data.size(); ++i) {
-        const double attention = above(view.map.data[i], AttentionLevel * threshold);
-        const double lost = view.lead.data.empty() ? 0 : above(view.lead.data[i], RivalLead);
-        vote.data[i] =
-            static_cast<float>((1 - AttentionShare) * (1 - lost) * vote.data[i] + AttentionShare * attention);
-    }
-    return vote;
-}
 
 /// One word to look for.
 struct Search {
@@ -501,11 +473,14 @@ private:
 
     /// The region as the views see it takes the place of what each of them said.
     void show_region(LocateResult& result, bool attended) {
+        const bool drawn = std::any_of(result.views.begin(), result.views.end(), [](const auto& view) { return !view.drawn.data.empty(); });
         const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
             for (std::size_t v = begin; v < end; ++v) {
                 auto& view = result.views[v];
-                view.mask = region_mask(result.region, input_.views[v].camera);
-                view.branch = attended ? "attention" : "anchor";
+                view.mask = region_mask(result.region, input_.views[v].camera, &depths_[v]);
+                const bool undrawn = drawn && view.drawn.data.empty();
+                view.branch = attended && !undrawn ? drawn ? "drawn" : "attention" : "anchor";
+                if (undrawn) view.map = mask_image(view.mask);
                 view.failed = view.mask.count() == 0;
                 view.step = view.failed ? ViewStep::Hidden : ViewStep::Found;
             }
@@ -520,20 +495,52 @@ private:
             some(0, count, 0);
     }
 
+    static bool votes(const std::vector<ViewEvidence>& views) {
+        return std::count_if(views.begin(), views.end(), [](const auto& view) { return !view.failed; }) >= LeastViews;
+    }
+
+    /// What a model that is shown the scene draws around the thing of `source_bits`; nothing where there is no such model.
+    std::vector<ViewEvidence> draw(const Search& search, const std::vector<std::uint8_t>& source_bits) {
+        if (tools_.drawing == nullptr || request().place_views == 0) return {};
+        const auto room = room_around(input_.gaussians, source_bits, input_.up, input_.front, request().add_room);
+        if (room.empty()) return {};
+        const PlaceDrawing drawing{input_.views, input_.view_words, input_.azimuths, input_.elevations, renders_, depths_, room, request(),
+                                   search.word, Random::stream(SearchSeed, Drawing).next()};
+        DrawnViews drawn;
+        DrawnViews& kept = tools_.memory != nullptr ? tools_.memory->drawn[drawing_key(drawing, source_bits)] : drawn;
+        if (kept.views.empty()) kept = draw_thing(drawing, *tools_.drawing, tools_.job);
+        std::vector<ViewEvidence> views(input_.views.size());
+        for (std::size_t v = 0; v < views.size(); ++v) {
+            views[v].render = renders_[v];
+            views[v].map = Image(renders_[v].width, renders_[v].height, 1);
+            views[v].failed = true;
+        }
+        auto places = find_drawn(drawing, kept, tools_.attention, tools_.job);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            auto& view = views[kept.views[i]];
+            view.drawn = kept.pictures[i];
+            view.map = std::move(places[i].map);
+            view.region = view.mask = std::move(places[i].mask);
+            view.failed = view.mask.count() == 0;
+        }
+        return views;
+    }
+
     void add(LocateResult& result) {
         result.label = make_label(request().target, std::vector<float>(input_.gaussians.size(), 0.0f), 0.5f);
         find_source(result);
         if (result.problem != SearchProblem::None) return;
         const Search search = search_for(request().target, true);
         result.word = search.word;
-        result.views = look(search);
+        const bool of_source = request().source != request().target;
+        const auto relation = of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None;
+        if (of_source && place_name(relation).empty()) result.views = draw(search, *result.source_label.bits);
+        if (result.views.empty() || !votes(result.views)) result.views = look(search);
         std::vector<Mask> masks;
         for (const auto& view : result.views) masks.push_back(view.failed ? Mask() : view.mask);
-        const bool of_source = request().source != request().target;
         const RegionSearch space{
             input_.gaussians, *result.source_label.bits, input_.views, masks, depths_, input_.up, input_.front,
-            of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None,
-            tools_.threads};
+            relation, tools_.threads};
         result.region = vote_region(space);
         const bool attended = !result.region.empty();
         if (!attended) {

@@ -11,6 +11,7 @@
 #include "engine/base/thread_pool.h"
 #include "engine/edit/add_region.h"
 #include "engine/edit/interfaces.h"
+#include "engine/edit/place_drawing.h"
 #include "engine/edit/recognition.h"
 #include "engine/edit/request.h"
 #include "engine/edit/search_outcome.h"
@@ -33,6 +34,7 @@ struct LocateInput {
     /// [N] 0 or 1: the rows the edit is about, labelled by hand; nothing is looked for then. Null = the words say.
     const std::vector<std::uint8_t>* label = nullptr;
     std::vector<std::string> known = {};  // words of the model; empty = it takes any
+    std::vector<double> azimuths = {}, elevations = {};   // per view, as in RoundView, or empty
 };
 
 /// What the views look like, kept from one search to the next over the same scene and views; empty = to be filled.
@@ -41,6 +43,7 @@ struct ViewMemory {
     std::vector<Image> depths;   // [H,W,1], 0 = nothing there
     /// Views that were asked a second time, by sentence and word: at another threshold the same, so that no network is asked.
     std::map<std::string, std::vector<std::size_t>> asked_again = {};
+    std::map<std::string, DrawnViews> drawn = {};   // by all that was drawn
 };
 
 /// The parts it calls. Both segmenters may be null: then the attention regions themselves are the masks.
@@ -53,17 +56,20 @@ struct LocateTools {
     Recognition* recognition = nullptr;  // null: whether pictures show a word is judged by its attention alone
     ViewMemory* memory = nullptr;        // may be null
     ThreadPool* threads = nullptr;       // views are segmented side by side: only for segmenters that allow it; may be null
+    /// Draws what is added, to see where it goes: it is shown the scene (TextToImage::knows_scene()). Null: attention alone says where.
+    ViewGuidance* drawing = nullptr;
 };
 
 /// Everything one view contributed, for the window and the evidence pictures.
 struct ViewEvidence {
     Image render;                     // [H,W,3]
+    Image drawn;                      // [H,W,3] where the new thing was drawn into it, to see where it goes; else empty
     Image map;                        // [H,W,1] attention of the word, maximum 1; 0 where a rival the user gave has more
     Image lead;                       // [H,W,1] how much more another named thing has, 0 = none; empty without rivals
     Mask region;                      // thresholded and cleaned attention
     std::vector<PointPrompt> points;  // clicks handed to the segmenter
     Mask mask;                        // the view's vote, not dilated
-    std::string branch;               // what made the mask: "text", "points", "attention", "anchor", "label" or "none"
+    std::string branch;               // what made the mask: "text", "points", "attention", "drawn", "anchor", "label" or "none"
     double captured = 0;              // share of the region's attention inside the mask
     bool trusted = false;             // the mask trims the attention: a segmenter made it that is trusted
     bool failed = false;              // nothing was found: the view does not vote

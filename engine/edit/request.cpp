@@ -282,7 +282,7 @@ QualityShare share_of(const std::string& quality) {
 }  // namespace
 
 RoundPlan round_plan(const LoopSettings& settings, EditMode mode) {
-    RoundPlan plan{settings.shape_rounds, settings.shape_fit_steps, true,
+    RoundPlan plan{mode == EditMode::Add ? settings.add_rounds : settings.shape_rounds, settings.shape_fit_steps, true,
                    settings.shape_steps,  settings.shape_strength,  settings.shape_again_strength, settings.shape_views,
                    settings.shape_guided_until};
     if (mode == EditMode::Modify)

@@ -51,6 +51,9 @@ struct SearchSettings {
     double evidence_px = 0.5;
     double least_confidence = 0.2;   // measured: `gseditpro bench search`
     // Adding
+    int place_views = 12;
+    int place_steps = 4;
+    double add_room = 0.6;
     int seed_splats = 400;
 
     template <class Self, class F>
@@ -82,6 +85,12 @@ struct SearchSettings {
         f("evidence_px", self.evidence_px, "Splats seen over fewer pixels than this are not labelled.", Range{0, 1e6});
         f("least_confidence", self.least_confidence,
           "A search that is less sure than this labels nothing; 0 = what was found is labelled, whatever it is.", Range{0, 1});
+        f("place_views", self.place_views,
+          "Views into which something that is added is drawn to see where it goes, by a model that is shown the scene (the starter is); 0, or with "
+          "another model: the attention of its word says where.",
+          Range{0, 64});
+        f("place_steps", self.place_steps, "Denoising steps of such a view.", Range{1, 100});
+        f("add_room", self.add_room, "Room around a thing in which what is added to it is drawn then, as a share of its size.", Range{0, 2});
         f("seed_splats", self.seed_splats, "New splats placed where something is added.", Range{10, 1e6});
     }
 };
@@ -118,6 +127,7 @@ struct LoopSettings {
     // Shapes by views: a thing that becomes another, or is new
     int shape_views = 12;
     int shape_rounds = 2;
+    int add_rounds = 1;
     int shape_steps = 4;
     int shape_fit_steps = 144;
     // Replaced things, 32 edits of seeds 55 to 58: error removed 0.36, pixels outside that changed 3.9 %, with guidance 3 in every step and
@@ -240,7 +250,8 @@ private:
     template <class Self, class F>
     static void visit_shapes(Self& self, F&& f) {
         f("shape_views", self.shape_views, "Views that the model redraws in a round, where a thing becomes another or is new.", Range{1, 64});
-        f("shape_rounds", self.shape_rounds, "The same as rounds, where a thing becomes another or is new.", Range{1, 20});
+        f("shape_rounds", self.shape_rounds, "The same as rounds, where a thing becomes another.", Range{1, 20});
+        f("add_rounds", self.add_rounds, "The same where something is added.", Range{1, 20});
         f("shape_steps", self.shape_steps, "Denoising steps of a view in its first round there; later rounds take fewer, by their strength.",
           Range{1, 100});
         f("shape_fit_steps", self.shape_fit_steps, "Optimisation steps after each round there.", Range{1, 1e5});

@@ -11,30 +11,13 @@
 #include "engine/base/log.h"
 #include "engine/base/random.h"
 #include "engine/edit/colour_word.h"
+#include "engine/edit/place_drawing.h"
 #include "engine/edit/word_mask.h"
-#include "engine/localize/clusters.h"
 
 namespace gse::edit {
 namespace {
 
 constexpr std::size_t LeastViews = 3;   // fewer do not enclose a space
-// Of a redrawn picture that pixel is the thing whose attention is CertainShare of the threshold (or half-way from it to the most
-// there is), or PossibleShare of it where the picture differs from what is behind the thing. Attention alone either reaches beyond the
-// thing or leaves out parts of it (a mushroom's stem); the difference alone takes shadows along. Of 8 added things each on seeds 55 | 56
-// (`gseditpro eval --kinds add --edits 8`) a PossibleShare of .5 removed 14 | 7 % of the error with outlines of an IoU of .46 | .39, .85
-// removes 16 | 10 % with .46 | .41; the attention and the segmenter alone removed 15 | 8 % with .41 | .36.
-constexpr double CertainShare = 1.2, PossibleShare = 0.85;
-constexpr float LeastDifference = 0.1f;   // of the channel that differs most: what the autoencoder loses is mostly less
-constexpr double LeastPart = 0.2;         // attention of a part beside that of the largest: a pair of wings has two
-constexpr double LeastArea = 0.002;       // of the picture
-
-/// Largest difference of a channel.
-float difference(const Image& a, const Image& b, std::size_t pixel) {
-    float most = 0;
-    for (std::size_t c = pixel * 3; c < pixel * 3 + 3; ++c) most = std::max(most, std::abs(a.data[c] - b.data[c]));
-    return most;
-}
-
 /// Mean over the pixel and its eight neighbours: the rim of a thing is part of a pixel.
 Image softened(const Mask& mask) {
     Image soft(mask.width, mask.height, 1);
@@ -65,39 +48,33 @@ AttentionQuery ShapeFinder::query_of(const RoundView& view, const Image& picture
     return {picture, as_told(request_.prompt), {word_}, view.view_words, false, 1, seed};
 }
 
-Image ShapeFinder::outline_of(const RoundView& view, const Image& picture, std::uint64_t seed) const {
+Image ShapeFinder::outline_of(const RoundView& view, const RoundTargets& drawn, std::size_t index, std::uint64_t seed) const {
+    const Image& picture = drawn.images[index];
     const auto query = query_of(view, picture, seed);
     auto maps = attention_.locate(query);
     GSE_CHECK_EQ(maps.size(), std::size_t{1});
     normalise_maximum(maps.front());
     const double level = request_.attention_threshold > 0 ? request_.attention_threshold : attention_.threshold();
-    const double certain = std::min(CertainShare * level, (1 + level) / 2), possible = PossibleShare * level;
-    const Image& map = maps.front();
-    Mask found(picture.width, picture.height);
-    for (std::size_t i = 0; i < found.data.size(); ++i) {
-        const bool differs = difference(picture, view.backdrop.picture, i) >= LeastDifference;
-        found.data[i] = view.mask.data[i] != 0 && map.data[i] >= (differs ? possible : certain) ? 1 : 0;
-    }
-    found = localize::clean_clusters(localize::without_holes(found), map, {1.5, 4}, LeastPart);
-    const bool shows = static_cast<double>(found.count()) >= LeastArea * static_cast<double>(found.data.size());
-    return shows ? softened(found) : Image(picture.width, picture.height, 1);
+    return softened(plan_.mode == EditMode::Replace || drawn.changes.empty() ? thing_in_picture(picture, view.backdrop.picture, view.mask, maps.front(), level)
+                                          : changed_thing(drawn.changes[index], view.mask, maps.front(), level));
 }
 
-bool ShapeFinder::take_out(const RoundView& view, Image& picture, std::uint64_t seed, Image* outline) const {
-    Image share = outline_of(view, picture, seed);
+bool ShapeFinder::take_out(const RoundView& view, RoundTargets& drawn, std::size_t index, std::uint64_t seed, Image* outline) const {
+    Image share = outline_of(view, drawn, index, seed);
     const bool shows = std::any_of(share.data.begin(), share.data.end(), [](float value) { return value > 0.5f; });
-    picture = over(picture, share, view.backdrop.picture);
+    drawn.images[index] = over(drawn.images[index], share, view.backdrop.picture);
     if (outline != nullptr) *outline = std::move(share);
     return shows;
 }
 
-std::string ShapeFinder::colour_in(const RoundView& view, const Image& picture, std::uint64_t seed,
+std::string ShapeFinder::colour_in(const RoundView& view, const RoundTargets& drawn, std::uint64_t seed,
                                    const std::vector<std::string>& known) const {
-    return colour_shown(picture, outline_of(view, picture, seed), known);
+    return colour_shown(drawn.images.front(), outline_of(view, drawn, 0, seed), known);
 }
 
-CutOut ShapeFinder::cut_out(const std::vector<RoundView>& views, std::vector<Image>& pictures, int round, const JobControl& job) {
-    GSE_CHECK_EQ(views.size(), pictures.size());
+CutOut ShapeFinder::cut_out(const std::vector<RoundView>& views, RoundTargets& drawn, int round, const JobControl& job) {
+    GSE_CHECK_EQ(views.size(), drawn.images.size());
+    GSE_CHECK(drawn.changes.empty() || drawn.changes.size() == views.size());
     CutOut found;
     const auto seed_of = [&](std::size_t v) { return Random::stream(request_.seed, 60000 + static_cast<std::uint64_t>(round) * 1000 + v).next(); };
     const std::size_t at_once = attention_.at_once();
@@ -105,15 +82,15 @@ CutOut ShapeFinder::cut_out(const std::vector<RoundView>& views, std::vector<Ima
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "cutting out the new thing was stopped");
         if (at_once > 1 && v % at_once == 0) {
             std::vector<AttentionQuery> queries;
-            for (std::size_t i = v; i < std::min(v + at_once, views.size()); ++i) queries.push_back(query_of(views[i], pictures[i], seed_of(i)));
+            for (std::size_t i = v; i < std::min(v + at_once, views.size()); ++i) queries.push_back(query_of(views[i], drawn.images[i], seed_of(i)));
             attention_.prepare(queries);
         }
         const auto seed = seed_of(v);
-        const Image drawn = pictures[v];
+        const Image picture = drawn.images[v];
         Image outline;
-        if (take_out(views[v], pictures[v], seed, &outline)) {
+        if (take_out(views[v], drawn, v, seed, &outline)) {
             found.usable.push_back(v);
-            found.outlines.push_back({views[v].view.camera, std::move(outline), views[v].backdrop.depth, drawn});
+            found.outlines.push_back({views[v].view.camera, std::move(outline), views[v].backdrop.depth, picture});
         }
         job.report("cutting out the new thing", static_cast<int>(v + 1), static_cast<int>(views.size()));
     }

@@ -28,13 +28,13 @@ public:
 
     /// Finds the thing in each picture and lays it over the view's backdrop: the pictures become what the scene is fitted to.
     /// Throws Error (Model) when fewer than three views show it, (Cancelled) on a stop request.
-    CutOut cut_out(const std::vector<RoundView>& views, std::vector<Image>& pictures, int round, const JobControl& job);
+    CutOut cut_out(const std::vector<RoundView>& views, RoundTargets& drawn, int round, const JobControl& job);
 
-    /// The same for one picture. Whether it shows the thing.
-    bool take_out(const RoundView& view, Image& picture, std::uint64_t seed, Image* outline = nullptr) const;
+    /// The same for the picture at `index`. Whether it shows the thing.
+    bool take_out(const RoundView& view, RoundTargets& drawn, std::size_t index, std::uint64_t seed, Image* outline = nullptr) const;
 
     /// The word for the colour of the thing in a redrawn picture; empty where the picture does not show it.
-    std::string colour_in(const RoundView& view, const Image& picture, std::uint64_t seed, const std::vector<std::string>& known) const;
+    std::string colour_in(const RoundView& view, const RoundTargets& drawn, std::uint64_t seed, const std::vector<std::string>& known) const;
     const std::string& word() const { return word_; }
 
     /// The rows that the new thing grows from, carved out of the box; empty when the outlines enclose nothing there.
@@ -44,7 +44,7 @@ private:
     AttentionQuery query_of(const RoundView& view, const Image& picture, std::uint64_t seed) const;
     /// Where a picture shows the thing, by the word's attention and by what differs from the view's backdrop; [H,W,1] in [0,1], all
     /// zero where it does not.
-    Image outline_of(const RoundView& view, const Image& picture, std::uint64_t seed) const;
+    Image outline_of(const RoundView& view, const RoundTargets& drawn, std::size_t index, std::uint64_t seed) const;
 
     const EditPlan& plan_;
     const EditRequest& request_;

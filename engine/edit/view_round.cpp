@@ -191,10 +191,9 @@ std::vector<HeldOutView> ViewRounds::draw_held_out(const std::vector<RoundView>&
     auto drawn = drawn_by(guidance_, begun, input(stream), job);
     std::vector<HeldOutView> held;
     for (std::size_t i = 0; i < begun.size(); ++i) {
-        auto& picture = drawn.images[i];
-        if (shapes_ != nullptr && !shapes_->take_out(begun[i], picture, Random::stream(request_.seed, stream + 1 + i).next())) continue;
+        if (shapes_ != nullptr && !shapes_->take_out(begun[i], drawn, i, Random::stream(request_.seed, stream + 1 + i).next())) continue;
         held.push_back({begun[i].view.camera, begun[i].mask,
-                        blend_inside(picture, begun[i].original, begun[i].mask, FeatherPx * begun[i].original.width / ReferenceSide)});
+                        blend_inside(drawn.images[i], begun[i].original, begun[i].mask, FeatherPx * begun[i].original.width / ReferenceSide)});
     }
     return held;
 }
@@ -214,7 +213,7 @@ void ViewRounds::name_colour(const std::vector<RoundView>& views, const JobContr
     const auto key = std::max_element(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.mask.count() < b.mask.count(); });
     const auto drawn = drawn_by(guidance_, {*key}, input(ColourStream), job);
     ++extra_pictures_;
-    const auto colour = shapes_->colour_in(*key, drawn.images.front(), Random::stream(request_.seed, ColourStream + 1).next(), known_);
+    const auto colour = shapes_->colour_in(*key, drawn, Random::stream(request_.seed, ColourStream + 1).next(), known_);
     if (colour.empty()) return;
     sentence_ = described_as(told, shapes_->word(), colour);
     log::info("the sentence names no colour for \"{}\"; {} shows {}: all views are drawn as \"{}\"", shapes_->word(), key->view.name,
@@ -252,7 +251,7 @@ std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vecto
     if (round_ == 0) name_colour(views, job);
     auto drawn = draw(views, job);
     if (shapes_ != nullptr) {
-        found_ = shapes_->cut_out(views, drawn.images, round_, job);
+        found_ = shapes_->cut_out(views, drawn, round_, job);
         drawn.scalars.merge(found_.scalars);
     }
     for (std::size_t i = 0; i < views.size(); ++i)
@@ -264,7 +263,7 @@ void ViewRounds::redo(std::size_t view, const RoundView& begun, int attempt, con
     constexpr std::uint64_t first = 1u << 20, most_views = 1u << 20, most_rounds = 64;   // streams that nothing else draws from
     const auto stream = first + (static_cast<std::uint64_t>(attempt) * most_rounds + static_cast<std::uint64_t>(round_)) * most_views + view;
     auto drawn = drawn_by(guidance_, {begun}, input(stream), job);
-    if (shapes_ != nullptr) shapes_->take_out(begun, drawn.images.front(), Random::stream(request_.seed, stream + 1).next());
+    if (shapes_ != nullptr) shapes_->take_out(begun, drawn, 0, Random::stream(request_.seed, stream + 1).next());
     replace(view, std::move(drawn.images.front()), original, begun.mask);
 }
 

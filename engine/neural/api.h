@@ -46,6 +46,8 @@ public:
     virtual std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const SdsParameters& parameters) const = 0;
     /// Redraws views of a scene under the prompt; scale, negative prompt, view words and what is taken off are as `parameters` say.
     virtual std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const SdsParameters& parameters) const = 0;
+    /// Whether its views() are shown the backdrops where they draw anew: they then know where in a scene a new thing goes.
+    virtual bool knows_scene() const { return false; }
     /// Words the model was trained on; empty = an open vocabulary.
     virtual std::vector<std::string> known_words() const = 0;
     /// Side of the square images the model works at.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <mutex>
 #include <regex>
 #include <thread>
 
@@ -64,6 +65,10 @@ public:
     }
     std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const SdsParameters& parameters) const override {
         return std::make_unique<DiffusionViews>(bundle_, prompt, parameters, with_shapes());
+    }
+    bool knows_scene() const override {
+        const auto& facts = loaded_->facts;
+        return !facts.shape_lora.empty() && !facts.shape_cameras.empty() && shows_scene(SafetensorsFile(loaded_->path / facts.shape_cameras));
     }
     std::vector<std::string> known_words() const override { return bundle_->facts.vocabulary; }
     int image_size() const override { return static_cast<int>(bundle_->image_size()); }
@@ -127,12 +132,14 @@ private:
     Bundle with_shapes() const {
         const auto& file = loaded_->facts.shape_lora;
         if (file.empty()) return nullptr;
-        return guard_torch("merging the model's LoRA for shapes", [&] {
+        const std::lock_guard lock(shapes_mutex_);
+        if (shapes_ == nullptr) shapes_ = guard_torch("merging the model's LoRA for shapes", [&] {
             auto merged = with_lora(*bundle_, read_lora(loaded_->path / file), 1);
             if (const auto& cameras = loaded_->facts.shape_cameras; !cameras.empty())
                 merged.unet = with_scene_inputs(merged.unet, SafetensorsFile(loaded_->path / cameras));
             return std::make_shared<const ModelBundle>(std::move(merged));
         });
+        return shapes_;
     }
     Image run(const Image* image, const SampleRequest& request) const {
         return guard_torch("sampling", [&] {
@@ -163,6 +170,8 @@ private:
     const DistilledLoras fast_;
     const Bundle bundle_;                    // in use where few are: the same with what was distilled
     const std::optional<LoraWeights> lora_;  // the tuning, when it is low-rank
+    mutable std::mutex shapes_mutex_;
+    mutable Bundle shapes_;                  // of with_shapes(), once they were asked for
 };
 
 }  // namespace

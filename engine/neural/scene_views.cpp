@@ -58,8 +58,10 @@ UNet with_inputs(const UNet& plain, bool inpaint) {
 
 UNet with_scene_inputs(const UNet& plain) { return with_inputs(plain, true); }
 
+bool shows_scene(const SafetensorsFile& file) { return file.contains(std::string(Inpaint) + "weight"); }
+
 UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool must_inpaint) {
-    const bool inpaints = file.contains(std::string(Inpaint) + "weight");
+    const bool inpaints = shows_scene(file);
     auto unet = with_inputs(plain, inpaints || must_inpaint);
     constexpr const char* Hint = "take it and the LoRA for shapes from one training run";
     for (auto& [name, weight] : scene_input_weights(unet)) {

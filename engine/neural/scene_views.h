@@ -24,6 +24,9 @@ torch::Tensor inpainting(const torch::Tensor& mask, const torch::Tensor& shown, 
 /// The same network, with an embedding of cameras and a convolution of what it is shown that say nothing yet; shares all weights with
 /// `plain`.
 UNet with_scene_inputs(const UNet& plain);
+/// Whether the weights of a file include that of inpainting().
+bool shows_scene(const SafetensorsFile& file);
+
 /// The same with the weights that a file holds; one of before there was inpainting() has none for that, and the network then no such
 /// input, but where it `must_inpaint`. Throws Error (Model) where they do not fit.
 UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool must_inpaint = false);

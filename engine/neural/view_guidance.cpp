@@ -89,7 +89,8 @@ struct DiffusionViews::Batch {
     torch::Tensor noise;
     torch::Tensor mask;       // [K,1,h,w]
     torch::Tensor contexts;   // [K,2,T,D] negative, positive
-    torch::Tensor inpaint;    // [K,2+C,h,w] what draws new things is shown of the scene without what may change; else undefined
+    torch::Tensor behind;     // [K,C,h,w] latents of the backdrops, that what draws new things is shown; else undefined
+    torch::Tensor inpaint;    // [K,2+C,h,w] the same with the mask
     torch::Tensor picture;    // [K,C,h,w] what a model that edits pictures is shown: the unedited views; else undefined
     torch::Tensor x;          // what the steps have made of it
 };
@@ -146,7 +147,8 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
     batch.mask = torch::cat(masks);
     if (inpaints) {
         const auto may_change = (batch.mask > 0).to(batch.mask.scalar_type());
-        batch.inpaint = inpainting(may_change, torch::ones_like(may_change), torch::cat(behind));
+        batch.behind = torch::cat(behind);
+        batch.inpaint = inpainting(may_change, torch::ones_like(may_change), batch.behind);
     }
     const bool edits = takes_picture(bundle_->unet->config());   // such a model is told what to do, not what there is
     batch.contexts = contexts(views, edits || input.sentence.empty() ? prompt_ : input.sentence, input.anew && shapes_ != nullptr);
@@ -257,12 +259,18 @@ edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<
                       (bundle_->kind == BundleKind::Lcm && input.strength >= LcmPlainDecode);
     edit::RoundTargets targets;
     targets.images.resize(views.size());
+    if (batch.behind.defined()) targets.changes.resize(views.size());
     for_parts(static_cast<std::int64_t>(views.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
         for (auto row = begin; row < end; ++row) {
             auto decoded = latents_to_image(*bundle_, batch.x.narrow(0, row, 1), codec);
             if (!anew) decoded = decoded - latents_to_image(*bundle_, batch.clean.narrow(0, row, 1), codec);
             const Image& rendered = views[static_cast<std::size_t>(row)].rendered;
-            auto enlarged = torch::upsample_bilinear2d(decoded, {rendered.height, rendered.width}, false);
+            const auto enlarge = [&](const torch::Tensor& picture) { return torch::upsample_bilinear2d(picture, {rendered.height, rendered.width}, false); };
+            auto enlarged = enlarge(decoded);
+            if (batch.behind.defined()) {
+                const auto change = (decoded.clamp(0, 1) - latents_to_image(*bundle_, batch.behind.narrow(0, row, 1), codec).clamp(0, 1)).abs();
+                targets.changes[static_cast<std::size_t>(row)] = to_image(enlarge(change.amax(1, true)));
+            }
             if (!anew) enlarged = to_tensor(rendered, bundle_->device) + enlarged;
             targets.images[static_cast<std::size_t>(row)] = to_image(enlarged.clamp(0, 1));
         }
@@ -292,6 +300,8 @@ edit::RoundTargets DiffusionViews::edit(const std::vector<edit::RoundView>& view
     auto targets = redraw(parts, input, job);
     for (std::size_t v = 0; v < views.size(); ++v)
         targets.images[v] = edit::with_section(views[v].rendered, targets.images[v], sections[v]);
+    for (std::size_t v = 0; v < targets.changes.size(); ++v)
+        targets.changes[v] = edit::with_section(Image(views[v].rendered.width, views[v].rendered.height, 1), targets.changes[v], sections[v]);
     return targets;
 }
 

@@ -270,7 +270,7 @@ Edited EditJob::probe(const ProbeSize& size) {
     plain.request.iterations = plain.request.fit_steps = size.steps;
     plain.request.dynamic_mask = plain.request.look_again = plain.request.early_stop = false;
     plain.request.densify_every = 0;
-    plain.request.rounds = plain.request.shape_rounds = size.early ? 2 : 1;
+    plain.request.rounds = plain.request.shape_rounds = plain.request.add_rounds = size.early ? 2 : 1;
     plain.request.shape_fit_steps = size.steps;
     plain.request.edited_views = plain.request.shape_views = size.edited_views;
     plain.request.view_steps = plain.request.shape_steps = size.view_steps;

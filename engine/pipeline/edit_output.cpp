@@ -51,6 +51,7 @@ void write_json(const fs::path& path, const nlohmann::ordered_json& json) { writ
 void write_evidence_pictures(const fs::path& folder, const edit::ViewEvidence& evidence, std::size_t view) {
     const std::string stem = fmt::format("view_{:03}", view);
     write_png(folder / (stem + "_render.png"), evidence.render);
+    if (!evidence.drawn.data.empty()) write_png(folder / (stem + "_drawn.png"), evidence.drawn);
     write_png(folder / (stem + "_attention.png"), heat_map(evidence.map));
     write_png(folder / (stem + "_points.png"), with_points(evidence.render, evidence.points));
     if (!evidence.mask.data.empty()) write_mask_png(folder / (stem + "_mask.png"), evidence.mask);

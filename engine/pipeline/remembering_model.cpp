@@ -181,6 +181,26 @@ std::string question_of(const edit::AttentionQuery& query, const neural::Attenti
         .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
+/// Everything of a round that its pictures follow from.
+std::string question_of(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const std::string& prompt,
+                        const neural::SdsParameters& parameters) {
+    Json seen = Json::array();
+    for (const auto& view : views) {
+        Digest digest;
+        for (const auto* image : {&view.rendered, &view.original, &view.depth, &view.backdrop.picture, &view.backdrop.depth}) digest.image(*image);
+        digest.bytes(view.mask.data.data(), view.mask.data.size());
+        const auto& camera = view.view.camera;
+        Json numbers{camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, view.elevation};
+        numbers.push_back(camera.rotation.rows());
+        numbers.push_back({camera.translation.x, camera.translation.y, camera.translation.z});
+        if (view.azimuth) numbers.push_back(*view.azimuth);
+        seen.push_back({digest.hex(), numbers, view.view_words});
+    }
+    return Json{fields_to_json(parameters), prompt,     input.sentence, input.round, input.rounds, input.steps, input.strength, input.seed, input.anew,
+                input.guided_until,         seen}
+        .dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 std::string question_of(const neural::DreamBoothParameters& parameters, std::span<const Image> instance,
                         const std::string& instance_prompt, const std::string& class_prompt) {
     auto settings = fields_to_json(parameters);
@@ -236,6 +256,41 @@ private:
     std::unique_ptr<edit::AttentionSource> source_;   // when it is needed
 };
 
+/// What a model draws into views, from its cache where that was kept.
+class RememberingViews final : public edit::ViewGuidance {
+public:
+    RememberingViews(std::shared_ptr<const RememberingModel> model, std::string prompt, const neural::SdsParameters& parameters)
+        : model_(std::move(model)), prompt_(std::move(prompt)), parameters_(parameters) {}
+
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) override {
+        if (!input.keep) return drawn_by_networks(views, input, job);
+        const auto question = model_->question("drawn views", question_of(views, input, prompt_, parameters_));
+        if (const auto answer = model_->cache().find(question))
+            if (auto images = images_in(*answer, 2 * views.size())) {
+                count_cached_answer();
+                const auto middle = images->begin() + static_cast<std::ptrdiff_t>(views.size());
+                return {{images->begin(), middle}, {middle, images->end()}, {}};
+            }
+        auto targets = drawn_by_networks(views, input, job);
+        auto all = targets.images;
+        all.insert(all.end(), targets.changes.begin(), targets.changes.end());
+        if (all.size() == 2 * views.size() && std::all_of(all.begin(), all.end(), [](const Image& image) { return finite(image.data); }))
+            model_->cache().keep(question, bytes_of(all));
+        return targets;
+    }
+
+private:
+    edit::RoundTargets drawn_by_networks(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) {
+        if (!views_) views_ = model_->real().views(prompt_, parameters_);
+        return views_->edit(views, input, job);
+    }
+
+    std::shared_ptr<const RememberingModel> model_;
+    const std::string prompt_;
+    const neural::SdsParameters parameters_;
+    std::unique_ptr<edit::ViewGuidance> views_;   // when it is needed
+};
+
 RememberingModel::RememberingModel(std::shared_ptr<DiskCache> cache, std::string identity, Loader loader)
     : cache_(std::move(cache)), identity_(std::move(identity)), loaded_identity_(identity_), loader_(std::move(loader)) {}
 
@@ -273,6 +328,7 @@ std::optional<RememberingModel::Facts> RememberingModel::kept_facts() const {
         facts.name = json.at("name").get<std::string>();
         facts.kind = static_cast<neural::BundleKind>(json.at("kind").get<int>());
         facts.scores = json.at("scores").get<bool>();
+        facts.knows_scene = json.at("knows_scene").get<bool>();
         facts.threshold = json.at("threshold").get<double>();
         facts.attention_size = json.at("attention_size").get<int>();
         return facts;
@@ -290,13 +346,13 @@ bool RememberingModel::known() const {
 const RememberingModel::Facts& RememberingModel::facts() const {
     if (known()) return *facts_;
     const auto& model = real();
-    Facts facts{model.known_words(), model.image_size(), model.name(), model.kind(), model.text_image_score() != nullptr, 0.5, 0};
+    Facts facts{model.known_words(), model.image_size(), model.name(), model.kind(), model.text_image_score() != nullptr, model.knows_scene(), 0.5, 0};
     const auto attention = model.attention();
     facts.threshold = attention->threshold();
     facts.attention_size = attention->image_size();
     const nlohmann::json json{{"words", facts.words},   {"image_size", facts.image_size}, {"name", facts.name},
-                              {"kind", facts.kind},     {"scores", facts.scores},         {"threshold", facts.threshold},
-                              {"attention_size", facts.attention_size}};
+                              {"kind", facts.kind},     {"scores", facts.scores},         {"knows_scene", facts.knows_scene},
+                              {"threshold", facts.threshold}, {"attention_size", facts.attention_size}};
     cache_->keep("facts of " + identity_, json_text(json));
     const std::lock_guard lock(mutex_);
     if (!facts_) facts_ = std::move(facts);
@@ -312,7 +368,7 @@ std::unique_ptr<edit::Guidance> RememberingModel::guidance(const std::string& pr
 }
 
 std::unique_ptr<edit::ViewGuidance> RememberingModel::views(const std::string& prompt, const neural::SdsParameters& parameters) const {
-    return real().views(prompt, parameters);
+    return std::make_unique<RememberingViews>(shared_from_this(), prompt, parameters);
 }
 
 std::unique_ptr<edit::TextImageScore> RememberingModel::text_image_score() const {

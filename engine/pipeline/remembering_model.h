@@ -15,7 +15,7 @@
 
 namespace gse::pipeline {
 
-/// Answers attention maps, text-image vectors and tunings from a cache where it can; the rest goes to the networks. Answers are
+/// Answers attention maps, views drawn to find a place (RoundInput::keep), text-image vectors and tunings from a cache where it can; the rest goes to the networks. Answers are
 /// the same bit by bit. Counted in network_use().cached.
 class RememberingModel final : public neural::TextToImage, public std::enable_shared_from_this<RememberingModel> {
 public:
@@ -30,6 +30,7 @@ public:
     std::unique_ptr<edit::AttentionSource> attention(const neural::AttentionParameters& parameters) const override;
     std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const neural::SdsParameters& parameters) const override;
     std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const neural::SdsParameters& parameters) const override;
+    bool knows_scene() const override { return facts().knows_scene; }
     std::vector<std::string> known_words() const override { return facts().words; }
     int image_size() const override { return facts().image_size; }
     std::string name() const override { return facts().name; }
@@ -62,6 +63,7 @@ private:
         std::string name;
         neural::BundleKind kind = neural::BundleKind::Plain;
         bool scores = false;       // it has a text-image encoder
+        bool knows_scene = false;
         double threshold = 0.5;    // of its attention
         int attention_size = 0;
     };
@@ -69,6 +71,7 @@ private:
     std::optional<Facts> kept_facts() const;
     std::shared_ptr<RememberingModel> tuned_model(const std::string& question, Loader loader) const;
     friend class RememberingAttention;
+    friend class RememberingViews;
 
     const std::shared_ptr<DiskCache> cache_;
     const std::string identity_;

@@ -54,6 +54,16 @@ Located finished(Located located) {
     return located;
 }
 
+/// Where something goes that is added is seen by drawing it, where the model can; not by the artist's guidance, which belongs to the loop.
+edit::LocateResult look_from(Workplace& workplace, const Views& views, const EditRecipe& recipe, const std::vector<std::uint8_t>* label,
+                             const JobControl& control) {
+    auto tools = workplace.tools(views, control);
+    const auto& model = workplace.model();
+    const auto drawing = model.knows_scene() ? model.views(edit::as_told(recipe.request.prompt), neural::SdsParameters{}) : nullptr;
+    tools.drawing = drawing.get();
+    return edit::locate(question(workplace, recipe, views, label), tools);
+}
+
 /// One search; every step of it gives a new value.
 class Search {
 public:
@@ -121,7 +131,7 @@ private:
     }
 
     edit::LocateResult look(const EditRecipe& recipe, const Views& views, const std::vector<std::uint8_t>& label) {
-        return edit::locate(question(workplace_, recipe, views, label.empty() ? nullptr : &label), workplace_.tools(views, control_));
+        return look_from(workplace_, views, recipe, label.empty() ? nullptr : &label, control_);
     }
 
     /// What few views from one distance find.
@@ -213,8 +223,9 @@ private:
 edit::LocateInput question(const Workplace& workplace, const EditRecipe& recipe, const Views& views,
                            const std::vector<std::uint8_t>* label) {
     const auto& scene = workplace.scene();
+    const auto elevations = views.azimuths.empty() ? std::vector<double>{} : elevations_above(views);
     return {workplace.drawn(), views.views,   views.words, recipe.request,
-            render_settings(scene, recipe.request), scene.info.up, views.front, label, workplace.model().known_words()};
+            render_settings(scene, recipe.request), scene.info.up, views.front, label, workplace.model().known_words(), views.azimuths, elevations};
 }
 
 Located locate(Workplace& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints, const JobControl& control) {
@@ -226,7 +237,7 @@ Located locate_again(Workplace& workplace, const Located& located, const EditRec
     workplace.ask(recipe.attention);
     Located again{located.views, recipe, located.label, {}, located.target_read, {}};
     const auto* label = again.by_label() ? &again.label : nullptr;
-    again.result = edit::locate(question(workplace, recipe, again.views, label), workplace.tools(again.views, control));
+    again.result = look_from(workplace, again.views, recipe, label, control);
     return finished(std::move(again));
 }
 

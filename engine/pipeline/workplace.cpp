@@ -34,6 +34,7 @@ void Workplace::ask_anew(const neural::AttentionParameters& attention) {
     attention_ = std::make_unique<edit::CachedAttention>(model_->attention(attention));
     recognition_ = std::make_unique<edit::Recognition>(model_->text_image_score(), model_->known_words());
     renders_.asked_again.clear();
+    renders_.drawn.clear();
 }
 
 void Workplace::ask(const neural::AttentionParameters& attention) {

@@ -24,6 +24,7 @@ std::string branch_words(const AttentionView& view) {
     if (view.branch == "text") return "The mask was found from the word itself.";
     if (view.branch == "points") return "The mask was cut out from clicks placed on the attention.";
     if (view.branch == "attention") return "The mask is the attention above the threshold.";
+    if (view.branch == "drawn") return "The model drew it into this view; the mask is where all views say it goes.";
     if (view.branch == "anchor") return "The mask is the place where the new thing goes.";
     if (view.branch == "label") return "The mask is your label, seen from here.";
     if (view.branch == "none") return "There is no mask.";
@@ -242,7 +243,7 @@ void draw_summary(Context& context) {
 /// small.
 void draw_pictures(Context& context, const AttentionView& view, ImVec2 space, int columns) {
     const std::array<std::pair<const std::shared_ptr<const Image>*, const char*>, 4> all{
-        {{&view.render, "Render"},
+        {{&view.render, view.drawn ? "As drawn" : "Render"},
          {&view.map_coloured, "Attention"},
          {&context.state.attention.picture, "Above threshold"},
          {&view.mask_picture, "Voted mask"}}};

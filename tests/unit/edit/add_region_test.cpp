@@ -77,6 +77,29 @@ DOCTEST_TEST_CASE("what is inside a place is hidden by its shell: its picture is
     for (const auto& view : setup.views) DOCTEST_CHECK(edit::region_mask(region, view.camera).data == edit::region_mask(whole, view.camera).data);
 }
 
+DOCTEST_TEST_CASE("a place is not seen where it lies behind the surface by more than one of its cubes") {
+    const Search setup({-0.55, -0.55, 0.05}, 0.2);
+    const auto region = edit::vote_region(setup.search());
+    DOCTEST_REQUIRE_FALSE(region.empty());
+    const Camera& camera = setup.views[0].camera;
+    const Mask whole = edit::region_mask(region, camera);
+    double nearest = 1e9, farthest = 0;
+    for (const auto& centre : region.centres) {
+        const double z = camera.to_camera(centre).z;
+        nearest = std::min(nearest, z), farthest = std::max(farthest, z);
+    }
+    const auto seen_with = [&](double surface) {
+        const Image depth(camera.width, camera.height, 1, static_cast<float>(surface));
+        return edit::region_mask(region, camera, &depth);
+    };
+    DOCTEST_CHECK(seen_with(0).data == whole.data);             // nothing is there
+    DOCTEST_CHECK(seen_with(farthest).data == whole.data);
+    DOCTEST_CHECK(seen_with(nearest - 2 * region.side).count() == 0);
+    const Mask half = seen_with(nearest - 0.5 * region.side);   // the cubes in front
+    DOCTEST_CHECK(half.count() > 0);
+    DOCTEST_CHECK(half.count() < whole.count());
+}
+
 DOCTEST_TEST_CASE("a place of two parts keeps both, specks do not count") {
     const Vec3 left{-0.55, -0.55, 0.05}, right{0.1, -0.55, 0.05}, speck{-0.2, -0.75, 0.05};
     Search setup(left, 0.2);

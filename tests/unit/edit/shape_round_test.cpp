@@ -59,12 +59,14 @@ double outline_radius(double threshold, Image picture, float backdrop = 0) {
     SlopingAttention attention(threshold);
     const edit::ShapeFinder finder(plan, request, "cat", attention);
     Image outline;
-    const Image drawn = picture;
-    DOCTEST_REQUIRE(finder.take_out(grey_view(backdrop), picture, 1, &outline));
+    const Image before = picture;
+    edit::RoundTargets drawn{{std::move(picture)}, {}, {}};
+    DOCTEST_REQUIRE(finder.take_out(grey_view(backdrop), drawn, 0, 1, &outline));
+    const Image& after = drawn.images.front();
     double covered = 0;
     for (const float share : outline.data) covered += share;
-    DOCTEST_CHECK(picture.at(Side / 2, Side / 2, 0) == drawn.at(Side / 2, Side / 2, 0));   // the thing stays,
-    DOCTEST_CHECK(picture.at(1, 1, 0) == backdrop);                                        // what is beyond it becomes the backdrop
+    DOCTEST_CHECK(after.at(Side / 2, Side / 2, 0) == before.at(Side / 2, Side / 2, 0));   // the thing stays,
+    DOCTEST_CHECK(after.at(1, 1, 0) == backdrop);                                         // what is beyond it becomes the backdrop
     return std::sqrt(covered / 3.141592653589793);
 }
 

@@ -159,6 +159,30 @@ DOCTEST_TEST_CASE("redrawn views: what draws new things is shown what lies behin
     DOCTEST_CHECK(drawn(true, 0.2f, false) == drawn(true, 0.7f, false));   // what was there is redrawn as it is
 }
 
+DOCTEST_TEST_CASE("redrawn views: where the model knows what lies behind a view, it tells what is new in it") {
+    const TinyModel model;
+    const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
+    auto shapes = *bundle;
+    shapes.unet = with_scene_inputs(shapes.unet);
+    auto views = wall_views();
+    for (auto& view : views) view.backdrop.picture = view.original;
+    const auto change_of = [&](bool anew, bool may_change) {
+        for (auto& view : views) std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{may_change});
+        edit::RoundInput input;
+        input.steps = 2;
+        input.strength = 1;
+        input.anew = anew;
+        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(shapes)).edit(views, input, {}).changes;
+    };
+    DOCTEST_CHECK(change_of(false, true).empty());
+    const auto all = change_of(true, true), none = change_of(true, false);
+    DOCTEST_REQUIRE((all.size() == views.size() && none.size() == views.size()));
+    for (const auto& change : none)   // the surroundings stay as they are: nothing differs, whatever the autoencoder loses of them
+        DOCTEST_CHECK(*std::max_element(change.data.begin(), change.data.end()) < 1e-5f);
+    DOCTEST_CHECK((all[0].width == views[0].rendered.width && all[0].channels == 1));
+    DOCTEST_CHECK(*std::max_element(all[0].data.begin(), all[0].data.end()) > 0.01f);
+}
+
 DOCTEST_TEST_CASE("a model that names a LoRA for new things and has none is refused at once") {
     const TinyModel model;
     for (const char* key : {"shape_lora", "shape_cameras"}) {

@@ -31,7 +31,7 @@ constexpr std::uint64_t Room = std::uint64_t{256} << 20;
 
 /// How often a model was loaded and asked.
 struct Asked {
-    int loads = 0, maps = 0, pictures = 0, sentences = 0;
+    int loads = 0, maps = 0, pictures = 0, sentences = 0, drawn = 0;
     bool broken = false;   // its maps hold values that are not finite
 };
 
@@ -69,6 +69,23 @@ private:
     Asked& asked_;
 };
 
+class FakeViews final : public edit::ViewGuidance {
+public:
+    explicit FakeViews(Asked& asked) : asked_(asked) {}
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput&, const JobControl&) override {
+        ++asked_.drawn;
+        edit::RoundTargets targets;
+        for (const auto& view : views) {
+            targets.images.push_back(view.rendered);
+            targets.changes.emplace_back(view.rendered.width, view.rendered.height, 1, 0.125f);
+        }
+        return targets;
+    }
+
+private:
+    Asked& asked_;
+};
+
 class FakeModel final : public neural::TextToImage {
 public:
     explicit FakeModel(Asked& asked) : asked_(asked) {}
@@ -76,7 +93,10 @@ public:
         return std::make_unique<FakeAttention>(asked_);
     }
     std::unique_ptr<edit::Guidance> guidance(const std::string&, const neural::SdsParameters&) const override { return nullptr; }
-    std::unique_ptr<edit::ViewGuidance> views(const std::string&, const neural::SdsParameters&) const override { return nullptr; }
+    std::unique_ptr<edit::ViewGuidance> views(const std::string&, const neural::SdsParameters&) const override {
+        return std::make_unique<FakeViews>(asked_);
+    }
+    bool knows_scene() const override { return true; }
     std::vector<std::string> known_words() const override { return {"bear", "caf\xc3\xa9"}; }
     int image_size() const override { return 96; }
     std::string name() const override { return "fake"; }
@@ -198,6 +218,54 @@ DOCTEST_TEST_CASE("remembering model: everything that an attention map follows f
     asked.broken = true;
     DOCTEST_CHECK(ask({picture, "a sick bear", {"bear"}}));
     DOCTEST_CHECK(ask({picture, "a sick bear", {"bear"}}));   // what is not finite is not kept
+}
+
+DOCTEST_TEST_CASE("remembering model: views drawn to find a place are kept, by all that they follow from") {
+    const test::ScratchFolder folder;
+    Asked asked;
+    std::vector<edit::RoundView> views(2);
+    for (auto& view : views) {
+        view.rendered = view.original = view.backdrop.picture = Image(6, 6, 3, 0.25f);
+        view.depth = view.backdrop.depth = Image(6, 6, 1, 2.0f);
+        view.mask = Mask(6, 6);
+        view.view.camera.width = view.view.camera.height = 6;
+    }
+    edit::RoundInput input;
+    input.keep = true;
+    edit::RoundTargets targets;
+    const auto draws = [&](const std::string& prompt = "a hat") {
+        const int before = asked.drawn;
+        const auto model = fake(folder.path(), asked);
+        DOCTEST_CHECK(model->knows_scene());
+        targets = model->views(prompt, {})->edit(views, input, {});
+        return asked.drawn > before;
+    };
+    DOCTEST_CHECK(draws());
+    DOCTEST_CHECK(!draws());
+    DOCTEST_CHECK(asked.loads == 1);
+    DOCTEST_REQUIRE((targets.images.size() == 2 && targets.changes.size() == 2));
+    DOCTEST_CHECK(targets.images[1].data == views[1].rendered.data);
+    DOCTEST_CHECK(targets.changes[1].data == std::vector<float>(36, 0.125f));
+    DOCTEST_CHECK((draws("a crown") && !draws("a crown")));
+    const auto changed = [&](auto change) {
+        change();
+        return draws() && !draws();
+    };
+    DOCTEST_CHECK(changed([&] { views[1].rendered.data[5] = 0.5f; }));
+    DOCTEST_CHECK(changed([&] { views[1].mask.data[5] = 1; }));
+    DOCTEST_CHECK(changed([&] { views[0].backdrop.picture.data[5] = 0.5f; }));
+    DOCTEST_CHECK(changed([&] { views[0].depth.data[5] = 1; }));
+    DOCTEST_CHECK(changed([&] { views[0].azimuth = 0.5; }));
+    DOCTEST_CHECK(changed([&] { views[0].elevation = 0.5; }));
+    DOCTEST_CHECK(changed([&] { views[0].view_words = "front view"; }));
+    DOCTEST_CHECK(changed([&] { views[1].view.camera.translation.x = 1; }));
+    DOCTEST_CHECK(changed([&] { input.seed = 1; }));
+    DOCTEST_CHECK(changed([&] { input.steps = 5; }));
+    DOCTEST_CHECK(changed([&] { input.strength = 1; }));
+    DOCTEST_CHECK(changed([&] { input.anew = true; }));
+    DOCTEST_CHECK(changed([&] { input.guided_until = 0.5; }));
+    input.keep = false;   // of the loop: asked every time
+    DOCTEST_CHECK((draws() && draws()));
 }
 
 DOCTEST_TEST_CASE("remembering model: damaged entries are asked anew; a model that cannot be loaded says so every time") {

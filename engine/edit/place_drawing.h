@@ -1,0 +1,60 @@
+// Where something goes that the scene does not show yet, by drawing it: a model that is shown the scene draws the thing into the
+// views, anywhere around what it belongs to; what differs and draws the word's attention is its place (views.md 10).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/edit/add_region.h"
+#include "engine/edit/interfaces.h"
+#include "engine/edit/request.h"
+
+namespace gse::edit {
+
+/// What is drawn into which views; lists are per view. Refers to all it is given.
+struct PlaceDrawing {
+    const std::vector<View>& views;
+    const std::vector<std::string>& view_words;   // or empty
+    const std::vector<double>& azimuths;          // as in RoundView, or empty
+    const std::vector<double>& elevations;        // of as many views
+    const std::vector<Image>& renders;            // [H,W,3] in [0,1]
+    const std::vector<Image>& depths;             // [H,W,1], 0 = nothing there
+    const AddRegion& room;                        // where the thing may be
+    const EditRequest& request;
+    std::string word;                             // of the sentence: what is new
+    std::uint64_t seed = 0;
+};
+
+/// Of everything that the drawn pictures follow from, but for the scene and the views.
+std::string drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits);
+
+/// Views that were drawn into.
+struct DrawnViews {
+    std::vector<std::size_t> views;   // of the drawing's, ascending
+    std::vector<Image> pictures;      // [H,W,3] in [0,1], as the model would have them
+    std::vector<Image> changes;       // as in RoundTargets
+};
+
+/// As many of the views as an edit redraws, those farthest from each other; none where the room is not seen. Throws Error
+/// (Cancelled, Model).
+DrawnViews draw_thing(const PlaceDrawing& drawing, ViewGuidance& guidance, const JobControl& job);
+
+/// What a drawn view says.
+struct DrawnPlace {
+    Image map;   // [H,W,1] attention of the word in the drawn picture, maximum 1
+    Mask mask;   // the thing in it; empty of ones where the picture does not show it
+};
+
+/// Of each drawn view. Throws Error (Cancelled, NotFound).
+std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews& drawn, AttentionSource& attention, const JobControl& job);
+
+/// Where a redrawn picture shows a thing, by `map`, the attention of its word ([H,W,1], maximum 1; `level` is its threshold), and by how much
+/// the picture differs from the one without the thing, [H,W,1]: the pixels of `inside` that differ and have some attention. Holes filled,
+/// stray pixels gone.
+Mask changed_thing(const Image& change, const Mask& inside, const Image& map, double level);
+/// The same where only the picture `without` is known, not what the model makes of it: pixels with much attention count, too.
+Mask thing_in_picture(const Image& picture, const Image& without, const Mask& inside, const Image& map, double level);
+
+}  // namespace gse::edit

@@ -1,0 +1,189 @@
+// Where something goes, by drawing it: stand-ins paint a blue ball above the red one and attend to what is blue.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/error.h"
+#include "engine/base/log.h"
+#include "engine/edit/place_drawing.h"
+#include "tests/unit/edit/edit_scenes.h"
+
+namespace {
+
+using namespace gse;
+
+constexpr int Side = 48;
+constexpr double HatRadius = 0.2;
+const Vec3 Hat{-0.55, -0.55, 0};   // above the red ball; up is -y
+
+struct Quiet {
+    Quiet() { log::set_level(log::Level::Off); }
+    ~Quiet() { log::set_level(log::Level::Info); }
+};
+
+/// "ball" is drawn to red pixels, "hat" to blue ones, and to a wide surrounding that the sentence alone suggests.
+class ColourAttention : public edit::AttentionSource {
+public:
+    std::vector<Image> locate(const edit::AttentionQuery& query) override {
+        absent += query.absent ? 1 : 0;
+        const int channel = query.words.front() == "hat" ? 2 : 0;
+        Image map(query.image.width, query.image.height, 1);
+        for (int y = 0; y < map.height; ++y)
+            for (int x = 0; x < map.width; ++x)
+                map.at(x, y, 0) = std::max(channel == 2 ? Suggested : 0.0f, query.image.at(x, y, channel) - query.image.at(x, y, 1));
+        return {map};
+    }
+    int image_size() const override { return Side; }
+    int absent = 0;   // questions about what is not there
+
+private:
+    static constexpr float Suggested = 0.2f;
+};
+
+/// Paints the hat where it belongs into the views; everything else a little differently, as an autoencoder does.
+class HatPainter : public edit::ViewGuidance {
+public:
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl&) override {
+        asked.push_back(input);
+        edit::RoundTargets targets;
+        for (const auto& view : views) {
+            const auto& camera = view.view.camera;
+            const Vec3 centre = camera.to_camera(Hat);
+            const double u = camera.fx * centre.x / centre.z + camera.cx, v = camera.fy * centre.y / centre.z + camera.cy;
+            const double radius = camera.fx * HatRadius / centre.z;
+            Image picture = view.rendered, change(picture.width, picture.height, 1, 0.02f);
+            for (auto& value : picture.data) value = std::min(1.0f, value + 0.02f);
+            for (int y = 0; y < picture.height; ++y)
+                for (int x = 0; x < picture.width; ++x) {
+                    if (!paints || std::hypot(x + 0.5 - u, y + 0.5 - v) > radius) continue;
+                    for (int c = 0; c < 3; ++c) picture.at(x, y, c) = c == 2 ? 0.9f : 0.1f;
+                    change.at(x, y, 0) = 0.6f;
+                }
+            targets.images.push_back(std::move(picture));
+            if (tells) targets.changes.push_back(std::move(change));
+            rooms.push_back(view.mask.count());
+            DOCTEST_CHECK(view.backdrop.picture.data == view.original.data);   // all of the scene stays to be seen
+        }
+        return targets;
+    }
+    bool paints = true, tells = true;
+    std::vector<edit::RoundInput> asked;
+    std::vector<std::size_t> rooms;
+};
+
+struct Fixture {
+    test::BallScene scene = test::ball_scene(200);
+    std::vector<View> views = test::ball_views(12, Side);
+    std::vector<std::string> words;
+    ThreadPool pool{1};
+    std::unique_ptr<raster::Rasterizer> rasterizer = raster::make_fast_rasterizer(pool);
+    ColourAttention attention;
+    HatPainter painter;
+    edit::ViewMemory memory;
+    edit::EditRequest request;
+
+    explicit Fixture(const std::string& prompt = "a ball wearing a hat") {
+        request.source = "ball";
+        request.prompt = prompt;
+        request.target = "hat";
+        request.place_views = 6;
+        request = edit::validated(request);
+    }
+    edit::LocateResult locate(const std::vector<std::uint8_t>* label = nullptr) {
+        edit::LocateTools tools{*rasterizer, attention, nullptr, nullptr, {}};
+        tools.drawing = &painter;
+        tools.memory = &memory;
+        return edit::locate({scene.set, views, words, request, {}, {0, -1, 0}, {0, 0, -1}, label}, tools);
+    }
+};
+
+Vec3 middle(const edit::AddRegion& region) {
+    Vec3 sum;
+    for (const auto& centre : region.centres) sum = sum + centre * (1.0 / static_cast<double>(region.centres.size()));
+    return sum;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("what the model changed is the thing, one of two parts without attention too; specks and lines are not") {
+    constexpr double level = 0.5;
+    Image change(Side, Side, 1, 0.02f), map(Side, Side, 1);
+    Mask inside(Side, Side);
+    std::fill(inside.data.begin(), inside.data.end(), std::uint8_t{1});
+    const auto square = [](auto& image, int left, int top, int size, auto value) {
+        for (int y = top; y < top + size; ++y)
+            for (int x = left; x < left + size; ++x) image.data[static_cast<std::size_t>(y * Side + x)] = value;
+    };
+    square(change, 8, 16, 10, 0.5f), square(change, 30, 16, 10, 0.5f);   // two wings, of which the attention sees one
+    square(map, 8, 16, 10, 1.0f);
+    square(change, 20, 4, 2, 0.3f);                                      // a speck
+    for (int x = 0; x < Side; ++x) change.at(x, 40, 0) = 0.15f;          // an edge that the autoencoder blurs
+    Mask found = edit::changed_thing(change, inside, map, level);
+    const auto at = [&](int x, int y) { return found.at(x, y) != 0; };
+    DOCTEST_CHECK((at(12, 20) && at(34, 20)));
+    DOCTEST_CHECK((!at(20, 4) && !at(12, 40) && !at(24, 20)));
+    square(change, 8, 16, 10, 0.05f);   // dark before the dark: only the attention makes it sure
+    found = edit::changed_thing(change, inside, map, level);
+    DOCTEST_CHECK((at(12, 20) && at(34, 20)));
+    square(map, 8, 16, 10, 0.4f);
+    found = edit::changed_thing(change, inside, map, level);
+    DOCTEST_CHECK((!at(12, 20) && at(34, 20)));
+    square(inside, 30, 16, 10, std::uint8_t{0});
+    DOCTEST_CHECK(edit::changed_thing(change, inside, map, level).count() == 0);
+}
+
+DOCTEST_TEST_CASE("something added goes where a model that is shown the scene draws it") {
+    const Quiet quiet;
+    for (const bool tells : {true, false}) {
+        Fixture fixture;
+        fixture.painter.tells = tells;
+        const auto found = fixture.locate(&fixture.scene.first);
+        DOCTEST_REQUIRE(found.mode == edit::EditMode::Add);
+        DOCTEST_CHECK(found.region.origin == "attention");
+        DOCTEST_CHECK(length(middle(found.region) - Hat) < 0.1);
+        const double volume = static_cast<double>(found.region.centres.size()) * std::pow(found.region.side, 3);
+        const double ball = 4.0 / 3 * 3.14159 * std::pow(HatRadius, 3);
+        DOCTEST_CHECK(volume > 0.5 * ball);
+        DOCTEST_CHECK(volume < 2.5 * ball);
+        DOCTEST_CHECK(fixture.attention.absent == 0);   // nothing is asked about what is not there
+        DOCTEST_CHECK(found.failed_views == 0);
+    }
+}
+
+DOCTEST_TEST_CASE("the place is drawn from nothing, in as many views as asked for, once for all thresholds") {
+    const Quiet quiet;
+    Fixture fixture;
+    fixture.locate(&fixture.scene.first);
+    DOCTEST_REQUIRE(fixture.painter.asked.size() == 1);
+    const auto& input = fixture.painter.asked.front();
+    DOCTEST_CHECK((input.anew && input.keep && input.strength == 1 && input.steps == fixture.request.place_steps));
+    DOCTEST_CHECK(fixture.painter.rooms.size() == 6);
+    fixture.request.attention_threshold = 0.6;
+    fixture.locate(&fixture.scene.first);
+    DOCTEST_CHECK(fixture.painter.asked.size() == 1);
+    fixture.request.add_room = 0.9;
+    fixture.locate(&fixture.scene.first);
+    DOCTEST_REQUIRE(fixture.painter.rooms.size() == 12);
+    for (std::size_t v = 0; v < 6; ++v) DOCTEST_CHECK(fixture.painter.rooms[6 + v] > fixture.painter.rooms[v]);
+    auto other = fixture.scene.first;
+    other.front() = 0;
+    fixture.locate(&other);
+    DOCTEST_CHECK(fixture.painter.asked.size() == 3);
+}
+
+DOCTEST_TEST_CASE("what is not drawn, or has a place that the sentence names, is looked for by attention") {
+    const Quiet quiet;
+    Fixture blank, beside("a hat beside a ball"), off;
+    blank.painter.paints = false;
+    blank.locate(&blank.scene.first);
+    DOCTEST_CHECK(blank.painter.asked.size() == 1);
+    DOCTEST_CHECK(blank.attention.absent > 0);
+    beside.locate(&beside.scene.first);
+    DOCTEST_CHECK(beside.painter.asked.empty());
+    DOCTEST_CHECK(beside.attention.absent > 0);
+    off.request.place_views = 0;
+    off.locate(&off.scene.first);
+    DOCTEST_CHECK(off.painter.asked.empty());
+}
