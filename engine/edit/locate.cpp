@@ -472,8 +472,7 @@ private:
     }
 
     /// The region as the views see it takes the place of what each of them said.
-    void show_region(LocateResult& result, bool attended) {
-        const bool drawn = std::any_of(result.views.begin(), result.views.end(), [](const auto& view) { return !view.drawn.data.empty(); });
+    void show_region(LocateResult& result, bool attended, bool drawn) {
         const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
             for (std::size_t v = begin; v < end; ++v) {
                 auto& view = result.views[v];
@@ -495,6 +494,13 @@ private:
             some(0, count, 0);
     }
 
+    /// Drawn views are sure of what they show: what is seen from one side alone (flames in front, wings behind) counts.
+    static RegionParameters of_drawn_views() {
+        RegionParameters parameters;
+        parameters.least_covered = 0.2;
+        return parameters;
+    }
+
     static bool votes(const std::vector<ViewEvidence>& views) {
         return std::count_if(views.begin(), views.end(), [](const auto& view) { return !view.failed; }) >= LeastViews;
     }
@@ -502,7 +508,7 @@ private:
     /// What a model that is shown the scene draws around the thing of `source_bits`; nothing where there is no such model.
     std::vector<ViewEvidence> draw(const Search& search, const std::vector<std::uint8_t>& source_bits) {
         if (tools_.drawing == nullptr || request().place_views == 0) return {};
-        const auto room = room_around(input_.gaussians, source_bits, input_.up, input_.front, request().add_room);
+        const auto room = room_above(input_.gaussians, source_bits, input_.up, input_.front, request().add_room);
         if (room.empty()) return {};
         const PlaceDrawing drawing{input_.views, input_.view_words, input_.azimuths, input_.elevations, renders_, depths_, room, request(),
                                    search.word, Random::stream(SearchSeed, Drawing).next()};
@@ -534,14 +540,15 @@ private:
         result.word = search.word;
         const bool of_source = request().source != request().target;
         const auto relation = of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None;
-        if (of_source && place_name(relation).empty()) result.views = draw(search, *result.source_label.bits);
-        if (result.views.empty() || !votes(result.views)) result.views = look(search);
+        auto views = of_source && place_name(relation).empty() ? draw(search, *result.source_label.bits) : std::vector<ViewEvidence>{};
+        const bool drawn = votes(views);
+        result.views = drawn ? std::move(views) : look(search);
         std::vector<Mask> masks;
         for (const auto& view : result.views) masks.push_back(view.failed ? Mask() : view.mask);
         const RegionSearch space{
             input_.gaussians, *result.source_label.bits, input_.views, masks, depths_, input_.up, input_.front,
             relation, tools_.threads};
-        result.region = vote_region(space);
+        result.region = vote_region(space, drawn ? of_drawn_views() : RegionParameters{});
         const bool attended = !result.region.empty();
         if (!attended) {
             result.region = usual_region(space, search.word);
@@ -554,7 +561,7 @@ private:
             result.remedy = "name what it belongs to";
             return;
         }
-        show_region(result, attended);
+        show_region(result, attended, drawn);
         result.seeds =
             seed_splats(result.region, request().seed_splats, input_.gaussians.sh_degree(), SearchSeed);
     }

@@ -17,7 +17,9 @@ constexpr double PlaceMargin = 0.3;        // of the longest side of a place (vi
 
 }  // namespace
 
-AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share) {
+namespace {
+
+AddRegion room_of(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share, bool by_longest) {
     GSE_CHECK_EQ(bits.size(), set.size());
     const Frame frame = make_frame(up, front);
     std::vector<Vec3> points;
@@ -30,13 +32,24 @@ AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& b
     const Vec3 size = old.size(), centre = old.centre();
     const double wide = (1 + share) * std::max({0.5 * size.x, 0.5 * size.z, LeastWidth * size.y});
     if (!(wide > 0) || !(size.y > 0)) return {};
-    const Box room{{centre.x - wide, old.low.y, centre.z - wide}, {centre.x + wide, old.high.y + share * size.y, centre.z + wide}};
+    const double more = share * (by_longest ? std::max({size.x, size.y, size.z}) : size.y);
+    const Box room{{centre.x - wide, old.low.y, centre.z - wide}, {centre.x + wide, old.high.y + more, centre.z + wide}};
     auto region = fill(frame, make_grid(room, RoomCells), [&](const Vec3& p) {
         const double dx = p.x - centre.x, dz = p.z - centre.z;
         return dx * dx + dz * dz <= wide * wide;
     });
     region.origin = "room";
     return region;
+}
+
+}  // namespace
+
+AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share) {
+    return room_of(set, bits, up, front, share, false);
+}
+
+AddRegion room_above(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share) {
+    return room_of(set, bits, up, front, share, true);
 }
 
 HullBox bounds_of(const AddRegion& room, const GaussianData& place) {

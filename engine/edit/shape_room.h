@@ -14,6 +14,9 @@ namespace gse::edit {
 /// outermost rows and those too faint to be seen do not count. Empty when nothing is left.
 AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share);
 
+/// The same for what is added to it: higher by a share of its longest side, as a crown on a low thing is.
+AddRegion room_above(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share);
+
 /// Bounds of a room with a cell more on every side; without a room, of the rows of `place`, grown.
 HullBox bounds_of(const AddRegion& room, const GaussianData& place);
 

@@ -120,9 +120,11 @@ Camera close_camera(const synth::SynthScene& scene, const Shot& shot, int size) 
     return orbit_camera(orbit, shot.azimuth, size, size);
 }
 
-/// An upright cylinder around a thing, as edits redraw it where another takes its place, or is looked for a place on it (edit::room_around()).
+/// An upright cylinder around a thing, as edits redraw it where another takes its place (edit::room_around()), or where something is added
+/// to it (edit::room_above()).
 struct Room {
     Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+    bool above = false;   // it is higher by a share of the longest side, not of the height
 
     static constexpr double LeastWidth = 0.4;   // of its height, half the width of a room
     double half_width(double share) const {
@@ -132,7 +134,7 @@ struct Room {
     void store(const Camera& camera, double share, std::uint8_t* cells) const {
         constexpr int Points = 32;   // per axis: closer than cells
         const int side = camera.width / LatentCell;
-        const double wide = half_width(share), height = (1 + share) * (high.y - low.y);
+        const double wide = half_width(share), height = high.y - low.y + share * (above ? std::max({high.x - low.x, high.y - low.y, high.z - low.z}) : high.y - low.y);
         for (int k = 0; k < Points * Points * Points; ++k) {
             const double x = 2.0 * (k % Points) / (Points - 1) - 1, z = 2.0 * (k / Points % Points) / (Points - 1) - 1;
             if (x * x + z * z > 1) continue;
@@ -162,6 +164,7 @@ struct SceneBefore {
         scene = synth::generate(spec);
         const auto given = scene.scene.gaussians.opacity_logit();
         opacity_logit.assign(given.begin(), given.end());
+        room.above = !replaced;
         share = replaced ? random.uniform(0.1, 0.3) : random.uniform(0.3, 0.8);   // something worn reaches beyond
         const auto positions = scene.scene.gaussians.position();
         for (std::size_t row = 0; row < opacity_logit.size(); ++row) {
@@ -219,7 +222,7 @@ public:
         return {shot.azimuth, shot.elevation};
     }
     const StarterSource* before() const override { return before_.get(); }
-    std::string identity() const override { return (edited_ ? "synthetic shapes 4 " : "synthetic shapes 4 before ") + std::to_string(seed_); }
+    std::string identity() const override { return (edited_ ? "synthetic shapes 5 " : "synthetic shapes 5 before ") + std::to_string(seed_); }
 
 private:
     static constexpr int Views = 8;   // of a scene

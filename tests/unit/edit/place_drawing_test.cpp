@@ -180,7 +180,7 @@ DOCTEST_TEST_CASE("what is not drawn, or has a place that the sentence names, is
     blank.locate(&blank.scene.first);
     DOCTEST_CHECK(blank.painter.asked.size() == 1);
     DOCTEST_CHECK(blank.attention.absent > 0);
-    beside.locate(&beside.scene.first);
+    beside.locate();   // also where the source itself was looked for before
     DOCTEST_CHECK(beside.painter.asked.empty());
     DOCTEST_CHECK(beside.attention.absent > 0);
     off.request.place_views = 0;
