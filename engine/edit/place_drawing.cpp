@@ -117,7 +117,7 @@ DrawnViews draw_thing(const PlaceDrawing& drawing, ViewGuidance& guidance, const
     input.seed = drawing.seed;
     input.anew = true;
     input.guided_until = GuidedUntil;
-    input.keep = true;
+    input.keep = input.tells_changes = true;
     auto targets = guidance.edit(views, input, job);
     drawn.pictures = std::move(targets.images);
     drawn.changes = std::move(targets.changes);

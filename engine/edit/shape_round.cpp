@@ -55,7 +55,7 @@ Image ShapeFinder::outline_of(const RoundView& view, const RoundTargets& drawn, 
     GSE_CHECK_EQ(maps.size(), std::size_t{1});
     normalise_maximum(maps.front());
     const double level = request_.attention_threshold > 0 ? request_.attention_threshold : attention_.threshold();
-    return softened(plan_.mode == EditMode::Replace || drawn.changes.empty() ? thing_in_picture(picture, view.backdrop.picture, view.mask, maps.front(), level)
+    return softened(drawn.changes.empty() ? thing_in_picture(picture, view.backdrop.picture, view.mask, maps.front(), level)
                                           : changed_thing(drawn.changes[index], view.mask, maps.front(), level));
 }
 

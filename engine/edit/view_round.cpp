@@ -201,8 +201,10 @@ std::vector<HeldOutView> ViewRounds::draw_held_out(const std::vector<RoundView>&
 /// What this round is asked to be; `stream` of the request's seed.
 RoundInput ViewRounds::input(std::uint64_t stream) const {
     const auto plan = round_plan(request_, plan_.mode);
-    return {round_,          plan.rounds, plan.steps_of(round_), std::min(1.0, plan.strength_of(round_) + raised_), Random::stream(request_.seed, stream).next(),
-            shapes_ != nullptr, sentence_, plan.guided_until};
+    RoundInput asked{round_,          plan.rounds, plan.steps_of(round_), std::min(1.0, plan.strength_of(round_) + raised_), Random::stream(request_.seed, stream).next(),
+                     shapes_ != nullptr, sentence_, plan.guided_until};
+    asked.tells_changes = plan_.mode == EditMode::Add;
+    return asked;
 }
 
 /// Where the sentence leaves open what colour the new thing has, the view with most room for it is drawn first, and its colour

@@ -58,7 +58,7 @@ UNet with_inputs(const UNet& plain, bool inpaint) {
 
 UNet with_scene_inputs(const UNet& plain) { return with_inputs(plain, true); }
 
-bool shows_scene(const SafetensorsFile& file) { return file.contains(std::string(Inpaint) + "weight"); }
+bool shows_scene(const SafetensorsFile& file) { return file.contains(std::string(Inpaint).append("weight")); }
 
 UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool must_inpaint) {
     const bool inpaints = shows_scene(file);

@@ -259,7 +259,8 @@ edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<
                       (bundle_->kind == BundleKind::Lcm && input.strength >= LcmPlainDecode);
     edit::RoundTargets targets;
     targets.images.resize(views.size());
-    if (batch.behind.defined()) targets.changes.resize(views.size());
+    const bool tells = input.tells_changes && batch.behind.defined();
+    if (tells) targets.changes.resize(views.size());
     for_parts(static_cast<std::int64_t>(views.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
         for (auto row = begin; row < end; ++row) {
             auto decoded = latents_to_image(*bundle_, batch.x.narrow(0, row, 1), codec);
@@ -267,7 +268,7 @@ edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<
             const Image& rendered = views[static_cast<std::size_t>(row)].rendered;
             const auto enlarge = [&](const torch::Tensor& picture) { return torch::upsample_bilinear2d(picture, {rendered.height, rendered.width}, false); };
             auto enlarged = enlarge(decoded);
-            if (batch.behind.defined()) {
+            if (tells) {
                 const auto change = (decoded.clamp(0, 1) - latents_to_image(*bundle_, batch.behind.narrow(0, row, 1), codec).clamp(0, 1)).abs();
                 targets.changes[static_cast<std::size_t>(row)] = to_image(enlarge(change.amax(1, true)));
             }

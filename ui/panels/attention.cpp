@@ -31,6 +31,12 @@ std::string branch_words(const AttentionView& view) {
     return view.branch.empty() ? std::string() : fmt::format("The mask was made by \"{}\".", view.branch);
 }
 
+/// Of a mask that was cut out of the attention of its own view.
+std::string captured_words(const AttentionView& view) {
+    const bool of_all_views = view.branch == "drawn" || view.branch == "anchor" || view.branch == "label";
+    return of_all_views ? std::string() : fmt::format("The mask holds {} of the attention.", percent_text(view.captured));
+}
+
 ImU32 state_colour(const AttentionView& view) {
     if (view.failed) return palette::Bad;
     return view.captured >= 0.5 ? palette::Good : palette::Warning;
@@ -57,8 +63,9 @@ void draw_thumbnail(Context& context, int index, float side) {
     list->AddCircleFilled({high.x - 2 * r, low.y + 2 * r}, r, state_colour(view));
     if (index == state.chosen)
         list->AddRect(low, high, palette::Accent, round, 0, std::max(2.0f, context.em * 0.14f));
-    tooltip(fmt::format("{}\n{}\nThe mask holds {} of the attention.\nDouble click: look through it.",
-                        view.name, branch_words(view), percent_text(view.captured)));
+    const auto captured = captured_words(view);
+    tooltip(fmt::format("{}\n{}\n{}{}Double click: look through it.",
+                        view.name, branch_words(view), captured, captured.empty() ? "" : "\n"));
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) context.actions.set_camera(view.camera);
     ImGui::PopID();
 }
@@ -161,7 +168,7 @@ void draw_controls(Context& context, const AttentionView& view) {
     wrapped_text(view.name);
     dim_text(branch_words(view));
     if (!view.failed)
-        dim_text(fmt::format("The mask holds {} of the attention.", percent_text(view.captured)));
+        if (const auto words = captured_words(view); !words.empty()) dim_text(words);
     checkbox(context, "attention.points", "Points", state.points,
              "Green: clicks inside, red: clicks outside");
     flow(button_width("Look through"));

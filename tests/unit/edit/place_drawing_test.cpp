@@ -158,7 +158,7 @@ DOCTEST_TEST_CASE("the place is drawn from nothing, in as many views as asked fo
     fixture.locate(&fixture.scene.first);
     DOCTEST_REQUIRE(fixture.painter.asked.size() == 1);
     const auto& input = fixture.painter.asked.front();
-    DOCTEST_CHECK((input.anew && input.keep && input.strength == 1 && input.steps == fixture.request.place_steps));
+    DOCTEST_CHECK((input.anew && input.keep && input.tells_changes && input.strength == 1 && input.steps == fixture.request.place_steps));
     DOCTEST_CHECK(fixture.painter.rooms.size() == 6);
     fixture.request.attention_threshold = 0.6;
     fixture.locate(&fixture.scene.first);

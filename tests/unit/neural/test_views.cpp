@@ -166,15 +166,17 @@ DOCTEST_TEST_CASE("redrawn views: where the model knows what lies behind a view,
     shapes.unet = with_scene_inputs(shapes.unet);
     auto views = wall_views();
     for (auto& view : views) view.backdrop.picture = view.original;
-    const auto change_of = [&](bool anew, bool may_change) {
+    const auto change_of = [&](bool anew, bool may_change, bool tells = true) {
         for (auto& view : views) std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{may_change});
         edit::RoundInput input;
         input.steps = 2;
         input.strength = 1;
         input.anew = anew;
+        input.tells_changes = tells;
         return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(shapes)).edit(views, input, {}).changes;
     };
     DOCTEST_CHECK(change_of(false, true).empty());
+    DOCTEST_CHECK(change_of(true, true, false).empty());
     const auto all = change_of(true, true), none = change_of(true, false);
     DOCTEST_REQUIRE((all.size() == views.size() && none.size() == views.size()));
     for (const auto& change : none)   // the surroundings stay as they are: nothing differs, whatever the autoencoder loses of them
