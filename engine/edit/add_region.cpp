@@ -193,7 +193,7 @@ double silhouette_match(const RegionSearch& search, const AddRegion& region) {
     for (std::size_t v = 0; v < search.views.size(); ++v) {
         const Mask& mask = search.masks[v];
         if (mask.data.empty()) continue;
-        sum += localize::mask_iou(mask, region_mask(region, search.views[v].camera, &search.depths[v]));
+        sum += localize::mask_iou(mask, region_mask(region, search.views[v].camera, search.depths.empty() ? nullptr : &search.depths[v]));
         ++views;
     }
     return views > 0 ? sum / static_cast<double>(views) : 0;

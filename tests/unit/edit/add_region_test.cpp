@@ -100,6 +100,14 @@ DOCTEST_TEST_CASE("a place is not seen where it lies behind the surface by more 
     DOCTEST_CHECK(half.count() < whole.count());
 }
 
+DOCTEST_TEST_CASE("where no depth is known, nothing hides a place") {
+    Search setup({-0.55, -0.55, 0.05}, 0.2);
+    setup.depths.clear();
+    const auto region = edit::vote_region(setup.search());
+    DOCTEST_REQUIRE_FALSE(region.empty());
+    DOCTEST_CHECK(region.agreement > 0.8);
+}
+
 DOCTEST_TEST_CASE("a place of two parts keeps both, specks do not count") {
     const Vec3 left{-0.55, -0.55, 0.05}, right{0.1, -0.55, 0.05}, speck{-0.2, -0.75, 0.05};
     Search setup(left, 0.2);
