@@ -524,6 +524,7 @@ private:
         auto places = find_drawn(drawing, kept, tools_.attention, tools_.job);
         for (std::size_t i = 0; i < places.size(); ++i) {
             auto& view = views[kept.views[i]];
+            broken_ += places[i].broken;
             view.drawn = kept.pictures[i];
             view.map = std::move(places[i].map);
             view.region = view.mask = std::move(places[i].mask);

@@ -11,6 +11,8 @@
 #include "engine/base/error.h"
 #include "engine/base/hash.h"
 #include "engine/base/random.h"
+#include "engine/edit/broken_values.h"
+#include "engine/edit/neighbours.h"
 #include "engine/edit/view_round.h"
 #include "engine/edit/word_mask.h"
 #include "engine/localize/clusters.h"
@@ -40,19 +42,6 @@ float difference(const Image& a, const Image& b, std::size_t pixel) {
     return most;
 }
 
-/// Mean over the pixel and its eight neighbours: lines along edges, which the autoencoder blurs, are no thing.
-Image smoothed(const Image& image) {
-    Image result(image.width, image.height, 1);
-    for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) {
-            float sum = 0, all = 0;
-            for (int v = std::max(0, y - 1); v <= std::min(image.height - 1, y + 1); ++v)
-                for (int u = std::max(0, x - 1); u <= std::min(image.width - 1, x + 1); ++u, ++all) sum += image.at(u, v, 0);
-            result.at(x, y, 0) = sum / all;
-        }
-    return result;
-}
-
 Mask cleaned(const Mask& found, const Image& map) {
     const Mask whole = localize::clean_clusters(localize::without_holes(found), map, {1.5, 4}, LeastPart);
     const bool shows = static_cast<double>(whole.count()) >= LeastArea * static_cast<double>(whole.data.size());
@@ -73,7 +62,7 @@ Mask thing_in_picture(const Image& picture, const Image& without, const Mask& in
 
 Mask changed_thing(const Image& change, const Mask& inside, const Image& map, double level) {
     const double certain = std::min(CertainShare * level, (1 + level) / 2);
-    const Image smooth = smoothed(change);
+    const Image smooth = mean_of_neighbours(change);   // lines along edges, which the autoencoder blurs, are no thing
     Mask found(change.width, change.height);
     Image weight(change.width, change.height, 1);
     for (std::size_t i = 0; i < found.data.size(); ++i) {
@@ -119,6 +108,7 @@ DrawnViews draw_thing(const PlaceDrawing& drawing, ViewGuidance& guidance, const
     input.guided_until = GuidedUntil;
     input.keep = input.tells_changes = true;
     auto targets = guidance.edit(views, input, job);
+    mend_broken(views, targets.images);
     drawn.pictures = std::move(targets.images);
     drawn.changes = std::move(targets.changes);
     return drawn;
@@ -140,12 +130,12 @@ std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews
         if (at_once > 1 && i % at_once == 0) attention.prepare(std::span(queries).subspan(i, std::min(at_once, queries.size() - i)));
         auto maps = attention.locate(queries[i]);
         GSE_CHECK_EQ(maps.size(), std::size_t{1});
-        normalise_maximum(maps.front());
+        const auto broken = normalise_maximum(maps.front());
         const auto v = drawn.views[i];
         const Mask room = region_mask(drawing.room, drawing.views[v].camera);
         auto mask = drawn.changes.empty() ? thing_in_picture(drawn.pictures[i], drawing.renders[v], room, maps.front(), level)
                                           : changed_thing(drawn.changes[i], room, maps.front(), level);
-        places.push_back({std::move(maps.front()), std::move(mask)});
+        places.push_back({std::move(maps.front()), std::move(mask), broken});
         job.report("looking for what was drawn", static_cast<int>(i + 1), static_cast<int>(queries.size()));
     }
     return places;

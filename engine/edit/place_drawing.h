@@ -45,6 +45,7 @@ DrawnViews draw_thing(const PlaceDrawing& drawing, ViewGuidance& guidance, const
 struct DrawnPlace {
     Image map;   // [H,W,1] attention of the word in the drawn picture, maximum 1
     Mask mask;   // the thing in it; empty of ones where the picture does not show it
+    std::size_t broken = 0;   // values of the attention that were not finite, and count as none
 };
 
 /// Of each drawn view. Throws Error (Cancelled, NotFound).

@@ -11,25 +11,17 @@
 #include "engine/base/log.h"
 #include "engine/base/random.h"
 #include "engine/edit/colour_word.h"
+#include "engine/edit/neighbours.h"
 #include "engine/edit/place_drawing.h"
+#include "engine/edit/view_vote.h"
 #include "engine/edit/word_mask.h"
 
 namespace gse::edit {
 namespace {
 
 constexpr std::size_t LeastViews = 3;   // fewer do not enclose a space
-/// Mean over the pixel and its eight neighbours: the rim of a thing is part of a pixel.
-Image softened(const Mask& mask) {
-    Image soft(mask.width, mask.height, 1);
-    for (int y = 0; y < mask.height; ++y)
-        for (int x = 0; x < mask.width; ++x) {
-            int inside = 0, all = 0;
-            for (int v = std::max(0, y - 1); v <= std::min(mask.height - 1, y + 1); ++v)
-                for (int u = std::max(0, x - 1); u <= std::min(mask.width - 1, x + 1); ++u, ++all) inside += mask.at(u, v) != 0 ? 1 : 0;
-            soft.at(x, y, 0) = static_cast<float>(inside) / static_cast<float>(all);
-        }
-    return soft;
-}
+/// The rim of a thing is part of a pixel.
+Image softened(const Mask& mask) { return mean_of_neighbours(mask_image(mask)); }
 
 Image over(const Image& picture, const Image& share, const Image& backdrop) {
     GSE_CHECK_EQ(picture.data.size(), backdrop.data.size());

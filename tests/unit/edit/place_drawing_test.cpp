@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
@@ -33,10 +34,12 @@ public:
         for (int y = 0; y < map.height; ++y)
             for (int x = 0; x < map.width; ++x)
                 map.at(x, y, 0) = std::max(channel == 2 ? Suggested : 0.0f, query.image.at(x, y, channel) - query.image.at(x, y, 1));
+        if (broken && channel == 2) map.at(0, 0, 0) = std::numeric_limits<float>::quiet_NaN();
         return {map};
     }
     int image_size() const override { return Side; }
     int absent = 0;   // questions about what is not there
+    bool broken = false;   // a value of every map of the hat is not finite
 
 private:
     static constexpr float Suggested = 0.2f;
@@ -61,6 +64,7 @@ public:
                     for (int c = 0; c < 3; ++c) picture.at(x, y, c) = c == 2 ? 0.9f : 0.1f;
                     change.at(x, y, 0) = 0.6f;
                 }
+            if (breaks) picture.data.front() = std::numeric_limits<float>::quiet_NaN();
             targets.images.push_back(std::move(picture));
             if (tells) targets.changes.push_back(std::move(change));
             rooms.push_back(view.mask.count());
@@ -68,7 +72,7 @@ public:
         }
         return targets;
     }
-    bool paints = true, tells = true;
+    bool paints = true, tells = true, breaks = false;   // breaks: the first value of each picture is not finite
     std::vector<edit::RoundInput> asked;
     std::vector<std::size_t> rooms;
 };
@@ -171,6 +175,20 @@ DOCTEST_TEST_CASE("the place is drawn from nothing, in as many views as asked fo
     other.front() = 0;
     fixture.locate(&other);
     DOCTEST_CHECK(fixture.painter.asked.size() == 3);
+}
+
+DOCTEST_TEST_CASE("attention of drawn pictures that is not finite is counted; a drawn value that is not finite stays as the scene is") {
+    const Quiet quiet;
+    Fixture fixture;
+    fixture.attention.broken = fixture.painter.breaks = true;
+    const auto found = fixture.locate(&fixture.scene.first);
+    DOCTEST_CHECK(found.broken_attention == 6);
+    DOCTEST_CHECK(length(middle(found.region) - Hat) < 0.1);
+    for (const auto& view : found.views) {
+        if (view.drawn.data.empty()) continue;
+        DOCTEST_CHECK(view.drawn.data.front() == view.render.data.front());
+        for (const float value : view.drawn.data) DOCTEST_REQUIRE(std::isfinite(value));
+    }
 }
 
 DOCTEST_TEST_CASE("what is not drawn, or has a place that the sentence names, is looked for by attention") {
