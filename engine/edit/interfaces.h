@@ -67,7 +67,7 @@ struct RoundInput {
     std::string sentence = {};     // that the model is told; empty = the one that the guidance was made for
     double guided_until = 0;       // steps at or below this noise level are led by the sentence alone, without the negative prompt
     bool keep = false;             // the answer is worth remembering: the same may be asked again
-    bool tells_changes = false;    // RoundTargets::changes are wanted, which take a decoder's pass per view
+    bool tells_changes = false;    // RoundTargets::changes are wanted where there are no outlines; they take a decoder's pass per view
 };
 
 /// The pictures as the model would have them, and numbers for the log.
@@ -76,7 +76,9 @@ struct RoundTargets {
     /// Per view, [H,W,1]: how much the picture differs from what the model makes of the backdrop alone (of the channel that differs most);
     /// empty where it cannot tell, or was not asked.
     std::vector<Image> changes = {};
-    std::map<std::string, double> scalars;
+    /// Per view, [H,W,1] in [0,1]: how much of each pixel the new thing covers; empty where the model cannot tell.
+    std::vector<Image> outlines = {};
+    std::map<std::string, double> scalars = {};
 };
 
 /// Edits all views of a round in the picture; the scene is fitted to what comes back.

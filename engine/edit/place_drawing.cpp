@@ -30,6 +30,8 @@ constexpr float LeastDifference = 0.1f;   // of the channel that differs most: w
 // The same where it is known what the model changed: LeastChange of it does, or CertainChange where the attention is certain (a black
 // hat before the dark). What has little attention counts little, but counts: the attention often leaves out one of two wings.
 constexpr float LeastChange = 0.1f, CertainChange = 0.03f, AttentionFloor = 0.5f;
+constexpr float HalfCovered = 0.5f;
+constexpr double RimPx = 3;               // of a told outline: beyond it what is covered in part belongs to something else
 constexpr double GuidedUntil = 0.5;       // as edits have it (EditRequest::shape_guided_until)
 constexpr double LeastPart = 0.2;         // attention of a part beside that of the largest: a pair of wings has two
 constexpr double LeastArea = 0.002;       // of the picture
@@ -49,6 +51,24 @@ Mask cleaned(const Mask& found, const Image& map) {
 }
 
 }  // namespace
+
+Mask covered_pixels(const Image& share) {
+    Mask mask(share.width, share.height);
+    for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] = share.data[i] >= HalfCovered ? 1 : 0;
+    return mask;
+}
+
+Image told_thing(const Image& outline, const Mask& inside) {
+    Image share = outline;
+    for (std::size_t i = 0; i < share.data.size(); ++i)
+        if (inside.data[i] == 0 || !(share.data[i] > 0)) share.data[i] = 0;   // also what is not a number
+    const Mask half = covered_pixels(share), whole = cleaned(half, share), near = localize::dilate(whole, RimPx);
+    for (std::size_t i = 0; i < share.data.size(); ++i) {
+        if (near.data[i] == 0) share.data[i] = 0;
+        if (whole.data[i] != 0 && half.data[i] == 0) share.data[i] = inside.data[i] != 0 ? 1.0f : 0.0f;   // a hole
+    }
+    return share;
+}
 
 Mask thing_in_picture(const Image& picture, const Image& without, const Mask& inside, const Image& map, double level) {
     const double certain = std::min(CertainShare * level, (1 + level) / 2), possible = PossibleShare * level;
@@ -111,10 +131,20 @@ DrawnViews draw_thing(const PlaceDrawing& drawing, ViewGuidance& guidance, const
     mend_broken(views, targets.images);
     drawn.pictures = std::move(targets.images);
     drawn.changes = std::move(targets.changes);
+    drawn.outlines = std::move(targets.outlines);
     return drawn;
 }
 
 std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews& drawn, AttentionSource& attention, const JobControl& job) {
+    std::vector<DrawnPlace> places;
+    if (!drawn.outlines.empty()) {
+        for (std::size_t i = 0; i < drawn.views.size(); ++i) {
+            Image share = told_thing(drawn.outlines[i], region_mask(drawing.room, drawing.views[drawn.views[i]].camera));
+            Mask mask = covered_pixels(share);
+            places.push_back({std::move(share), std::move(mask)});
+        }
+        return places;
+    }
     const double level = drawing.request.attention_threshold > 0 ? drawing.request.attention_threshold : attention.threshold();
     std::vector<AttentionQuery> queries;
     for (std::size_t i = 0; i < drawn.views.size(); ++i) {
@@ -123,7 +153,6 @@ std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews
                            drawing.view_words.empty() ? std::string() : drawing.view_words[v], false, 1,
                            Random::stream(drawing.seed, QuestionStream + v).next()});
     }
-    std::vector<DrawnPlace> places;
     const std::size_t at_once = attention.at_once();
     for (std::size_t i = 0; i < queries.size(); ++i) {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "the search was stopped");

@@ -35,6 +35,7 @@ struct DrawnViews {
     std::vector<std::size_t> views;   // of the drawing's, ascending
     std::vector<Image> pictures;      // [H,W,3] in [0,1], as the model would have them
     std::vector<Image> changes;       // as in RoundTargets
+    std::vector<Image> outlines;      // the same
 };
 
 /// As many of the views as an edit redraws, those farthest from each other; none where the room is not seen. Throws Error
@@ -43,7 +44,7 @@ DrawnViews draw_thing(const PlaceDrawing& drawing, ViewGuidance& guidance, const
 
 /// What a drawn view says.
 struct DrawnPlace {
-    Image map;   // [H,W,1] attention of the word in the drawn picture, maximum 1
+    Image map;   // [H,W,1] attention of the word in the drawn picture, maximum 1; or what the model tells of it, in [0,1]
     Mask mask;   // the thing in it; empty of ones where the picture does not show it
     std::size_t broken = 0;   // values of the attention that were not finite, and count as none
 };
@@ -51,6 +52,11 @@ struct DrawnPlace {
 /// Of each drawn view. Throws Error (Cancelled, NotFound).
 std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews& drawn, AttentionSource& attention, const JobControl& job);
 
+/// Where a redrawn picture shows a thing, by what the model tells of it ([H,W,1] in [0,1]): the share of each pixel of `inside` that is
+/// covered, in parts that are half covered somewhere. Holes filled, stray pixels gone.
+Image told_thing(const Image& outline, const Mask& inside);
+/// The pixels that are covered by half or more.
+Mask covered_pixels(const Image& share);
 /// Where a redrawn picture shows a thing, by `map`, the attention of its word ([H,W,1], maximum 1; `level` is its threshold), and by how much
 /// the picture differs from the one without the thing, [H,W,1]: the pixels of `inside` that differ and have some attention. Holes filled,
 /// stray pixels gone.

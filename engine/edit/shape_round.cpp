@@ -41,6 +41,7 @@ AttentionQuery ShapeFinder::query_of(const RoundView& view, const Image& picture
 }
 
 Image ShapeFinder::outline_of(const RoundView& view, const RoundTargets& drawn, std::size_t index, std::uint64_t seed) const {
+    if (!drawn.outlines.empty()) return told_thing(drawn.outlines[index], view.mask);
     const Image& picture = drawn.images[index];
     const auto query = query_of(view, picture, seed);
     auto maps = attention_.locate(query);
@@ -66,13 +67,13 @@ std::string ShapeFinder::colour_in(const RoundView& view, const RoundTargets& dr
 
 CutOut ShapeFinder::cut_out(const std::vector<RoundView>& views, RoundTargets& drawn, int round, const JobControl& job) {
     GSE_CHECK_EQ(views.size(), drawn.images.size());
-    GSE_CHECK(drawn.changes.empty() || drawn.changes.size() == views.size());
+    for (const auto* maps : {&drawn.changes, &drawn.outlines}) GSE_CHECK(maps->empty() || maps->size() == views.size());
     CutOut found;
     const auto seed_of = [&](std::size_t v) { return Random::stream(request_.seed, 60000 + static_cast<std::uint64_t>(round) * 1000 + v).next(); };
     const std::size_t at_once = attention_.at_once();
     for (std::size_t v = 0; v < views.size(); ++v) {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "cutting out the new thing was stopped");
-        if (at_once > 1 && v % at_once == 0) {
+        if (drawn.outlines.empty() && at_once > 1 && v % at_once == 0) {
             std::vector<AttentionQuery> queries;
             for (std::size_t i = v; i < std::min(v + at_once, views.size()); ++i) queries.push_back(query_of(views[i], drawn.images[i], seed_of(i)));
             attention_.prepare(queries);

@@ -42,8 +42,8 @@ public:
 
 private:
     AttentionQuery query_of(const RoundView& view, const Image& picture, std::uint64_t seed) const;
-    /// Where a picture shows the thing, by the word's attention and by what differs from the view's backdrop; [H,W,1] in [0,1], all
-    /// zero where it does not.
+    /// Where a picture shows the thing, by what the model tells of it, else by the word's attention and by what differs from the view's
+    /// backdrop; [H,W,1] in [0,1], all zero where it does not.
     Image outline_of(const RoundView& view, const RoundTargets& drawn, std::size_t index, std::uint64_t seed) const;
 
     const EditPlan& plan_;

@@ -58,7 +58,9 @@ torch::Tensor guided_output(const UNet& unet, const torch::Tensor& latents, cons
     auto views = conditioning.views;
     if (views.cameras.defined()) views.cameras = views.cameras.repeat({rows.parts, 1});
     if (views.inpaint.defined()) views.inpaint = views.inpaint.repeat({rows.parts, 1, 1, 1});
-    return combine_rows(unet->forward(rows.input, t, rows.context, capture, rows.time_condition, views), rows.parts, conditioning);
+    const auto output = unet->forward(rows.input, t, rows.context, capture, rows.time_condition, views);
+    if (views.outline != nullptr && views.outline->defined() && rows.parts == 2) *views.outline = views.outline->chunk(2, 0)[1];
+    return combine_rows(output, rows.parts, conditioning);
 }
 
 }  // namespace gse::neural

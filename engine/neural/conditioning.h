@@ -41,7 +41,7 @@ UNetRows unet_rows(const UNetConfig& config, const torch::Tensor& latents, const
 /// What the rows' outputs [parts * B,C,h,w] come to together: [B,C,h,w].
 torch::Tensor combine_rows(const torch::Tensor& output, int parts, const Conditioning& conditioning);
 
-/// Both, and the call between them, at timestep `t` (a scalar). `capture` sees all rows.
+/// Both, and the call between them, at timestep `t` (a scalar). `capture` sees all rows; an outline is that of the positive text.
 torch::Tensor guided_output(const UNet& unet, const torch::Tensor& latents, const torch::Tensor& t, const Conditioning& conditioning,
                             AttentionCapture* capture = nullptr);
 

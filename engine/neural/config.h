@@ -37,6 +37,9 @@ struct UNetConfig {
     std::int64_t camera_dim = 0;
     /// Channels in which it is shown the picture that is to change (inpainting()); 0 = none. Not in the file either.
     std::int64_t inpaint_channels = 0;
+    /// Pixels of an outline along the side of a latent cell, where it also tells which of them what is new covers; 0 = it does not. Not in
+    /// the file either.
+    std::int64_t outline_scale = 0;
 
     /// Throws Error (Model, Malformed) naming the key that is wrong or not supported.
     static UNetConfig from_json(const Json& json, const std::filesystem::path& path);

@@ -11,7 +11,8 @@
 namespace gse::neural {
 namespace {
 
-constexpr std::string_view CameraEmbedding = "camera_embedding.", Inpaint = "conv_inpaint.";
+constexpr std::string_view CameraEmbedding = "camera_embedding.", Inpaint = "conv_inpaint.", Outline = "outline.";
+constexpr double FirstOutline = -3;   // logit before anything is known: little of a picture is new
 
 /// A network with the weights of another, each of the type it has; those that the other has not are left undrawn.
 UNet sharing(const UNet& from, const UNetConfig& config) {
@@ -37,35 +38,41 @@ torch::Tensor inpainting(const torch::Tensor& mask, const torch::Tensor& shown, 
 
 namespace {
 
-UNet with_inputs(const UNet& plain, bool inpaint) {
+/// Weights of layers that begin as layers do.
+template <class Layer>
+void draw_weights(UNet& unet, std::string_view part) {
+    for (auto& item : unet->named_modules())
+        if (auto* layer = dynamic_cast<Layer*>(item.value().get()); layer != nullptr && item.key().starts_with(part)) layer->reset();
+}
+
+UNet with_inputs(const UNet& plain, bool inpaint, bool outline) {
     auto config = plain->config();
     config.camera_dim = CameraFeatures;
     config.inpaint_channels = inpaint ? config.in_channels + 2 : 0;
+    config.outline_scale = outline ? OutlineScale : 0;
     auto unet = sharing(plain, config);
     const torch::NoGradGuard no_grad;
-    for (auto& item : unet->named_modules()) {
-        if (!item.key().starts_with(CameraEmbedding)) continue;
-        auto* layer = dynamic_cast<LinearImpl*>(item.value().get());
-        layer->reset();
-        if (item.key().ends_with("linear_2")) layer->weight.zero_(), layer->bias.zero_();
+    draw_weights<LinearImpl>(unet, CameraEmbedding);
+    draw_weights<Conv2dImpl>(unet, Outline);
+    for (auto& [name, weight] : scene_input_weights(unet)) {
+        if (name.starts_with(Inpaint) || name.find("_2.") != std::string::npos) weight.zero_();   // the last layers say nothing
+        if (name == std::string(Outline) + "conv_2.bias") weight.fill_(FirstOutline);
     }
-    for (auto& [name, weight] : scene_input_weights(unet))
-        if (name.starts_with(Inpaint)) weight.zero_();
     return unet;
 }
 
 }  // namespace
 
-UNet with_scene_inputs(const UNet& plain) { return with_inputs(plain, true); }
+UNet with_scene_inputs(const UNet& plain, bool outlines) { return with_inputs(plain, true, outlines); }
 
 bool shows_scene(const SafetensorsFile& file) { return file.contains(std::string(Inpaint).append("weight")); }
 
-UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool must_inpaint) {
-    const bool inpaints = shows_scene(file);
-    auto unet = with_inputs(plain, inpaints || must_inpaint);
+UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool complete) {
+    const bool inpaints = shows_scene(file), outlines = file.contains(std::string(Outline).append("conv_1.weight"));
+    auto unet = with_inputs(plain, inpaints || complete, outlines || complete);
     constexpr const char* Hint = "take it and the LoRA for shapes from one training run";
     for (auto& [name, weight] : scene_input_weights(unet)) {
-        if (name.starts_with(Inpaint) && !inpaints) continue;   // says nothing yet
+        if ((name.starts_with(Inpaint) && !inpaints) || (name.starts_with(Outline) && !outlines)) continue;   // says nothing yet
         if (!file.contains(name)) throw Error(ErrorCode::Model, "the embedding of cameras has no \"" + name + "\"", Hint, file.path());
         if (torch::IntArrayRef(file.entries().at(name).shape) != weight.sizes())
             throw Error(ErrorCode::Model, "\"" + name + "\" of the embedding of cameras has another shape", Hint, file.path());
@@ -77,11 +84,11 @@ UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool must
 
 UNet without_scene_inputs(const UNet& unet) {
     auto config = unet->config();
-    config.camera_dim = config.inpaint_channels = 0;
+    config.camera_dim = config.inpaint_channels = config.outline_scale = 0;
     return sharing(unet, config);
 }
 
-bool is_scene_input(const std::string& name) { return name.starts_with(CameraEmbedding) || name.starts_with(Inpaint); }
+bool is_scene_input(const std::string& name) { return name.starts_with(CameraEmbedding) || name.starts_with(Inpaint) || name.starts_with(Outline); }
 
 std::vector<std::pair<std::string, torch::Tensor>> scene_input_weights(const UNet& unet) {
     std::vector<std::pair<std::string, torch::Tensor>> weights;

@@ -1,5 +1,5 @@
-// What a UNet needs for denoising views of one scene together: what it is told of their cameras and shown of the scene as it was, and
-// the network that takes it.
+// What a UNet needs for denoising views of one scene together: what it is told of their cameras and shown of the scene as it was, what
+// it tells of the new thing's outlines, and the network that has it.
 #pragma once
 
 #include <array>
@@ -21,15 +21,18 @@ std::array<float, CameraFeatures> camera_features(std::optional<double> azimuth,
 /// it may change (`mask`, [B,1,h,w], 1), where the latents [B,C,h,w] of what was there are shown (`shown`, [B,1,h,w], 1), and these.
 torch::Tensor inpainting(const torch::Tensor& mask, const torch::Tensor& shown, const torch::Tensor& latents);
 
-/// The same network, with an embedding of cameras and a convolution of what it is shown that say nothing yet; shares all weights with
-/// `plain`.
-UNet with_scene_inputs(const UNet& plain);
+/// Pixels of an outline along the side of a latent cell: as many as the autoencoder has.
+inline constexpr std::int64_t OutlineScale = 4;
+
+/// The same network, with an embedding of cameras and a convolution of what it is shown that say nothing yet, and layers for outlines that
+/// find none (with `outlines`); shares all weights with `plain`.
+UNet with_scene_inputs(const UNet& plain, bool outlines = true);
 /// Whether the weights of a file include that of inpainting().
 bool shows_scene(const SafetensorsFile& file);
 
-/// The same with the weights that a file holds; one of before there was inpainting() has none for that, and the network then no such
-/// input, but where it `must_inpaint`. Throws Error (Model) where they do not fit.
-UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool must_inpaint = false);
+/// The same with the weights that a file holds; one of before there was inpainting(), or outlines, has none for that, and the network then
+/// no such part, but where all are wanted (`complete`, to go on training). Throws Error (Model) where they do not fit.
+UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool complete = false);
 /// The same network without those inputs; shares all weights.
 UNet without_scene_inputs(const UNet& unet);
 
@@ -37,9 +40,9 @@ UNet without_scene_inputs(const UNet& unet);
 /// the way around the thing, else neighbours. `azimuths` in radians; where one is not known, in the order of the views.
 std::vector<std::vector<std::int64_t>> view_groups(const std::vector<std::optional<double>>& azimuths, std::int64_t together, bool around);
 
-/// Whether a weight of that name belongs to these inputs.
+/// Whether a weight of that name belongs to these inputs, or to the outlines.
 bool is_scene_input(const std::string& name);
-/// The weights of these inputs by name, "camera_embedding.linear_1.weight", "conv_inpaint.weight" and so on.
+/// The weights of both by name, "camera_embedding.linear_1.weight", "conv_inpaint.weight" and so on.
 std::vector<std::pair<std::string, torch::Tensor>> scene_input_weights(const UNet& unet);
 
 }  // namespace gse::neural

@@ -17,6 +17,7 @@ struct StarterPictures {
     std::vector<std::uint8_t> rgb;         // [N,S,S,3]
     std::vector<std::uint8_t> coverage;    // [N,3,G,G]
     std::vector<std::uint8_t> bare_twin;   // [N]
+    std::vector<std::uint8_t> outline;     // [N,S,S], or empty
 };
 
 /// Reads the pictures from the cache in `work`, or renders them on all cores and writes the cache.

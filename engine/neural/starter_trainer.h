@@ -23,6 +23,8 @@ struct StarterPicture {
     /// The accessory map is that of the twin scene: the picture itself shows no accessory. Captions asked for with
     /// `insertion` then name the accessory, so the words learn where it belongs before it is there.
     bool bare_twin = false;
+    /// How much of each pixel what is new covers (the accessory, else the object), [S,S], 0..255; empty where the source does not tell.
+    std::vector<std::uint8_t> outline = {};
 };
 
 /// A caption and which of its words name which part (`occurrence` counts equal words from 0).
@@ -62,6 +64,8 @@ public:
     /// The same views of the same scenes without what the caption's edit brings: the accessory, else the object, whose coverage then is that
     /// of the room in which another thing took its place. null = there are none.
     virtual const StarterSource* before() const { return nullptr; }
+    /// Whether all pictures have their outline.
+    virtual bool has_outlines() const { return false; }
     /// Changes when the same index would give another picture (names the picture cache).
     virtual std::string identity() const = 0;
     /// Pictures for the image-text encoder; null = there are none.

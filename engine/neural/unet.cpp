@@ -81,6 +81,13 @@ UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : con
                                     GroupNorm(widths[0], config_.norm_num_groups, config_.norm_eps, options));
     conv_out =
         register_module("conv_out", Conv2d(Conv2dImpl::Shape{widths[0], config_.out_channels}, options));
+    if (config_.outline_scale > 0) {
+        auto outline = std::make_shared<torch::nn::Module>();
+        conv_outline_1 = outline->register_module("conv_1", Conv2d(Conv2dImpl::Shape{widths[0], widths[0]}, options));
+        conv_outline_2 =
+            outline->register_module("conv_2", Conv2d(Conv2dImpl::Shape{widths[0], config_.outline_scale * config_.outline_scale}, options));
+        register_module("outline", outline);
+    }
 }
 
 void UNetImpl::build_down(const Builder& build, std::vector<std::int64_t>& skips) {
@@ -233,7 +240,12 @@ torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor
         if (!level.upsampler.is_empty())
             x = level.upsampler->forward(x, skips.back().size(2), skips.back().size(3));
     }
-    return conv_out->forward(conv_norm_out->forward_silu(x)).to(sample.scalar_type());
+    x = conv_norm_out->forward_silu(x);
+    if (views.outline != nullptr && config_.outline_scale > 0) {
+        const auto parts = conv_outline_2->forward(apply_silu(conv_outline_1->forward(x)));
+        *views.outline = torch::pixel_shuffle(parts.to(torch::kFloat), config_.outline_scale);
+    }
+    return conv_out->forward(x).to(sample.scalar_type());
 }
 
 }  // namespace gse::neural

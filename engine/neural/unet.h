@@ -42,6 +42,9 @@ struct SceneViews {
     std::int64_t together = 1;   // consecutive rows of the batch that show one scene; divides the batch
     torch::Tensor cameras = {};  // [B,camera_dim]; undefined = nothing is known of them
     torch::Tensor inpaint = {};  // [B,inpaint_channels,h,w], inpainting(); undefined = they are not shown what was there
+    /// Where not null: set to which pixels of each picture what is new covers, logits [B,1,s h,s w] in fp32 with s = outline_scale (a picture
+    /// and its transparency from one network: Zhang and Agrawala 2024, "Transparent Image Layer Diffusion"); left alone by networks that do not tell.
+    torch::Tensor* outline = nullptr;
 };
 
 /// Embedding [B,width] of guidance scales w [B] (LCM's is the scale - 1), fp32: sines, then cosines, of 1000 w f_i with
@@ -79,6 +82,7 @@ private:
     Linear time_linear_1{nullptr}, time_linear_2{nullptr}, time_cond_proj{nullptr};
     Linear camera_linear_1{nullptr}, camera_linear_2{nullptr};   // where it is told of cameras
     Conv2d conv_inpaint{nullptr};                                // where it is shown what was there
+    Conv2d conv_outline_1{nullptr}, conv_outline_2{nullptr};     // where it tells outlines
     GroupNorm conv_norm_out{nullptr};
     std::vector<Level> down_, up_;
     std::unique_ptr<Level> mid_;

@@ -93,6 +93,7 @@ struct DiffusionViews::Batch {
     torch::Tensor inpaint;    // [K,2+C,h,w] the same with the mask
     torch::Tensor picture;    // [K,C,h,w] what a model that edits pictures is shown: the unedited views; else undefined
     torch::Tensor x;          // what the steps have made of it
+    torch::Tensor outline;    // [K,1,s h,s w] in [0,1], where the network tells what is new in it; else undefined
 };
 
 DiffusionViews::DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters,
@@ -185,8 +186,10 @@ torch::Tensor DiffusionViews::output(const UNet& unet, const torch::Tensor& x, s
 }
 
 torch::Tensor DiffusionViews::output_together(const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning,
-                                              const std::vector<std::vector<std::int64_t>>& groups) const {
+                                              const std::vector<std::vector<std::int64_t>>& groups, torch::Tensor* outline) const {
     auto result = torch::empty_like(x);
+    if (const auto scale = shapes_->unet->config().outline_scale; scale == 0) outline = nullptr;
+    else if (outline != nullptr) *outline = torch::empty({x.size(0), 1, scale * x.size(2), scale * x.size(3)}, torch::TensorOptions().dtype(torch::kFloat).device(x.device()));
     const auto t = torch::full({1}, timestep, torch::kFloat32);
     for_parts(static_cast<std::int64_t>(groups.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
         for (auto g = static_cast<std::size_t>(begin); g < static_cast<std::size_t>(end); ++g) {
@@ -196,7 +199,10 @@ torch::Tensor DiffusionViews::output_together(const torch::Tensor& x, std::int64
             some.views.together = static_cast<std::int64_t>(groups[g].size());
             some.views.cameras = conditioning.views.cameras.index_select(0, rows);
             if (some.views.inpaint.defined()) some.views.inpaint = conditioning.views.inpaint.index_select(0, rows);
+            torch::Tensor told;
+            some.views.outline = outline != nullptr ? &told : nullptr;
             result.index_copy_(0, rows, guided_output(shapes_->unet, x.index_select(0, rows), t, some));
+            if (outline != nullptr) outline->index_copy_(0, rows, told.sigmoid());
         }
     });
     return result;
@@ -220,7 +226,8 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
     const auto predicted = [&](std::size_t step) {
         if (!shapes) return output(bundle_->unet, batch.x, timesteps[step], edited);
         // In turns with those far around the thing and with neighbours, so that every view comes to know of all.
-        return output_together(batch.x, timesteps[step], edited, view_groups(azimuths, shapes_->facts.shape_views, step % 2 == 0));
+        return output_together(batch.x, timesteps[step], edited, view_groups(azimuths, shapes_->facts.shape_views, step % 2 == 0),
+                               step + 1 == timesteps.size() && batch.inpaint.defined() ? &batch.outline : nullptr);
     };
     const auto roots = [&](std::int64_t t) {
         const double a = schedule.alpha_cumprod(t);
@@ -259,8 +266,9 @@ edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<
                       (bundle_->kind == BundleKind::Lcm && input.strength >= LcmPlainDecode);
     edit::RoundTargets targets;
     targets.images.resize(views.size());
-    const bool tells = input.tells_changes && batch.behind.defined();
+    const bool tells = input.tells_changes && batch.behind.defined() && !batch.outline.defined();
     if (tells) targets.changes.resize(views.size());
+    if (batch.outline.defined()) targets.outlines.resize(views.size());
     for_parts(static_cast<std::int64_t>(views.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
         for (auto row = begin; row < end; ++row) {
             auto decoded = latents_to_image(*bundle_, batch.x.narrow(0, row, 1), codec);
@@ -272,6 +280,7 @@ edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<
                 const auto change = (decoded.clamp(0, 1) - latents_to_image(*bundle_, batch.behind.narrow(0, row, 1), codec).clamp(0, 1)).abs();
                 targets.changes[static_cast<std::size_t>(row)] = to_image(enlarge(change.amax(1, true)));
             }
+            if (batch.outline.defined()) targets.outlines[static_cast<std::size_t>(row)] = to_image(enlarge(batch.outline.narrow(0, row, 1)));
             if (!anew) enlarged = to_tensor(rendered, bundle_->device) + enlarged;
             targets.images[static_cast<std::size_t>(row)] = to_image(enlarged.clamp(0, 1));
         }
@@ -301,8 +310,9 @@ edit::RoundTargets DiffusionViews::edit(const std::vector<edit::RoundView>& view
     auto targets = redraw(parts, input, job);
     for (std::size_t v = 0; v < views.size(); ++v)
         targets.images[v] = edit::with_section(views[v].rendered, targets.images[v], sections[v]);
-    for (std::size_t v = 0; v < targets.changes.size(); ++v)
-        targets.changes[v] = edit::with_section(Image(views[v].rendered.width, views[v].rendered.height, 1), targets.changes[v], sections[v]);
+    for (auto* maps : {&targets.changes, &targets.outlines})
+        for (std::size_t v = 0; v < maps->size(); ++v)
+            (*maps)[v] = edit::with_section(Image(views[v].rendered.width, views[v].rendered.height, 1), (*maps)[v], sections[v]);
     return targets;
 }
 

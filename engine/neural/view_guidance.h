@@ -41,9 +41,9 @@ private:
     torch::Tensor noise(const std::vector<edit::RoundView>& views, std::uint64_t seed) const;
     /// Guided output of the UNet for latents [K,C,h,w], in pieces that fit into memory.
     torch::Tensor output(const UNet& unet, const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning) const;
-    /// The same of what draws new things: in each of `groups` the views see each other.
+    /// The same of what draws new things: in each of `groups` the views see each other. `outline`, where not null, gets what it tells of them.
     torch::Tensor output_together(const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning,
-                                  const std::vector<std::vector<std::int64_t>>& groups) const;
+                                  const std::vector<std::vector<std::int64_t>>& groups, torch::Tensor* outline) const;
 
     BufferHolder buffers_;   // goes last
     std::shared_ptr<const ModelBundle> bundle_, shapes_;

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -79,6 +81,34 @@ std::optional<std::vector<Image>> images_in(std::string_view bytes, std::size_t 
         bytes.remove_prefix(size);
     }
     return bytes.empty() ? std::optional(std::move(images)) : std::nullopt;
+}
+
+/// Pictures, changes and outlines behind the number of each; nothing where a value is not finite.
+std::optional<std::string> bytes_of(const edit::RoundTargets& targets) {
+    std::string bytes, images;
+    for (const auto* list : {&targets.images, &targets.changes, &targets.outlines}) {
+        if (!std::all_of(list->begin(), list->end(), [](const Image& image) { return finite(image.data); })) return std::nullopt;
+        put(bytes, static_cast<std::uint32_t>(list->size()));
+        images += bytes_of(*list);
+    }
+    return bytes + images;
+}
+
+/// Of a round of so many views; nothing where the bytes are something else.
+std::optional<edit::RoundTargets> targets_in(std::string_view bytes, std::size_t views) {
+    std::array<std::uint32_t, 3> counts{};
+    for (auto& count : counts)
+        if (!take(bytes, count) || (count != views && count != 0)) return std::nullopt;
+    auto images = images_in(bytes, std::size_t{counts[0]} + counts[1] + counts[2]);
+    if (!images || counts[0] != views) return std::nullopt;
+    edit::RoundTargets targets;
+    auto next = std::make_move_iterator(images->begin());
+    for (std::size_t i = 0; auto* list : {&targets.images, &targets.changes, &targets.outlines}) {
+        const auto end = next + counts[i++];
+        list->assign(next, end);
+        next = end;
+    }
+    return targets;
 }
 
 std::string digest_of(const Image& image) {
@@ -266,16 +296,9 @@ public:
         if (!input.keep) return drawn_by_networks(views, input, job);
         const auto question = model_->question("drawn views", question_of(views, input, prompt_, parameters_));
         if (const auto answer = model_->cache().find(question))
-            if (auto images = images_in(*answer, 2 * views.size())) {
-                count_cached_answer();
-                const auto middle = images->begin() + static_cast<std::ptrdiff_t>(views.size());
-                return {{images->begin(), middle}, {middle, images->end()}, {}};
-            }
+            if (auto targets = targets_in(*answer, views.size())) return count_cached_answer(), std::move(*targets);
         auto targets = drawn_by_networks(views, input, job);
-        auto all = targets.images;
-        all.insert(all.end(), targets.changes.begin(), targets.changes.end());
-        if (all.size() == 2 * views.size() && std::all_of(all.begin(), all.end(), [](const Image& image) { return finite(image.data); }))
-            model_->cache().keep(question, bytes_of(all));
+        if (const auto bytes = bytes_of(targets)) model_->cache().keep(question, *bytes);
         return targets;
     }
 

@@ -72,7 +72,8 @@ struct ShotPainter {
     Image values;
     std::vector<float> indicator;
 
-    void paint_parts(const synth::SynthScene& scene, const Camera& camera, neural::StarterPicture& picture) {
+    /// `outlined`: the part whose outline is wanted, too; -1 = none.
+    void paint_parts(const synth::SynthScene& scene, const Camera& camera, neural::StarterPicture& picture, int outlined = -1) {
         const std::size_t cells = static_cast<std::size_t>(camera.width / LatentCell) * (camera.width / LatentCell);
         picture.coverage.resize(neural::StarterPartCount * cells);
         for (int part = 0; part < neural::StarterPartCount; ++part) {
@@ -81,13 +82,14 @@ struct ShotPainter {
                            [part](synth::Part p) { return static_cast<int>(p) == part ? 1.0f : 0.0f; });
             rasterizer->forward_values(scene.scene.gaussians.spans(), camera, {}, indicator, values);
             store_coverage(values, &picture.coverage[static_cast<std::size_t>(part) * cells]);
+            if (part == outlined) picture.outline = to_bytes(values);
         }
     }
 };
 
 /// A picture of `scene`; its parts' coverage, too.
 neural::StarterPicture painted(ShotPainter& painter, const synth::SynthScene& scene, const Camera& camera,
-                               const std::array<float, 3>& background, std::span<const float> opacity_logit = {}) {
+                               const std::array<float, 3>& background, std::span<const float> opacity_logit = {}, int outlined = -1) {
     neural::StarterPicture picture;
     raster::Settings settings;
     settings.background = background;
@@ -95,7 +97,7 @@ neural::StarterPicture painted(ShotPainter& painter, const synth::SynthScene& sc
     if (!opacity_logit.empty()) spans.opacity_logit = opacity_logit;
     painter.rasterizer->forward(spans, camera, settings, painter.output);
     picture.rgb = to_bytes(painter.output.colour);
-    painter.paint_parts(scene, camera, picture);
+    painter.paint_parts(scene, camera, picture, outlined);
     return picture;
 }
 
@@ -199,7 +201,8 @@ public:
         }
         const auto camera = shot.close_share > 0 ? close_camera(scene, shot, size)
                                                  : synth::scene_camera(scene, shot.azimuth, shot.elevation, shot.zoom, size, size);
-        if (edited_) return painted(painter, scene, camera, shot.background);
+        const auto is_new = shot.spec.accessory.empty() ? synth::Part::Object : synth::Part::Accessory;
+        if (edited_) return painted(painter, scene, camera, shot.background, {}, static_cast<int>(is_new));
         auto picture = painted(painter, before->scene, camera, shot.background, before->opacity_logit);
         const std::size_t cells = picture.coverage.size() / neural::StarterPartCount;
         std::fill_n(picture.coverage.begin() + static_cast<std::ptrdiff_t>(cells), cells, std::uint8_t{0});
@@ -222,7 +225,8 @@ public:
         return {shot.azimuth, shot.elevation};
     }
     const StarterSource* before() const override { return before_.get(); }
-    std::string identity() const override { return (edited_ ? "synthetic shapes 5 " : "synthetic shapes 5 before ") + std::to_string(seed_); }
+    bool has_outlines() const override { return edited_; }
+    std::string identity() const override { return (edited_ ? "synthetic shapes 6 " : "synthetic shapes 6 before ") + std::to_string(seed_); }
 
 private:
     static constexpr int Views = 8;   // of a scene

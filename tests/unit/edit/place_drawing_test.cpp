@@ -29,6 +29,7 @@ class ColourAttention : public edit::AttentionSource {
 public:
     std::vector<Image> locate(const edit::AttentionQuery& query) override {
         absent += query.absent ? 1 : 0;
+        of_hat += query.words.front() == "hat" ? 1 : 0;
         const int channel = query.words.front() == "hat" ? 2 : 0;
         Image map(query.image.width, query.image.height, 1);
         for (int y = 0; y < map.height; ++y)
@@ -38,7 +39,7 @@ public:
         return {map};
     }
     int image_size() const override { return Side; }
-    int absent = 0;   // questions about what is not there
+    int absent = 0, of_hat = 0;   // questions about what is not there, about the hat
     bool broken = false;   // a value of every map of the hat is not finite
 
 private:
@@ -56,23 +57,25 @@ public:
             const Vec3 centre = camera.to_camera(Hat);
             const double u = camera.fx * centre.x / centre.z + camera.cx, v = camera.fy * centre.y / centre.z + camera.cy;
             const double radius = camera.fx * HatRadius / centre.z;
-            Image picture = view.rendered, change(picture.width, picture.height, 1, 0.02f);
+            Image picture = view.rendered, change(picture.width, picture.height, 1, 0.02f), outline(picture.width, picture.height, 1, 0.1f);
             for (auto& value : picture.data) value = std::min(1.0f, value + 0.02f);
             for (int y = 0; y < picture.height; ++y)
                 for (int x = 0; x < picture.width; ++x) {
                     if (!paints || std::hypot(x + 0.5 - u, y + 0.5 - v) > radius) continue;
                     for (int c = 0; c < 3; ++c) picture.at(x, y, c) = c == 2 ? 0.9f : 0.1f;
                     change.at(x, y, 0) = 0.6f;
+                    outline.at(x, y, 0) = 0.9f;
                 }
             if (breaks) picture.data.front() = std::numeric_limits<float>::quiet_NaN();
             targets.images.push_back(std::move(picture));
             if (tells) targets.changes.push_back(std::move(change));
+            if (outlines) targets.outlines.push_back(std::move(outline));
             rooms.push_back(view.mask.count());
             DOCTEST_CHECK(view.backdrop.picture.data == view.original.data);   // all of the scene stays to be seen
         }
         return targets;
     }
-    bool paints = true, tells = true, breaks = false;   // breaks: the first value of each picture is not finite
+    bool paints = true, tells = true, outlines = false, breaks = false;   // breaks: the first value of each picture is not finite
     std::vector<edit::RoundInput> asked;
     std::vector<std::size_t> rooms;
 };
@@ -138,11 +141,32 @@ DOCTEST_TEST_CASE("what the model changed is the thing, one of two parts without
     DOCTEST_CHECK(edit::changed_thing(change, inside, map, level).count() == 0);
 }
 
+DOCTEST_TEST_CASE("what the model tells of a thing keeps its soft rim; specks, holes and what is not a number are mended") {
+    Image told(Side, Side, 1, 0.02f);
+    Mask inside(Side, Side);
+    std::fill(inside.data.begin(), inside.data.end(), std::uint8_t{1});
+    for (int y = 10; y < 30; ++y)
+        for (int x = 10; x < 30; ++x) told.at(x, y, 0) = x == 10 ? 0.3f : 0.95f;   // half a pixel reaches out on the left
+    told.at(20, 20, 0) = 0.1f;                                                        // a hole
+    told.at(44, 44, 0) = 0.9f;                                                        // a speck
+    told.at(25, 25, 0) = std::numeric_limits<float>::quiet_NaN();
+    for (int y = 10; y < 30; ++y) inside.at(29, y) = 0;
+    const Image share = edit::told_thing(told, inside);
+    const Mask mask = edit::covered_pixels(share);
+    DOCTEST_CHECK(mask.count() == 18 * 20);
+    DOCTEST_CHECK((share.at(10, 20, 0) == 0.3f && mask.at(10, 20) == 0));
+    DOCTEST_CHECK((share.at(20, 20, 0) == 1 && share.at(25, 25, 0) == 1));
+    for (const auto& [x, y] : {std::pair{44, 44}, std::pair{29, 20}, std::pair{2, 2}}) DOCTEST_CHECK(share.at(x, y, 0) == 0);
+    for (auto& value : told.data) value *= 0.5f;
+    DOCTEST_CHECK(edit::covered_pixels(edit::told_thing(told, inside)).count() == 0);
+}
+
 DOCTEST_TEST_CASE("something added goes where a model that is shown the scene draws it") {
     const Quiet quiet;
-    for (const bool tells : {true, false}) {
+    for (const char* known : {"outlines", "changes", "nothing"}) {
         Fixture fixture;
-        fixture.painter.tells = tells;
+        fixture.painter.outlines = known == std::string("outlines");
+        fixture.painter.tells = known == std::string("changes");
         const auto found = fixture.locate(&fixture.scene.first);
         DOCTEST_REQUIRE(found.mode == edit::EditMode::Add);
         DOCTEST_CHECK(found.region.origin == "attention");
@@ -152,6 +176,7 @@ DOCTEST_TEST_CASE("something added goes where a model that is shown the scene dr
         DOCTEST_CHECK(volume > 0.5 * ball);
         DOCTEST_CHECK(volume < 2.5 * ball);
         DOCTEST_CHECK(fixture.attention.absent == 0);   // nothing is asked about what is not there
+        DOCTEST_CHECK(fixture.attention.of_hat == (fixture.painter.outlines ? 0 : 6));   // nor where the model tells
         DOCTEST_CHECK(found.failed_views == 0);
     }
 }

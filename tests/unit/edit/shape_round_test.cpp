@@ -86,6 +86,25 @@ DOCTEST_TEST_CASE("the new thing reaches as far as it differs from the backdrop,
     }
 }
 
+DOCTEST_TEST_CASE("where the model tells what is new in its picture, that is the new thing, whatever the word draws") {
+    const edit::EditPlan plan;
+    edit::EditRequest request;
+    request.prompt = "a cat on the grass";
+    SlopingAttention attention(0.5);
+    const edit::ShapeFinder finder(plan, request, "cat", attention);
+    Image told(Side, Side, 1), outline;
+    for (int y = 20; y < 50; ++y)
+        for (int x = 40; x < 60; ++x) told.at(x, y, 0) = x < 42 ? 0.25f : 1.0f;
+    edit::RoundTargets drawn{{Image(Side, Side, 3, 0.75f)}, {}, {told}};
+    DOCTEST_REQUIRE(finder.take_out(grey_view(0.25f), drawn, 0, 1, &outline));
+    DOCTEST_CHECK(outline.data == told.data);
+    DOCTEST_CHECK(drawn.images.front().at(50, 30, 0) == 0.75f);
+    DOCTEST_CHECK(drawn.images.front().at(41, 30, 0) == 0.375f);   // a quarter of it
+    DOCTEST_CHECK(drawn.images.front().at(32, 32, 0) == 0.25f);
+    edit::RoundTargets empty{{Image(Side, Side, 3, 0.75f)}, {}, {Image(Side, Side, 1, 0.3f)}};
+    DOCTEST_CHECK(!finder.take_out(grey_view(0.25f), empty, 0, 1));
+}
+
 DOCTEST_TEST_CASE("what differs where the word is not seen is not of the new thing") {
     for (const double threshold : {0.3, 0.5, 0.7}) {
         const double radius = outline_radius(threshold, Image(Side, Side, 3, 0.5f));

@@ -1,11 +1,13 @@
 // Views of one scene that are denoised together.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
 
 #include "engine/base/error.h"
+#include "engine/neural/conditioning.h"
 #include "engine/neural/scene_views.h"
 #include "tests/test_paths.h"
 
@@ -25,6 +27,12 @@ UNet small_unet() {
     config.cross_attention_dim = 12;
     torch::manual_seed(5);
     return UNet(config);
+}
+
+SceneViews telling(torch::Tensor& outline) {
+    SceneViews views;
+    views.outline = &outline;
+    return views;
 }
 
 }  // namespace
@@ -68,7 +76,7 @@ DOCTEST_TEST_CASE("an embedding of cameras says nothing before it was trained") 
     DOCTEST_CHECK(!torch::allclose(before, told->forward(views, t, words, nullptr, {}, {1, cameras}), 1e-4, 1e-5));
     DOCTEST_CHECK(torch::equal(before, told->forward(views, t, words)));   // where nothing is known of them
     DOCTEST_CHECK(torch::equal(before, without_scene_inputs(told)->forward(views, t, words)));
-    DOCTEST_CHECK(scene_input_weights(told).size() == 6);
+    DOCTEST_CHECK(scene_input_weights(told).size() == 10);
     DOCTEST_CHECK(scene_input_weights(plain).empty());
 }
 
@@ -92,21 +100,52 @@ DOCTEST_TEST_CASE("what was there is shown where it may be, and says nothing bef
     DOCTEST_CHECK(!torch::allclose(told, output(), 1e-4, 1e-5));
 }
 
-DOCTEST_TEST_CASE("inputs of before there was inpainting are read without it, or with one to train") {
+DOCTEST_TEST_CASE("weights of before there was inpainting, or outlines, are read without it, or with one to train") {
     const gse::test::ScratchFolder scratch;
     const auto path = scratch.path() / "cameras.safetensors";
     const UNet plain = small_unet();
-    auto weights = scene_input_weights(with_scene_inputs(plain));
-    std::erase_if(weights, [](const auto& weight) { return weight.first.starts_with("conv_inpaint."); });
-    for (auto& [name, weight] : weights) weight = torch::full_like(weight, 0.25).detach();
-    write_safetensors(path, weights);
-    const SafetensorsFile file(path);
-    DOCTEST_CHECK(with_scene_inputs(plain, file)->config().inpaint_channels == 0);
-    DOCTEST_CHECK(scene_input_weights(with_scene_inputs(plain, file)).size() == 4);
-    const auto more = with_scene_inputs(plain, file, true);
-    DOCTEST_CHECK(more->config().inpaint_channels == 6);
+    const auto written_without = [&](const std::vector<std::string>& parts) {
+        auto weights = scene_input_weights(with_scene_inputs(plain));
+        std::erase_if(weights, [&](const auto& weight) { return std::ranges::any_of(parts, [&](const auto& part) { return weight.first.starts_with(part); }); });
+        for (auto& [name, weight] : weights) weight = torch::full_like(weight, 0.25).detach();
+        write_safetensors(path, weights);
+        return SafetensorsFile(path);
+    };
+    const auto old = written_without({"conv_inpaint.", "outline."}), shown = written_without({"outline."});
+    DOCTEST_CHECK(with_scene_inputs(plain, old)->config().inpaint_channels == 0);
+    DOCTEST_CHECK(scene_input_weights(with_scene_inputs(plain, old)).size() == 4);
+    DOCTEST_CHECK(with_scene_inputs(plain, shown)->config().inpaint_channels == 6);
+    DOCTEST_CHECK(scene_input_weights(with_scene_inputs(plain, shown)).size() == 6);
+    DOCTEST_CHECK(with_scene_inputs(plain, shown)->config().outline_scale == 0);
+    const auto more = with_scene_inputs(plain, old, true);
+    DOCTEST_CHECK((more->config().inpaint_channels == 6 && more->config().outline_scale == OutlineScale));
     for (const auto& [name, weight] : scene_input_weights(more))
-        DOCTEST_CHECK_MESSAGE((weight == (name.starts_with("conv_inpaint.") ? 0.0 : 0.25)).all().item<bool>(), name);
+        if (!name.starts_with("outline."))
+            DOCTEST_CHECK_MESSAGE((weight == (name.starts_with("conv_inpaint.") ? 0.0 : 0.25)).all().item<bool>(), name);
+}
+
+DOCTEST_TEST_CASE("outlines are told by networks that know them, at the pixels of the picture, and change nothing of what is drawn") {
+    const torch::NoGradGuard no_grad;
+    torch::manual_seed(9);
+    const UNet plain = small_unet(), tells = with_scene_inputs(plain);
+    const auto views = torch::randn({4, 4, 8, 8}), words = torch::randn({4, 5, 12}), t = torch::full({1}, 500.0f);
+    torch::Tensor none, outline;
+    plain->forward(views, t, words, nullptr, {}, telling(none));
+    DOCTEST_CHECK(!none.defined());
+    const auto asked = tells->forward(views, t, words, nullptr, {}, telling(outline));
+    DOCTEST_CHECK(torch::equal(asked, tells->forward(views, t, words)));
+    DOCTEST_REQUIRE(outline.sizes() == torch::IntArrayRef({4, 1, 8 * OutlineScale, 8 * OutlineScale}));
+    DOCTEST_CHECK((outline.sigmoid() < 0.1).all().item<bool>());   // before it has learned of any there is none
+    // Under guidance it is that of the positive text.
+    for (auto& [name, weight] : scene_input_weights(tells))
+        if (name.starts_with("outline.")) weight.normal_();
+    const auto context = torch::randn({4, 2, 5, 12});
+    torch::Tensor guided_outline, positive;
+    Conditioning conditioning{context, 3};
+    conditioning.views.outline = &guided_outline;
+    guided_output(tells, views, t, conditioning);
+    tells->forward(views, t, context.select(1, 1), nullptr, {}, telling(positive));
+    DOCTEST_CHECK(torch::allclose(guided_outline, positive, 1e-4, 1e-4));
 }
 
 DOCTEST_TEST_CASE("an embedding of cameras is read as it was written, and refused where it does not fit") {

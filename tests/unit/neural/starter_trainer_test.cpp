@@ -69,16 +69,19 @@ public:
         picture.rgb.assign(static_cast<std::size_t>(size * size * 3), 40);
         const int cells = size / 4;
         picture.coverage.assign(static_cast<std::size_t>(3 * cells * cells), 0);
+        if (has_outlines()) picture.outline.assign(static_cast<std::size_t>(size * size), 0);
         for (int y = layout.y; y < layout.y + size / 2; ++y)
             for (int x = layout.x; x < layout.x + size / 2; ++x) {
                 picture.rgb[static_cast<std::size_t>((y * size + x) * 3 + layout.colour)] = 230;
                 picture.coverage[static_cast<std::size_t>(cells * cells + (y / 4) * cells + x / 4)] = 255;
+                if (has_outlines()) picture.outline[static_cast<std::size_t>(y * size + x)] = 255;
             }
         return picture;
     }
     /// `more`: words beside those of its captions. `blank`: what there is to see before its squares.
     explicit ToySource(std::vector<std::string> more = {}, const StarterSource* blank = nullptr) : more_(std::move(more)), blank_(blank) {}
     const StarterSource* before() const override { return blank_; }
+    bool has_outlines() const override { return blank_ != nullptr; }
     StarterCaption caption(std::uint64_t index, std::uint64_t, bool) const override {
         const std::string colour = ToyColours[Layout(index, 32).colour];
         return {"a " + colour + " square, front view",
@@ -285,6 +288,7 @@ DOCTEST_TEST_CASE("training of new shapes goes on from those that the model has,
     train_starter(parameters, ToySource({}, &blank), folder("work2"), folder("second"), {});
     const SafetensorsFile inputs(folder("second") / "shape_cameras.safetensors");
     DOCTEST_CHECK(inputs.tensor("conv_inpaint.weight").abs().sum().item<double>() > 0);
+    DOCTEST_CHECK(inputs.tensor("outline.conv_2.weight").abs().sum().item<double>() > 0);
     // So small a step goes nowhere: what comes out is what went in.
     parameters.unet_lr = 1e-12;
     parameters.unet_steps = 1;

@@ -163,7 +163,7 @@ DOCTEST_TEST_CASE("redrawn views: where the model knows what lies behind a view,
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     auto shapes = *bundle;
-    shapes.unet = with_scene_inputs(shapes.unet);
+    shapes.unet = with_scene_inputs(shapes.unet, false);
     auto views = wall_views();
     for (auto& view : views) view.backdrop.picture = view.original;
     const auto change_of = [&](bool anew, bool may_change, bool tells = true) {
@@ -183,6 +183,30 @@ DOCTEST_TEST_CASE("redrawn views: where the model knows what lies behind a view,
         DOCTEST_CHECK(*std::max_element(change.data.begin(), change.data.end()) < 1e-5f);
     DOCTEST_CHECK((all[0].width == views[0].rendered.width && all[0].channels == 1));
     DOCTEST_CHECK(*std::max_element(all[0].data.begin(), all[0].data.end()) > 0.01f);
+}
+
+DOCTEST_TEST_CASE("redrawn views: where the model knows outlines it tells them, and changes need not be decoded") {
+    const TinyModel model;
+    const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
+    auto shapes = *bundle;
+    shapes.unet = with_scene_inputs(shapes.unet);
+    auto views = wall_views();
+    for (auto& view : views) view.backdrop.picture = view.original;
+    edit::RoundInput input;
+    input.steps = 2;
+    input.tells_changes = true;
+    const auto drawn = [&] { return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(shapes)).edit(views, input, {}); };
+    DOCTEST_CHECK(drawn().outlines.empty());   // nothing is new
+    input.anew = true;
+    const auto targets = drawn();
+    DOCTEST_CHECK(targets.changes.empty());
+    DOCTEST_REQUIRE(targets.outlines.size() == views.size());
+    for (const auto& outline : targets.outlines) {
+        DOCTEST_CHECK((outline.width == views[0].rendered.width && outline.channels == 1));
+        for (const float share : outline.data) DOCTEST_REQUIRE((share >= 0 && share < 0.5f));   // it has learned of none
+    }
+    shapes.unet = with_scene_inputs(bundle->unet, false);
+    DOCTEST_CHECK((drawn().outlines.empty() && drawn().changes.size() == views.size()));
 }
 
 DOCTEST_TEST_CASE("a model that names a LoRA for new things and has none is refused at once") {

@@ -33,6 +33,7 @@ constexpr std::uint64_t Room = std::uint64_t{256} << 20;
 struct Asked {
     int loads = 0, maps = 0, pictures = 0, sentences = 0, drawn = 0;
     bool broken = false;   // its maps hold values that are not finite
+    bool outlines = false; // its views tell outlines, not changes
 };
 
 class FakeAttention final : public edit::AttentionSource {
@@ -77,7 +78,8 @@ public:
         edit::RoundTargets targets;
         for (const auto& view : views) {
             targets.images.push_back(view.rendered);
-            targets.changes.emplace_back(view.rendered.width, view.rendered.height, 1, 0.125f);
+            auto& maps = asked_.outlines ? targets.outlines : targets.changes;
+            maps.emplace_back(view.rendered.width, view.rendered.height, 1, 0.125f);
         }
         return targets;
     }
@@ -246,7 +248,12 @@ DOCTEST_TEST_CASE("remembering model: views drawn to find a place are kept, by a
     DOCTEST_REQUIRE((targets.images.size() == 2 && targets.changes.size() == 2));
     DOCTEST_CHECK(targets.images[1].data == views[1].rendered.data);
     DOCTEST_CHECK(targets.changes[1].data == std::vector<float>(36, 0.125f));
+    DOCTEST_CHECK(targets.outlines.empty());
     DOCTEST_CHECK((draws("a crown") && !draws("a crown")));
+    asked.outlines = true;
+    DOCTEST_CHECK((draws("a scarf") && !draws("a scarf")));
+    DOCTEST_REQUIRE((targets.outlines.size() == 2 && targets.changes.empty()));
+    DOCTEST_CHECK(targets.outlines[1].data == std::vector<float>(36, 0.125f));
     const auto changed = [&](auto change) {
         change();
         return draws() && !draws();

@@ -2,7 +2,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <numeric>
 #include <set>
 
 #include "engine/training/starter_source.h"
@@ -62,9 +64,15 @@ DOCTEST_TEST_CASE("a view of before lacks what the caption's edit brings, and no
     for (std::uint64_t index = 0; index < 24 * views; index += views + 1) {
         const auto after = source->picture(index, Size), before = source->before()->picture(index, Size);
         DOCTEST_CHECK(before.rgb != after.rgb);
+        DOCTEST_CHECK((source->has_outlines() && !source->before()->has_outlines() && before.outline.empty()));
         const std::uint8_t* accessory = &after.coverage[2 * Cells * Cells];
         const bool wears = std::any_of(accessory, accessory + Cells * Cells, [](int covered) { return covered > 0; });
         (wears ? worn : replaced) += 1;
+        // The outline is the coverage of what is new, pixel by pixel.
+        DOCTEST_REQUIRE(after.outline.size() == std::size_t{Size} * Size);
+        const double pixels = std::accumulate(after.outline.begin(), after.outline.end(), 0.0) / 16;
+        const std::uint8_t* part = &after.coverage[(wears ? 2 : 1) * Cells * Cells];
+        DOCTEST_CHECK(std::abs(pixels - std::accumulate(part, part + Cells * Cells, 0.0)) < Cells * Cells);   // a step of rounding each
         if (!wears) continue;
         // Away from what is worn and from its shadow most pixels are the same.
         std::size_t same = 0;
