@@ -31,7 +31,7 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
             for (std::size_t i = 0; i < mask.data.size(); ++i)
                 if (seen.data[i] > 0.5f) mask.data[i] = 1;
         }
-        mask = localize::dilate(mask, mask_growth_px(input.request, located.mode) * camera.width / ReferenceSide);
+        mask = localize::dilate(mask, mask_growth(input.request, located.mode, mask));
         if (!plan.room.empty() && mask.count() > 0) {
             const Mask room = region_mask(plan.room, camera);
             for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] |= room.data[i];

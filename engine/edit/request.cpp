@@ -7,6 +7,8 @@
 #include "engine/base/error.h"
 #include "engine/edit/add_region.h"
 #include "engine/edit/relation.h"
+#include "engine/edit/scales.h"
+#include "engine/localize/clusters.h"
 
 namespace gse::edit {
 namespace {
@@ -294,8 +296,11 @@ RoundPlan round_plan(const LoopSettings& settings, EditMode mode) {
     return plan;
 }
 
-double mask_growth_px(const LoopSettings& settings, EditMode mode) {
-    return settings.dilate_px * (mode == EditMode::Add ? 2 : 1);
+double mask_growth(const LoopSettings& settings, EditMode mode, const Mask& mask) {
+    const double px = settings.dilate_px * mask.width / ReferenceSide;
+    if (mode != EditMode::Add) return px;
+    const auto box = localize::bounds_of(mask);
+    return std::max(2 * px, settings.add_margin * std::max(box.width, box.height));
 }
 
 int loop_steps(const LoopSettings& settings, EditMode mode) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/fields.h"
+#include "engine/base/image.h"
 #include "engine/edit/words.h"
 
 namespace gse::edit {
@@ -136,6 +137,7 @@ struct LoopSettings {
     double shape_again_strength = 0.6;
     double shape_guided_until = 0.5;
     double shape_room = 0.2;
+    double add_margin = 0.2;
     double guidance_weight = 1;
     double strength = 1;
     bool gate_guidance = true;
@@ -262,6 +264,7 @@ private:
           "leads, at half the cost.",
           Range{0, 1});
         f("shape_room", self.shape_room, "Room around the old thing for one that takes its place, as a share of its size.", Range{0, 2});
+        f("add_margin", self.add_margin, "Room around the place of something that is added, as a share of its longer side in each view.", Range{0, 2});
     }
     template <class Self, class F>
     static void visit_rates(Self& self, F&& f) {
@@ -355,8 +358,8 @@ RoundPlan round_plan(const LoopSettings& settings, EditMode mode);
 /// Optimisation steps of an edit, the polish among them.
 int loop_steps(const LoopSettings& settings, EditMode mode);
 
-/// How far masks are grown, in pixels of a 512-pixel picture: what is new needs room.
-double mask_growth_px(const LoopSettings& settings, EditMode mode);
+/// How far a mask is grown, in its own pixels: what is new needs room.
+double mask_growth(const LoopSettings& settings, EditMode mode, const Mask& mask);
 /// All as the words and the mode of the request say, before anything was looked for.
 EditMode planned_mode(const EditRequest& request);
 int planned_steps(const EditRequest& request);

@@ -400,7 +400,7 @@ private:
             if (plan_.seeds.size() > 0 || plan_.mode == EditMode::Replace)   // what is new needs its room as before
                 for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] |= plan_.masks[v].data[i];
             else
-                mask = localize::dilate(mask, mask_growth_px(request_, plan_.mode) * camera.width / ReferenceSide);
+                mask = localize::dilate(mask, mask_growth(request_, plan_.mode, mask));
             masks.push_back(std::move(mask));
         }
         return views;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/base/check.h"
+#include "engine/localize/clusters.h"
 
 namespace gse::edit {
 namespace {
@@ -25,21 +26,15 @@ Image cut(const Image& image, const ViewSection& section) {
 
 ViewSection section_around(const Mask& mask) {
     GSE_CHECK_EQ(mask.width, mask.height);
-    int left = mask.width, right = -1, top = mask.height, bottom = -1;
-    for (int y = 0; y < mask.height; ++y)
-        for (int x = 0; x < mask.width; ++x) {
-            if (mask.at(x, y) == 0) continue;
-            left = std::min(left, x), right = std::max(right, x);
-            top = std::min(top, y), bottom = std::max(bottom, y);
-        }
+    const auto box = localize::bounds_of(mask);
     const ViewSection whole{0, 0, mask.width};
-    if (right < 0) return whole;
-    const int longer = std::max(right - left, bottom - top) + 1;
+    if (box.width == 0) return whole;
+    const int longer = std::max(box.width, box.height);
     const double wanted = std::max(longer / SectionShare, LeastSection * mask.width);
     if (wanted > LargestSection * mask.width) return whole;
     const int side = static_cast<int>(std::ceil(wanted));
-    const auto begin = [&](int low, int high) { return std::clamp((low + high + 1 - side) / 2, 0, mask.width - side); };
-    return {begin(left, right), begin(top, bottom), side};
+    const auto begin = [&](int low, int size) { return std::clamp((2 * low + size - side) / 2, 0, mask.width - side); };
+    return {begin(box.left, box.width), begin(box.top, box.height), side};
 }
 
 RoundView cut_out_section(const RoundView& view, const ViewSection& section) {

@@ -152,6 +152,17 @@ Mask dilate(const Mask& mask, double radius_px) {
     return result;
 }
 
+PixelBox bounds_of(const Mask& mask) {
+    int left = mask.width, right = -1, top = mask.height, bottom = -1;
+    for (int y = 0; y < mask.height; ++y)
+        for (int x = 0; x < mask.width; ++x) {
+            if (mask.at(x, y) == 0) continue;
+            left = std::min(left, x), right = std::max(right, x);
+            top = std::min(top, y), bottom = std::max(bottom, y);
+        }
+    return right < 0 ? PixelBox{} : PixelBox{left, top, right - left + 1, bottom - top + 1};
+}
+
 double mask_iou(const Mask& a, const Mask& b) {
     std::size_t both = 0, either = 0;
     for (std::size_t i = 0; i < a.data.size(); ++i) {

@@ -34,6 +34,12 @@ Mask without_holes(const Mask& mask);
 /// Set pixels grown by a disc of `radius_px` (negative: shrunk).
 Mask dilate(const Mask& mask, double radius_px);
 
+/// Smallest box of pixels that holds all that are set; sides of 0 where none is.
+struct PixelBox {
+    int left = 0, top = 0, width = 0, height = 0;
+};
+PixelBox bounds_of(const Mask& mask);
+
 /// Intersection over union of the set pixels of two masks of one size; 0 when neither has any.
 double mask_iou(const Mask& a, const Mask& b);
 

@@ -22,16 +22,8 @@ double nearest(const std::vector<Point>& points, bool positive, double x, double
 
 /// Diameter of the region's bounding box.
 double region_diameter(const Mask& region) {
-    int left = region.width, right = -1, top = region.height, bottom = -1;
-    for (int y = 0; y < region.height; ++y)
-        for (int x = 0; x < region.width; ++x)
-            if (region.at(x, y) != 0) {
-                left = std::min(left, x);
-                right = std::max(right, x);
-                top = std::min(top, y);
-                bottom = std::max(bottom, y);
-            }
-    return right < left ? 0 : std::hypot(right - left + 1, bottom - top + 1);
+    const PixelBox box = bounds_of(region);
+    return std::hypot(box.width, box.height);
 }
 
 /// Best allowed pixel for one more point; false when there is none.
