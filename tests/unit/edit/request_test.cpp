@@ -314,3 +314,16 @@ DOCTEST_TEST_CASE("source and target must be known to a model with a fixed vocab
     DOCTEST_CHECK(edit::nearest_words("sign", known).empty());
     edit::require_known_words(edit::validated(bear("sign", "a jade sign", "jade")), {}, false);   // an open vocabulary
 }
+
+DOCTEST_TEST_CASE("room for what is new: by its size where something is added, by pixels where something changes") {
+    edit::EditRequest request;
+    request.dilate_px = 16;
+    request.add_margin = 0.5;
+    Mask mask(256, 256);
+    for (int x = 40; x < 140; ++x) mask.at(x, 100) = 1;
+    DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Modify, mask) == 8);   // of a 512-pixel picture
+    DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, mask) == 50);
+    request.add_margin = 0.1;
+    DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, mask) == 16);     // never less than twice the pixels
+    DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, Mask(256, 256)) == 16);
+}

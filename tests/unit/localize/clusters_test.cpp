@@ -189,3 +189,11 @@ DOCTEST_TEST_CASE("holes: what is enclosed is filled, what is open to the edge i
     const Mask around = gse::localize::flood_fill(mask, filled);   // all that is set is its own way
     for (std::size_t i = 0; i < mask.data.size(); ++i) DOCTEST_CHECK(around.data[i] == mask.data[i]);
 }
+
+DOCTEST_TEST_CASE("bounds: the smallest box that holds all set pixels, none where none is set") {
+    Mask mask(9, 7);
+    DOCTEST_CHECK(gse::localize::bounds_of(mask).width == 0);
+    mask.at(3, 6) = mask.at(8, 2) = 1;
+    const auto box = gse::localize::bounds_of(mask);
+    DOCTEST_CHECK((box.left == 3 && box.top == 2 && box.width == 6 && box.height == 5));
+}
