@@ -127,7 +127,7 @@ struct LoopSettings {
     int polish_steps = 0;
     // Shapes by views: a thing that becomes another, or is new
     int shape_views = 12;
-    int shape_rounds = 2;
+    int shape_rounds = 1;
     int add_rounds = 1;
     int shape_steps = 4;
     int shape_fit_steps = 144;

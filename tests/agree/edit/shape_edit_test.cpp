@@ -115,6 +115,7 @@ struct ShapeEdit {
         request.source = "bear";
         request.target = "cat";
         request.method = "views";
+        request.shape_rounds = 2;   // what a later round does is seen, too
         request = edit::validated(request);
         plan.views = ring(source, 24, 0);
         edit::LocateResult located;

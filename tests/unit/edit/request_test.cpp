@@ -173,6 +173,7 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     using edit::EditMode;
     EditRequest request;
     request.method = "auto";
+    request.shape_rounds = 2;
     const auto recolour = edit::round_plan(request, EditMode::Modify), shape = edit::round_plan(request, EditMode::Replace);
     DOCTEST_CHECK(edit::edits_by_views(request));
     DOCTEST_CHECK(!recolour.anew);
