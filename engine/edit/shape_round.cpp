@@ -19,6 +19,7 @@
 namespace gse::edit {
 namespace {
 
+constexpr double LeastFramedAdded = 0.5;   // views frame what something is added to: a tall hat reaches out of some
 constexpr std::size_t LeastViews = 3;   // fewer do not enclose a space
 /// The rim of a thing is part of a pixel.
 Image softened(const Mask& mask) { return mean_of_neighbours(mask_image(mask)); }
@@ -96,7 +97,9 @@ CutOut ShapeFinder::cut_out(const std::vector<RoundView>& views, RoundTargets& d
 }
 
 GaussianData ShapeFinder::seeds(const CutOut& found, const HullBox& box, int sh_degree) const {
-    const auto hull = best_hull(found.outlines, box);
+    HullParameters parameters;
+    if (plan_.mode == EditMode::Add) parameters.least_framed = LeastFramedAdded;
+    const auto hull = best_hull(found.outlines, box, parameters);
     log::info("\"{}\" takes {} cubes of {:.4g} in what {} views enclose", word_, hull.centres.size(), hull.side, found.usable.size());
     return hull_seeds(hull, found.outlines, sh_degree);
 }

@@ -187,10 +187,11 @@ std::array<float, 4> turn_to(const Vec3& normal) {
 }  // namespace
 
 double hull_share(std::span<const HullView> views, const Vec3& point, double slack, const HullParameters& parameters) {
-    int seen = 0, inside = 0;
+    int framed = 0, seen = 0, inside = 0;
     for (const auto& view : views) {
         const auto pixel = project(view.camera, point);
         if (!pixel) continue;
+        ++framed;
         if (!view.surface.data.empty()) {
             const double surface = view.surface.at(static_cast<int>(pixel->x), static_cast<int>(pixel->y), 0);
             if (surface > 0 && pixel->z > surface + slack) continue;
@@ -198,7 +199,8 @@ double hull_share(std::span<const HullView> views, const Vec3& point, double sla
         ++seen;
         inside += sample(view.inside, pixel->x, pixel->y, 0) >= parameters.level ? 1 : 0;
     }
-    if (seen == 0 || seen < parameters.least_seen * static_cast<double>(views.size())) return -1;
+    const auto views_count = static_cast<double>(views.size());
+    if (seen == 0 || seen < parameters.least_seen * views_count || framed < parameters.least_framed * views_count) return -1;
     return static_cast<double>(inside) / seen;
 }
 

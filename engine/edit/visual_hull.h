@@ -29,6 +29,7 @@ struct HullParameters {
     int cells = 5000;              // about as many are inside, whatever the thing's size
     double least_share = 0.75;     // of the views that see a place: so many have it inside
     double least_seen = 0.4;       // of all views: fewer that see a place cannot say that it is inside
+    double least_framed = 0.75;    // of all views: where fewer have a place in their picture, outlines that its border cuts off say nothing of it
     double level = 0.5;            // of an outline's value that counts as inside
 };
 

@@ -111,6 +111,17 @@ DOCTEST_TEST_CASE("the cubes of a hull are the places that the plain test has in
     }
 }
 
+DOCTEST_TEST_CASE("outlines that the border of their picture cuts off say nothing of what is beyond it") {
+    auto views = outlines(ball);
+    const edit::HullParameters usual, few{.least_framed = 0.5};
+    const Vec3 middle{};
+    DOCTEST_CHECK(edit::hull_share(views, middle, 0.1, usual) == 1);
+    const std::size_t away = (views.size() + 2) / 3;
+    for (std::size_t v = 0; v < away; ++v) views[v].camera.cx += 2 * views[v].camera.width;
+    DOCTEST_CHECK(edit::hull_share(views, middle, 0.1, usual) < 0);
+    DOCTEST_CHECK(edit::hull_share(views, middle, 0.1, few) == 1);
+}
+
 DOCTEST_TEST_CASE("one or two wrong outlines do not spoil a hull") {
     const auto truth = outlines(ball);
     const auto right = edit::carve_hull(truth, Room);
