@@ -140,13 +140,31 @@ Mask without_holes(const Mask& mask) {
 
 Mask dilate(const Mask& mask, double radius_px) {
     const bool grow = radius_px >= 0;
-    const auto offsets = disc(std::abs(radius_px));
+    const double square = radius_px * radius_px;
+    const int reach = static_cast<int>(std::floor(std::abs(radius_px))), width = mask.width, height = mask.height;
+    const auto at = [&](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); };
+    // Rows to the nearest pixel that spreads, in each column: then a pixel asks its row, not the whole disc.
+    const int far = reach + 1;
+    std::vector<int> rows(mask.data.size());
+    for (int x = 0; x < width; ++x) {
+        int distance = far;
+        const auto pass = [&](int y) {
+            distance = (mask.at(x, y) != 0) == grow ? 0 : std::min(distance + 1, far);
+            rows[at(x, y)] = std::min(rows[at(x, y)], distance);
+        };
+        for (int y = 0; y < height; ++y) rows[at(x, y)] = far, pass(y);
+        distance = far;
+        for (int y = height - 1; y >= 0; --y) pass(y);
+    }
     Mask result = mask;
-    for (int y = 0; y < mask.height; ++y)
-        for (int x = 0; x < mask.width; ++x) {
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
             if ((mask.at(x, y) != 0) == grow) continue;
             bool hit = false;
-            for_neighbours(mask, x, y, offsets, [&](std::size_t i) { hit |= (mask.data[i] != 0) == grow; });
+            for (int u = std::max(0, x - reach); u <= std::min(width - 1, x + reach) && !hit; ++u) {
+                const int dx = u - x, dy = rows[at(u, y)];
+                hit = dy < far && dx * dx + dy * dy <= square;
+            }
             if (hit) result.at(x, y) = grow ? 1 : 0;
         }
     return result;
