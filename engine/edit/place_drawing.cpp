@@ -30,7 +30,6 @@ constexpr float LeastDifference = 0.1f;   // of the channel that differs most: w
 // The same where it is known what the model changed: LeastChange of it does, or CertainChange where the attention is certain (a black
 // hat before the dark). What has little attention counts little, but counts: the attention often leaves out one of two wings.
 constexpr float LeastChange = 0.1f, CertainChange = 0.03f, AttentionFloor = 0.5f;
-constexpr float HalfCovered = 0.5f;
 constexpr double RimPx = 3;               // of a told outline: beyond it what is covered in part belongs to something else
 constexpr double GuidedUntil = 0.5;       // as edits have it (EditRequest::shape_guided_until)
 constexpr double LeastPart = 0.2;         // attention of a part beside that of the largest: a pair of wings has two
@@ -52,9 +51,9 @@ Mask cleaned(const Mask& found, const Image& map) {
 
 }  // namespace
 
-Mask covered_pixels(const Image& share) {
+Mask covered_pixels(const Image& share, double least) {
     Mask mask(share.width, share.height);
-    for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] = share.data[i] >= HalfCovered ? 1 : 0;
+    for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] = share.data[i] >= least ? 1 : 0;
     return mask;
 }
 
@@ -137,15 +136,16 @@ DrawnViews draw_thing(const PlaceDrawing& drawing, ViewGuidance& guidance, const
 
 std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews& drawn, AttentionSource& attention, const JobControl& job) {
     std::vector<DrawnPlace> places;
+    const double asked = drawing.request.attention_threshold;   // 0 = open
     if (!drawn.outlines.empty()) {
         for (std::size_t i = 0; i < drawn.views.size(); ++i) {
             Image share = told_thing(drawn.outlines[i], region_mask(drawing.room, drawing.views[drawn.views[i]].camera));
-            Mask mask = covered_pixels(share);
+            Mask mask = asked > 0 ? covered_pixels(share, asked) : covered_pixels(share);
             places.push_back({std::move(share), std::move(mask)});
         }
         return places;
     }
-    const double level = drawing.request.attention_threshold > 0 ? drawing.request.attention_threshold : attention.threshold();
+    const double level = asked > 0 ? asked : attention.threshold();
     std::vector<AttentionQuery> queries;
     for (std::size_t i = 0; i < drawn.views.size(); ++i) {
         const auto v = drawn.views[i];

@@ -49,14 +49,15 @@ struct DrawnPlace {
     std::size_t broken = 0;   // values of the attention that were not finite, and count as none
 };
 
-/// Of each drawn view. Throws Error (Cancelled, NotFound).
+/// Of each drawn view. A threshold that the request sets is that of what the model tells, too: the share of a pixel that counts as the thing.
+/// Throws Error (Cancelled, NotFound).
 std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews& drawn, AttentionSource& attention, const JobControl& job);
 
 /// Where a redrawn picture shows a thing, by what the model tells of it ([H,W,1] in [0,1]): the share of each pixel of `inside` that is
 /// covered, in parts that are half covered somewhere. Holes filled, stray pixels gone.
 Image told_thing(const Image& outline, const Mask& inside);
-/// The pixels that are covered by half or more.
-Mask covered_pixels(const Image& share);
+/// The pixels of which at least that share is covered.
+Mask covered_pixels(const Image& share, double least = 0.5);
 /// Where a redrawn picture shows a thing, by `map`, the attention of its word ([H,W,1], maximum 1; `level` is its threshold), and by how much
 /// the picture differs from the one without the thing, [H,W,1]: the pixels of `inside` that differ and have some attention. Holes filled,
 /// stray pixels gone.

@@ -3,7 +3,6 @@
 
 #include "engine/base/check.h"
 #include "engine/edit/locate.h"
-#include "engine/edit/scales.h"
 #include "engine/edit/shape_room.h"
 #include "engine/localize/clusters.h"
 

@@ -137,8 +137,7 @@ struct LoopSettings {
     double shape_again_strength = 0.6;
     double shape_guided_until = 0.5;
     double shape_room = 0.2;
-    // Added things, 8 edits each of seeds 55 | 56: error removed .32 | .36 with .25, .33 | .35 with .4, .33 | .36 with .6; before the last training
-    // run .22 without any, .29 with .3, .30 with .4 (seed 55).
+    // What other margins come to: assets/models/starter/TRAINING.md, the LoRA for new things.
     double add_margin = 0.4;
     double guidance_weight = 1;
     double strength = 1;

@@ -20,7 +20,6 @@
 #include "engine/edit/edit_checks.h"
 #include "engine/edit/edit_strength.h"
 #include "engine/edit/preservation.h"
-#include "engine/edit/scales.h"
 #include "engine/edit/shape_room.h"
 #include "engine/edit/shape_round.h"
 #include "engine/edit/stage_timer.h"

@@ -72,7 +72,7 @@ UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool comp
     auto unet = with_inputs(plain, inpaints || complete, outlines || complete);
     constexpr const char* Hint = "take it and the LoRA for shapes from one training run";
     for (auto& [name, weight] : scene_input_weights(unet)) {
-        if ((name.starts_with(Inpaint) && !inpaints) || (name.starts_with(Outline) && !outlines)) continue;   // says nothing yet
+        if ((name.starts_with(Inpaint) && !inpaints) || (is_outline(name) && !outlines)) continue;   // says nothing yet
         if (!file.contains(name)) throw Error(ErrorCode::Model, "the embedding of cameras has no \"" + name + "\"", Hint, file.path());
         if (torch::IntArrayRef(file.entries().at(name).shape) != weight.sizes())
             throw Error(ErrorCode::Model, "\"" + name + "\" of the embedding of cameras has another shape", Hint, file.path());
@@ -88,7 +88,9 @@ UNet without_scene_inputs(const UNet& unet) {
     return sharing(unet, config);
 }
 
-bool is_scene_input(const std::string& name) { return name.starts_with(CameraEmbedding) || name.starts_with(Inpaint) || name.starts_with(Outline); }
+bool is_scene_input(const std::string& name) { return name.starts_with(CameraEmbedding) || name.starts_with(Inpaint) || is_outline(name); }
+
+bool is_outline(const std::string& name) { return name.starts_with(Outline); }
 
 std::vector<std::pair<std::string, torch::Tensor>> scene_input_weights(const UNet& unet) {
     std::vector<std::pair<std::string, torch::Tensor>> weights;

@@ -42,6 +42,8 @@ std::vector<std::vector<std::int64_t>> view_groups(const std::vector<std::option
 
 /// Whether a weight of that name belongs to these inputs, or to the outlines.
 bool is_scene_input(const std::string& name);
+/// Whether it is one of the outlines' layers.
+bool is_outline(const std::string& name);
 /// The weights of both by name, "camera_embedding.linear_1.weight", "conv_inpaint.weight" and so on.
 std::vector<std::pair<std::string, torch::Tensor>> scene_input_weights(const UNet& unet);
 

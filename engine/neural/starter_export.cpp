@@ -70,6 +70,8 @@ void write_shapes(const UNetTraining& training, StarterNetworks& networks, const
     auto values = trained->parameters();
     copy_parameters(networks.unet->parameters(), values);
     auto cameras = scene_input_weights(trained);
+    // Outlines that were never shown are none: an edit would take it that nothing is new.
+    if (training.pictures.outline.empty()) std::erase_if(cameras, [](const auto& weight) { return is_outline(weight.first); });
     for (auto& [name, weight] : cameras) weight = weight.detach().to(torch::kHalf).contiguous();
     write_safetensors(output / ShapeCamerasFile, cameras);
     trained = without_scene_inputs(trained);

@@ -188,8 +188,10 @@ torch::Tensor DiffusionViews::output(const UNet& unet, const torch::Tensor& x, s
 torch::Tensor DiffusionViews::output_together(const torch::Tensor& x, std::int64_t timestep, const Conditioning& conditioning,
                                               const std::vector<std::vector<std::int64_t>>& groups, torch::Tensor* outline) const {
     auto result = torch::empty_like(x);
-    if (const auto scale = shapes_->unet->config().outline_scale; scale == 0) outline = nullptr;
-    else if (outline != nullptr) *outline = torch::empty({x.size(0), 1, scale * x.size(2), scale * x.size(3)}, torch::TensorOptions().dtype(torch::kFloat).device(x.device()));
+    const auto scale = shapes_->unet->config().outline_scale;
+    if (scale == 0) outline = nullptr;
+    if (outline != nullptr)
+        *outline = torch::empty({x.size(0), 1, scale * x.size(2), scale * x.size(3)}, x.options().dtype(torch::kFloat));
     const auto t = torch::full({1}, timestep, torch::kFloat32);
     for_parts(static_cast<std::int64_t>(groups.size()), apart_, [&](std::int64_t begin, std::int64_t end) {
         for (auto g = static_cast<std::size_t>(begin); g < static_cast<std::size_t>(end); ++g) {

@@ -61,10 +61,12 @@ public:
             for (auto& value : picture.data) value = std::min(1.0f, value + 0.02f);
             for (int y = 0; y < picture.height; ++y)
                 for (int x = 0; x < picture.width; ++x) {
-                    if (!paints || std::hypot(x + 0.5 - u, y + 0.5 - v) > radius) continue;
+                    const double away = std::hypot(x + 0.5 - u, y + 0.5 - v);
+                    if (soft) outline.at(x, y, 0) = static_cast<float>(std::clamp(1.5 - away / radius, 0.0, 1.0));   // half at the rim
+                    if (!paints || away > radius) continue;
                     for (int c = 0; c < 3; ++c) picture.at(x, y, c) = c == 2 ? 0.9f : 0.1f;
                     change.at(x, y, 0) = 0.6f;
-                    outline.at(x, y, 0) = 0.9f;
+                    if (!soft) outline.at(x, y, 0) = 0.9f;
                 }
             if (breaks) picture.data.front() = std::numeric_limits<float>::quiet_NaN();
             targets.images.push_back(std::move(picture));
@@ -75,7 +77,7 @@ public:
         }
         return targets;
     }
-    bool paints = true, tells = true, outlines = false, breaks = false;   // breaks: the first value of each picture is not finite
+    bool paints = true, tells = true, outlines = false, soft = false, breaks = false;   // breaks: the first value of each picture is not finite
     std::vector<edit::RoundInput> asked;
     std::vector<std::size_t> rooms;
 };
@@ -200,6 +202,21 @@ DOCTEST_TEST_CASE("the place is drawn from nothing, in as many views as asked fo
     other.front() = 0;
     fixture.locate(&other);
     DOCTEST_CHECK(fixture.painter.asked.size() == 3);
+}
+
+DOCTEST_TEST_CASE("a threshold that is asked for is that of told outlines, too") {
+    const Quiet quiet;
+    const auto cubes = [](double threshold) {
+        Fixture fixture;
+        fixture.painter.outlines = fixture.painter.soft = true;
+        fixture.request.attention_threshold = threshold;
+        return fixture.locate(&fixture.scene.first).region;
+    };
+    const auto volume = [](const edit::AddRegion& region) { return static_cast<double>(region.centres.size()) * std::pow(region.side, 3); };
+    const double usual = volume(cubes(0)), wide = volume(cubes(0.2)), narrow = volume(cubes(0.8));
+    DOCTEST_CHECK(wide > 1.2 * usual);
+    DOCTEST_CHECK(narrow < usual / 1.2);
+    DOCTEST_CHECK(narrow > 0);
 }
 
 DOCTEST_TEST_CASE("attention of drawn pictures that is not finite is counted; a drawn value that is not finite stays as the scene is") {

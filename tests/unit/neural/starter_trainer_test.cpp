@@ -267,6 +267,7 @@ DOCTEST_TEST_CASE("a LoRA for shapes leaves the model beside it as it is") {
     auto facts = read_json_file(second / "gseditpro.json");
     const auto lora = read_lora(second / facts.at("shape_lora").get<std::string>());
     DOCTEST_CHECK(lora.text.empty());
+    DOCTEST_CHECK(!SafetensorsFile(second / "shape_cameras.safetensors").contains("outline.conv_2.weight"));   // none was shown
     DOCTEST_CHECK(lora.unet.size() > 10);
     for (const auto& factor : lora.unet) DOCTEST_CHECK(factor.rank() <= parameters.shape_rank);
     // Words that only tell it a side are none that it knows things by.
