@@ -507,7 +507,7 @@ private:
 
     /// What a model that is shown the scene draws around the thing of `source_bits`; nothing where there is no such model.
     std::vector<ViewEvidence> draw(const Search& search, const std::vector<std::uint8_t>& source_bits) {
-        if (tools_.drawing == nullptr || request().place_views == 0) return {};
+        if (tools_.drawing == nullptr || !draws_place(request(), EditMode::Add)) return {};
         const auto room = room_above(input_.gaussians, source_bits, input_.up, input_.front, request().add_room);
         if (room.empty()) return {};
         const PlaceDrawing drawing{input_.views, input_.view_words, input_.azimuths, input_.elevations, renders_, depths_, room, request(),
@@ -541,7 +541,7 @@ private:
         result.word = search.word;
         const bool of_source = request().source != request().target;
         const auto relation = of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None;
-        auto views = of_source && place_name(relation).empty() ? draw(search, *result.source_label.bits) : std::vector<ViewEvidence>{};
+        auto views = draw(search, *result.source_label.bits);
         const bool drawn = votes(views);
         result.views = drawn ? std::move(views) : look(search);
         std::vector<Mask> masks;

@@ -13,6 +13,7 @@
 #include "engine/base/random.h"
 #include "engine/edit/broken_values.h"
 #include "engine/edit/neighbours.h"
+#include "engine/edit/relation.h"
 #include "engine/edit/view_round.h"
 #include "engine/edit/word_mask.h"
 #include "engine/localize/clusters.h"
@@ -92,6 +93,19 @@ Mask changed_thing(const Image& change, const Mask& inside, const Image& map, do
     found = cleaned(found, weight);
     for (std::size_t i = 0; i < found.data.size(); ++i) found.data[i] &= inside.data[i] != 0 ? 1 : 0;   // holes lie anywhere
     return found;
+}
+
+bool draws_place(const EditRequest& request, EditMode mode) {
+    return mode == EditMode::Add && request.place_views > 0 && request.source != request.target &&
+           place_name(relation_of(request.prompt, request.source, request.target)).empty();
+}
+
+double guided_steps_of_place(const EditRequest& request) {
+    RoundPlan plan;
+    plan.view_steps = request.place_steps;
+    plan.strength = 1;
+    plan.guided_until = GuidedUntil;
+    return plan.guided_steps_of(0);
 }
 
 std::string drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits) {

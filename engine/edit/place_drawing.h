@@ -27,6 +27,11 @@ struct PlaceDrawing {
     std::uint64_t seed = 0;
 };
 
+/// Whether something is added whose place no word names ("beside the bear" does): then it can be seen by drawing it.
+bool draws_place(const EditRequest& request, EditMode mode);
+/// Denoising steps of one drawn view; one that is not guided counts half.
+double guided_steps_of_place(const EditRequest& request);
+
 /// Of everything that the drawn pictures follow from, but for the scene and the views.
 std::string drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits);
 

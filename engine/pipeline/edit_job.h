@@ -101,6 +101,10 @@ public:
     std::string model_prompt() const;
     /// Pictures that the search has asked the networks about so far.
     std::size_t questions() const { return workplace_->questions(); }
+    /// What drawing the place of an added thing took of that.
+    const PlaceCost& place_cost() const { return workplace_->place_cost(); }
+    /// Whether the model is shown the scene where something new is drawn.
+    bool knows_scene() const { return workplace_->model().knows_scene(); }
     /// Whether the pictures said which word is new, and not the recipe.
     bool target_read() const { return located_->target_read; }
     bool automatic_views() const { return views_->automatic; }

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/colour_word.h"
+#include "engine/edit/place_drawing.h"
 #include "engine/edit/view_round.h"
 #include "engine/pipeline/gate.h"
 
@@ -17,7 +18,8 @@ constexpr double UsualFollow = 0.6;
 constexpr int ProbeSteps = 5;
 constexpr double LibrariesMb = 300;   // of torch, until the first load was measured
 
-double words_of_search(edit::EditMode mode) { return mode == edit::EditMode::Add ? 2 : 1; }
+/// Words that all views are searched for: a new thing, too, unless it is drawn.
+double words_of_search(edit::EditMode mode, bool drawn) { return mode == edit::EditMode::Add && !drawn ? 2 : 1; }
 
 /// Masks that could follow the edit while the loop runs.
 double refreshes(const edit::EditRequest& request, int first_iteration) {
@@ -109,6 +111,14 @@ double scene_work_mb(const PlannedMemory& memory) {
     return (sets + labelled_sets * memory.labelled_share) * memory.scene + memory.snapshots;
 }
 
+/// The pictures that show where something added goes; until they were drawn once, as views of the loop.
+void add_place(Sum& sum, const Measured& measured, const edit::EditRequest& request) {
+    const double views = request.place_views, steps = views * edit::guided_steps_of_place(request);
+    if (measured.place_step >= 0) return sum.add(steps, measured.place_step, measured.place_step_tflop);
+    sum.add(views, std::max(0.0, measured.redraw_view), std::max(0.0, measured.redraw_view_tflop));
+    sum.add(steps, measured.redraw, measured.redraw_tflop);
+}
+
 }  // namespace
 
 Cost estimated_cost(const Measured& measured, const edit::EditRequest& request, const PlannedWork& work) {
@@ -116,8 +126,10 @@ Cost estimated_cost(const Measured& measured, const edit::EditRequest& request, 
     sum.add(work.loaded ? 0 : 1, measured.load);
     sum.add(work.tune_steps, measured.tune_step, measured.tune_step_tflop);
     const double rounds = measured.rounds > 0 ? measured.rounds : 1;
-    const double search = rounds * request.views * words_of_search(work.mode);
+    const bool drawn = measured.draws_place > 0 && edit::draws_place(request, work.mode);
+    const double search = rounds * request.views * words_of_search(work.mode, drawn);
     sum.add(work.located ? 0 : search, measured.question, measured.question_tflop);
+    if (drawn && !work.located) add_place(sum, measured, request);
     if (work.shows_idea) add_idea(sum, measured);
     const bool by_views = edit::edits_by_views(request);
     const int steps = std::max(0, edit::loop_steps(request, work.mode) - work.first_iteration);
@@ -167,9 +179,18 @@ void measure_memory(Measured& measured, const PlannedMemory& memory, double afte
 void measure_search(Measured& measured, const EditJob& job, double seconds) {
     const auto asked = static_cast<double>(job.questions());
     if (asked <= 0) return;
-    const double words = words_of_search(job.located().mode);
-    const auto use = job.times().networks("locate");
+    measured.draws_place = job.knows_scene() ? 1 : 0;
+    const auto& place = job.place_cost();
+    const double words = words_of_search(job.located().mode, place.views > 0);
+    auto use = job.times().networks("locate");
     if (use.cached > 0) return;   // what it would have taken was not seen
+    if (place.views > 0) {
+        const double steps = static_cast<double>(place.views) * edit::guided_steps_of_place(job.recipe().request);
+        measured.place_step = place.seconds / steps;
+        measured.place_step_tflop = tflop_of(place.use) / steps;
+        use = use - place.use;
+        seconds = std::max(0.0, seconds - place.seconds);
+    }
     measured.question = seconds / asked;
     measured.question_tflop = tflop_of(use) / asked;
     measured.rounds = asked / words / job.recipe().request.views;

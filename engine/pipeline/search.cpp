@@ -54,12 +54,10 @@ Located finished(Located located) {
     return located;
 }
 
-/// Where something goes that is added is seen by drawing it, where the model can; not by the artist's guidance, which belongs to the loop.
 edit::LocateResult look_from(Workplace& workplace, const Views& views, const EditRecipe& recipe, const std::vector<std::uint8_t>* label,
                              const JobControl& control) {
     auto tools = workplace.tools(views, control);
-    const auto& model = workplace.model();
-    const auto drawing = model.knows_scene() ? model.views(edit::as_told(recipe.request.prompt), neural::SdsParameters{}) : nullptr;
+    const auto drawing = workplace.place_drawing(recipe.request);
     tools.drawing = drawing.get();
     return edit::locate(question(workplace, recipe, views, label), tools);
 }

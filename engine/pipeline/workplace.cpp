@@ -7,8 +7,32 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/edit/grabcut_segmenter.h"
+#include "engine/edit/stage_timer.h"
+#include "engine/pipeline/neural_loader.h"
 
 namespace gse::pipeline {
+namespace {
+
+/// Adds up what a guidance takes.
+class MeteredViews final : public edit::ViewGuidance {
+public:
+    MeteredViews(std::unique_ptr<edit::ViewGuidance> views, PlaceCost& cost) : views_(std::move(views)), cost_(cost) {}
+
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) override {
+        const auto before = network_use();
+        const edit::StageTimer timer(cost_.seconds);
+        auto targets = views_->edit(views, input, job);
+        cost_.views += views.size();
+        cost_.use += network_use() - before;
+        return targets;
+    }
+
+private:
+    std::unique_ptr<edit::ViewGuidance> views_;
+    PlaceCost& cost_;
+};
+
+}  // namespace
 
 Workplace::Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job)
     : scene_(std::move(scene)), model_(std::move(model)), segmenter_(edit::make_default_segmenter()) {
@@ -35,6 +59,13 @@ void Workplace::ask_anew(const neural::AttentionParameters& attention) {
     recognition_ = std::make_unique<edit::Recognition>(model_->text_image_score(), model_->known_words());
     renders_.asked_again.clear();
     renders_.drawn.clear();
+    place_cost_ = {};
+}
+
+std::unique_ptr<edit::ViewGuidance> Workplace::place_drawing(const edit::EditRequest& request) {
+    if (!model_->knows_scene()) return nullptr;
+    auto views = model_->views(edit::as_told(request.prompt), neural::SdsParameters{});
+    return views ? std::make_unique<MeteredViews>(std::move(views), place_cost_) : nullptr;
 }
 
 void Workplace::ask(const neural::AttentionParameters& attention) {

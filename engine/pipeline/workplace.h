@@ -10,10 +10,18 @@
 #include "engine/edit/cached_attention.h"
 #include "engine/edit/locate.h"
 #include "engine/neural/api.h"
+#include "engine/neural/network_use.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/pipeline/views.h"
 
 namespace gse::pipeline {
+
+/// What drawing the place of an added thing took.
+struct PlaceCost {
+    std::size_t views = 0;
+    double seconds = 0;
+    neural::NetworkUse use;
+};
 
 /// Scene and model of a run. What they have answered is remembered: that changes how long a stage takes, never what comes of it.
 class Workplace {
@@ -37,6 +45,10 @@ public:
     void ask(const neural::AttentionParameters& attention);
     /// What locate() calls, for these views; needs ask() or ask_anew().
     edit::LocateTools tools(const Views& views, const JobControl& control);
+    /// What draws the place of what is added, where the model can (TextToImage::knows_scene()), else null; its cost is counted. Not the
+    /// artist's guidance, which belongs to the loop.
+    std::unique_ptr<edit::ViewGuidance> place_drawing(const edit::EditRequest& request);
+    const PlaceCost& place_cost() const { return place_cost_; }
     edit::Recognition& recognition() { return *recognition_; }
     /// Renders in [0,1]. Throws Error (Cancelled) on a stop request.
     std::vector<Image> pictures(const std::vector<View>& views, const raster::Settings& settings, const JobControl& control);
@@ -57,6 +69,7 @@ private:
     std::unique_ptr<edit::Segmenter> segmenter_;
     edit::ViewMemory renders_;   // of the views with this key
     std::string renders_key_;
+    PlaceCost place_cost_;
 };
 
 }  // namespace gse::pipeline

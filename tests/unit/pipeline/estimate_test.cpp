@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/edit/place_drawing.h"
 #include "engine/pipeline/estimate.h"
 #include "engine/pipeline/probe.h"
 
@@ -166,6 +167,37 @@ DOCTEST_TEST_CASE("an estimate counts the view that is drawn first for the colou
     const double branch = seconds(known, request, work);
     request.prompt = "a bear with wings on the grass";
     DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(branch));
+}
+
+DOCTEST_TEST_CASE("an estimate counts the views that are drawn to see where something goes") {
+    edit::EditRequest request;
+    request.prompt = "a bear wearing a hat on the grass";
+    request.source = "bear";
+    request.target = "hat";
+    pipeline::Measured known = measured();
+    known.redraw = 0.02;
+    known.redraw_view = 0.05;
+    auto work = located();
+    work.mode = edit::EditMode::Add;
+    const double loop = seconds(known, request, work);
+    work.located = false;
+    const double words = known.rounds * request.views * known.question;
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(loop + 2 * words));   // the hat is looked for, too
+    known.draws_place = 1;
+    const double steps = edit::guided_steps_of_place(request);
+    DOCTEST_CHECK(steps < request.place_steps);   // those that are not guided count half
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(loop + words + request.place_views * (0.05 + steps * 0.02)));
+    known.place_step = 0.03;   // seen once
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(loop + words + request.place_views * steps * 0.03));
+    request.prompt = "a hat beside a bear on the grass";   // said, not drawn
+    const double beside = seconds(known, request, work);
+    work.located = true;
+    DOCTEST_CHECK(beside == doctest::Approx(seconds(known, request, work) + 2 * words));
+    work.located = false;
+    work.mode = edit::EditMode::Replace;   // no such pictures
+    const double other = seconds(known, request, work);
+    known.draws_place = 0;
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(other));
 }
 
 DOCTEST_TEST_CASE("an estimate of memory: the process without the model, the model, the work, and what follows from the scene") {
