@@ -186,14 +186,16 @@ void add_changed(const HeldOut& seen, Json& json) {
     json["changed_precision"] = overlap.precision();
 }
 
-/// How well the outline of the new thing is the true one: of all rows that were allowed to change, as seen from the held-out
-/// views, pooled over them.
+/// How well the outline of the new thing is the true one: of all rows that were allowed to change, but for the ground that the old thing
+/// hid, as seen from the held-out views, pooled over them.
 void add_silhouette(const EvalSetting& setting, const edit::EditResult& result, const HeldOut& seen,
                     pipeline::Painter& painter, Json& json) {
     PooledOverlap overlap;
+    auto thing = result.label;
+    for (std::size_t row = 0; row < thing.size(); ++row) thing[row] &= result.hidden[row] == 0 ? 1 : 0;
     for (std::size_t v = 0; v < seen.part.size(); ++v) {
         const Camera& camera = setting.held_out.views[v].camera;
-        overlap.add(mask_of_rows(painter, result.set, result.label, camera, PartShare), seen.part[v]);
+        overlap.add(mask_of_rows(painter, result.set, thing, camera, PartShare), seen.part[v]);
     }
     json["silhouette_iou"] = overlap.iou();
     json["silhouette_recall"] = overlap.recall();

@@ -58,23 +58,36 @@ bool is_vowel(char letter) { return std::string("aeiou").find(letter) != std::st
 
 }  // namespace
 
-std::string colour_shown(const Image& picture, const Image& share, const std::vector<std::string>& known) {
+ColourVote::ColourVote(const std::vector<std::string>& known) {
+    for (std::size_t i = 0; i < Terms.size(); ++i)
+        if (knows(known, Terms[i].word)) terms_.push_back(i);
+    votes_.resize(terms_.size());
+}
+
+void ColourVote::add(const Image& picture, const Image& share) {
     GSE_CHECK_EQ(picture.data.size(), share.data.size() * 3);
-    std::vector<std::pair<std::string, Colour>> terms;
-    for (const auto& term : Terms)
-        if (knows(known, term.word)) terms.emplace_back(term.word, lab(term.srgb));
-    if (terms.empty()) return {};
-    std::vector<std::size_t> votes(terms.size());
+    if (terms_.empty()) return;
+    std::vector<Colour> colours;
+    for (const auto term : terms_) colours.push_back(lab(Terms[term].srgb));
     for (std::size_t i = 0; i < share.data.size(); ++i) {
         if (!(share.data[i] > Counts)) continue;
         const Colour pixel = lab({picture.data[i * 3], picture.data[i * 3 + 1], picture.data[i * 3 + 2]});
-        const auto nearest = std::min_element(terms.begin(), terms.end(), [&](const auto& a, const auto& b) {
-            return distance(pixel, a.second) < distance(pixel, b.second);
+        const auto nearest = std::min_element(colours.begin(), colours.end(), [&](const auto& a, const auto& b) {
+            return distance(pixel, a) < distance(pixel, b);
         });
-        ++votes[static_cast<std::size_t>(nearest - terms.begin())];
+        ++votes_[static_cast<std::size_t>(nearest - colours.begin())];
     }
-    const auto most = std::max_element(votes.begin(), votes.end());
-    return *most == 0 ? std::string() : terms[static_cast<std::size_t>(most - votes.begin())].first;
+}
+
+std::string ColourVote::winner() const {
+    const auto most = std::max_element(votes_.begin(), votes_.end());
+    return most == votes_.end() || *most == 0 ? std::string() : Terms[terms_[static_cast<std::size_t>(most - votes_.begin())]].word;
+}
+
+std::string colour_shown(const Image& picture, const Image& share, const std::vector<std::string>& known) {
+    ColourVote vote(known);
+    vote.add(picture, share);
+    return vote.winner();
 }
 
 bool is_described(const std::string& sentence, const std::string& thing) {

@@ -9,9 +9,21 @@
 
 namespace gse::edit {
 
-/// The basic colour term (Berlin and Kay 1969) nearest to most of the pixels, in CIELAB with lightness at half weight: shading
-/// changes it most. `picture` [H,W,3] sRGB in [0,1]; `share` [H,W,1]: pixels above one half count. Only words of `known` where
-/// it is not empty. Empty when no pixel counts or no such word is known.
+/// A vote of pixels on the basic colour term (Berlin and Kay 1969) that is nearest to them, in CIELAB with lightness at half weight:
+/// shading changes it most. Only words of `known` where it is not empty.
+class ColourVote {
+public:
+    explicit ColourVote(const std::vector<std::string>& known);
+    /// `picture` [H,W,3] sRGB in [0,1]; `share` [H,W,1]: pixels above one half vote.
+    void add(const Image& picture, const Image& share);
+    /// Empty when no pixel has voted or no such word is known.
+    std::string winner() const;
+
+private:
+    std::vector<std::size_t> terms_, votes_;   // indices of the known ones, and of each its votes
+};
+
+/// That of one picture.
 std::string colour_shown(const Image& picture, const Image& share, const std::vector<std::string>& known);
 
 /// Whether the sentence says what the thing is like ("white wings"), or does not name it.

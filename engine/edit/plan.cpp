@@ -2,11 +2,24 @@
 #include <algorithm>
 
 #include "engine/base/check.h"
+#include "engine/edit/colour_word.h"
 #include "engine/edit/locate.h"
 #include "engine/edit/shape_room.h"
+#include "engine/edit/view_vote.h"
 #include "engine/localize/clusters.h"
 
 namespace gse::edit {
+namespace {
+
+/// What colour the new thing has in the pictures that show where it goes.
+std::string colour_of_drawn(const LocateResult& located, const std::vector<std::string>& known) {
+    ColourVote vote(known);
+    for (const auto& view : located.views)
+        if (!view.drawn.data.empty()) vote.add(view.drawn, mask_image(view.region));
+    return vote.winner();
+}
+
+}  // namespace
 
 EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster::Rasterizer& rasterizer) {
     GSE_CHECK_EQ(located.views.size(), input.views.size());
@@ -17,6 +30,7 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
     plan.seeds = located.seeds;
     plan.settings = input.settings;
     plan.mode = located.mode;
+    if (located.mode == EditMode::Add) plan.drawn_colour = colour_of_drawn(located, input.known);
     const std::vector<float> values(plan.label.begin(), plan.label.end());
     const bool any = std::find(plan.label.begin(), plan.label.end(), std::uint8_t{1}) != plan.label.end();
     if (located.mode == EditMode::Replace)

@@ -254,7 +254,7 @@ private:
         if (phase_->ready(iteration, spans(set_.rows()), set_.unlabelled(), settings_, record.guidance)) draw_only(phase_->fitted());
         if (!shapes_ || phase_->round() == before) return;
         const auto seeds = shapes_->seeds(phase_->found(), bounds_of(plan_.room, plan_.seeds), set_.rows().sh_degree);
-        if (seeds.size() > 0) return set_.plant(seeds, FadedLogit);
+        if (seeds.size() > 0) return set_.plant(seeds, phase_->hidden(set_.rows().sh_degree), FadedLogit);
         const std::string nothing = "the redrawn views agree on no shape of \"" + tools_.word + "\"";
         if (phase_->round() > 0) return log::warning("{} any more; the last round's is fitted further", nothing);
         if (plan_.seeds.size() == 0) throw Error(ErrorCode::Model, nothing, "try another seed, or more views (shape_views)");
@@ -509,6 +509,7 @@ private:
         result.base_to_new = reached.base_to_new();
         result.label = reached.label();
         result.generation = reached.generation();
+        result.hidden = reached.hidden();
         result.skipped_rows = set_.skipped_rows();
         result.guidance_scale = guidance_scale_;
         if (phase_) {

@@ -78,6 +78,11 @@ std::vector<int> EditSnapshot::generation() const {
     return per_row(*this, 0, [this](std::size_t i) { return rows->generation[i]; });
 }
 
+std::vector<std::uint8_t> EditSnapshot::hidden() const {
+    const std::size_t kept = rows->kept.size();
+    return per_row<std::uint8_t>(*this, 0, [&](std::size_t i) -> std::uint8_t { return i >= kept && rows->ancestor[i - kept] == OfHidden ? 1 : 0; });
+}
+
 std::size_t EditSnapshot::byte_size() const {
     std::size_t bytes = sizeof(*this) + sizeof(SnapshotRows);
     const auto add = [&bytes](const auto& array) { bytes += array.capacity() * sizeof(array[0]); };

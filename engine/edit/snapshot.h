@@ -13,11 +13,14 @@ namespace gse::edit {
 
 struct RoundState;
 
+/// In place of the base row that a row descends from: it grew from a seed of what is new, or of what the old thing hid.
+constexpr std::int64_t OfSeed = -1, OfHidden = -2;
+
 /// The rows of the label as they are at that moment.
 struct SnapshotRows {
     GaussianData rows;                    // those that are the base's, in its order, then those born in the run
     std::vector<std::uint32_t> kept;      // base row of each of the first ones, ascending
-    std::vector<std::int64_t> ancestor;   // [rows - kept] base row that a born one descends from, -1 = a seed
+    std::vector<std::int64_t> ancestor;   // [rows - kept] base row that a born one descends from, or OfSeed, OfHidden
     std::vector<int> generation;          // [rows]
     std::vector<std::uint32_t> removed;   // base rows that are gone, ascending
 };
@@ -37,6 +40,7 @@ struct EditSnapshot {
     std::vector<std::int64_t> base_to_new() const;   // [base rows] row of the edited set, -1 = removed
     std::vector<std::uint8_t> label() const;         // [size()] 1 = the row belongs to the label
     std::vector<int> generation() const;             // [size()] 0 = there before the edit
+    std::vector<std::uint8_t> hidden() const;        // [size()] 1 = of what the old thing hid
     /// What it holds beside the base's arrays.
     std::size_t byte_size() const;
 };

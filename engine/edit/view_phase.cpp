@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/edit/hidden_surface.h"
 #include "engine/edit/stage_timer.h"
 #include "engine/edit/view_agreement.h"
 #include "engine/localize/clusters.h"
@@ -85,6 +86,10 @@ std::vector<HeldOutView> ViewPhase::draw_held_out() {
     return state_ && state_->held ? rounds_.draw_held_out(*state_->held, tools_.job) : std::vector<HeldOutView>{};
 }
 
+GaussianData ViewPhase::hidden(int sh_degree) const {
+    return state_ && plan_.mode == EditMode::Replace ? hidden_surface(*state_->begun, sh_degree) : GaussianData{};
+}
+
 std::vector<std::size_t> ViewPhase::fitted() const {
     if (!state_) return rounds_.views();
     std::vector<std::size_t> views;
@@ -112,7 +117,7 @@ RoundView ViewPhase::begin_view(std::size_t v, const GaussianSpans& rows, const 
     for (auto& value : view.original.data) value = std::clamp(value, 0.0f, 1.0f);
     if (anew_) {
         draw(unlabelled, view.view.camera, settings, view.backdrop.picture, view.backdrop.depth);
-        fill_holes(view.backdrop, view.mask);
+        fill_holes(view.backdrop, view.mask, output_.alpha);   // as it was drawn last
     }
     return view;
 }

@@ -33,6 +33,8 @@ public:
     bool ready(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled, const raster::Settings& settings,
                std::map<std::string, double>& scalars);
     int round() const { return rounds_.round(); }               // -1 = none has begun
+    /// Rows for the holes that a thing leaves when another takes its place, as the round's views show them (hidden_surface()).
+    GaussianData hidden(int sh_degree) const;
     const CutOut& found() const { return rounds_.found(); }     // of the new shape, in the last round
     /// The masks have changed: what was redrawn counts inside them.
     void take_masks();

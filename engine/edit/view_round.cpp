@@ -207,19 +207,23 @@ RoundInput ViewRounds::input(std::uint64_t stream) const {
     return asked;
 }
 
-/// Where the sentence leaves open what colour the new thing has, the view with most room for it is drawn first, and its colour
-/// is told to all.
+/// Where the sentence leaves open what colour the new thing has, it is the one that the search has drawn it in most; else the view with most
+/// room for it is drawn first. The word for it is told to all.
 void ViewRounds::name_colour(const std::vector<RoundView>& views, const JobControl& job) {
     const auto told = as_told(request_.prompt);
     if (shapes_ == nullptr || views.empty() || is_described(told, shapes_->word())) return;
+    const auto colour = plan_.drawn_colour.empty() ? colour_of_key_view(views, job) : plan_.drawn_colour;
+    if (colour.empty()) return;
+    sentence_ = described_as(told, shapes_->word(), colour);
+    log::info("the sentence names no colour for \"{}\"; most of what was drawn is {}: all views are drawn as \"{}\"", shapes_->word(), colour,
+              sentence_);
+}
+
+std::string ViewRounds::colour_of_key_view(const std::vector<RoundView>& views, const JobControl& job) {
     const auto key = std::max_element(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.mask.count() < b.mask.count(); });
     const auto drawn = drawn_by(guidance_, {*key}, input(ColourStream), job);
     ++extra_pictures_;
-    const auto colour = shapes_->colour_in(*key, drawn, Random::stream(request_.seed, ColourStream + 1).next(), known_);
-    if (colour.empty()) return;
-    sentence_ = described_as(told, shapes_->word(), colour);
-    log::info("the sentence names no colour for \"{}\"; {} shows {}: all views are drawn as \"{}\"", shapes_->word(), key->view.name,
-              colour, sentence_);
+    return shapes_->colour_in(*key, drawn, Random::stream(request_.seed, ColourStream + 1).next(), known_);
 }
 
 /// The pictures of a round. Where most of them hardly differ from the scene, they are drawn once more, further from it.

@@ -89,6 +89,7 @@ private:
     RoundTargets draw(const std::vector<RoundView>& views, const JobControl& job);
     void judge(const ViewAgreement& agreement, RoundTargets& drawn);
     void name_colour(const std::vector<RoundView>& views, const JobControl& job);
+    std::string colour_of_key_view(const std::vector<RoundView>& views, const JobControl& job);
 
     const EditPlan& plan_;
     const EditRequest& request_;

@@ -66,7 +66,7 @@ WorkingSet::WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> la
         if (editable[row] != 0) append(data, row, 0, static_cast<std::int64_t>(row), static_cast<std::int64_t>(row));
     adding_ = seeds.size() > 0;
     const int seed_generation = adding_ ? schedule_.advance() : 0;
-    for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, seed_generation, -1, -1);
+    for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, seed_generation, -1, OfSeed);
     start_count_ = labelled();
     common_ = CommonColour(table_.birth_sh, rows().sh_stride());
     remember_anchor();
@@ -260,15 +260,16 @@ GaussianSpans WorkingSet::unlabelled() const {
     return rows;
 }
 
-void WorkingSet::plant(const GaussianData& seeds, double logit) {
+void WorkingSet::plant(const GaussianData& seeds, const GaussianData& hidden, double logit) {
     most_opaque_ = static_cast<float>(logit);
     std::vector<std::uint8_t> keep(labelled(), 1);
     for (std::size_t i = 0; i < keep.size(); ++i) keep[i] = table_.ancestor[i] >= 0 ? 1 : 0;
     table_.keep(keep);
     for (auto& value : tail(table_.rows.opacity_logit, 1)) value = std::min(value, most_opaque_);
-    table_.reserve(seeds.size());
+    table_.reserve(seeds.size() + hidden.size());
     const int generation = schedule_.advance();
-    for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, generation, -1, -1);
+    for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, generation, -1, OfSeed);
+    for (std::size_t row = 0; row < hidden.size(); ++row) append(hidden, row, generation, -1, OfHidden);
     for (auto* moments : {&table_.position, &table_.log_scale, &table_.rotation, &table_.opacity, &table_.sh}) *moments = {};
     steps_ = 0;
     start_count_ = labelled();

@@ -63,8 +63,9 @@ public:
     std::size_t keep_added(std::span<const float> weight, std::span<const double> evidence, double tau, double least_left);
 
     /// Begins a thing of another shape: the rows of the base fade to `logit` where they are more opaque, and so do those that a
-    /// later label brings; rows that grew from seeds go, and `seeds` take their place. Momentum, statistics and anchors begin anew.
-    void plant(const GaussianData& seeds, double logit);
+    /// later label brings; rows that grew from seeds go, and `seeds` and `hidden`, of what the old thing hid, take their place. Momentum,
+    /// statistics and anchors begin anew.
+    void plant(const GaussianData& seeds, const GaussianData& hidden, double logit);
 
     /// Another label for the same base, in the middle of a run: rows that leave it become the base's again, rows that join it
     /// start as the base has them, with the change of colour that the label shares; rows that stay keep what they have

@@ -35,9 +35,10 @@ double looks_again(const edit::EditRequest& request, edit::EditMode mode) {
     return mode == edit::EditMode::Add && request.look_again ? LookAgainRounds * request.views : 0;
 }
 
-/// Whether one view is drawn before all others, for the colour of a new thing that the sentence leaves open.
-bool draws_key_view(const edit::EditRequest& request, edit::EditMode mode) {
-    if (!edit::round_plan(request, mode).anew) return false;
+/// Whether one view is drawn before all others, for the colour of a new thing that the sentence leaves open; not where the search has
+/// drawn it.
+bool draws_key_view(const edit::EditRequest& request, edit::EditMode mode, bool drawn) {
+    if (drawn || !edit::round_plan(request, mode).anew) return false;
     const auto thing = new_thing(request, mode);
     return !thing.empty() && !edit::is_described(edit::as_told(request.prompt), thing);
 }
@@ -55,14 +56,14 @@ struct Redrawing {
     }
 };
 
-Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, int first_iteration) {
+Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, int first_iteration, bool drawn) {
     const auto plan = edit::round_plan(request, mode);
     Redrawing left;
     const auto draw = [&](int round, double views) {
         (round + 1 < plan.rounds ? left.early : left.views) += views;
         left.steps += views * plan.guided_steps_of(round);
     };
-    if (first_iteration == 0 && draws_key_view(request, mode)) draw(0, 1);
+    if (first_iteration == 0 && draws_key_view(request, mode, drawn)) draw(0, 1);
     for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds; ++round) draw(round, plan.views);
     return left;
 }
@@ -136,7 +137,7 @@ Cost estimated_cost(const Measured& measured, const edit::EditRequest& request, 
     const double size = static_cast<double>(work.rows) / measured.rows;
     sum.add(size, std::max(0.0, measured.begin));
     if (by_views) {
-        auto left = redrawing_from(request, work.mode, work.first_iteration);
+        auto left = redrawing_from(request, work.mode, work.first_iteration, drawn);
         const int polish = std::min(steps, request.polish_steps);
         sum.add(polish, measured.polish, measured.polish_tflop);
         if (polish > 0) left += held_out(request, work.mode);
@@ -217,7 +218,7 @@ double raster_seconds(const edit::EditResult& result) {
 void measure_redrawing(Measured& measured, const EditJob& job) {
     const auto& result = job.result();
     const double views = static_cast<double>(result.redrawn_views);
-    const auto all = redrawing_from(job.recipe().request, job.located().mode, 0);
+    const auto all = redrawing_from(job.recipe().request, job.located().mode, 0, job.place_cost().views > 0);
     if (views <= 0 || all.pictures() <= 0) return;
     const double seconds = stage_seconds(result, "guidance") / views;   // of a picture, over all rounds
     const double steps = all.steps / all.pictures();

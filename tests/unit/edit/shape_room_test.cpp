@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "engine/edit/backdrop.h"
+#include "engine/edit/hidden_surface.h"
 #include "engine/edit/shape_room.h"
+#include "engine/math/sh.h"
+#include "engine/math/unproject.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 namespace {
@@ -93,7 +96,7 @@ DOCTEST_TEST_CASE("holes in the ground are filled from around them, sky stays sk
     Mask mask;
     auto backdrop = floor_with_hole(mask);
     const auto before = backdrop;
-    DOCTEST_CHECK(edit::fill_holes(backdrop, mask) == 8 * 6);
+    DOCTEST_CHECK(edit::fill_holes(backdrop, mask, Image(32, 32, 1, 1.0f)) == 8 * 6);
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 32; ++x) {
             const bool hole = x >= 12 && x < 20 && y >= 20 && y < 26;
@@ -102,8 +105,72 @@ DOCTEST_TEST_CASE("holes in the ground are filled from around them, sky stays sk
                 DOCTEST_CHECK(backdrop.picture.at(x, y, 1) == before.picture.at(x, y, 1));
                 continue;
             }
+            DOCTEST_CHECK(backdrop.filled.at(x, y) == 1);
             DOCTEST_CHECK(backdrop.depth.at(x, y, 0) == doctest::Approx(10 - 0.2 * y).epsilon(0.1));
             DOCTEST_CHECK(backdrop.picture.at(x, y, 1) == doctest::Approx(0.25 + 0.01 * y).epsilon(0.1));
         }
-    DOCTEST_CHECK(edit::fill_holes(backdrop, mask) == 0);
+    DOCTEST_CHECK(edit::fill_holes(backdrop, mask, Image(32, 32, 1, 1.0f)) == 0);
+}
+
+DOCTEST_TEST_CASE("the rim of a hole that is seen through in part is filled, too: its colour is not that of the ground") {
+    Mask mask;
+    auto backdrop = floor_with_hole(mask);
+    Image alpha(32, 32, 1, 1.0f);
+    for (int y = 19; y < 27; ++y)
+        for (int x = 11; x < 21; ++x) {
+            alpha.at(x, y, 0) = 0.6f;
+            backdrop.picture.at(x, y, 1) *= 0.6f;   // black behind the scene
+        }
+    DOCTEST_CHECK(edit::fill_holes(backdrop, mask, alpha) == 10 * 8);
+    for (int y = 19; y < 27; ++y)
+        for (int x = 11; x < 21; ++x) DOCTEST_CHECK(backdrop.picture.at(x, y, 1) == doctest::Approx(0.25 + 0.01 * y).epsilon(0.05));
+}
+
+DOCTEST_TEST_CASE("the ground that a thing hid is put back as one flat layer, and nothing where a view shows what lies behind") {
+    constexpr int Side = 64;
+    OrbitParameters orbit;
+    orbit.radius = 3;
+    orbit.elevation = 0.5;
+    orbit.fov_x = 0.7;
+    std::vector<edit::RoundView> views;
+    for (int v = 0; v < 6; ++v) {
+        edit::RoundView view;
+        view.view.camera = orbit_camera(orbit, v * 1.05, Side, Side);
+        const Camera& camera = view.view.camera;
+        edit::Backdrop backdrop{Image(Side, Side, 3, 0.5f), Image(Side, Side, 1)};
+        Mask mask(Side, Side);
+        for (int y = 0; y < Side; ++y)
+            for (int x = 0; x < Side; ++x) {
+                const Vec3 from = camera.centre(), to = unprojected(camera, x + 0.5, y + 0.5, 1) - from;   // the ground is y = 0
+                const Vec3 p = from - to * (from.y / to.y);
+                const bool hole = std::hypot(p.x, p.z) < 0.4;
+                mask.at(x, y) = std::hypot(p.x, p.z) < 0.6 ? 1 : 0;
+                backdrop.depth.at(x, y, 0) = hole ? 0.0f : static_cast<float>(camera.to_camera(p).z);
+            }
+        DOCTEST_REQUIRE(edit::fill_holes(backdrop, mask, Image(Side, Side, 1, 1.0f)) > 0);
+        view.backdrop = std::move(backdrop);
+        views.push_back(std::move(view));
+    }
+    const auto rows = edit::hidden_surface(views, 0);
+    const GaussianSet set(rows);
+    DOCTEST_REQUIRE(set.size() > 50);
+    const double pixel = 3.0 / views.front().view.camera.fx;
+    double wide = 0;
+    for (std::size_t row = 0; row < set.size(); ++row) {
+        DOCTEST_CHECK(std::abs(set.position()[row * 3 + 1]) < pixel);   // on the ground
+        wide = std::max(wide, std::hypot(static_cast<double>(set.position()[row * 3]), static_cast<double>(set.position()[row * 3 + 2])));
+        DOCTEST_CHECK(colour_from_sh(set.sh()[row * 3]) == doctest::Approx(0.5).epsilon(0.01));
+        const Vec3 normal = rotation_matrix(Quat(rows.rotation[row * 4], rows.rotation[row * 4 + 1], rows.rotation[row * 4 + 2],
+                                                 rows.rotation[row * 4 + 3])) * Vec3{0, 0, 1};
+        DOCTEST_CHECK(std::abs(normal.y) > 0.98);
+    }
+    DOCTEST_CHECK(wide == doctest::Approx(0.4).epsilon(0.15));
+    for (auto& view : views) {   // where all but one show what lies behind there was no ground
+        if (&view == &views.front()) continue;
+        std::fill(view.backdrop.filled.data.begin(), view.backdrop.filled.data.end(), std::uint8_t{0});
+        for (auto& z : view.backdrop.depth.data) z = 10;
+    }
+    DOCTEST_CHECK(edit::hidden_surface(views, 0).size() == 0);
+    for (auto& view : views) view.backdrop.filled = {};
+    DOCTEST_CHECK(edit::hidden_surface(views, 0).size() == 0);
 }

@@ -118,6 +118,37 @@ DOCTEST_TEST_CASE("steps, densifications, corrected labels and dropped seeds lea
         }
 }
 
+DOCTEST_TEST_CASE("rows of what the old thing hid are told from those of the new one, and so are their descendants") {
+    const auto scene = test::ball_scene(100, 0);
+    GaussianData seeds, hidden;
+    for (std::size_t row = 0; row < 30; ++row) seeds.append_row(scene.set.to_data(), row);
+    for (std::size_t row = 30; row < 50; ++row) hidden.append_row(scene.set.to_data(), row);
+    const auto request = restless_request();
+    edit::WorkingSet set(scene.set, scene.first, {}, request, Extent);
+    const auto marked = [&] {
+        const auto snapshot = set.snapshot(scene.set, 0);
+        const auto bits = snapshot.hidden(), label = snapshot.label();
+        DOCTEST_CHECK(bits.size() == snapshot.size());
+        for (std::size_t row = 0; row < bits.size(); ++row) DOCTEST_CHECK(bits[row] <= label[row]);
+        return std::count(bits.begin(), bits.end(), 1);
+    };
+    DOCTEST_CHECK(marked() == 0);
+    set.plant(seeds, hidden, -3);
+    DOCTEST_CHECK(set.table().complete());
+    DOCTEST_CHECK(marked() == 20);
+    const auto before = static_cast<std::size_t>(std::count(set.table().ancestor.begin(), set.table().ancestor.end(), edit::OfSeed));
+    DOCTEST_CHECK(before == 30);
+    Random random(3);
+    step(set, request, random, 3);
+    const auto count = set.densify(request, random, true);
+    DOCTEST_CHECK(count.cloned + count.split > 0);
+    const auto snapshot = set.snapshot(scene.set, 1);
+    const auto ancestors = snapshot.rows->ancestor;
+    DOCTEST_CHECK(marked() == std::count(ancestors.begin(), ancestors.end(), edit::OfHidden));
+    set.plant(seeds, {}, -3);   // the next round has no hole any more
+    DOCTEST_CHECK(marked() == 0);
+}
+
 DOCTEST_TEST_CASE("after a corrected label, rows born in the run follow the shared colour like the rows they descend from") {
     const auto scene = test::ball_scene(60);
     auto request = restless_request();
