@@ -8,7 +8,7 @@ namespace gse::neural {
 
 /// Bytes. Smaller ones the C library keeps, and none that is longer: this is the most that its threshold can be set to.
 constexpr std::size_t LeastKeptBuffer = std::size_t{32} << 20;
-constexpr std::size_t MostKeptBytes = std::size_t{512} << 20;   // not in use, in all; beyond it the longest unused go
+constexpr std::size_t MostKeptBytes = std::size_t{768} << 20;   // not in use, in all; beyond it the longest unused go
 
 struct BufferUse {
     std::size_t kept = 0;      // bytes that are not in use

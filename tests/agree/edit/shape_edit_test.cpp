@@ -154,9 +154,11 @@ struct ShapeEdit {
 
     Figures figures(const edit::EditResult& result) {
         double both = 0, either = 0, before = 0, after = 0, squared = 0, outside = 0;
+        auto thing = result.label;
+        for (std::size_t row = 0; row < thing.size(); ++row) thing[row] &= result.hidden[row] == 0 ? 1 : 0;
         for (const auto& view : ring(source, 12, 0.5)) {
             const Mask wanted = mask_of(*rasterizer, target.scene.gaussians, rows_of(target, part), view.camera);
-            const Mask shown = mask_of(*rasterizer, result.set, result.label, view.camera);
+            const Mask shown = mask_of(*rasterizer, result.set, thing, view.camera);
             const Mask old = mask_of(*rasterizer, source.scene.gaussians, rows_of(source, synth::Part::Object), view.camera);
             Mask inside = wanted;
             for (std::size_t p = 0; p < inside.data.size(); ++p) {
@@ -209,6 +211,7 @@ DOCTEST_TEST_CASE("a thing becomes another: the outline, the colours, and nothin
         DOCTEST_CHECK(figures.outline_iou > 0.85);
         DOCTEST_CHECK(figures.error_removed > 0.7);
         DOCTEST_CHECK(figures.psnr_outside_db > 35);
+        DOCTEST_CHECK(std::count(result.hidden.begin(), result.hidden.end(), std::uint8_t{1}) == 0);   // all of the ground is there
         DOCTEST_CHECK(result.changed_outside_label == 0);
         DOCTEST_CHECK(result.nonfinite == 0);
         DOCTEST_REQUIRE(run.views.inputs.size() == static_cast<std::size_t>(run.request.shape_rounds));
@@ -216,6 +219,27 @@ DOCTEST_TEST_CASE("a thing becomes another: the outline, the colours, and nothin
         DOCTEST_CHECK(run.views.inputs[1].strength == run.request.shape_again_strength);
         DOCTEST_CHECK(run.views.words.front() == "cat");
     }
+}
+
+DOCTEST_TEST_CASE("the ground that went with the old thing is put back, flat and as it was around it") {
+    ShapeEdit run(scene_of("bear", "red"), scene_of("mushroom", "blue"), edit::EditMode::Replace);
+    const auto& scene = run.source.scene.gaussians;
+    Vec3 middle;   // of the ground around the thing
+    for (std::size_t row = 0; row < scene.size(); ++row)
+        if (run.source.parts[row] == synth::Part::Ground && std::hypot(scene.position()[row * 3], scene.position()[row * 3 + 2]) < 0.4f)
+            run.plan.label[row] = 1, middle.y = scene.position()[row * 3 + 1];
+    const auto result = run.run();
+    const auto figures = run.figures(result);
+    tell("mushroom, with the ground", figures);
+    DOCTEST_CHECK(figures.outline_iou > 0.8);
+    DOCTEST_CHECK(figures.error_removed > 0.7);
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < result.hidden.size(); ++row) {
+        if (result.hidden[row] == 0) continue;
+        ++count;
+        DOCTEST_CHECK(std::abs(result.set.position()[row * 3 + 1] - middle.y) < 0.05);
+    }
+    DOCTEST_CHECK(count > 100);
 }
 
 DOCTEST_TEST_CASE("what is added grows from the same hull, and hides nothing that is before it") {
@@ -282,6 +306,13 @@ DOCTEST_TEST_CASE("a colour that the sentence leaves open is the one that the fi
         DOCTEST_CHECK(run.views.counts[i] == static_cast<std::size_t>(run.request.shape_views));
     }
     DOCTEST_CHECK(shown.sentence == "an orange cat on the grass");
+    run.views.inputs.clear();
+    run.views.counts.clear();
+    run.plan.drawn_colour = "blue";   // the search has drawn it: no view is drawn first
+    run.run();
+    DOCTEST_REQUIRE(run.views.inputs.size() == static_cast<std::size_t>(run.request.shape_rounds));
+    for (const auto& input : run.views.inputs) DOCTEST_CHECK(input.sentence == "a blue cat on the grass");
+    run.plan.drawn_colour.clear();
     run.views.inputs.clear();
     run.tools_changed = [](edit::EditTools& tools) { tools.known = {"a", "cat", "on", "the", "grass"}; };   // no colours
     run.run();

@@ -180,6 +180,9 @@ DOCTEST_TEST_CASE("something added goes where a model that is shown the scene dr
         DOCTEST_CHECK(fixture.attention.absent == 0);   // nothing is asked about what is not there
         DOCTEST_CHECK(fixture.attention.of_hat == (fixture.painter.outlines ? 0 : 6));   // nor where the model tells
         DOCTEST_CHECK(found.failed_views == 0);
+        // What was drawn is blue, and so all views are told where the sentence says no colour.
+        const auto plan = edit::make_plan({fixture.scene.set, fixture.views, fixture.words, fixture.request, {}}, found, *fixture.rasterizer);
+        DOCTEST_CHECK(plan.drawn_colour == "blue");
     }
 }
 
