@@ -11,12 +11,21 @@
 namespace gse::edit {
 namespace {
 
+constexpr float SurelyIt = 0.9f;   // of a map: towards a thing's rim its colour is in part that of what is behind it
+
 /// What colour the new thing has in the pictures that show where it goes.
 std::string colour_of_drawn(const LocateResult& located, const std::vector<std::string>& known) {
-    ColourVote vote(known);
-    for (const auto& view : located.views)
-        if (!view.drawn.data.empty()) vote.add(view.drawn, mask_image(view.region));
-    return vote.winner();
+    ColourVote sure(known), all(known);
+    for (const auto& view : located.views) {
+        if (view.drawn.data.empty()) continue;
+        Image share = mask_image(view.region);
+        all.add(view.drawn, share);
+        for (std::size_t i = 0; i < share.data.size(); ++i)
+            if (view.map.data[i] < SurelyIt) share.data[i] = 0;
+        sure.add(view.drawn, share);
+    }
+    const auto winner = sure.winner();
+    return winner.empty() ? all.winner() : winner;
 }
 
 }  // namespace
