@@ -87,7 +87,10 @@ std::vector<HeldOutView> ViewPhase::draw_held_out() {
 }
 
 GaussianData ViewPhase::hidden(int sh_degree) const {
-    return state_ && plan_.mode == EditMode::Replace ? hidden_surface(*state_->begun, sh_degree) : GaussianData{};
+    if (!state_ || plan_.mode != EditMode::Replace) return {};
+    auto rows = hidden_surface(*state_->begun, sh_degree);
+    if (rows.size() > 0) log::info("{} splats close the holes that the old thing leaves", rows.size());
+    return rows;
 }
 
 std::vector<std::size_t> ViewPhase::fitted() const {
