@@ -161,12 +161,17 @@ DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and siz
     edit::EditResult result;
     result.set = edited.scene.gaussians;
     result.label = rows_of(edited, synth::Part::Object);
+    result.hidden.assign(result.label.size(), 0);
     const auto perfect = edited_figures(setting, plan, result, {painter});
     DOCTEST_CHECK(perfect["silhouette_iou"].get<double>() == doctest::Approx(1));
     DOCTEST_CHECK(perfect["old_left"].get<double>() == doctest::Approx(0));
     DOCTEST_CHECK(perfect["l1_reduction"].get<double>() == doctest::Approx(1).epsilon(1e-3));
+    const auto ground = rows_of(edited, synth::Part::Ground);   // what closes holes is no part of the thing
+    for (std::size_t row = 0; row < ground.size(); ++row) result.label[row] |= ground[row], result.hidden[row] = ground[row];
+    DOCTEST_CHECK(edited_figures(setting, plan, result, {painter})["silhouette_iou"].get<double>() == doctest::Approx(1));
     result.set = setting.source.scene.gaussians;
     result.label = rows_of(setting.source, synth::Part::Object);
+    result.hidden.assign(result.label.size(), 0);
     const auto nothing = edited_figures(setting, plan, result, {painter});
     DOCTEST_CHECK(nothing["silhouette_iou"].get<double>() < 0.9);
     DOCTEST_CHECK(nothing["old_left"].get<double>() == doctest::Approx(1));

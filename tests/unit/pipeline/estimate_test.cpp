@@ -171,7 +171,7 @@ DOCTEST_TEST_CASE("an estimate counts the view that is drawn first for the colou
 
 DOCTEST_TEST_CASE("an estimate counts the views that are drawn to see where something goes") {
     edit::EditRequest request;
-    request.prompt = "a bear wearing a hat on the grass";
+    request.prompt = "a bear wearing a red hat on the grass";
     request.source = "bear";
     request.target = "hat";
     pipeline::Measured known = measured();
@@ -189,7 +189,9 @@ DOCTEST_TEST_CASE("an estimate counts the views that are drawn to see where some
     DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(loop + words + request.place_views * (0.05 + steps * 0.02)));
     known.place_step = 0.03;   // seen once
     DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(loop + words + request.place_views * steps * 0.03));
-    request.prompt = "a hat beside a bear on the grass";   // said, not drawn
+    request.prompt = "a bear wearing a hat on the grass";   // they show its colour, too: no view is drawn for that
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(loop + words + request.place_views * steps * 0.03));
+    request.prompt = "a red hat beside a bear on the grass";   // said, not drawn
     const double beside = seconds(known, request, work);
     work.located = true;
     DOCTEST_CHECK(beside == doctest::Approx(seconds(known, request, work) + 2 * words));
