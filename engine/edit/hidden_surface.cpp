@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
+#include "engine/edit/visual_hull.h"
 #include "engine/math/eigen.h"
-#include "engine/math/sh.h"
 #include "engine/math/unproject.h"
 
 namespace gse::edit {
@@ -117,23 +117,11 @@ GaussianData hidden_surface(const std::vector<RoundView>& views, int sh_degree, 
         square.colour = square.colour + p.colour;
     }
     const Quat turn = quaternion(Mat3::from_columns(plane.axis[0], plane.axis[1], plane.axis[2]));
-    const auto logit = static_cast<float>(std::log(opacity / (1 - opacity)));
     for (auto& [place, square] : squares) {
         const auto count = static_cast<double>(square.heights.size());
         const Vec3 centre = plane.point(static_cast<double>(place.first) * side, static_cast<double>(place.second) * side, square.height());
         if (!borne_out(views, centre, Slack * side)) continue;
-        const std::size_t row = data.size();
-        data.resize(row + 1);
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto i = row * 3 + static_cast<std::size_t>(axis);
-            data.position[i] = static_cast<float>(centre[axis]);
-            data.log_scale[i] = static_cast<float>(std::log((axis == 2 ? ThroughSurface : AlongSurface) * side));
-            data.sh[row * data.sh_stride() + static_cast<std::size_t>(axis)] =
-                static_cast<float>(sh_from_colour(std::clamp(square.colour[axis] / count, 0.0, 1.0)));
-        }
-        const std::array rotation{turn.w, turn.x, turn.y, turn.z};
-        std::copy(rotation.begin(), rotation.end(), data.rotation.begin() + static_cast<std::ptrdiff_t>(row * 4));
-        data.opacity_logit[row] = logit;
+        append_splat(data, {centre, Vec3{AlongSurface, AlongSurface, ThroughSurface} * side, square.colour / count, {turn.w, turn.x, turn.y, turn.z}, opacity});
     }
     return data;
 }

@@ -39,7 +39,8 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
     plan.seeds = located.seeds;
     plan.settings = input.settings;
     plan.mode = located.mode;
-    if (located.mode == EditMode::Add) plan.drawn_colour = colour_of_drawn(located, input.known);
+    if (located.mode == EditMode::Add && !is_described(as_told(input.request.prompt), input.request.target))
+        plan.drawn_colour = colour_of_drawn(located, input.known);
     const std::vector<float> values(plan.label.begin(), plan.label.end());
     const bool any = std::find(plan.label.begin(), plan.label.end(), std::uint8_t{1}) != plan.label.end();
     if (located.mode == EditMode::Replace)

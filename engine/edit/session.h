@@ -34,7 +34,7 @@ struct EditPlan {
     raster::Settings settings;
     EditMode mode = EditMode::Modify;
     AddRegion room;                        // replace mode: where the new thing may be
-    std::string drawn_colour;              // add mode: the word for what the search has drawn, where it did
+    std::string drawn_colour;              // add mode: that of what the search has drawn, where it did and the sentence says none
 };
 
 /// One line of the loss history.

@@ -177,11 +177,11 @@ struct SeenColour {
 };
 
 /// Rotation (w, x, y, z) that takes the z axis to `normal`.
-std::array<float, 4> turn_to(const Vec3& normal) {
+std::array<double, 4> turn_to(const Vec3& normal) {
     const double w = 1 + normal.z;
     if (w < 1e-6) return {0, 1, 0, 0};
     const double size = std::sqrt(w * w + normal.x * normal.x + normal.y * normal.y);
-    return {static_cast<float>(w / size), static_cast<float>(-normal.y / size), static_cast<float>(normal.x / size), 0};
+    return {w / size, -normal.y / size, normal.x / size, 0};
 }
 
 }  // namespace
@@ -266,6 +266,20 @@ Mask hull_mask(const VisualHull& hull, const Camera& camera) {
     return mask;
 }
 
+void append_splat(GaussianData& data, const PlainSplat& splat) {
+    const std::size_t row = data.size();
+    data.resize(row + 1);
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto i = row * 3 + static_cast<std::size_t>(axis);
+        data.position[i] = static_cast<float>(splat.centre[axis]);
+        data.log_scale[i] = static_cast<float>(std::log(splat.deviation[axis]));
+        data.sh[row * data.sh_stride() + static_cast<std::size_t>(axis)] =
+            static_cast<float>(sh_from_colour(std::clamp(splat.colour[axis], 0.0, 1.0)));
+    }
+    for (std::size_t i = 0; i < 4; ++i) data.rotation[row * 4 + i] = static_cast<float>(splat.rotation[i]);
+    data.opacity_logit[row] = static_cast<float>(std::log(splat.opacity / (1 - splat.opacity)));
+}
+
 GaussianData hull_seeds(const VisualHull& hull, std::span<const HullView> views, int sh_degree, double opacity) {
     constexpr double AlongSurface = 0.6, ThroughSurface = 0.25, Within = 0.5;   // standard deviations over the side of a cube
     constexpr std::size_t EveryWithin = 4;    // of the cubes that nobody sees so many get no row
@@ -273,7 +287,6 @@ GaussianData hull_seeds(const VisualHull& hull, std::span<const HullView> views,
     for (const auto& view : views) depths.push_back(depth_of(hull, view.camera));
     GaussianData data;
     data.sh_degree = sh_degree;
-    const auto logit = static_cast<float>(std::log(opacity / (1 - opacity)));
     for (std::size_t cube = 0; cube < hull.centres.size(); ++cube) {
         const Vec3 &centre = hull.centres[cube], &normal = hull.normals[cube];
         const bool surface = dot(normal, normal) > 0;
@@ -289,18 +302,9 @@ GaussianData hull_seeds(const VisualHull& hull, std::span<const HullView> views,
         }
         const auto& seen = front.weight > 0 ? front : any;
         if (!(seen.weight > 0)) continue;
-        const std::size_t row = data.size();
-        data.resize(row + 1);
-        const auto turn = surface ? turn_to(normal) : std::array<float, 4>{1, 0, 0, 0};
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto i = row * 3 + static_cast<std::size_t>(axis);
-            data.position[i] = static_cast<float>(centre[axis]);
-            data.log_scale[i] = static_cast<float>(std::log((!surface ? Within : axis == 2 ? ThroughSurface : AlongSurface) * hull.side));
-            data.sh[row * data.sh_stride() + static_cast<std::size_t>(axis)] =
-                static_cast<float>(sh_from_colour(std::clamp(seen.sum[axis] / seen.weight, 0.0, 1.0)));
-        }
-        std::copy(turn.begin(), turn.end(), data.rotation.begin() + static_cast<std::ptrdiff_t>(row * 4));
-        data.opacity_logit[row] = logit;
+        const Vec3 along{AlongSurface, AlongSurface, ThroughSurface}, within{Within, Within, Within};
+        append_splat(data, {centre, (surface ? along : within) * hull.side, seen.sum / seen.weight,
+                            surface ? turn_to(normal) : std::array<double, 4>{1, 0, 0, 0}, opacity});
     }
     return data;
 }

@@ -2,6 +2,7 @@
 // Seitz 2000), with some outlines wrong and some places hidden (views.md 17).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -57,6 +58,14 @@ VisualHull best_hull(std::span<const HullView> views, const HullBox& box, HullPa
 
 /// Where the hull is seen in a view.
 Mask hull_mask(const VisualHull& hull, const Camera& camera);
+
+/// A splat that is seen alike from everywhere. Rotation (w, x, y, z); colour is clamped to [0,1], opacity in (0,1).
+struct PlainSplat {
+    Vec3 centre, deviation, colour;
+    std::array<double, 4> rotation{1, 0, 0, 0};
+    double opacity = 0.9;
+};
+void append_splat(GaussianData& data, const PlainSplat& splat);
 
 /// One row per cube that lies at the hull's surface, and one for every few within: flat along the surface, of the mean colour
 /// of the pictures that show it there. `opacity` in (0,1).

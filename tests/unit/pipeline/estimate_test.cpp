@@ -26,6 +26,14 @@ pipeline::Measured measured() {
     return measured;
 }
 
+/// With what a redrawn view takes.
+pipeline::Measured redrawing() {
+    auto known = measured();
+    known.redraw = 0.02;
+    known.redraw_view = 0.05;
+    return known;
+}
+
 pipeline::PlannedWork located() {
     pipeline::PlannedWork work;
     work.loaded = work.located = true;
@@ -77,10 +85,8 @@ DOCTEST_TEST_CASE("an estimate of redrawn views: what a view takes, and each of 
     request.edited_views = 8;
     request.view_steps = 6;
     request.fit_steps = 40;
-    auto known = measured();
-    known.redraw = 0.02;
+    auto known = redrawing();
     known.redraw_tflop = 0.003;
-    known.redraw_view = 0.05;
     known.redraw_view_tflop = 0.002;
     known.begin = 0.5;
     auto work = located();
@@ -132,9 +138,7 @@ DOCTEST_TEST_CASE("an estimate counts the steps of a polish, and the views that 
     request.edited_views = 4;
     request.view_steps = 3;
     request.fit_steps = 10;
-    auto known = measured();
-    known.redraw = 0.02;
-    known.redraw_view = 0.05;
+    auto known = redrawing();
     auto work = located();
     work.shows_idea = false;
     const double without = seconds(known, request, work);
@@ -151,9 +155,7 @@ DOCTEST_TEST_CASE("an estimate counts the view that is drawn first for the colou
     request.prompt = "a bear with white wings on the grass";
     request.source = "bear";
     request.target = "wings";
-    pipeline::Measured known = measured();
-    known.redraw = 0.02;
-    known.redraw_view = 0.05;
+    auto known = redrawing();
     auto work = located();
     work.mode = edit::EditMode::Add;
     const auto plan = edit::round_plan(request, work.mode);
@@ -174,9 +176,7 @@ DOCTEST_TEST_CASE("an estimate counts the views that are drawn to see where some
     request.prompt = "a bear wearing a red hat on the grass";
     request.source = "bear";
     request.target = "hat";
-    pipeline::Measured known = measured();
-    known.redraw = 0.02;
-    known.redraw_view = 0.05;
+    auto known = redrawing();
     auto work = located();
     work.mode = edit::EditMode::Add;
     const double loop = seconds(known, request, work);
