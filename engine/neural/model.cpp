@@ -68,6 +68,7 @@ public:
     }
     bool knows_scene() const override {
         const auto& facts = loaded_->facts;
+        if (!facts.shape_unet.empty()) return shape_unet_shows_scene(loaded_->path / facts.shape_unet);
         return !facts.shape_lora.empty() && !facts.shape_cameras.empty() && shows_scene(SafetensorsFile(loaded_->path / facts.shape_cameras));
     }
     std::vector<std::string> known_words() const override { return bundle_->facts.vocabulary; }
@@ -128,18 +129,27 @@ public:
     }
 
 private:
-    /// The weights in use with the LoRA for new things that the model brings along; null where it brings none.
+    /// The weights in use with the network or the LoRA for new things that the model brings along; null where it brings none.
     Bundle with_shapes() const {
-        const auto& file = loaded_->facts.shape_lora;
-        if (file.empty()) return nullptr;
+        const auto& facts = loaded_->facts;
+        if (facts.shape_unet.empty() && facts.shape_lora.empty()) return nullptr;
         const std::lock_guard lock(shapes_mutex_);
-        if (shapes_ == nullptr) shapes_ = guard_torch("merging the model's LoRA for shapes", [&] {
-            auto merged = with_lora(*bundle_, read_lora(loaded_->path / file), 1);
-            if (const auto& cameras = loaded_->facts.shape_cameras; !cameras.empty())
-                merged.unet = with_scene_inputs(merged.unet, SafetensorsFile(loaded_->path / cameras));
-            return std::make_shared<const ModelBundle>(std::move(merged));
+        if (shapes_ == nullptr) shapes_ = guard_torch("reading what the model draws new things with", [&] {
+            return std::make_shared<const ModelBundle>(facts.shape_unet.empty() ? with_shape_lora() : with_shape_unet());
         });
         return shapes_;
+    }
+    ModelBundle with_shape_unet() const {
+        auto bundle = *bundle_;
+        bundle.unet = load_shape_unet(loaded_->path / loaded_->facts.shape_unet);
+        bundle.unet->to(bundle.device);
+        return bundle;
+    }
+    ModelBundle with_shape_lora() const {
+        auto merged = with_lora(*bundle_, read_lora(loaded_->path / loaded_->facts.shape_lora), 1);
+        if (const auto& cameras = loaded_->facts.shape_cameras; !cameras.empty())
+            merged.unet = with_scene_inputs(merged.unet, SafetensorsFile(loaded_->path / cameras));
+        return merged;
     }
     Image run(const Image* image, const SampleRequest& request) const {
         return guard_torch("sampling", [&] {

@@ -44,6 +44,9 @@ struct ModelFacts {
     /// The embedding of cameras that goes with it, and the convolution in which it is shown the scene without what may change
     /// (with_scene_inputs()), relative to the model's folder; empty = it is told and shown nothing.
     std::string shape_cameras;
+    /// Folder of a network of its own for the same, which takes the place of both (load_shape_unet()), relative to the model's; what is tuned or
+    /// merged with a LoRA does not change it. Empty = it has none.
+    std::string shape_unet;
     /// Views of a scene that are denoised together with it (SceneViews).
     std::int64_t shape_views = 1;
 

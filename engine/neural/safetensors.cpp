@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <limits>
 #include <span>
 
 #include "engine/base/error.h"
@@ -158,7 +159,33 @@ torch::Tensor SafetensorsFile::tensor(const std::string& name) const {
 
 void SafetensorsFile::copy_to(const std::string& name, torch::Tensor target) const {
     const torch::NoGradGuard no_grad;
-    target.copy_(tensor(name).view(target.sizes()));
+    const auto found = entries_.find(name + QuantizationScale);
+    const auto values = tensor(name);
+    if (found == entries_.end() || values.scalar_type() != torch::kInt8) {
+        target.copy_(values.view(target.sizes()));
+        return;
+    }
+    const auto scale = read(found->second);
+    if (scale.dim() != 1 || values.dim() < 2 || scale.size(0) != values.size(0))
+        malformed(path_, fmt::format("the scales of tensor \"{}\" are not one per row", name));
+    target.copy_((values.flatten(1).to(torch::kFloat32) * scale.to(torch::kFloat32).unsqueeze(1)).view(target.sizes()));
+}
+
+NamedTensors quantized(const NamedTensors& tensors) {
+    constexpr double Largest = 127;
+    NamedTensors result;
+    for (const auto& [name, tensor] : tensors) {
+        const auto values = tensor.detach().to(torch::kCPU, torch::kFloat32);
+        if (values.dim() < 2) {
+            result.emplace_back(name, values.to(torch::kHalf));
+            continue;
+        }
+        const auto rows = values.flatten(1);
+        const auto scale = (rows.abs().amax(1) / Largest).clamp_min(std::numeric_limits<float>::min());
+        result.emplace_back(name, (rows / scale.unsqueeze(1)).round().clamp(-Largest, Largest).to(torch::kInt8).view(values.sizes()));
+        result.emplace_back(name + QuantizationScale, scale);
+    }
+    return result;
 }
 
 void write_safetensors(const std::filesystem::path& path, const NamedTensors& tensors,

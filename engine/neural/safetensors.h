@@ -33,7 +33,8 @@ public:
     /// The tensor in the type of the file. Throws Error (Model) when it is not there, (Unreadable) when the file was cut off
     /// since it was opened.
     torch::Tensor tensor(const std::string& name) const;
-    /// Copies the tensor into `target` (same number of elements), converting to its type and device.
+    /// Copies the tensor into `target` (same number of elements), converting to its type and device; one of quantized() as the numbers that it
+    /// stands for. Throws Error as tensor(), and (Malformed) when its scales do not fit.
     void copy_to(const std::string& name, torch::Tensor target) const;
 
 private:
@@ -47,6 +48,12 @@ private:
 };
 
 using NamedTensors = std::vector<std::pair<std::string, torch::Tensor>>;
+
+/// What follows the name of a quantized tensor in that of its scales.
+inline constexpr const char* QuantizationScale = "_scale";
+/// Matrices and kernels in eight bits: whole numbers of -127 to 127 and, behind each tensor, one factor per row (its first dimension), by which
+/// they are multiplied; each number is off by half a factor at most. Everything else in fp16.
+NamedTensors quantized(const NamedTensors& tensors);
 
 /// Writes the tensors in the given order, atomically. Throws Error (Unwritable).
 void write_safetensors(const std::filesystem::path& path, const NamedTensors& tensors,

@@ -7,11 +7,15 @@
 #include <numeric>
 
 #include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/base/json.h"
+#include "engine/neural/key_map.h"
 
 namespace gse::neural {
 namespace {
 
 constexpr std::string_view CameraEmbedding = "camera_embedding.", Inpaint = "conv_inpaint.", Outline = "outline.";
+constexpr const char *ShapeConfig = "config.json", *ShapeWeights = "diffusion_pytorch_model.safetensors";
 constexpr double FirstOutline = -3;   // logit before anything is known: little of a picture is new
 
 /// A network with the weights of another, each of the type it has; those that the other has not are left undrawn.
@@ -80,6 +84,31 @@ UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool comp
     }
     for (auto& parameter : unet->parameters()) parameter.set_requires_grad(false);
     return unet;
+}
+
+UNet load_shape_unet(const std::filesystem::path& folder) {
+    const SafetensorsFile file(folder / ShapeWeights);
+    auto config = UNetConfig::from_json(read_json_file(folder / ShapeConfig), folder / ShapeConfig);
+    config.camera_dim = CameraFeatures;
+    config.inpaint_channels = shows_scene(file) ? config.in_channels + 2 : 0;
+    config.outline_scale = file.contains(std::string(Outline).append("conv_1.weight")) ? OutlineScale : 0;
+    UNet unet(config, WeightOptions{torch::kCPU, torch::kFloat32, false});
+    LoadPlan plan = unet_plan();
+    plan.what = "UNet for new things";
+    plan.ignore = [](const std::string& name) { return name.ends_with(QuantizationScale); };
+    load_weights(*unet, file, plan);
+    for (auto& parameter : unet->parameters()) parameter.set_requires_grad(false);
+    unet->eval();
+    return unet;
+}
+
+bool shape_unet_shows_scene(const std::filesystem::path& folder) { return shows_scene(SafetensorsFile(folder / ShapeWeights)); }
+
+void write_shape_unet(const UNet& unet, const std::filesystem::path& folder) {
+    NamedTensors weights;
+    for (const auto& item : unet->named_parameters()) weights.emplace_back(item.key(), item.value());
+    write_safetensors(folder / ShapeWeights, quantized(weights));
+    write_file(folder / ShapeConfig, unet->config().to_json().dump(2) + "\n");
 }
 
 UNet without_scene_inputs(const UNet& unet) {

@@ -33,6 +33,14 @@ bool shows_scene(const SafetensorsFile& file);
 /// The same with the weights that a file holds; one of before there was inpainting(), or outlines, has none for that, and the network then
 /// no such part, but where all are wanted (`complete`, to go on training). Throws Error (Model) where they do not fit.
 UNet with_scene_inputs(const UNet& plain, const SafetensorsFile& file, bool complete = false);
+/// A network of its own for new things with all of these inputs: config.json as diffusers writes it, and weights that may be quantized().
+/// Throws Error (NotFound, Malformed, Model).
+UNet load_shape_unet(const std::filesystem::path& folder);
+/// Whether the folder's network is shown the scene.
+bool shape_unet_shows_scene(const std::filesystem::path& folder);
+/// Writes such a folder.
+void write_shape_unet(const UNet& unet, const std::filesystem::path& folder);
+
 /// The same network without those inputs; shares all weights.
 UNet without_scene_inputs(const UNet& unet);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/base/file.h"
+#include "engine/base/log.h"
 #include "engine/neural/key_map.h"
 #include "engine/neural/lora.h"
 #include "engine/neural/safetensors.h"
@@ -36,6 +37,24 @@ Json tokenizer_config() {
             {"do_lower_case", true}};
 }
 
+/// Whether the initial model's UNet and text encoder are exported as they were.
+bool keeps_networks(const StarterTrainParameters& parameters) {
+    return !parameters.shapes && !parameters.initial.empty() && parameters.average.empty() && parameters.unet_steps == 0 && parameters.unet_minutes == 0;
+}
+
+/// What the initial model draws new things with goes along.
+void copy_shapes(const std::filesystem::path& initial, const std::filesystem::path& output) {
+    const auto file = initial / "gseditpro.json";
+    if (!std::filesystem::exists(file)) return;
+    const auto facts = read_json_file(file);
+    for (const char* key : {"shape_unet", "shape_lora", "shape_cameras"}) {
+        const auto named = facts.value(key, std::string());
+        if (named.empty() || std::filesystem::equivalent(initial, output)) continue;
+        std::filesystem::copy(initial / named, output / named,
+                              std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
+    }
+}
+
 /// What the model says about itself; what an initial model was measured to work best with stays.
 Json facts_of(const UNetTraining& training) {
     Json facts{{"name", "GSEditPro starter"},
@@ -47,11 +66,19 @@ Json facts_of(const UNetTraining& training) {
     const auto before = std::filesystem::path(training.parameters.initial) / "gseditpro.json";
     if (!training.parameters.initial.empty() && std::filesystem::exists(before)) facts.update(read_json_file(before));
     if (training.parameters.shapes) {   // what it knows of words is what it knew
-        facts["shape_lora"] = ShapeLoraFile;
-        facts["shape_cameras"] = ShapeCamerasFile;
-        facts["shape_views"] = std::min<std::int64_t>(ShapeViews, training.source.views_of_scene());
+        if (facts.contains("shape_unet")) {
+            facts["shape_unet"] = ShapeUnetFolder;
+        } else {
+            facts["shape_lora"] = ShapeLoraFile;
+            facts["shape_cameras"] = ShapeCamerasFile;
+        }
+        facts["shape_views"] = facts.contains("shape_unet") ? facts.value("shape_views", ShapeViews) : std::min<std::int64_t>(ShapeViews, training.source.views_of_scene());
         facts["shape_training"] = fields_to_json(training.parameters);
         return facts;
+    }
+    if (!keeps_networks(training.parameters) && (facts.contains("shape_unet") || facts.contains("shape_lora"))) {
+        log::warning("what the initial model draws new things with is left out: it was learned beside another UNet; train it anew with --shapes");
+        for (const char* key : {"shape_unet", "shape_lora", "shape_cameras", "shape_views", "shape_training"}) facts.erase(key);
     }
     const auto words = training.source.vocabulary();
     facts["vocabulary"] = words;
@@ -66,6 +93,9 @@ void write_shapes(const UNetTraining& training, StarterNetworks& networks, const
     const auto file = std::filesystem::path(training.parameters.initial) / "unet/diffusion_pytorch_model.safetensors";
     load_weights(*before, SafetensorsFile(file), unet_plan());
     write_weights(output / "unet/diffusion_pytorch_model.safetensors", before);
+    const auto facts = std::filesystem::path(training.parameters.initial) / "gseditpro.json";
+    if (std::filesystem::exists(facts) && read_json_file(facts).contains("shape_unet"))
+        return write_shape_unet(networks.unet, output / ShapeUnetFolder);
     UNet trained(networks.unet->config());   // on the CPU
     auto values = trained->parameters();
     copy_parameters(networks.unet->parameters(), values);
@@ -112,6 +142,7 @@ void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNet
                                              {"unet", {"diffusers", "UNet2DConditionModel"}},
                                              {"vae", {"diffusers", "AutoencoderKL"}},
                                              {"scheduler", {"diffusers", "DDIMScheduler"}}});
+    if (keeps_networks(training.parameters)) copy_shapes(training.parameters.initial, output);
     write_json(output / "gseditpro.json", facts_of(training));
 }
 

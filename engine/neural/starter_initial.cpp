@@ -134,6 +134,7 @@ StarterParts initial_parts(const std::filesystem::path& folder, const StarterCon
 UNet initial_shapes(const std::filesystem::path& folder, UNet unet) {
     const auto path = folder / "gseditpro.json";
     const Json facts = std::filesystem::exists(path) ? read_json_file(path) : Json::object();
+    if (facts.contains("shape_unet")) return load_shape_unet(folder / facts.at("shape_unet").get<std::string>());
     if (!facts.contains("shape_lora")) return with_scene_inputs(unet);
     merge_lora(*unet, read_lora(folder / facts.at("shape_lora").get<std::string>()).unet, 1);
     const auto inputs = facts.value("shape_cameras", std::string());

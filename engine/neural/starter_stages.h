@@ -48,7 +48,8 @@ StarterParts fresh_parts(const StarterConfigs& configs, std::uint64_t seed);
 StarterParts initial_parts(const std::filesystem::path& folder, const StarterConfigs& configs,
                            const StarterVocabulary& vocabulary);
 
-/// The folder's UNet with its LoRA for new things and the inputs that go with it, where it has them; else with inputs that say nothing.
+/// The folder's network for new things, or its UNet with its LoRA for them and the inputs that go with it, where it has them; else with inputs
+/// that say nothing.
 UNet initial_shapes(const std::filesystem::path& folder, UNet unet);
 
 /// Ids of the tokens of `vocabulary` that are new to the folder's model. Throws Error as initial_parts() does.
@@ -104,7 +105,11 @@ inline constexpr const char* ShapeLoraFile = "shapes.safetensors";
 inline constexpr const char* ShapeCamerasFile = "shape_cameras.safetensors";
 inline constexpr std::int64_t ShapeViews = 4;
 
-/// Writes the diffusers folder in fp16; with `parameters.shapes`, `networks.unet` as the difference to the initial model's.
+/// Where a starter that draws new things with a network of its own keeps it.
+inline constexpr const char* ShapeUnetFolder = "shapes";
+
+/// Writes the diffusers folder in fp16; with `parameters.shapes`, `networks.unet` as the difference to the initial model's, or in eight bits
+/// where that has a network of its own for new things.
 void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNetworks& networks,
                     const std::filesystem::path& output);
 

@@ -165,6 +165,30 @@ DOCTEST_TEST_CASE("an embedding of cameras is read as it was written, and refuse
     DOCTEST_CHECK_THROWS_WITH_AS(with_scene_inputs(plain, SafetensorsFile(path)), doctest::Contains("has no"), gse::Error);
 }
 
+DOCTEST_TEST_CASE("a network of its own for new things is read as it was written, in eight bits, and refused where a part is missing") {
+    const torch::NoGradGuard no_grad;
+    const gse::test::ScratchFolder scratch;
+    const UNet written = with_scene_inputs(small_unet());
+    torch::manual_seed(12);
+    for (auto& [name, weight] : scene_input_weights(written)) weight.normal_(0, 0.1);
+    write_shape_unet(written, scratch.path());
+    DOCTEST_CHECK(shape_unet_shows_scene(scratch.path()));
+    const UNet read = load_shape_unet(scratch.path());
+    DOCTEST_CHECK((read->config().camera_dim == CameraFeatures && read->config().inpaint_channels == 6 && read->config().outline_scale == OutlineScale));
+    const auto views = torch::randn({2, 4, 8, 8}), words = torch::randn({2, 3, 12}), t = torch::full({1}, 300.0f);
+    const auto cameras = torch::randn({2, CameraFeatures}), shown = torch::randn({2, 6, 8, 8});
+    const auto output = [&](const UNet& unet) { return unet->forward(views, t, words, nullptr, {}, {2, cameras, shown}); };
+    const auto before = output(written), after = output(read);
+    constexpr double EightBits = 0.02;   // of the output: errors of 1 / 254 of a row's largest weight, through twenty layers
+    DOCTEST_CHECK((before - after).norm().item<double>() < EightBits * before.norm().item<double>());
+    write_shape_unet(read, scratch.path() / "again");   // what is in eight bits already stays as it is
+    DOCTEST_CHECK(torch::allclose(after, output(load_shape_unet(scratch.path() / "again")), 1e-4, 1e-5));
+    write_shape_unet(small_unet(), scratch.path());
+    DOCTEST_CHECK_FALSE(shape_unet_shows_scene(scratch.path()));
+    DOCTEST_CHECK_THROWS_WITH_AS(load_shape_unet(scratch.path()), doctest::Contains("UNet for new things has no tensor \"camera_embedding."), gse::Error);
+    DOCTEST_CHECK_THROWS_AS(load_shape_unet(scratch.path() / "none"), gse::Error);
+}
+
 DOCTEST_TEST_CASE("camera features turn with the camera, and are zero where nothing is known") {
     for (const float value : camera_features(std::nullopt, 0.3)) DOCTEST_CHECK(value == 0);
     const auto front = camera_features(0.0, 0.2), round = camera_features(2 * std::numbers::pi, 0.2), back = camera_features(std::numbers::pi, 0.2);

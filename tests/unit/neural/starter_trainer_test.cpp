@@ -8,10 +8,12 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/base/random.h"
 #include "engine/neural/config.h"
 #include "engine/neural/lora.h"
 #include "engine/neural/safetensors.h"
+#include "engine/neural/scene_views.h"
 #include "engine/neural/starter_data.h"
 #include "engine/neural/starter_trainer.h"
 #include "tests/test_paths.h"
@@ -306,6 +308,45 @@ DOCTEST_TEST_CASE("training of new shapes goes on from those that the model has,
     const SafetensorsFile kept(folder("third") / "shape_cameras.safetensors");
     for (const auto& [name, entry] : inputs.entries())
         DOCTEST_CHECK_MESSAGE(torch::allclose(inputs.tensor(name).to(torch::kFloat), kept.tensor(name).to(torch::kFloat), Half, 1e-6), name);
+}
+
+DOCTEST_TEST_CASE("training of new shapes goes on from a network of their own, and what trains another part takes it along") {
+    const gse::test::ScratchFolder scratch;
+    const auto folder = [&](const char* name) { return scratch.path() / name; };
+    auto parameters = toy_parameters();
+    parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 2;
+    train_starter(parameters, ToySource(), folder("work1"), folder("first"), {});
+    const auto config = UNetConfig::from_json(read_json_file(folder("first") / "unet/config.json"), "config");
+    torch::manual_seed(4);
+    write_shape_unet(with_scene_inputs(UNet(config)), folder("first") / "own");
+    auto facts = read_json_file(folder("first") / "gseditpro.json");
+    facts["shape_unet"] = "own";
+    facts["shape_views"] = 6;
+    gse::write_file(folder("first") / "gseditpro.json", facts.dump());
+
+    const ToyTwins blank;
+    parameters.initial = folder("first").string();
+    parameters.shapes = true;
+    parameters.unet_lr = 1e-12;   // so small a step goes nowhere
+    parameters.unet_steps = 1;
+    train_starter(parameters, ToySource({}, &blank), folder("work2"), folder("second"), {});
+    facts = read_json_file(folder("second") / "gseditpro.json");
+    DOCTEST_CHECK((facts.at("shape_unet") == "shapes" && facts.at("shape_views") == 6 && !facts.contains("shape_lora")));
+    const auto before = load_shape_unet(folder("first") / "own")->named_parameters(), after = load_shape_unet(folder("second") / "shapes")->named_parameters();
+    DOCTEST_REQUIRE(before.size() == after.size());
+    for (const auto& item : before) DOCTEST_CHECK_MESSAGE(torch::allclose(item.value(), after[item.key()], 1e-3, 1e-6), item.key());
+
+    parameters.initial = folder("second").string();
+    parameters.shapes = false;
+    parameters.vae_steps = parameters.unet_steps = 0;   // the image-text encoder alone
+    parameters.vae_minutes = parameters.unet_minutes = 0;
+    train_starter(parameters, ToySource({}, &blank), folder("work3"), folder("third"), {});
+    DOCTEST_CHECK(read_json_file(folder("third") / "gseditpro.json").at("shape_unet") == "shapes");
+    const char* const file = "shapes/diffusion_pytorch_model.safetensors";
+    DOCTEST_CHECK(gse::read_file(folder("second") / file) == gse::read_file(folder("third") / file));
+    parameters.unet_steps = 1;   // another UNet beside it
+    train_starter(parameters, ToySource({}, &blank), folder("work4"), folder("fourth"), {});
+    DOCTEST_CHECK(!read_json_file(folder("fourth") / "gseditpro.json").contains("shape_unet"));
 }
 
 DOCTEST_TEST_CASE("mixed precision trains nearly as float does, and is not the same") {

@@ -55,6 +55,31 @@ DOCTEST_TEST_CASE("safetensors: what is written is read back bit for bit") {
     DOCTEST_CHECK(contains(message_of([&] { file.tensor("nothing"); }), "\"nothing\""));
 }
 
+DOCTEST_TEST_CASE("safetensors: weights in eight bits are off by half a step at most, row by row, and vectors by none of these") {
+    const ScratchFolder scratch;
+    const auto path = scratch.path() / "weights.safetensors";
+    torch::manual_seed(11);
+    auto matrix = torch::randn({5, 7}), kernel = torch::randn({4, 3, 3, 3}) * torch::tensor({1e-4, 1.0, 30.0, 0.0}).view({4, 1, 1, 1});
+    const auto vector = torch::randn({9}).to(torch::kHalf).to(torch::kFloat);
+    write_safetensors(path, quantized({{"matrix", matrix}, {"kernel", kernel}, {"vector", vector}}));
+    const SafetensorsFile file(path);
+    DOCTEST_CHECK((file.entries().at("kernel").dtype == torch::kInt8));
+    for (const auto& [name, values] : NamedTensors{{"matrix", matrix}, {"kernel", kernel}}) {
+        auto read = torch::full_like(values, 9);
+        file.copy_to(name, read);
+        const auto rows = values.flatten(1), error = (read.flatten(1) - rows).abs();
+        const auto step = rows.abs().amax(1, true) / 127;
+        constexpr double Half = 0.5 + 1e-4;   // products are rounded once more
+        DOCTEST_CHECK_MESSAGE((error <= Half * step).all().item<bool>(), name);
+        DOCTEST_CHECK(error.max().item<double>() > 0);
+    }
+    auto same = torch::zeros_like(vector);
+    file.copy_to("vector", same);
+    DOCTEST_CHECK(torch::equal(same, vector));
+    write_safetensors(path, {{"matrix", torch::ones({5, 7}, torch::kInt8)}, {std::string("matrix") + QuantizationScale, torch::ones({4})}});
+    DOCTEST_CHECK_THROWS_WITH_AS(SafetensorsFile(path).copy_to("matrix", matrix), doctest::Contains("one per row"), Error);
+}
+
 DOCTEST_TEST_CASE("safetensors: a place that cannot be written leaves nothing behind") {
     const ScratchFolder scratch;
     write_file(scratch.path() / "file", "x");

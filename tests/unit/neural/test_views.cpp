@@ -3,6 +3,7 @@
 
 #include "engine/edit/method_fields.h"
 #include "engine/neural/dreambooth.h"
+#include "engine/neural/model.h"
 #include "engine/neural/network_use.h"
 #include "engine/neural/scene_views.h"
 #include "engine/neural/view_guidance.h"
@@ -211,10 +212,38 @@ DOCTEST_TEST_CASE("redrawn views: where the model knows outlines it tells them, 
 
 DOCTEST_TEST_CASE("a model that names a LoRA for new things and has none is refused at once") {
     const TinyModel model;
-    for (const char* key : {"shape_lora", "shape_cameras"}) {
+    for (const char* key : {"shape_lora", "shape_cameras", "shape_unet"}) {
         gse::write_file(model.path() / "gseditpro.json", std::string("{\"") + key + "\": \"gone.safetensors\"}");
         DOCTEST_CHECK_THROWS_WITH_AS(load_bundle(model.path()), doctest::Contains("gone.safetensors"), Error);
     }
+}
+
+DOCTEST_TEST_CASE("a model with a network of its own draws new things with it, and everything else as before") {
+    const TinyModel model;
+    const auto plain = load_model(model.path(), "cpu");
+    DOCTEST_CHECK_FALSE(plain->knows_scene());
+    auto views = wall_views();
+    for (auto& view : views) view.backdrop.picture = view.original;
+    const auto drawn = [&](const TextToImage& with, bool anew) {
+        edit::RoundInput input;
+        input.steps = 2;
+        input.anew = anew;
+        return with.views("a bear", {})->edit(views, input, {});
+    };
+    const auto redrawn = drawn(*plain, false);
+    auto unet = with_scene_inputs(load_bundle(model.path()).unet);
+    {
+        const torch::NoGradGuard no_grad;
+        for (auto& parameter : unet->parameters()) parameter.mul_(1.5);
+    }
+    write_shape_unet(unet, model.path() / "own");
+    gse::write_file(model.path() / "gseditpro.json", R"({"shape_unet": "own", "shape_views": 2})");
+    const auto with = load_model(model.path(), "cpu");
+    DOCTEST_CHECK(with->knows_scene());
+    const auto same = drawn(*with, false), shapes = drawn(*with, true);
+    for (std::size_t v = 0; v < views.size(); ++v) DOCTEST_CHECK(same.images[v].data == redrawn.images[v].data);
+    DOCTEST_CHECK((same.outlines.empty() && shapes.outlines.size() == views.size()));
+    DOCTEST_CHECK(shapes.images[0].data != drawn(*plain, true).images[0].data);
 }
 
 DOCTEST_TEST_CASE("redrawing views can be stopped") {
