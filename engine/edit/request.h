@@ -133,7 +133,7 @@ struct LoopSettings {
     int shape_fit_steps = 144;
     // Replaced things, 32 edits of seeds 55 to 58: error removed 0.36, pixels outside that changed 3.9 %, with guidance 3 in every step and
     // strength 0.95 (a quarter more passes) 0.30 and 4.7 %; without any guidance 0.39, but cars become blobs and hats are not drawn.
-    double shape_strength = 0.9;
+    double shape_strength = 1;
     double shape_again_strength = 0.6;
     double shape_guided_until = 0.5;
     double shape_room = 0.2;
