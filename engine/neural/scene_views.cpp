@@ -92,10 +92,11 @@ UNet load_shape_unet(const std::filesystem::path& folder) {
     config.camera_dim = CameraFeatures;
     config.inpaint_channels = shows_scene(file) ? config.in_channels + 2 : 0;
     config.outline_scale = file.contains(std::string(Outline).append("conv_1.weight")) ? OutlineScale : 0;
-    UNet unet(config, WeightOptions{torch::kCPU, torch::kFloat32, false});
     LoadPlan plan = unet_plan();
     plan.what = "UNet for new things";
     plan.ignore = [](const std::string& name) { return name.ends_with(QuantizationScale); };
+    check_weights(*UNet(config, WeightOptions{torch::kMeta, torch::kFloat32, false}), key_shapes(file), plan, file.path());   // before memory is taken
+    UNet unet(config, WeightOptions{torch::kCPU, torch::kFloat32, false});
     load_weights(*unet, file, plan);
     for (auto& parameter : unet->parameters()) parameter.set_requires_grad(false);
     unet->eval();
