@@ -1,4 +1,4 @@
-// Training pictures as files, for a trainer that runs elsewhere (packaging/train_shapes.py).
+// Training pictures as files, for a trainer that runs elsewhere (packaging/train_shapes).
 #pragma once
 
 #include <cstdint>
