@@ -42,11 +42,16 @@ bool keeps_networks(const StarterTrainParameters& parameters) {
     return !parameters.shapes && !parameters.initial.empty() && parameters.average.empty() && parameters.unet_steps == 0 && parameters.unet_minutes == 0;
 }
 
+/// What the initial model says about itself; empty where there is none, or it says nothing.
+Json initial_facts(const StarterTrainParameters& parameters) {
+    const auto file = std::filesystem::path(parameters.initial) / "gseditpro.json";
+    return !parameters.initial.empty() && std::filesystem::exists(file) ? read_json_file(file) : Json::object();
+}
+
 /// What the initial model draws new things with goes along.
-void copy_shapes(const std::filesystem::path& initial, const std::filesystem::path& output) {
-    const auto file = initial / "gseditpro.json";
-    if (!std::filesystem::exists(file)) return;
-    const auto facts = read_json_file(file);
+void copy_shapes(const StarterTrainParameters& parameters, const std::filesystem::path& output) {
+    const std::filesystem::path initial = parameters.initial;
+    const auto facts = initial_facts(parameters);
     for (const char* key : {"shape_unet", "shape_lora", "shape_cameras"}) {
         const auto named = facts.value(key, std::string());
         if (named.empty() || std::filesystem::equivalent(initial, output)) continue;
@@ -63,8 +68,7 @@ Json facts_of(const UNetTraining& training) {
                {"attention_layers", "up_blocks"},
                // Where absent things go was learned at every noise level, and is told more exactly where the picture shows.
                {"attention_absent_timesteps", {0.3, 0.5, 0.7}}};
-    const auto before = std::filesystem::path(training.parameters.initial) / "gseditpro.json";
-    if (!training.parameters.initial.empty() && std::filesystem::exists(before)) facts.update(read_json_file(before));
+    facts.update(initial_facts(training.parameters));
     if (training.parameters.shapes) {   // what it knows of words is what it knew
         if (facts.contains("shape_unet")) {
             facts["shape_unet"] = ShapeUnetFolder;
@@ -93,8 +97,7 @@ void write_shapes(const UNetTraining& training, StarterNetworks& networks, const
     const auto file = std::filesystem::path(training.parameters.initial) / "unet/diffusion_pytorch_model.safetensors";
     load_weights(*before, SafetensorsFile(file), unet_plan());
     write_weights(output / "unet/diffusion_pytorch_model.safetensors", before);
-    const auto facts = std::filesystem::path(training.parameters.initial) / "gseditpro.json";
-    if (std::filesystem::exists(facts) && read_json_file(facts).contains("shape_unet"))
+    if (initial_facts(training.parameters).contains("shape_unet"))
         return write_shape_unet(networks.unet, output / ShapeUnetFolder);
     UNet trained(networks.unet->config());   // on the CPU
     auto values = trained->parameters();
@@ -142,7 +145,7 @@ void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNet
                                              {"unet", {"diffusers", "UNet2DConditionModel"}},
                                              {"vae", {"diffusers", "AutoencoderKL"}},
                                              {"scheduler", {"diffusers", "DDIMScheduler"}}});
-    if (keeps_networks(training.parameters)) copy_shapes(training.parameters.initial, output);
+    if (keeps_networks(training.parameters)) copy_shapes(training.parameters, output);
     write_json(output / "gseditpro.json", facts_of(training));
 }
 

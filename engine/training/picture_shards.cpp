@@ -13,6 +13,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/random.h"
+#include "engine/neural/starter_words.h"
 #include "engine/training/starter_source.h"
 
 namespace gse::training {
@@ -40,21 +41,12 @@ public:
     void store(const std::string& sentence, std::uint8_t* to) const {
         std::fill_n(to, ShardWords, NoWord);
         int count = 0;
-        std::string word;
-        const auto end_word = [&] {
-            if (word.empty()) return;
+        for (const auto& word : neural::split_caption(sentence)) {
             const auto found = places_.find(word);
             if (found == places_.end() || count == ShardWords)
                 throw Error(ErrorCode::InvalidArgument, "the caption \"" + sentence + "\" is too long or has a word that is not in the vocabulary");
             to[count++] = found->second;
-            word.clear();
-        };
-        for (const char letter : sentence) {
-            if (letter == ' ' || letter == ',') end_word();
-            if (letter != ' ') word += letter;
-            if (letter == ',') end_word();
         }
-        end_word();
     }
 
 private:
