@@ -6,36 +6,26 @@
 
 #include "engine/base/check.h"
 #include "engine/edit/region_frame.h"
+#include "engine/edit/standing.h"
 
 namespace gse::edit {
 namespace {
 
 constexpr int RoomCells = 24;              // along the longest side of the room
-constexpr double LeastWidth = 0.4;         // of its height: half the width of a room, for what was tall and thin
-constexpr float ShownLogit = -5.5373f;     // opacity 1/255
 constexpr double PlaceMargin = 0.3;        // of the longest side of a place (views.md 17)
 
-}  // namespace
+/// A cylinder on the ground, world units.
+struct Cylinder {
+    double radius = 0, height = 0;
+};
 
-namespace {
-
-AddRegion room_of(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share, bool by_longest) {
-    GSE_CHECK_EQ(bits.size(), set.size());
+AddRegion cells_of(const Cylinder& room, const Standing& standing, const Vec3& up, const Vec3& front) {
     const Frame frame = make_frame(up, front);
-    std::vector<Vec3> points;
-    for (std::size_t row = 0; row < bits.size(); ++row) {
-        const auto p = set.position().subspan(row * 3, 3);
-        if (bits[row] != 0 && set.opacity_logit()[row] > ShownLogit) points.push_back(frame.to_frame({p[0], p[1], p[2]}));
-    }
-    if (points.empty()) return {};
-    const Box old = trimmed_box(points, BoundsTrim);
-    const Vec3 size = old.size(), centre = old.centre();
-    const double wide = (1 + share) * std::max({0.5 * size.x, 0.5 * size.z, LeastWidth * size.y});
-    if (!(wide > 0) || !(size.y > 0)) return {};
-    const double more = share * (by_longest ? std::max({size.x, size.y, size.z}) : size.y);
-    const Box room{{centre.x - wide, old.low.y, centre.z - wide}, {centre.x + wide, old.high.y + more, centre.z + wide}};
-    auto region = fill(frame, make_grid(room, RoomCells), [&](const Vec3& p) {
-        const double dx = p.x - centre.x, dz = p.z - centre.z;
+    const Vec3 foot = frame.to_frame(standing.foot);
+    const double wide = room.radius;
+    const Box box{{foot.x - wide, foot.y, foot.z - wide}, {foot.x + wide, foot.y + room.height, foot.z + wide}};
+    auto region = fill(frame, make_grid(box, RoomCells), [&](const Vec3& p) {
+        const double dx = p.x - foot.x, dz = p.z - foot.z;
         return dx * dx + dz * dz <= wide * wide;
     });
     region.origin = "room";
@@ -45,11 +35,19 @@ AddRegion room_of(const GaussianSet& set, const std::vector<std::uint8_t>& bits,
 }  // namespace
 
 AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share) {
-    return room_of(set, bits, up, front, share, false);
+    constexpr double LeastWidth = 0.5;   // of its height: half the width of a room, for what was tall and thin
+    const auto old = standing_of(set, bits, up, front);
+    if (!old.found()) return {};
+    const double half_width = std::max(0.5 * old.width(), LeastWidth * old.height);
+    return cells_of({(1 + share) * half_width, (1 + share) * figure_height(old)}, old, up, front);
 }
 
 AddRegion room_above(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share) {
-    return room_of(set, bits, up, front, share, true);
+    constexpr double LeastWidth = 0.4;   // what is worn is about as wide as the thing
+    const auto thing = standing_of(set, bits, up, front);
+    if (!thing.found()) return {};
+    const double half_width = std::max(0.5 * thing.width(), LeastWidth * thing.height);
+    return cells_of({(1 + share) * half_width, thing.height + share * std::max(thing.width(), thing.height)}, thing, up, front);
 }
 
 HullBox bounds_of(const AddRegion& room, const GaussianData& place) {

@@ -10,8 +10,8 @@
 namespace gse::edit {
 
 /// Room for a thing in the place of the labelled one, the same from every side, as it is not known which way the new one faces: an
-/// upright cylinder around what `bits` [N] label, which stands where that stands and is `share` of its size wider and higher. The
-/// outermost rows and those too faint to be seen do not count. Empty when nothing is left.
+/// upright cylinder that stands where what `bits` [N] label stands (standing_of()), `share` of its size wider and higher; what was low
+/// may be followed by something higher (figure_height()), what was thin by something wider. Empty when nothing is left.
 AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share);
 
 /// The same for what is added to it: higher by a share of its longest side, as a crown on a low thing is.

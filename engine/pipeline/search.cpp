@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "engine/base/check.h"
@@ -13,6 +14,7 @@
 #include "engine/edit/front_reading.h"
 #include "engine/edit/relation.h"
 #include "engine/edit/scene_reading.h"
+#include "engine/edit/standing.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/localize/focus.h"
 
@@ -26,6 +28,11 @@ constexpr double LeastLead = 0.005;         // of a front over its opposite, fro
 /// the picture's at 0.59). Error removed of what is added, 16 edits of seeds 55 and 56: 0.12 at 0.09, 0.13 at 0.15; 0.05 with the
 /// label framed by its box's middle, as grounds are.
 constexpr double HeadRoom = 0.15;
+/// What takes the place of another is drawn as the pictures show it that the starter learned to draw from (synth::scene_camera()): there a
+/// figure's height tells where in the picture its foot is, and half of the picture is so many heights. With the label framed by its box,
+/// as above, the foot was elsewhere, and new things floated or sank by up to a tenth of their height.
+constexpr double FigureAim = 0.59, FigureHalfPicture = 0.87;
+constexpr double SameFraming = 0.05;     // of the distance: a nearer framing shows the same
 constexpr double MostBack = 1.25;   // of the distance of a sure glance: what would be framed from farther off is no thing
 constexpr std::size_t FrontViews = 12;      // in which the front of a scene is looked for
 
@@ -34,6 +41,21 @@ double room_around(const edit::EditRequest& request) {
     constexpr double BesideIt = 1.75;
     const auto relation = edit::relation_of(request.prompt, request.source, request.target);
     return edit::place_name(relation).empty() ? 1 : BesideIt;   // what is worn fits into the head room
+}
+
+/// From where a thing is seen as large, and as high in the picture, as figures that the starter learned from.
+OrbitParameters framed_figure(const edit::Standing& standing, const OrbitParameters& orbit) {
+    const double height = edit::figure_height(standing);
+    OrbitParameters framed = orbit;
+    framed.centre = standing.foot + normalized(orbit.up) * (FigureAim * height);
+    framed.radius = FigureHalfPicture * height / std::tan(orbit.fov_x / 2);
+    return framed;
+}
+
+bool worth_moving(const OrbitParameters& from, const OrbitParameters& to, edit::EditMode mode) {
+    if (mode != edit::EditMode::Replace) return localize::worth_refocusing(from, to);
+    const double most = SameFraming * from.radius;
+    return std::abs(to.radius - from.radius) > most || length(to.centre - from.centre) > most;
 }
 
 std::string key_of(const Located& located) {
@@ -161,12 +183,16 @@ private:
         return best;
     }
 
-    /// The orbit that frames a label, with room where something is put beside it.
-    OrbitParameters focused_on(const Label& label, bool adds, const OrbitParameters& orbit) const {
+    /// The orbit that frames a label, with room where something is put beside it; `front`: of the scene.
+    OrbitParameters focused_on(const Label& label, edit::EditMode mode, const OrbitParameters& orbit, const Vec3& front) const {
+        if (mode == edit::EditMode::Replace) {
+            const auto standing = edit::standing_of(workplace_.drawn(), *label.bits, orbit.up, front);
+            if (standing.found()) return framed_figure(standing, orbit);
+        }
         localize::FocusParameters framing;
         framing.head_room = HeadRoom;
         auto focused = localize::focus_orbit(workplace_.drawn(), *label.bits, orbit, framing);
-        if (adds) focused.radius *= room_around(recipe_.request);
+        if (mode == edit::EditMode::Add) focused.radius *= room_around(recipe_.request);
         return focused;
     }
 
@@ -174,9 +200,10 @@ private:
     Located from_glance(const std::vector<double>& distances) {
         const Glance glance = best_glance(distances);
         if (!glance.sure()) return moved_in(views_on(glance.orbit, recipe_), {});
-        const bool adds = edit::decide_mode(recipe_.request, std::nullopt).first == edit::EditMode::Add;
-        const auto focused = focused_on(glance.result.label, adds, glance.orbit);
+        const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
+        const auto focused = focused_on(glance.result.label, mode, glance.orbit, views_.front);
         const bool frames = focused.radius < MostBack * glance.orbit.radius;   // a thing; a ground is seen as well from here
+        if (mode == edit::EditMode::Replace && frames) return moved_in(views_on(focused, recipe_), {});   // a glance tells a thing's size roughly
         const Views views = faced(views_on(frames ? focused : glance.orbit, recipe_));
         return {views, recipe_, {}, look(recipe_, views, {}), target_read_, {}};
     }
@@ -188,8 +215,8 @@ private:
         const auto& result = located.result;
         const auto& label = result.mode == edit::EditMode::Add ? result.source_label : result.label;
         if (!moves() || std::find(label.bits->begin(), label.bits->end(), std::uint8_t{1}) == label.bits->end()) return located;
-        const auto focused = focused_on(label, result.mode == edit::EditMode::Add, views.orbit);
-        if (!localize::worth_refocusing(views.orbit, focused)) return located;
+        const auto focused = focused_on(label, result.mode, views.orbit, views.front);
+        if (!worth_moving(views.orbit, focused, result.mode)) return located;
         located.views = faced(views_on(focused, recipe_));
         located.result = look(recipe_, located.views, by_hand);
         return located;

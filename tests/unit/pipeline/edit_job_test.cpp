@@ -103,6 +103,34 @@ DOCTEST_TEST_CASE("edit job: the word that is new is read off the scene, which i
     DOCTEST_CHECK(read("bear", "a golden shiny bear", {"a", "shiny", "red", "bear"}) == "golden");
 }
 
+DOCTEST_TEST_CASE("edit job: what takes the place of a thing is drawn from where the starter learned to draw things") {
+    constexpr double Near = 0.09;   // of the figure: what is nearer to the aim than a twentieth of the distance is not framed anew
+    const auto model = load_recipe_model({});
+    for (const auto& [object, height] : {std::pair{"tree", 0.98}, std::pair{"car", 0.97}}) {   // a car is low, but as wide as a figure is that high
+        synth::SceneSpec spec;
+        spec.object = object;
+        spec.material = "blue";
+        spec.ground = "snow";
+        spec.seed = 5;
+        const auto scene = synth::generate(spec);
+        EditRecipe recipe;
+        recipe.request.source = object;
+        recipe.request.prompt = "a red bear on the snow";
+        recipe.request.views = 6;
+        EditJob job(recipe, EditJobInput{scene.scene, {}, model}, JobControl{});
+        job.locate();
+        DOCTEST_REQUIRE(job.found());
+        DOCTEST_REQUIRE(job.located().mode == edit::EditMode::Replace);
+        for (const auto& view : job.views()) {
+            // synth::scene_camera() aims at 0.59 of a figure's height and sees 0.87 of it to either side of there.
+            const Vec3 aim = view.camera.to_camera({0, -0.59 * height, 0});
+            DOCTEST_CHECK(std::abs(aim.x) < Near * height);
+            DOCTEST_CHECK(std::abs(aim.y) < Near * height);
+            DOCTEST_CHECK(0.5 * view.camera.width / view.camera.fx * aim.z == doctest::Approx(0.87 * height).epsilon(2 * Near));
+        }
+    }
+}
+
 DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it open") {
     EditRecipe recipe = bear_recipe(false);
     recipe.request.views = 8;

@@ -1,0 +1,82 @@
+// Quantiles of labelled rows and of the ground around them.
+#include "engine/edit/standing.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/check.h"
+#include "engine/edit/region_frame.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr float ShownLogit = -5.5373f;      // opacity 1/255
+constexpr double FootShare = 0.2;           // of a thing's height: the part that it stands on
+constexpr double FootTrim = 0.1;            // of its rows, at either end
+constexpr double FootReach = 0.25;          // of the width of what is above, beyond it: a label's rows that lie farther off are ground
+constexpr double GroundReach = 0.25;        // of its height, up and down from its lowest rows: farther rows are no ground that it stands on
+constexpr std::size_t LeastGround = 20;     // rows that make a ground
+constexpr double FigureWidth = 0.75;        // of its width, the least that a figure is high
+
+std::vector<Vec3> shown_rows(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Frame& frame, bool labelled) {
+    std::vector<Vec3> points;
+    for (std::size_t row = 0; row < bits.size(); ++row) {
+        if ((bits[row] != 0) != labelled || !(set.opacity_logit()[row] > ShownLogit)) continue;
+        const auto p = set.position().subspan(row * 3, 3);
+        if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) points.push_back(frame.to_frame({p[0], p[1], p[2]}));
+    }
+    return points;
+}
+
+/// Rows of a thing, by height.
+struct Parts {
+    double low = 0, high = 0;
+    std::vector<Vec3> body, foot;
+};
+
+Parts parts_of(const std::vector<Vec3>& points) {
+    Parts parts;
+    const Box all = trimmed_box(points, BoundsTrim);
+    parts.low = all.low.y, parts.high = all.high.y;
+    for (const auto& p : points) (p.y > parts.low + FootShare * (parts.high - parts.low) ? parts.body : parts.foot).push_back(p);
+    return parts;
+}
+
+bool is_below(const Vec3& p, const Box& body) {
+    const Vec3 margin = body.size() * FootReach;
+    return p.x >= body.low.x - margin.x && p.x <= body.high.x + margin.x && p.z >= body.low.z - margin.z && p.z <= body.high.z + margin.z;
+}
+
+}  // namespace
+
+Standing standing_of(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front) {
+    GSE_CHECK_EQ(bits.size(), set.size());
+    const Frame frame = make_frame(up, front);
+    const auto points = shown_rows(set, bits, frame, true);
+    if (points.empty()) return {};
+    auto parts = parts_of(points);
+    const double height = parts.high - parts.low;
+    if (parts.body.empty()) parts.body = points;   // as flat as a carpet
+    Box thing = trimmed_box(parts.body, BoundsTrim);
+    std::erase_if(parts.foot, [&](const Vec3& p) { return !is_below(p, thing); });
+    Vec3 foot{thing.centre().x, parts.low, thing.centre().z};
+    if (!parts.foot.empty()) {
+        const Box below = trimmed_box(parts.foot, FootTrim);
+        foot.x = below.centre().x, foot.z = below.centre().z;
+        for (const int axis : {0, 2}) {
+            thing.low[axis] = std::min(thing.low[axis], below.low[axis]);
+            thing.high[axis] = std::max(thing.high[axis], below.high[axis]);
+        }
+    }
+    const Vec3 size = thing.size();
+    const double reach = 0.5 * std::max(size.x, size.z);
+    std::vector<double> ground;
+    for (const auto& p : shown_rows(set, bits, frame, false))
+        if (std::hypot(p.x - foot.x, p.z - foot.z) <= reach && std::abs(p.y - foot.y) <= GroundReach * height) ground.push_back(p.y);
+    if (ground.size() >= LeastGround) foot.y = quantile(std::move(ground), 0.5);
+    return {frame.to_world(foot), parts.high - foot.y, size.x, size.z};
+}
+
+double figure_height(const Standing& standing) { return std::max(standing.height, FigureWidth * standing.width()); }
+
+}  // namespace gse::edit
