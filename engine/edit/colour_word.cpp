@@ -31,7 +31,7 @@ constexpr std::array<Term, 11> Terms{{{"red", {0.80, 0.10, 0.10}},
                                       {"purple", {0.50, 0.15, 0.65}},
                                       {"orange", {0.93, 0.48, 0.08}},
                                       {"black", {0.07, 0.07, 0.07}},
-                                      {"white", {0.72, 0.72, 0.72}},
+                                      {"white", {0.72, 0.72, 0.72}},   // in light and shade: black things are dark everywhere
                                       {"brown", {0.42, 0.26, 0.13}},
                                       {"grey", {0.50, 0.50, 0.50}},
                                       {"pink", {0.95, 0.60, 0.70}}}};
@@ -80,8 +80,18 @@ void ColourVote::add(const Image& picture, const Image& share) {
 }
 
 std::string ColourVote::winner() const {
-    const auto most = std::max_element(votes_.begin(), votes_.end());
-    return most == votes_.end() || *most == 0 ? std::string() : Terms[terms_[static_cast<std::size_t>(most - votes_.begin())]].word;
+    const auto word = [&](std::size_t i) { return std::string(Terms[terms_[i]].word); };
+    const auto is_grey = [&](std::size_t i) { return word(i) == "black" || word(i) == "white" || word(i) == "grey"; };
+    std::size_t greys = 0, most = 0;
+    for (std::size_t i = 0; i < votes_.size(); ++i) {
+        if (is_grey(i)) greys += votes_[i];
+        else most = std::max(most, votes_[i]);
+    }
+    std::string best;   // of those without a hue where they are more than any hue, else of the others
+    std::size_t least = 0;
+    for (std::size_t i = 0; i < votes_.size(); ++i)
+        if (is_grey(i) == (greys > most) && votes_[i] > least) least = votes_[i], best = word(i);
+    return best;
 }
 
 std::string colour_shown(const Image& picture, const Image& share, const std::vector<std::string>& known) {

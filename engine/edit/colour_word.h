@@ -10,7 +10,8 @@
 namespace gse::edit {
 
 /// A vote of pixels on the basic colour term (Berlin and Kay 1969) that is nearest to them, in CIELAB with lightness at half weight:
-/// shading changes it most. Only words of `known` where it is not empty.
+/// shading changes it most. Only words of `known` where it is not empty. Black, white and grey stand together against the hues: light and
+/// shade divide the votes for a thing that has none.
 class ColourVote {
 public:
     explicit ColourVote(const std::vector<std::string>& known);

@@ -52,7 +52,22 @@ DOCTEST_TEST_CASE("the colour of what is inside the outline, in light and shade"
     const auto grey = halves({0.5f, 0.5f, 0.5f}, {0, 0, 0});
     DOCTEST_CHECK(edit::colour_shown(grey, share_of(0, 8), {}) == "grey");   // a model that takes any word
     DOCTEST_CHECK(edit::colour_shown(grey, share_of(0, 0), {}).empty());     // no outline
+    const auto shaded = halves({0.55f, 0.55f, 0.57f}, {0.12f, 0.12f, 0.13f});   // wings from their darker side, and a hat from its lighter one
+    DOCTEST_CHECK(edit::colour_shown(shaded, share_of(0, 8), known) == "white");
+    DOCTEST_CHECK(edit::colour_shown(shaded, share_of(8, 16), known) == "black");
     DOCTEST_CHECK(edit::colour_shown(grey, share_of(0, 8), {"bear", "hat"}).empty());
+}
+
+DOCTEST_TEST_CASE("light and shade do not divide the votes for a thing without a hue") {
+    const std::vector<std::string> known{"orange", "black", "white"};
+    edit::ColourVote vote(known);
+    const auto lit = halves({0.1f, 0.1f, 0.1f}, {0.7f, 0.7f, 0.7f}), behind = halves({0.95f, 0.5f, 0.05f}, {0.95f, 0.5f, 0.05f});
+    vote.add(lit, share_of(0, 13));       // 128 dark pixels and 80 light ones
+    vote.add(behind, share_of(0, 10));    // 160 of the vase that it sits on: more than dark ones, and fewer than both
+    DOCTEST_CHECK(vote.winner() == "black");
+    vote.add(behind, share_of(0, 10));
+    DOCTEST_CHECK(vote.winner() == "orange");
+    DOCTEST_CHECK(edit::ColourVote(known).winner().empty());
 }
 
 DOCTEST_TEST_CASE("a thing is described by the words beside it only") {
