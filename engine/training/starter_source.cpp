@@ -122,8 +122,8 @@ Camera close_camera(const synth::SynthScene& scene, const Shot& shot, int size) 
     return orbit_camera(orbit, shot.azimuth, size, size);
 }
 
-/// An upright cylinder around a thing, as edits redraw it where another takes its place (edit::room_around()), or where something is added
-/// to it (edit::room_above()).
+/// An upright cylinder around a thing, as edits redraw it where another takes its place (edit::room_around(), which leaves low and thin things
+/// more room), or where something is added to it (edit::room_above()).
 struct Room {
     Vec3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
     bool above = false;   // it is higher by a share of the longest side, not of the height
