@@ -43,8 +43,9 @@ struct StarterCaption {
 
 /// Where a picture was taken from.
 struct StarterCamera {
-    double azimuth = 0;     // radians from the thing's front, positive to its left
+    double azimuth = 0;     // radians from the scene's front, positive to the left
     double elevation = 0;   // radians above the horizontal
+    double front = 0;       // azimuth at which the thing shows its front: it may be turned in the scene
 };
 
 class StarterTwins;

@@ -41,9 +41,12 @@ struct Pose {
     Vec3 shift{};
 };
 
+/// The first that a pose is drawn with.
+double turn_of(Random& random, const SceneSpec& spec) { return random.uniform(-0.22, 0.22) + spec.heading; }
+
 Pose make_pose(Random random, const SceneSpec& spec) {
     Pose pose;
-    pose.turn = rotation_y(random.uniform(-0.22, 0.22) + spec.heading);
+    pose.turn = rotation_y(turn_of(random, spec));
     pose.size = random.uniform(0.93, 1.05) * spec.size;
     pose.shift = {random.uniform(-0.04, 0.04), 0, random.uniform(-0.04, 0.04)};
     return pose;
@@ -178,6 +181,11 @@ SynthScene generate(const SceneSpec& spec) {
     result.scene.info.up_known = true;
     result.scene.labels = labels_of(result.parts);
     return result;
+}
+
+double turn_of(const SceneSpec& spec) {
+    Random random = Random::stream(spec.seed, PoseStream);
+    return turn_of(random, spec);
 }
 
 Camera scene_camera(const SynthScene&, double azimuth, double elevation, double zoom, int width, int height) {

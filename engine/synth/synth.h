@@ -63,7 +63,10 @@ SceneSpec training_spec(Random& random, double with_accessory = 0.5);
 /// The same, always held out.
 SceneSpec held_out_spec(Random& random, double with_accessory = 0.5);
 
-/// Camera around the scene at `azimuth` (0 = front) and `elevation` radians, 45 degrees field of view over
+/// Radians by which the scene's thing is turned about the vertical: the camera at this azimuth sees its front.
+double turn_of(const SceneSpec& spec);
+
+/// Camera around the scene at `azimuth` (0 = front, but for turn_of()) and `elevation` radians, 45 degrees field of view over
 /// the shorter side. `zoom` 1 frames the object with ground and leaves room for an accessory on top; it
 /// depends on the angles only, so that a scene and its edited twin are seen by the same camera.
 Camera scene_camera(const SynthScene& scene, double azimuth, double elevation, double zoom, int width,

@@ -27,7 +27,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 struct Shard {
     Bytes after, before, coverage, room, outline, words;
-    std::vector<float> cameras, next_share;
+    std::vector<float> cameras, next_share, fronts;
 };
 
 /// Places of the words of a sentence in the vocabulary.
@@ -65,6 +65,7 @@ Shard empty_shard(const ShardRange& range) {
     shard.words.resize(count * wordings * 2 * ShardWords);
     shard.cameras.resize(count * 2);
     shard.next_share.resize(count * wordings);
+    shard.fronts.resize(count);
     return shard;
 }
 
@@ -82,6 +83,7 @@ void draw(const neural::StarterSource& source, const ShardRange& range, const Wo
     copy_into(shard.outline, i, count, after.outline.data());
     const auto camera = source.camera(index);
     shard.cameras[2 * i] = static_cast<float>(camera.azimuth), shard.cameras[2 * i + 1] = static_cast<float>(camera.elevation);
+    shard.fronts[i] = static_cast<float>(camera.front);
     const auto scene = index / static_cast<std::uint64_t>(source.views_of_scene());
     for (std::size_t k = 0; k < wordings; ++k) {
         const auto caption = source.caption(index, Random::stream(WordingStream + k, scene).next(), false);
@@ -108,6 +110,7 @@ void write(const Shard& shard, const ShardRange& range, const std::filesystem::p
     for (const auto* bytes : {&shard.after, &shard.before, &shard.coverage, &shard.room, &shard.outline, &shard.words}) put(*bytes);
     put(shard.cameras);
     put(shard.next_share);
+    put(shard.fronts);
     if (!stream.flush()) throw Error(ErrorCode::Unwritable, "the pictures cannot be written", "", path);
 }
 

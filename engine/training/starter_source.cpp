@@ -222,7 +222,7 @@ public:
     int views_of_scene() const override { return Views; }
     neural::StarterCamera camera(std::uint64_t index) const override {
         const Shot shot = shot_of(index);
-        return {shot.azimuth, shot.elevation};
+        return {shot.azimuth, shot.elevation, synth::turn_of(shot.spec)};
     }
     const StarterSource* before() const override { return before_.get(); }
     bool has_outlines() const override { return edited_; }

@@ -31,7 +31,9 @@ def read_shard(path):
         arrays[name] = raw[at:at + size].reshape(shape)
         at += size
     arrays["camera"] = raw[at:at + 8 * n].view(np.float32).reshape(n, 2)
-    arrays["share"] = raw[at + 8 * n:].view(np.float32).reshape(n, wordings)
+    at += 8 * n
+    arrays["share"] = raw[at:at + 4 * n * wordings].view(np.float32).reshape(n, wordings)
+    arrays["front"] = raw[at + 4 * n * wordings:].view(np.float32)
     return arrays
 
 

@@ -54,7 +54,7 @@ DOCTEST_TEST_CASE("a file of training pictures holds what the source draws, with
     const auto after = cursor.take<std::uint8_t>(8 * Size * Size * 3), before = cursor.take<std::uint8_t>(8 * Size * Size * 3);
     const auto coverage = cursor.take<std::uint8_t>(8 * 3 * Cells * Cells), room = cursor.take<std::uint8_t>(8 * Cells * Cells);
     const auto outline = cursor.take<std::uint8_t>(8 * Size * Size), words = cursor.take<std::uint8_t>(8 * 2 * 2 * gse::training::ShardWords);
-    const auto cameras = cursor.take<float>(16), shares = cursor.take<float>(16);
+    const auto cameras = cursor.take<float>(16), shares = cursor.take<float>(16), fronts = cursor.take<float>(8);
     DOCTEST_CHECK(cursor.bytes.empty());
     auto known = source->vocabulary();
     known.emplace_back(",");
@@ -66,6 +66,7 @@ DOCTEST_TEST_CASE("a file of training pictures holds what the source draws, with
         DOCTEST_CHECK(part(room, i, 8) == part(old.coverage, 1, 3));
         DOCTEST_CHECK(part(outline, i, 8) == picture.outline);
         DOCTEST_CHECK(cameras[2 * i] == static_cast<float>(source->camera(16 + i).azimuth));
+        DOCTEST_CHECK(fronts[i] == static_cast<float>(source->camera(16 + i).front));
         const auto sentence = [&](std::size_t row) {
             std::string said;
             for (const auto place : part(words, row, 32)) {
