@@ -1,6 +1,8 @@
 // Held-out scenes and their true edits, seen through the encoder.
 #include "engine/bench/clip_bench.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -62,6 +64,7 @@ public:
     explicit Borrowed(edit::TextImageScore& score) : score_(score) {}
     std::vector<float> image(const Image& image) override { return score_.image(image); }
     std::vector<float> text(const std::string& sentence) override { return score_.text(sentence); }
+    std::vector<float> viewpoint(const Image& image) override { return score_.viewpoint(image); }
 
 private:
     edit::TextImageScore& score_;
@@ -222,10 +225,12 @@ private:
             pictures.push_back(paint(spec, azimuths.back() - begin, 0.35));
         }
         const auto read = edit::read_front(recognition_, synth::full_caption(spec).text, pictures, azimuths);
-        const double error = std::abs(std::remainder(read.azimuth - begin, 2 * std::numbers::pi));
-        auto& tally = tallies_["front within 45 degrees"];
-        ++tally.asked;
-        tally.right += error < std::numbers::pi / 4 ? 1 : 0;
+        const double error = std::abs(std::remainder(read.azimuth - begin - synth::turn_of(spec), 2 * std::numbers::pi));
+        for (const int degrees : {15, 45}) {
+            auto& tally = tallies_[fmt::format("front within {} degrees", degrees)];
+            ++tally.asked;
+            tally.right += error < degrees * std::numbers::pi / 180 ? 1 : 0;
+        }
         fronts_.push_back({{"sentence", synth::full_caption(spec).text}, {"off_degrees", error * 180 / std::numbers::pi}, {"lead", read.lead}});
     }
 

@@ -21,12 +21,22 @@ SideBlend side_blend(double azimuth);
 
 struct FrontReading {
     double azimuth = 0;   // of the cameras that see the front, radians in [-pi, pi)
-    double lead = 0;      // how much better the pictures fit it than its opposite: mean difference of cosines
+    double lead = 0;      // how much better the pictures fit it: see below
+    bool clear = false;   // the lead is large enough to go by
 };
 
 /// The azimuth with which the words for the sides fit the pictures best. A picture may like all words more than another
 /// does, and a word all pictures: only what is left without either counts. `recognition` compares(); `sentence`: what the
 /// scene shows, without such words; `pictures`: three at least, all around, each seen at its entry of `azimuths` (radians).
+/// The lead is the mean difference of cosines from its opposite.
+FrontReading front_by_words(Recognition& recognition, const std::string& sentence, const std::vector<Image>& pictures,
+                            const std::vector<double>& azimuths);
+
+/// The azimuth from which the pictures were most likely taken as they look: largest mean logarithm of the shares that `seen` (one
+/// TextImageScore::viewpoint() per picture) gives the sector in which each camera would be. The lead is over the mean of all fronts.
+FrontReading front_by_viewpoints(const std::vector<std::vector<float>>& seen, const std::vector<double>& azimuths);
+
+/// By viewpoints where the model has learned to tell them and they are clear, else by words.
 FrontReading read_front(Recognition& recognition, const std::string& sentence, const std::vector<Image>& pictures,
                         const std::vector<double>& azimuths);
 

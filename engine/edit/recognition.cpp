@@ -46,6 +46,15 @@ const std::vector<float>& Recognition::vector_of(const Image& picture) {
     return found->second;
 }
 
+const std::vector<float>& Recognition::viewpoint(const Image& picture) {
+    GSE_CHECK(compares());
+    Hash hash;
+    hash.image(picture);
+    auto found = viewpoints_.find(hash.value());
+    if (found == viewpoints_.end()) found = viewpoints_.emplace(hash.value(), score_->viewpoint(picture)).first;
+    return found->second;
+}
+
 double Recognition::fit(const std::string& sentence, const std::vector<const Image*>& pictures) {
     GSE_CHECK(compares() && !pictures.empty());
     double sum = 0;

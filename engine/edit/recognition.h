@@ -21,6 +21,8 @@ public:
     bool available() const { return compares() && !known_.empty(); }
     /// Whether the model can compare pictures with sentences at all.
     bool compares() const { return score_ != nullptr; }
+    /// TextImageScore::viewpoint(); needs compares().
+    const std::vector<float>& viewpoint(const Image& picture);
     /// Mean cosine of the sentence with the pictures, in [-1,1]; needs compares() and a picture.
     double fit(const std::string& sentence, const std::vector<const Image*>& pictures);
     /// Share of the other words that fit the pictures less in the place that the word (or phrase) has in the sentence, in
@@ -34,7 +36,7 @@ private:
     std::unique_ptr<TextImageScore> score_;
     std::vector<std::string> known_;
     std::map<std::string, std::vector<float>> vectors_;   // of sentences
-    std::unordered_map<std::uint64_t, std::vector<float>> seen_;   // of pictures, by their hash
+    std::unordered_map<std::uint64_t, std::vector<float>> seen_, viewpoints_;   // of pictures, by their hash
 };
 
 }  // namespace gse::edit

@@ -16,6 +16,9 @@ public:
     virtual std::vector<float> image(const Image& image) = 0;
     /// Vector of a sentence.
     virtual std::vector<float> text(const std::string& sentence) = 0;
+    /// From where a picture shows the thing in it: the share of each of equal sectors of azimuths, of which the first has the front in its
+    /// middle and the next lies to the left of that. They sum to 1. Empty where the model has not learned to tell.
+    virtual std::vector<float> viewpoint(const Image&) { return {}; }
 };
 
 }  // namespace gse::edit

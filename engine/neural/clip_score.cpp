@@ -10,6 +10,7 @@
 #include "engine/neural/images.h"
 #include "engine/neural/tokenizer.h"
 #include "engine/neural/torch_errors.h"
+#include "engine/neural/viewpoint_model.h"
 
 namespace gse::neural {
 namespace {
@@ -44,6 +45,7 @@ public:
         for (auto& parameter : model_->parameters()) parameter.set_requires_grad(false);
         model_->to(folder.device);
         model_->eval();
+        if (!folder.viewpoint.empty()) viewpoint_ = std::make_unique<ViewpointReader>(folder.viewpoint, folder.device);
     }
 
     std::vector<float> image(const Image& image) override {
@@ -65,12 +67,17 @@ public:
         });
     }
 
+    std::vector<float> viewpoint(const Image& image) override {
+        return viewpoint_ ? viewpoint_->shares(image) : std::vector<float>{};
+    }
+
 private:
     ClipFolder folder_;
     ClipConfig config_;
     ClipPreprocessing preprocessing_;
     Tokenizer tokenizer_;
     ClipModel model_;
+    std::unique_ptr<ViewpointReader> viewpoint_;
 };
 
 }  // namespace

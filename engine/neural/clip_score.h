@@ -14,6 +14,7 @@ struct ClipFolder {
     std::filesystem::path tokenizer;  // used when it has none
     std::vector<std::string> known_words;  // words it was trained on: others are left out; empty = all
     torch::Device device = torch::kCPU;
+    std::filesystem::path viewpoint = {};  // folder of the classifier that answers viewpoint(); empty = none
 };
 
 /// True when a model folder has such an encoder.

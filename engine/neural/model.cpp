@@ -79,8 +79,9 @@ public:
     std::unique_ptr<edit::TextImageScore> text_image_score() const override {
         const auto folder = loaded_->path / "clip";
         if (!has_clip(folder)) return nullptr;
-        return load_clip_score(
-            {folder, loaded_->path / "tokenizer", loaded_->facts.vocabulary, loaded_->device});
+        const auto& facts = loaded_->facts;
+        const auto viewpoint = facts.viewpoint.empty() ? std::filesystem::path() : loaded_->path / facts.viewpoint;
+        return load_clip_score({folder, loaded_->path / "tokenizer", facts.vocabulary, loaded_->device, viewpoint});
     }
 
     Image sample(const SampleRequest& request) const override { return run(nullptr, request); }

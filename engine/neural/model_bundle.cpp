@@ -150,7 +150,7 @@ void read_facts(Parts& parts) {
     if (!fs::exists(file)) return;
     auto facts = ModelFacts::from_json(read_json_file(file), file);
     if (!parts.single_file) {
-        for (const auto& named : {facts.shape_lora, facts.shape_cameras, facts.shape_unet})   // read when something new is drawn: too late to learn of it
+        for (const auto& named : {facts.shape_lora, facts.shape_cameras, facts.shape_unet, facts.viewpoint})   // read when something new is drawn: too late to learn of it
             if (!named.empty() && !fs::exists(parts.folder() / named))
                 throw Error(ErrorCode::NotFound, fmt::format("the model has no \"{}\", which this file names", named),
                             "copy the whole folder of the model, or take the line out", file);
@@ -276,6 +276,7 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
     get("shape_lora", facts.shape_lora);
     get("shape_cameras", facts.shape_cameras);
     get("shape_unet", facts.shape_unet);
+    get("viewpoint", facts.viewpoint);
     get("shape_views", facts.shape_views);
     if (facts.image_size < 0 || facts.image_size > 8192)
         throw Error(ErrorCode::Malformed, "\"image_size\" is outside 0..8192", {}, path);

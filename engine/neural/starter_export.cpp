@@ -48,11 +48,11 @@ Json initial_facts(const StarterTrainParameters& parameters) {
     return !parameters.initial.empty() && std::filesystem::exists(file) ? read_json_file(file) : Json::object();
 }
 
-/// What the initial model draws new things with goes along.
-void copy_shapes(const StarterTrainParameters& parameters, const std::filesystem::path& output) {
+/// What the initial model's facts name goes along.
+void copy_named(const StarterTrainParameters& parameters, const std::vector<std::string>& keys, const std::filesystem::path& output) {
     const std::filesystem::path initial = parameters.initial;
     const auto facts = initial_facts(parameters);
-    for (const char* key : {"shape_unet", "shape_lora", "shape_cameras"}) {
+    for (const auto& key : keys) {
         const auto named = facts.value(key, std::string());
         if (named.empty() || std::filesystem::equivalent(initial, output)) continue;
         std::filesystem::copy(initial / named, output / named,
@@ -145,7 +145,8 @@ void export_starter(const UNetTraining& training, AutoencoderKl& vae, StarterNet
                                              {"unet", {"diffusers", "UNet2DConditionModel"}},
                                              {"vae", {"diffusers", "AutoencoderKL"}},
                                              {"scheduler", {"diffusers", "DDIMScheduler"}}});
-    if (keeps_networks(training.parameters)) copy_shapes(training.parameters, output);
+    copy_named(training.parameters, {"viewpoint"}, output);   // it has nothing to do with the other networks
+    if (keeps_networks(training.parameters)) copy_named(training.parameters, {"shape_unet", "shape_lora", "shape_cameras"}, output);
     write_json(output / "gseditpro.json", facts_of(training));
 }
 

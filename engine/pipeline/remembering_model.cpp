@@ -157,6 +157,13 @@ public:
         if (finite(vector)) model_->cache().keep(question, bytes_of(vector));
         return vector;
     }
+    std::vector<float> viewpoint(const Image& image) override {
+        const auto question = model_->question("viewpoint of a picture", digest_of(image));
+        if (const auto answer = model_->cache().find(question)) return count_cached_answer(), floats_in(*answer);
+        auto shares = score().viewpoint(image);
+        if (finite(shares)) model_->cache().keep(question, bytes_of(shares));
+        return shares;
+    }
     std::vector<float> text(const std::string& sentence) override {
         const auto known = known_.find(sentence);
         if (known != known_.end()) return known->second;

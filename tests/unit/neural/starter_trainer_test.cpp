@@ -322,6 +322,9 @@ DOCTEST_TEST_CASE("training of new shapes goes on from a network of their own, a
     auto facts = read_json_file(folder("first") / "gseditpro.json");
     facts["shape_unet"] = "own";
     facts["shape_views"] = 6;
+    facts["viewpoint"] = "seen";
+    const std::string classifier = "what tells viewpoints";   // no run looks into it
+    gse::write_file(folder("first") / "seen/model.safetensors", classifier);
     gse::write_file(folder("first") / "gseditpro.json", facts.dump());
 
     const ToyTwins blank;
@@ -347,6 +350,10 @@ DOCTEST_TEST_CASE("training of new shapes goes on from a network of their own, a
     parameters.unet_steps = 1;   // another UNet beside it
     train_starter(parameters, ToySource({}, &blank), folder("work4"), folder("fourth"), {});
     DOCTEST_CHECK(!read_json_file(folder("fourth") / "gseditpro.json").contains("shape_unet"));
+    for (const char* name : {"second", "third", "fourth"}) {
+        DOCTEST_CHECK(read_json_file(folder(name) / "gseditpro.json").at("viewpoint") == "seen");
+        DOCTEST_CHECK(gse::read_file(folder(name) / "seen/model.safetensors") == classifier);
+    }
 }
 
 DOCTEST_TEST_CASE("mixed precision trains nearly as float does, and is not the same") {

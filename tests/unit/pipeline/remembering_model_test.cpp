@@ -31,7 +31,7 @@ constexpr std::uint64_t Room = std::uint64_t{256} << 20;
 
 /// How often a model was loaded and asked.
 struct Asked {
-    int loads = 0, maps = 0, pictures = 0, sentences = 0, drawn = 0;
+    int loads = 0, maps = 0, pictures = 0, sentences = 0, viewpoints = 0, drawn = 0;
     bool broken = false;   // its maps hold values that are not finite
     bool outlines = false; // its views tell outlines, not changes
 };
@@ -64,6 +64,10 @@ public:
     std::vector<float> text(const std::string& sentence) override {
         ++asked_.sentences;
         return {static_cast<float>(sentence.size()), 0.5f};
+    }
+    std::vector<float> viewpoint(const Image& image) override {
+        ++asked_.viewpoints;
+        return {image.data[0], 1 - image.data[0]};
     }
 
 private:
@@ -137,13 +141,14 @@ DOCTEST_TEST_CASE("remembering model: what it is and what it answered is known a
     const Image picture(8, 6, 3, 0.5f);
     const edit::AttentionQuery query{picture, "a bear", {"bear", "a"}};
     std::vector<Image> maps;
-    std::vector<float> seen, told;
+    std::vector<float> seen, told, viewpoint;
     const auto ask = [&] {
         const auto model = fake(folder.path(), asked);
         maps = model->attention()->locate(query);
         const auto score = model->text_image_score();
         seen = score->image(picture);
         told = score->text("a bear");
+        viewpoint = score->viewpoint(picture);
         DOCTEST_CHECK(model->attention()->threshold() == 0.37);
         DOCTEST_CHECK(model->attention()->image_size() == 64);
         DOCTEST_CHECK(model->image_size() == 96);
@@ -152,19 +157,19 @@ DOCTEST_TEST_CASE("remembering model: what it is and what it answered is known a
         DOCTEST_CHECK(model->known_words() == std::vector<std::string>{"bear", "caf\xc3\xa9"});
     };
     ask();
-    DOCTEST_CHECK((asked.loads == 1 && asked.maps == 1 && asked.pictures == 1 && asked.sentences == 1));
+    DOCTEST_CHECK((asked.loads == 1 && asked.maps == 1 && asked.pictures == 1 && asked.sentences == 1 && asked.viewpoints == 1));
     const auto first = maps;
-    const auto first_seen = seen, first_told = told;
+    const auto first_seen = seen, first_told = told, first_viewpoint = viewpoint;
     const auto before = network_use();
     ask();
-    DOCTEST_CHECK((asked.loads == 1 && asked.maps == 1 && asked.pictures == 1 && asked.sentences == 1));
-    DOCTEST_CHECK((network_use() - before).cached == 2);
+    DOCTEST_CHECK((asked.loads == 1 && asked.maps == 1 && asked.pictures == 1 && asked.sentences == 1 && asked.viewpoints == 1));
+    DOCTEST_CHECK((network_use() - before).cached == 3);
     DOCTEST_REQUIRE(maps.size() == 2);
     for (std::size_t i = 0; i < 2; ++i) {
         DOCTEST_CHECK((maps[i].width == 8 && maps[i].height == 6 && maps[i].channels == 1));
         DOCTEST_CHECK(maps[i].data == first[i].data);
     }
-    DOCTEST_CHECK((seen == first_seen && told == first_told));
+    DOCTEST_CHECK((seen == first_seen && told == first_told && viewpoint == first_viewpoint));
     clear_cache_folder(folder.path());
     ask();
     DOCTEST_CHECK((asked.loads == 2 && asked.maps == 2 && asked.pictures == 2 && asked.sentences == 2));
