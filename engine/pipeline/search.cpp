@@ -12,6 +12,7 @@
 #include "engine/base/hash.h"
 #include "engine/base/log.h"
 #include "engine/edit/front_reading.h"
+#include "engine/edit/place_drawing.h"
 #include "engine/edit/relation.h"
 #include "engine/edit/scene_reading.h"
 #include "engine/edit/standing.h"
@@ -23,15 +24,17 @@ namespace {
 
 constexpr std::array<double, 5> ScanDistances{1.0, 0.7, 0.45, 0.3, 0.22};   // of the fitted orbit's radius
 constexpr int ScanViews = 6;                // per distance
-constexpr double LeastLead = 0.005;         // of a front over its opposite, from which it is believed: below, fronts are anywhere (`bench clip`)
 /// Pictures of things have more room above than below, and so have those that the starter was trained on (a figure's middle at 0.5,
 /// the picture's at 0.59). Error removed of what is added, 16 edits of seeds 55 and 56: 0.12 at 0.09, 0.13 at 0.15; 0.05 with the
 /// label framed by its box's middle, as grounds are.
 constexpr double HeadRoom = 0.15;
-/// What takes the place of another is drawn as the pictures show it that the starter learned to draw from (synth::scene_camera()): there a
+/// What takes the place of another, or is worn by it, is drawn as the pictures show it that the starter learned to draw from (synth::scene_camera()): there a
 /// figure's height tells where in the picture its foot is, and half of the picture is so many heights. With the label framed by its box,
 /// as above, the foot was elsewhere, and new things floated or sank by up to a tenth of their height.
 constexpr double FigureAim = 0.59, FigureHalfPicture = 0.87;
+constexpr double StepBack = 1.2;         // of the distance, where what was drawn does not fit into the pictures
+constexpr double CutShare = 0.6;         // of the views, from which that is so: a wing may reach out of some
+constexpr int CutPixels = 7;             // a side of a picture over this many: covered so far along its rim a thing is cut off there
 constexpr double SameFraming = 0.05;     // of the distance: a nearer framing shows the same
 constexpr double MostBack = 1.25;   // of the distance of a sure glance: what would be framed from farther off is no thing
 constexpr std::size_t FrontViews = 12;      // in which the front of a scene is looked for
@@ -43,6 +46,23 @@ double room_around(const edit::EditRequest& request) {
     return edit::place_name(relation).empty() ? 1 : BesideIt;   // what is worn fits into the head room
 }
 
+bool is_cut(const Mask& mask) {
+    int rim = 0;
+    for (int i = 0; i < mask.width; ++i) rim += (mask.at(i, 0) != 0) + (mask.at(i, mask.height - 1) != 0);
+    for (int i = 0; i < mask.height; ++i) rim += (mask.at(0, i) != 0) + (mask.at(mask.width - 1, i) != 0);
+    return rim * CutPixels >= std::max(mask.width, mask.height);
+}
+
+/// Whether what was looked for goes on beyond the pictures in many views.
+bool is_cut_off(const edit::LocateResult& result) {
+    double seen = 0, cut = 0;
+    for (const auto& view : result.views) {
+        if (view.failed) continue;
+        seen += 1, cut += is_cut(view.mask) ? 1 : 0;
+    }
+    return seen > 0 && cut >= CutShare * seen;
+}
+
 /// From where a thing is seen as large, and as high in the picture, as figures that the starter learned from.
 OrbitParameters framed_figure(const edit::Standing& standing, const OrbitParameters& orbit) {
     const double height = edit::figure_height(standing);
@@ -52,8 +72,8 @@ OrbitParameters framed_figure(const edit::Standing& standing, const OrbitParamet
     return framed;
 }
 
-bool worth_moving(const OrbitParameters& from, const OrbitParameters& to, edit::EditMode mode) {
-    if (mode != edit::EditMode::Replace) return localize::worth_refocusing(from, to);
+bool worth_moving(const OrbitParameters& from, const OrbitParameters& to, bool as_figure) {
+    if (!as_figure) return localize::worth_refocusing(from, to);
     const double most = SameFraming * from.radius;
     return std::abs(to.radius - from.radius) > most || length(to.centre - from.centre) > most;
 }
@@ -147,7 +167,7 @@ private:
         const auto pictures = workplace_.pictures(some, render_settings(workplace_.scene(), recipe_.request), control_);
         const auto read = edit::read_front(recognition, edit::sentence_before(recipe_.request), pictures, azimuths);
         log::info("the front is seen at {:.0f} degrees (lead {:.4f})", read.azimuth / Degree, read.lead);
-        return read.lead < LeastLead ? views : facing(std::move(views), read.azimuth, recipe_);
+        return read.clear ? facing(std::move(views), read.azimuth, recipe_) : views;
     }
 
     edit::LocateResult look(const EditRecipe& recipe, const Views& views, const std::vector<std::uint8_t>& label) {
@@ -183,9 +203,14 @@ private:
         return best;
     }
 
+    /// Where a thing is drawn anew, or what it wears; what is beside it, or a ground, is framed by its box.
+    bool framed_as_figure(edit::EditMode mode) const {
+        return mode == edit::EditMode::Replace || (edit::draws_place(recipe_.request, mode) && workplace_.model().knows_scene());
+    }
+
     /// The orbit that frames a label, with room where something is put beside it; `front`: of the scene.
     OrbitParameters focused_on(const Label& label, edit::EditMode mode, const OrbitParameters& orbit, const Vec3& front) const {
-        if (mode == edit::EditMode::Replace) {
+        if (framed_as_figure(mode)) {
             const auto standing = edit::standing_of(workplace_.drawn(), *label.bits, orbit.up, front);
             if (standing.found()) return framed_figure(standing, orbit);
         }
@@ -203,7 +228,7 @@ private:
         const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
         const auto focused = focused_on(glance.result.label, mode, glance.orbit, views_.front);
         const bool frames = focused.radius < MostBack * glance.orbit.radius;   // a thing; a ground is seen as well from here
-        if (mode == edit::EditMode::Replace && frames) return moved_in(views_on(focused, recipe_), {});   // a glance tells a thing's size roughly
+        if (framed_as_figure(mode) && frames) return moved_in(views_on(focused, recipe_), {});   // a glance tells a thing's size roughly
         const Views views = faced(views_on(frames ? focused : glance.orbit, recipe_));
         return {views, recipe_, {}, look(recipe_, views, {}), target_read_, {}};
     }
@@ -216,9 +241,16 @@ private:
         const auto& label = result.mode == edit::EditMode::Add ? result.source_label : result.label;
         if (!moves() || std::find(label.bits->begin(), label.bits->end(), std::uint8_t{1}) == label.bits->end()) return located;
         const auto focused = focused_on(label, result.mode, views.orbit, views.front);
-        if (!worth_moving(views.orbit, focused, result.mode)) return located;
-        located.views = faced(views_on(focused, recipe_));
-        located.result = look(recipe_, located.views, by_hand);
+        const bool as_figure = framed_as_figure(result.mode);
+        if (worth_moving(views.orbit, focused, as_figure)) {
+            located.views = faced(views_on(focused, recipe_));
+            located.result = look(recipe_, located.views, by_hand);
+        }
+        if (result.mode == edit::EditMode::Add && as_figure && is_cut_off(result)) {
+            log::info("\"{}\" does not fit into the pictures; it is looked for from farther off", result.word);
+            located.views = faced(views_on(nearer(located.views.orbit, StepBack), recipe_));
+            located.result = look(recipe_, located.views, by_hand);
+        }
         return located;
     }
 
