@@ -334,8 +334,8 @@ GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std:
 
 Mask region_mask(const AddRegion& region, const Camera& camera, const Image* depth) {
     Mask mask(camera.width, camera.height);
-    constexpr double Corner = 0.87;  // half the diagonal of a cube of side 1
-    // A ray that meets an inner cube meets one of the shell before, and what is drawn of a cube reaches as far as its corners.
+    constexpr double Corner = 0.71;  // half the diagonal of a face of side 1: neighbours leave no gap, and reach little beyond
+    // A ray that meets an inner cube meets one of the shell before, and what is drawn of a cube reaches as far as the corners of a face.
     for (const auto& centre : region.shell.empty() ? region.centres : region.shell) {
         const Vec3 p = camera.to_camera(centre);
         if (p.z <= region.side) continue;

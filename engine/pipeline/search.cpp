@@ -36,6 +36,7 @@ constexpr double StepBack = 1.2;         // of the distance, where what was draw
 constexpr double CutShare = 0.6;         // of the views, from which that is so: a wing may reach out of some
 constexpr int CutPixels = 7;             // a side of a picture over this many: covered so far along its rim a thing is cut off there
 constexpr double SameFraming = 0.05;     // of the distance: a nearer framing shows the same
+constexpr double SameFramingWorn = 0.12; // the same where something is drawn that is worn: every look costs as much as an edit does
 constexpr double MostBack = 1.25;   // of the distance of a sure glance: what would be framed from farther off is no thing
 constexpr std::size_t FrontViews = 12;      // in which the front of a scene is looked for
 
@@ -72,9 +73,9 @@ OrbitParameters framed_figure(const edit::Standing& standing, const OrbitParamet
     return framed;
 }
 
-bool worth_moving(const OrbitParameters& from, const OrbitParameters& to, bool as_figure) {
+bool worth_moving(const OrbitParameters& from, const OrbitParameters& to, edit::EditMode mode, bool as_figure) {
     if (!as_figure) return localize::worth_refocusing(from, to);
-    const double most = SameFraming * from.radius;
+    const double most = (mode == edit::EditMode::Add ? SameFramingWorn : SameFraming) * from.radius;
     return std::abs(to.radius - from.radius) > most || length(to.centre - from.centre) > most;
 }
 
@@ -235,14 +236,14 @@ private:
 
     /// Looks from the views as they are, and once more from nearer where what was found is small.
     Located moved_in(const Views& from, const std::vector<std::uint8_t>& by_hand) {
-        const Views views = faced(from);
+        const Views views = by_hand.empty() ? framed_as_worn(faced(from)) : faced(from);
         Located located{views, recipe_, by_hand, look(recipe_, views, by_hand), target_read_, {}};
         const auto& result = located.result;
         const auto& label = result.mode == edit::EditMode::Add ? result.source_label : result.label;
         if (!moves() || std::find(label.bits->begin(), label.bits->end(), std::uint8_t{1}) == label.bits->end()) return located;
         const auto focused = focused_on(label, result.mode, views.orbit, views.front);
         const bool as_figure = framed_as_figure(result.mode);
-        if (worth_moving(views.orbit, focused, as_figure)) {
+        if (worth_moving(views.orbit, focused, result.mode, as_figure)) {
             located.views = faced(views_on(focused, recipe_));
             located.result = look(recipe_, located.views, by_hand);
         }
@@ -252,6 +253,18 @@ private:
             located.result = look(recipe_, located.views, by_hand);
         }
         return located;
+    }
+
+    /// To draw something new into the views takes longest, and from where follows from the thing that wears it alone.
+    Views framed_as_worn(const Views& from) {
+        const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
+        if (!moves() || mode != edit::EditMode::Add || !framed_as_figure(mode)) return from;
+        EditRecipe wearer = recipe_;
+        wearer.request.mode = "modify";
+        const auto found = look(wearer, from, {});
+        if (found.problem != edit::SearchProblem::None) return from;
+        const auto focused = focused_on(found.label, mode, from.orbit, from.front);
+        return worth_moving(from.orbit, focused, mode, true) ? faced(views_on(focused, recipe_)) : from;
     }
 
     Located from_all_distances() {
