@@ -34,7 +34,7 @@ constexpr double HeadRoom = 0.15;
 constexpr double FigureAim = 0.59, FigureHalfPicture = 0.87;
 constexpr double StepBack = 1.2;         // of the distance, where what was drawn does not fit into the pictures
 constexpr double CutShare = 0.6;         // of the views, from which that is so: a wing may reach out of some
-constexpr int CutPixels = 7;             // a side of a picture over this many: covered so far along its rim a thing is cut off there
+constexpr double CutRim = 1.0 / 7;       // of a picture's side: covered so far along its rim a thing is cut off there
 constexpr double SameFraming = 0.05;     // of the distance: a nearer framing shows the same
 constexpr double SameFramingWorn = 0.12; // the same where something is drawn that is worn: every look costs as much as an edit does
 constexpr double MostBack = 1.25;   // of the distance of a sure glance: what would be framed from farther off is no thing
@@ -51,7 +51,7 @@ bool is_cut(const Mask& mask) {
     int rim = 0;
     for (int i = 0; i < mask.width; ++i) rim += (mask.at(i, 0) != 0) + (mask.at(i, mask.height - 1) != 0);
     for (int i = 0; i < mask.height; ++i) rim += (mask.at(0, i) != 0) + (mask.at(mask.width - 1, i) != 0);
-    return rim * CutPixels >= std::max(mask.width, mask.height);
+    return rim >= CutRim * std::max(mask.width, mask.height);
 }
 
 /// Whether what was looked for goes on beyond the pictures in many views.

@@ -63,7 +63,10 @@ class Pictures:
             raise SystemExit(f"{folder} has no training pictures: draw them with gseditpro train-starter --pictures-only")
         joined = lambda name: np.concatenate([shard[name] for shard in shards])
         self.after, self.before, self.device = joined("after"), joined("before"), device
-        self.azimuth = joined("camera")[:, 0] - joined("front")
+        fronts = joined("front")
+        if len(fronts) != len(self.after):
+            raise SystemExit(f"{folder} has training pictures that do not tell the fronts of their things: draw them anew")
+        self.azimuth = joined("camera")[:, 0] - fronts
         known = json.load(open(f"{folder}/vocabulary.json"))
         worn = [known.index(word) for word in ("hat", "crown", "sunglasses", "glasses", "scarf", "flames", "fire", "wings") if word in known]
         words = joined("words")
