@@ -68,6 +68,7 @@ struct RoundInput {
     double guided_until = 0;       // steps at or below this noise level are led by the sentence alone, without the negative prompt
     bool keep = false;             // the answer is worth remembering: the same may be asked again
     bool tells_changes = false;    // RoundTargets::changes are wanted where there are no outlines; they take a decoder's pass per view
+    double noise = 1;              // standard deviation of the noise of a round that is `anew`; below 1 it draws nearer to the mean
 };
 
 /// The pictures as the model would have them, and numbers for the log.

@@ -236,7 +236,7 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
         return std::pair{std::sqrt(a), std::sqrt(1 - a)};
     };
     const auto [signal, deviation] = roots(timesteps.front());
-    batch.x = signal * batch.clean + deviation * batch.noise;
+    batch.x = signal * batch.clean + (input.anew ? deviation * input.noise : deviation) * batch.noise;
     for (std::size_t i = 0; i < timesteps.size(); ++i) {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "redrawing the views was stopped");
         const auto t = torch::full({1}, timesteps[i], torch::kInt64);

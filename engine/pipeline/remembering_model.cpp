@@ -234,7 +234,7 @@ std::string question_of(const std::vector<edit::RoundView>& views, const edit::R
         seen.push_back({digest.hex(), numbers, view.view_words});
     }
     return Json{fields_to_json(parameters), prompt,     input.sentence, input.round, input.rounds, input.steps, input.strength, input.seed, input.anew,
-                input.guided_until,         seen}
+                input.guided_until,         input.noise, seen}
         .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -193,6 +193,7 @@ DOCTEST_TEST_CASE("the place is drawn from nothing, in as many views as asked fo
     DOCTEST_REQUIRE(fixture.painter.asked.size() == 1);
     const auto& input = fixture.painter.asked.front();
     DOCTEST_CHECK((input.anew && input.keep && input.tells_changes && input.strength == 1 && input.steps == fixture.request.place_steps));
+    DOCTEST_CHECK(input.noise == fixture.request.add_noise);
     DOCTEST_CHECK(fixture.painter.rooms.size() == 6);
     fixture.request.attention_threshold = 0.6;
     fixture.locate(&fixture.scene.first);
@@ -205,6 +206,10 @@ DOCTEST_TEST_CASE("the place is drawn from nothing, in as many views as asked fo
     other.front() = 0;
     fixture.locate(&other);
     DOCTEST_CHECK(fixture.painter.asked.size() == 3);
+    fixture.request.add_noise = 1;
+    fixture.locate(&other);
+    DOCTEST_REQUIRE(fixture.painter.asked.size() == 4);
+    DOCTEST_CHECK(fixture.painter.asked.back().noise == 1);
 }
 
 DOCTEST_TEST_CASE("a threshold that is asked for is that of told outlines, too") {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/edit/shape_round.h"
+#include "tests/unit/edit/edit_scenes.h"
 
 namespace {
 
@@ -103,6 +104,31 @@ DOCTEST_TEST_CASE("where the model tells what is new in its picture, that is the
     DOCTEST_CHECK(drawn.images.front().at(32, 32, 0) == 0.25f);
     edit::RoundTargets empty{{Image(Side, Side, 3, 0.75f)}, {}, {Image(Side, Side, 1, 0.3f)}};
     DOCTEST_CHECK(!finder.take_out(grey_view(0.25f), empty, 0, 1));
+}
+
+DOCTEST_TEST_CASE("what is added reaches a little further into the soft rim of its outlines than what becomes another") {
+    edit::CutOut found;
+    for (const auto& view : test::ball_views(8, Side)) {
+        edit::HullView outline{view.camera, Image(Side, Side, 1), {}, Image(Side, Side, 3, 0.5f)};
+        for (int y = 0; y < Side; ++y)
+            for (int x = 0; x < Side; ++x) outline.inside.at(x, y, 0) = static_cast<float>(std::clamp(1.5 - radius_at(x, y) / 16, 0.0, 1.0));
+        found.outlines.push_back(std::move(outline));
+        found.usable.push_back(found.usable.size());
+    }
+    edit::EditRequest request;
+    SlopingAttention attention(0.5);
+    const auto reach = [&](edit::EditMode mode) {
+        edit::EditPlan plan;
+        plan.mode = mode;
+        const auto rows = edit::ShapeFinder(plan, request, "hat", attention).seeds(found, {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}}, 0);
+        float most = 0;
+        for (const float value : rows.position) most = std::max(most, std::abs(value));
+        return most;
+    };
+    const float another = reach(edit::EditMode::Replace), added = reach(edit::EditMode::Add);
+    DOCTEST_CHECK(another > 0);
+    DOCTEST_CHECK(added > 1.03f * another);   // radii of 1.0 and 1.1 times 16 pixels
+    DOCTEST_CHECK(added < 1.2f * another);
 }
 
 DOCTEST_TEST_CASE("what differs where the word is not seen is not of the new thing") {

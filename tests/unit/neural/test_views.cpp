@@ -69,6 +69,32 @@ DOCTEST_TEST_CASE("redrawn views: repeatable, of the size that came in, and coun
     DOCTEST_CHECK(mean_change(guidance.edit(closed, input, {}), closed) < none);
 }
 
+DOCTEST_TEST_CASE("redrawn views: from less noise another seed draws less that is different; only what is drawn anew takes less") {
+    const TinyModel model;
+    const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
+    const auto views = wall_views();
+    DiffusionViews guidance(bundle, "a red bear", {});
+    edit::RoundInput input;
+    input.steps = 2;
+    input.strength = 1;
+    const auto drawn = [&](double noise, std::uint64_t seed) {
+        input.noise = noise;
+        input.seed = seed;
+        return guidance.edit(views, input, {}).images[0].data;
+    };
+    DOCTEST_CHECK(drawn(1, 1) == drawn(0.3, 1));
+    input.anew = true;
+    const auto differ = [&](double noise) {
+        const auto one = drawn(noise, 1), other = drawn(noise, 2);
+        double sum = 0;
+        for (std::size_t i = 0; i < one.size(); ++i) sum += std::abs(one[i] - other[i]);
+        return sum;
+    };
+    DOCTEST_CHECK(differ(0) == 0);
+    DOCTEST_CHECK(differ(0.3) > 0);
+    DOCTEST_CHECK(differ(0.3) < differ(1));
+}
+
 DOCTEST_TEST_CASE("redrawn views: settings of the guidance that are said to have no effect have none, the others do") {
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));

@@ -276,6 +276,7 @@ DOCTEST_TEST_CASE("remembering model: views drawn to find a place are kept, by a
     DOCTEST_CHECK(changed([&] { input.strength = 1; }));
     DOCTEST_CHECK(changed([&] { input.anew = true; }));
     DOCTEST_CHECK(changed([&] { input.guided_until = 0.5; }));
+    DOCTEST_CHECK(changed([&] { input.noise = 0.5; }));
     input.keep = false;   // of the loop: asked every time
     DOCTEST_CHECK((draws() && draws()));
 }
