@@ -112,8 +112,8 @@ std::string drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint
     const auto& request = drawing.request;
     Hash bits;
     bits.bytes(source_bits.data(), source_bits.size());
-    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, drawing.seed, request.add_room, request.add_noise, request.place_views, request.place_steps,
-                       bits.value());
+    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, drawing.seed, request.add_room, request.add_noise, request.place_views,
+                       request.place_steps, bits.value());
 }
 
 DrawnViews draw_thing(const PlaceDrawing& drawing, ViewGuidance& guidance, const JobControl& job) {
