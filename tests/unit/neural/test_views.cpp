@@ -92,7 +92,9 @@ DOCTEST_TEST_CASE("redrawn views: from less noise another seed draws less that i
     };
     DOCTEST_CHECK(differ(0) == 0);
     DOCTEST_CHECK(differ(0.3) > 0);
-    DOCTEST_CHECK(differ(0.3) < differ(1));
+    constexpr double hardly = 0.001;   // of a network that nobody trained only the limit is known: it is continuous
+    DOCTEST_CHECK(differ(hardly) < differ(1));
+    DOCTEST_CHECK(differ(hardly) < differ(0.3));
 }
 
 DOCTEST_TEST_CASE("redrawn views: settings of the guidance that are said to have no effect have none, the others do") {
