@@ -203,8 +203,7 @@ RoundInput ViewRounds::input(std::uint64_t stream) const {
     const auto plan = round_plan(request_, plan_.mode);
     RoundInput asked{round_,          plan.rounds, plan.steps_of(round_), std::min(1.0, plan.strength_of(round_) + raised_), Random::stream(request_.seed, stream).next(),
                      shapes_ != nullptr, sentence_, plan.guided_until};
-    asked.tells_changes = plan_.mode == EditMode::Add;
-    if (asked.tells_changes) asked.noise = request_.add_noise;
+    if (plan_.mode == EditMode::Add) asked.tells_changes = true, asked.noise = request_.add_noise;
     return asked;
 }
 

@@ -129,8 +129,8 @@ Json stated_by_size(ModelKind kind) {
                        {"colour_coupling", 0.0}, {"shape_views", 8},
                        {"shape_steps", 8},      {"view_steps", 8},
                        {"shape_guided_until", 0.0}, {"shape_rounds", 2},
-                       {"shape_strength", 0.9}, {"add_rounds", 2},
-                       {"add_noise", 1.0}};   // one was measured with the starter only, which draws the views of a thing together
+                       {"shape_strength", 0.9}, {"add_rounds", 2},   // one was measured with the starter only, which draws the views of a thing together
+                       {"add_noise", 1.0}};   // less was measured with the starter only
     json["guidance"] = {{"guidance_scale", 7.5}, {"view_guidance_scale", 7.5}, {"shape_guidance_scale", 7.5},
                         {"t_max_end", 0.5}};
     json["attention"] = {{"refinement", 1}};   // views.md 15; the starter's own maps are as good without

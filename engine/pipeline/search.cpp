@@ -33,7 +33,7 @@ constexpr double HeadRoom = 0.15;
 /// as above, the foot was elsewhere, and new things floated or sank by up to a tenth of their height.
 constexpr double FigureAim = 0.59, FigureHalfPicture = 0.87;
 constexpr double StepBack = 1.2;         // of the distance, where what was drawn does not fit into the pictures
-constexpr int MostStepsBack = 2;          // each draws the thing once more
+constexpr int MostStepsBack = 2;         // each draws the thing once more
 constexpr double CutShare = 0.6;         // of the views, from which that is so: a wing may reach out of some
 constexpr double CutRim = 1.0 / 7;       // of a picture's side: covered so far along its rim a thing is cut off there
 constexpr double SameFraming = 0.05;     // of the distance: a nearer framing shows the same
@@ -248,7 +248,7 @@ private:
             located.views = faced(views_on(focused, recipe_));
             located.result = look(recipe_, located.views, by_hand);
         }
-        for (int step = 0; step < MostStepsBack && located.result.mode == edit::EditMode::Add && as_figure && is_cut_off(located.result); ++step) {
+        for (int step = 0; step < MostStepsBack && result.mode == edit::EditMode::Add && as_figure && is_cut_off(result); ++step) {
             log::info("\"{}\" does not fit into the pictures; it is looked for from farther off", result.word);
             located.views = faced(views_on(nearer(located.views.orbit, StepBack), recipe_));
             located.result = look(recipe_, located.views, by_hand);
