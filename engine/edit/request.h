@@ -55,8 +55,9 @@ struct SearchSettings {
     int place_views = 12;
     int place_steps = 4;
     double add_room = 0.6;
-    // Error removed of 24 additions of seeds 55 to 57 of eval (hulls at half of the outlines), outline IoU: 0.435, 0.654 with all of the noise; 0.445, 0.662 with 0.8 of it,
-    // 0.447, 0.660 with 0.6, 0.453, 0.662 with 0.3, 0.455, 0.665 with 0.01. Some is left: another seed is to draw something else.
+    // Error removed of 24 additions of seeds 55 to 57 of eval, outline IoU (hulls at half of the outlines): 0.435, 0.654 with all of the
+    // noise; 0.445, 0.662 with 0.8 of it, 0.447, 0.660 with 0.6, 0.453, 0.662 with 0.3, 0.455, 0.665 with 0.01. Some is left: another
+    // seed is to draw something else.
     double add_noise = 0.3;
     int seed_splats = 400;
 
