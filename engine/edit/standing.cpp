@@ -14,7 +14,9 @@ constexpr float ShownLogit = -5.5373f;      // opacity 1/255
 constexpr double FootShare = 0.2;           // of a thing's height: the part that it stands on
 constexpr double FootTrim = 0.1;            // of its rows, at either end
 constexpr double FootReach = 0.25;          // of the width of what is above, beyond it: a label's rows that lie farther off are ground
-constexpr double GroundReach = 0.25;        // of its height, up and down from its lowest rows: farther rows are no ground that it stands on
+constexpr double GroundReach = 0.25;        // of its height, up and down from its lowest rows: there is the ground that it stands on
+constexpr double StemReach = 0.6;           // of the larger of height and width, down, where there is none so near: a label may lack the stem
+constexpr double GroundWidth = 1.5;         // of a foot's radius: so far out its ground is looked for at least
 constexpr std::size_t LeastGround = 20;     // rows that make a ground
 constexpr double FigureWidth = 0.75;        // of its width, the least that a figure is high
 
@@ -47,6 +49,22 @@ bool is_below(const Vec3& p, const Box& body) {
     return p.x >= body.low.x - margin.x && p.x <= body.high.x + margin.x && p.z >= body.low.z - margin.z && p.z <= body.high.z + margin.z;
 }
 
+/// Height of the ground that carries `thing` at `foot`; the foot's where there is none. Ground reaches out from under what stands on it:
+/// the end of a stem that a label lacks, or the lower side of a cap, does not.
+double ground_at(const std::vector<Vec3>& others, const Standing& thing, double foot_radius) {
+    const double reach = std::max(0.5 * thing.width(), GroundWidth * foot_radius), size = std::max(thing.height, thing.width());
+    std::vector<double> near, below;
+    for (const auto& p : others) {
+        const double distance = std::hypot(p.x - thing.foot.x, p.z - thing.foot.z), above = p.y - thing.foot.y;
+        if (distance < foot_radius || distance > reach) continue;
+        if (std::abs(above) <= GroundReach * thing.height) near.push_back(p.y);
+        if (above < 0 && above >= -StemReach * size) below.push_back(p.y);
+    }
+    for (auto* ground : {&near, &below})
+        if (ground->size() >= LeastGround) return quantile(std::move(*ground), 0.5);
+    return thing.foot.y;
+}
+
 }  // namespace
 
 Standing standing_of(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front) {
@@ -60,8 +78,11 @@ Standing standing_of(const GaussianSet& set, const std::vector<std::uint8_t>& bi
     Box thing = trimmed_box(parts.body, BoundsTrim);
     std::erase_if(parts.foot, [&](const Vec3& p) { return !is_below(p, thing); });
     Vec3 foot{thing.centre().x, parts.low, thing.centre().z};
+    double foot_radius = 0;
     if (!parts.foot.empty()) {
         const Box below = trimmed_box(parts.foot, FootTrim);
+        const Vec3 all = trimmed_box(parts.foot, BoundsTrim).size();
+        foot_radius = 0.5 * std::hypot(all.x, all.z);
         foot.x = below.centre().x, foot.z = below.centre().z;
         for (const int axis : {0, 2}) {
             thing.low[axis] = std::min(thing.low[axis], below.low[axis]);
@@ -69,11 +90,7 @@ Standing standing_of(const GaussianSet& set, const std::vector<std::uint8_t>& bi
         }
     }
     const Vec3 size = thing.size();
-    const double reach = 0.5 * std::max(size.x, size.z);
-    std::vector<double> ground;
-    for (const auto& p : shown_rows(set, bits, frame, false))
-        if (std::hypot(p.x - foot.x, p.z - foot.z) <= reach && std::abs(p.y - foot.y) <= GroundReach * height) ground.push_back(p.y);
-    if (ground.size() >= LeastGround) foot.y = quantile(std::move(ground), 0.5);
+    foot.y = ground_at(shown_rows(set, bits, frame, false), {foot, height, size.x, size.z}, foot_radius);
     return {frame.to_world(foot), parts.high - foot.y, size.x, size.z};
 }
 

@@ -66,6 +66,19 @@ DOCTEST_TEST_CASE("a thing stands on the ground around it, also where the label 
     DOCTEST_CHECK(grown.height == doctest::Approx(found.height).epsilon(Close));
 }
 
+DOCTEST_TEST_CASE("a cap whose label lacks stem and lower side stands on the ground below, a statue on its pedestal") {
+    Rows mushroom;
+    mushroom.box(-0.4, 0.4, 0.45, 0.9, -0.4, 0.4, 900, true).box(-0.38, 0.38, 0.42, 0.47, -0.38, 0.38, 200, false);
+    mushroom.box(-0.1, 0.1, 0, 0.45, -0.1, 0.1, 200, false).box(-2, 2, -0.01, 0.01, -2, 2, 4000, false);
+    const auto found = mushroom.standing();
+    DOCTEST_CHECK(std::abs(found.foot.y) < 0.02);
+    DOCTEST_CHECK(found.height == doctest::Approx(0.9).epsilon(Close));
+    Rows statue;
+    statue.box(-0.15, 0.15, 0.5, 1.5, -0.15, 0.15, 900, true).box(-0.25, 0.25, 0, 0.5, -0.25, 0.25, 1500, false);
+    statue.box(-2, 2, -0.01, 0.01, -2, 2, 4000, false);
+    DOCTEST_CHECK(statue.standing().foot.y == doctest::Approx(-0.5).epsilon(0.25));   // its rows reach down from its upper side
+}
+
 DOCTEST_TEST_CASE("what reaches out of a thing does not move its foot") {
     Rows cat;
     cat.box(-0.2, 0.2, 0, 0.9, -0.2, 0.2, 900, true).box(0.2, 0.6, 0.5, 0.6, -0.05, 0.05, 150, true);   // its tail
