@@ -33,8 +33,8 @@ constexpr double HeadRoom = 0.15;
 /// as above, the foot was elsewhere, and new things floated or sank by up to a tenth of their height.
 constexpr double FigureAim = 0.59, FigureHalfPicture = 0.87;
 constexpr double StepBack = 1.2;         // of the distance, where what was drawn does not fit into the pictures
-constexpr int MostStepsBack = 2;         // each draws the thing once more
-constexpr double CutShare = 0.6;         // of the views, from which that is so: a wing may reach out of some
+constexpr double CutShares[] = {0.6, 1}; // of the views, from which that is so, a step each: a wing may reach out of some views; every
+                                         // step draws the thing once more, and the second is worth it only where no view shows all of it
 constexpr double CutRim = 1.0 / 7;       // of a picture's side: covered so far along its rim a thing is cut off there
 constexpr double SameFraming = 0.05;     // of the distance: a nearer framing shows the same
 constexpr double SameFramingWorn = 0.12; // the same where something is drawn that is worn: every look costs as much as an edit does
@@ -55,14 +55,14 @@ bool is_cut(const Mask& mask) {
     return rim >= CutRim * std::max(mask.width, mask.height);
 }
 
-/// Whether what was looked for goes on beyond the pictures in many views.
-bool is_cut_off(const edit::LocateResult& result) {
+/// Whether what was looked for goes on beyond the pictures in that share of the views.
+bool is_cut_off(const edit::LocateResult& result, double share) {
     double seen = 0, cut = 0;
     for (const auto& view : result.views) {
         if (view.failed) continue;
         seen += 1, cut += is_cut(view.mask) ? 1 : 0;
     }
-    return seen > 0 && cut >= CutShare * seen;
+    return seen > 0 && cut >= share * seen;
 }
 
 /// From where a thing is seen as large, and as high in the picture, as figures that the starter learned from.
@@ -248,7 +248,8 @@ private:
             located.views = faced(views_on(focused, recipe_));
             located.result = look(recipe_, located.views, by_hand);
         }
-        for (int step = 0; step < MostStepsBack && result.mode == edit::EditMode::Add && as_figure && is_cut_off(result); ++step) {
+        for (const double share : CutShares) {
+            if (result.mode != edit::EditMode::Add || !as_figure || !is_cut_off(result, share)) break;
             log::info("\"{}\" does not fit into the pictures; it is looked for from farther off", result.word);
             located.views = faced(views_on(nearer(located.views.orbit, StepBack), recipe_));
             located.result = look(recipe_, located.views, by_hand);
