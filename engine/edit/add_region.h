@@ -45,7 +45,7 @@ struct RegionParameters {
     double least_seen = 0.2;       // share of the views in which the cube is not hidden behind the surface
     double most_volume = 0.35;     // of the searched box: a larger region means the maps agree on nothing
     int least_cells = 6;
-    double least_part = 0.3;       // of the largest connected part: smaller ones are dropped
+    double least_part = 0.1;       // of the largest connected part: smaller ones are dropped (flames above a wide cap are)
 };
 
 /// Votes a grid of cubes around the source with the masks; empty when the masks do not agree on a place.

@@ -104,7 +104,7 @@ bool is_described(const std::string& sentence, const std::string& thing) {
     const auto words = words_of(sentence);
     const auto at = first_word(sentence, thing);
     if (at >= words.size()) return true;
-    if (at > 0 && says_something(words[at - 1])) return true;
+    if (at > 0 && (says_something(words[at - 1]) || words[at - 1] == "in" || words[at - 1] == "on")) return true;   // "in flames": a state
     const auto after = at + words_of(thing).size();   // "wings of gold", "a hat made of wood"
     return after < words.size() && (words[after] == "of" || words[after] == "made");
 }

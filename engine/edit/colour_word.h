@@ -27,7 +27,8 @@ private:
 /// That of one picture.
 std::string colour_shown(const Image& picture, const Image& share, const std::vector<std::string>& known);
 
-/// Whether the sentence says what the thing is like ("white wings"), or does not name it.
+/// Whether the sentence says what the thing is like ("white wings"), or does not name it; "in flames" and "on fire" are states, whose
+/// colour is their own.
 bool is_described(const std::string& sentence, const std::string& thing);
 
 /// "a bear with wings" with "white" wings; the article before it follows ("a hat", "an orange hat"). Words as as_told() has them.

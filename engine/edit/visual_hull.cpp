@@ -14,7 +14,7 @@ namespace {
 
 constexpr int CoarseCells = 32;        // along the longest side of the box
 constexpr int MostCells = 128;         // the same of the second grid
-constexpr double LeastHullPart = 0.1;      // of the largest connected part
+constexpr double LeastHullPart = 0.02;     // of the largest connected part: flames have many small ones
 constexpr double HiddenSlack = 1.5;    // sides of a cube behind a surface: it may lie on it
 constexpr double Footprint = 0.75;     // half of a cube's width as it is seen, over its side: between face and corner
 

@@ -108,10 +108,10 @@ DOCTEST_TEST_CASE("where no depth is known, nothing hides a place") {
     DOCTEST_CHECK(region.agreement > 0.8);
 }
 
-DOCTEST_TEST_CASE("a place of two parts keeps both, specks do not count") {
-    const Vec3 left{-0.55, -0.55, 0.05}, right{0.1, -0.55, 0.05}, speck{-0.2, -0.75, 0.05};
+DOCTEST_TEST_CASE("a place of several parts keeps all, also a small one; specks do not count") {
+    const Vec3 left{-0.55, -0.55, 0.05}, right{0.1, -0.55, 0.05}, small{-0.95, -0.25, 0.05}, speck{-0.2, -0.75, 0.05};
     Search setup(left, 0.2);
-    for (const auto& [centre, radius] : {std::pair{right, 0.17}, std::pair{speck, 0.06}}) {
+    for (const auto& [centre, radius] : {std::pair{right, 0.17}, std::pair{small, 0.13}, std::pair{speck, 0.06}}) {
         const Search other(centre, radius);
         for (std::size_t v = 0; v < setup.masks.size(); ++v)
             for (std::size_t i = 0; i < setup.masks[v].data.size(); ++i) setup.masks[v].data[i] |= other.masks[v].data[i];
@@ -123,6 +123,7 @@ DOCTEST_TEST_CASE("a place of two parts keeps both, specks do not count") {
     };
     DOCTEST_CHECK(near(left, 0.2) > 20);
     DOCTEST_CHECK(near(right, 0.17) > 20);
+    DOCTEST_CHECK(near(small, 0.13) > 3);   // a quarter of the first
     DOCTEST_CHECK(near(speck, 0.06) == 0);
 }
 

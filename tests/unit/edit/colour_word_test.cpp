@@ -78,6 +78,8 @@ DOCTEST_TEST_CASE("a thing is described by the words beside it only") {
     DOCTEST_CHECK(edit::is_described("a bear wearing a straw hat", "hat"));
     DOCTEST_CHECK(edit::is_described("a bear with wings of gold", "wings"));
     DOCTEST_CHECK(edit::is_described("a bear with a hat made of wood", "hat"));
+    DOCTEST_CHECK(edit::is_described("a bear in flames on the grass", "flames"));   // a state has its own colour
+    DOCTEST_CHECK(edit::is_described("a bear on fire", "fire"));
     DOCTEST_CHECK(edit::is_described("a bear on the grass", "hat"));   // nothing to describe
 }
 

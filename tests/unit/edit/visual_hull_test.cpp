@@ -172,6 +172,20 @@ DOCTEST_TEST_CASE("where nothing is enclosed there is no hull, and specks are dr
     DOCTEST_CHECK(std::any_of(both.centres.begin(), both.centres.end(), [](const Vec3& p) { return p.x > 0.4; }));
 }
 
+DOCTEST_TEST_CASE("a hull of one large part and many small ones keeps them all, as flames have") {
+    constexpr int Tongues = 5;
+    const auto at = [](int i) { return Vec3{-0.8 + 0.4 * i, -0.75, 0.1}; };
+    const auto tongue = [&](const Vec3& p, int i) { return std::abs(p.x - at(i).x) < 0.09 && std::abs(p.y - at(i).y) < 0.25 && std::abs(p.z - at(i).z) < 0.09; };
+    const auto flames = [&](const Vec3& p) {
+        for (int i = 0; i < Tongues; ++i)
+            if (tongue(p, i)) return true;
+        return std::abs(p.x) < 0.7 && p.y > 0 && p.y < 0.4 && std::abs(p.z) < 0.35;
+    };
+    const auto hull = edit::carve_hull(outlines(flames, 12), Room, {.least_share = 1});
+    for (int i = 0; i < Tongues; ++i)   // each a thirtieth of the large part
+        DOCTEST_CHECK(covered(hull, [&](const Vec3& p) { return tongue(p, i); }) > 0.9);
+}
+
 DOCTEST_TEST_CASE("of strict and loose hulls the one is taken that fits the outlines") {
     const auto truth = outlines(slab);
     DOCTEST_CHECK(edit::hull_fit(truth, edit::best_hull(truth, Room)) > 0.9);
