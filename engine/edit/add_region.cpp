@@ -11,6 +11,7 @@
 #include "engine/base/check.h"
 #include "engine/base/random.h"
 #include "engine/edit/related_place.h"
+#include "engine/edit/standing.h"
 #include "engine/edit/words.h"
 #include "engine/localize/clusters.h"
 
@@ -215,9 +216,11 @@ std::string head_of(const std::string& phrase) {
     return words.empty() ? std::string() : words.back();
 }
 
-/// Where the votes for what the source wears or has on are counted: around it and above.
-Box worn_box(const std::vector<Vec3>& points) {
+/// Where the votes for what the source wears or has on are counted: around it, down to its foot (a label may lack what carries a thing)
+/// and above.
+Box worn_box(const std::vector<Vec3>& points, const Standing& standing, const Frame& frame) {
     Box box = trimmed_box(points, BoundsTrim);
+    if (standing.found()) box.low.y = std::min(box.low.y, frame.to_frame(standing.foot).y);
     const Vec3 size = box.size();
     const double wide = 0.35 * std::max({size.x, size.y, size.z});
     box.low = box.low - Vec3{wide, 0.05 * size.y, wide};
@@ -256,9 +259,11 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
     const auto voters = std::count_if(search.masks.begin(), search.masks.end(),
                                       [](const Mask& m) { return !m.data.empty(); });
     if (points.empty() || voters == 0) return {};
+    const std::vector<std::uint8_t> bits(search.source_bits.begin(), search.source_bits.end());
     const bool related = !place_name(search.relation).empty();
     const RelatedPlace place(search.relation, points, related ? visible_points(search, frame, false) : std::vector<Vec3>{});
-    const Grid grid = make_grid(related ? place.box() : worn_box(points), parameters.cells);
+    const auto worn = [&] { return worn_box(points, standing_of(search.gaussians, bits, search.up, search.front), frame); };
+    const Grid grid = make_grid(related ? place.box() : worn(), parameters.cells);
     const auto agreement = agreement_of(search, parameters, frame, grid, related ? &place : nullptr, voters);
     const double best = *std::max_element(agreement.begin(), agreement.end());
     if (best < parameters.least_agreement) return {};

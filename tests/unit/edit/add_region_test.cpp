@@ -127,6 +127,32 @@ DOCTEST_TEST_CASE("a place of several parts keeps all, also a small one; specks 
     DOCTEST_CHECK(near(speck, 0.06) == 0);
 }
 
+DOCTEST_TEST_CASE("a place may lie below a label that lacks what carries the thing: a scarf around a stem") {
+    constexpr int Cap = 900, Stem = 150, Ground = 3000;
+    const Vec3 scarf{0, 0.25, 0};   // up is -y, the ground y = 0.5
+    const Search around(scarf, 0.2);
+    Random random(11);
+    GaussianData data;
+    data.resize(Cap + Stem + Ground);
+    std::vector<std::uint8_t> cap(data.size(), 0);
+    for (std::size_t row = 0; row < data.size(); ++row) {
+        const bool of_cap = row < Cap, of_stem = !of_cap && row < Cap + Stem;
+        const double wide = of_cap ? 0.4 : of_stem ? 0.1 : 1.5, low = of_cap ? -0.5 : of_stem ? 0 : 0.49, high = of_cap ? 0 : of_stem ? 0.5 : 0.51;
+        data.position[row * 3] = static_cast<float>(random.uniform(-wide, wide));
+        data.position[row * 3 + 1] = static_cast<float>(random.uniform(low, high));
+        data.position[row * 3 + 2] = static_cast<float>(random.uniform(-wide, wide));
+        data.rotation[row * 4] = 1;
+        data.opacity_logit[row] = 2;
+        cap[row] = of_cap ? 1 : 0;
+    }
+    const GaussianSet set(std::move(data));
+    const auto region = edit::vote_region({set, cap, around.views, around.masks, {}, {0, -1, 0}, {0, 0, -1}});
+    DOCTEST_REQUIRE_FALSE(region.empty());
+    Vec3 mean;
+    for (const auto& cell : region.centres) mean = mean + cell / static_cast<double>(region.centres.size());
+    DOCTEST_CHECK(length(mean - scarf) < 0.08);
+}
+
 DOCTEST_TEST_CASE("of all levels of agreement the one is taken whose silhouettes match the masks best") {
     // A third of the views sees only the middle of the thing: what nearly all views agree on would be that middle.
     const Vec3 centre{-0.55, -0.55, 0.05};
