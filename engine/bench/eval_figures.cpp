@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/base/check.h"
 #include "engine/evaluate/consistency.h"
 #include "engine/evaluate/direction.h"
 #include "engine/evaluate/metrics.h"
@@ -222,6 +223,19 @@ void add_old_left(const HeldOut& seen, Json& json) {
     json["old_left"] = pixels > 0 ? left / pixels : 0;
 }
 
+/// Share of the old thing's pixels that still mainly show splats of it: what the edit has overlooked, whatever the new thing covers.
+void add_old_shown(const EvalSetting& setting, const edit::EditResult& result, const HeldOut& seen, pipeline::Painter& painter, Json& json) {
+    const auto old = rows_of(setting.source, setting.edit.part);
+    GSE_CHECK_EQ(result.base_to_new.size(), old.size());
+    std::vector<std::uint8_t> left(result.set.size(), 0);
+    for (std::size_t row = 0; row < old.size(); ++row)
+        if (old[row] != 0 && result.base_to_new[row] >= 0) left[static_cast<std::size_t>(result.base_to_new[row])] = 1;
+    PooledOverlap overlap;
+    for (std::size_t v = 0; v < seen.old.size(); ++v)
+        overlap.add(mask_of_rows(painter, result.set, left, setting.held_out.views[v].camera, PartShare), seen.old[v]);
+    json["old_shown"] = overlap.recall();
+}
+
 void add_consistency(const HeldOut& seen, Json& json) {
     json["inconsistency"] = evaluate::path_inconsistency({seen.before, seen.after, seen.part, true});
     json["inconsistency_of_truth"] = evaluate::path_inconsistency({seen.before, seen.truth, seen.part, true});
@@ -381,6 +395,7 @@ Json edited_figures(const EvalSetting& setting, const edit::EditPlan& plan, cons
     if (new_outline(setting.edit)) add_silhouette(setting, result, seen, tools.painter, json);
     if (setting.edit.kind == "replace") {
         add_old_left(seen, json);
+        add_old_shown(setting, result, seen, tools.painter, json);
         json["truth"] = {{"heading", setting.target.spec.heading}, {"size", setting.target.spec.size}};
     }
     add_outside(seen, json);
