@@ -117,6 +117,7 @@ void Application::refresh_jobs(const JobStatus& work, const JobStatus& files) {
     if (!model_.edit_running) model_.targets_wait = false;
     model_.read_target = read_target();
     model_.result_waiting = pending_.has_value() && !work_.running();
+    model_.result_splats = pending_ ? pending_->set.size() : 0;
     relabel_if_wanted();
 }
 

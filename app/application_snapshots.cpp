@@ -39,7 +39,7 @@ void Application::take_snapshots(const std::deque<edit::EditSnapshot>& snapshots
 }
 
 void Application::show_snapshot(int index) {
-    const int last = static_cast<int>(snapshots_.size()) - 1;
+    const int last = static_cast<int>(snapshots_.size()) - (pending_ ? 0 : 1);   // behind all of them there is the result
     model_.shown_snapshot = index >= last || index < 0 ? -1 : index;
     ++content_;
 }

@@ -100,8 +100,7 @@ PictureRequest Application::picture_request() {
             shown_set_ = snapshot_set(snapshots_.back());
         const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
         const bool tints = mode == ui::DisplayMode::Beauty && model_.view.tint_labels && !live && model_.comparison == ui::Comparison::None;
-        const bool maps = mode >= ui::DisplayMode::Labels;
-        shown_values_ = tints || maps ? shown_values(shown_set_, snapshot) : nullptr;
+        shown_values_ = tints || mode >= ui::DisplayMode::Labels ? shown_values(shown_set_, snapshot) : nullptr;
     }
     PictureRequest request;
     request.set = shown_set_;

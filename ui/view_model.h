@@ -318,8 +318,9 @@ struct ViewModel {
     NetworkCost cost;
     std::vector<LossPoint> losses;
     std::vector<SnapshotView> snapshots;
-    int shown_snapshot = -1;                     // index into snapshots, -1 = newest
+    int shown_snapshot = -1;                     // index into snapshots, -1 = the result that waits, else the newest
     bool result_waiting = false;                 // an edit is done and asks: apply or discard
+    std::size_t result_splats = 0;               // of the result that waits
     // Rest
     std::vector<ModelView> models;
     bool edits_by_instruction = false;           // the model in use is told what to do, too

@@ -103,27 +103,27 @@ void ask_branch(Context& context, int iteration) {
 void draw_snapshots(Context& context) {
     const auto& snapshots = context.model.snapshots;
     if (snapshots.empty()) return;
-    const int count = static_cast<int>(snapshots.size());
-    int shown = context.model.shown_snapshot < 0 || context.model.shown_snapshot >= count
-                    ? count - 1
-                    : context.model.shown_snapshot;
-    const bool newest = context.model.shown_snapshot < 0;
-    const auto& snapshot = snapshots[static_cast<std::size_t>(shown)];
-    dim_text(fmt::format("Snapshot of iteration {}, {} splats{}", snapshot.iteration,
-                         count_text(snapshot.splats), newest ? " (newest)" : ""));
+    const bool waits = context.model.result_waiting;   // the result lies behind the last snapshot
+    const int count = static_cast<int>(snapshots.size()), last = waits ? count : count - 1;
+    int shown = context.model.shown_snapshot < 0 || context.model.shown_snapshot > last ? last : context.model.shown_snapshot;
+    const bool newest = shown == last, result = waits && newest;
+    const auto& snapshot = snapshots[static_cast<std::size_t>(std::min(shown, count - 1))];
+    dim_text(result ? fmt::format("The result, {} splats", count_text(context.model.result_splats))
+                    : fmt::format("Snapshot of iteration {}, {} splats{}", snapshot.iteration, count_text(snapshot.splats),
+                                  newest ? " (newest)" : ""));
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
-    if (ImGui::SliderInt("##progress.snapshot", &shown, 0, std::max(0, count - 1), "",
-                         ImGuiSliderFlags_AlwaysClamp))
-        context.actions.show_snapshot(shown == count - 1 ? -1 : shown);
+    if (ImGui::SliderInt("##progress.snapshot", &shown, 0, std::max(0, last), "", ImGuiSliderFlags_AlwaysClamp))
+        context.actions.show_snapshot(shown == last ? -1 : shown);
     note(context, "progress.snapshot");
-    tooltip("Drag back to look at an earlier state; the edit goes on meanwhile.");
-    if (button(context,
-               {.name = "progress.newest", .text = "Newest", .why_off = newest ? "The newest is shown" : ""}))
+    tooltip(waits ? "Drag back to look at an earlier state." : "Drag back to look at an earlier state; the edit goes on meanwhile.");
+    if (button(context, {.name = "progress.newest",
+                         .text = waits ? "Result" : "Newest",
+                         .why_off = result ? "The result is shown" : newest ? "The newest is shown" : ""}))
         context.actions.show_snapshot(-1);
     flow(button_width("Take this state"));
     if (button(context, {.name = "progress.take",
                          .text = "Take this state",
-                         .why_off = context.model.result_waiting ? "" : "No finished edit waits",
+                         .why_off = !waits ? "No finished edit waits" : result ? "It is the result: apply it, or drag back to an earlier state" : "",
                          .tooltip = "It is the result then, to be applied or discarded."}))
         context.actions.take_snapshot(snapshot.iteration);
     flow(button_width("Branch from here"));

@@ -127,14 +127,24 @@ void shaded_text(Context& context, ImDrawList* list, ImVec2 at, const std::strin
     list->AddText({at.x + pad, at.y + pad * 0.5f}, colour, text.c_str());
 }
 
+/// Splats of what the viewport shows.
+std::size_t shown_splats(const Context& context) {
+    const auto& model = context.model;
+    const bool listed = model.shown_snapshot >= 0 && model.shown_snapshot < static_cast<int>(model.snapshots.size());
+    if (listed && (model.result_waiting || model.edit_running)) return model.snapshots[static_cast<std::size_t>(model.shown_snapshot)].splats;
+    if (model.result_waiting) return model.result_splats;
+    if (model.edit_running && !model.snapshots.empty()) return model.snapshots.back().splats;
+    return context.document().current.size();
+}
+
 void draw_hud(Context& context, ImDrawList* list) {
     const auto& model = context.model;
     const auto& state = context.state.viewport;
     // At rest nothing is drawn, and a rate would say how often nobody looked.
     const bool moving = ImGui::GetTime() - state.moved_at < RateSeconds;
     const std::array<std::string, 5> parts{
-        fmt::format("{} splats", count_text(context.document().current.size())),
-        model.labelled > 0 ? fmt::format("{} labelled", count_text(model.labelled)) : std::string(),
+        fmt::format("{} splats", count_text(shown_splats(context))),
+        model.labelled > 0 && !model.result_waiting ? fmt::format("{} labelled", count_text(model.labelled)) : std::string(),
         fmt::format("{:.1f} ms", model.render_ms),
         moving ? fmt::format("{:.0f} fps", model.frames_per_second) : std::string(), model.renderer};
     const float room = state.high.x - state.low.x - context.em * 2;

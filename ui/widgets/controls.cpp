@@ -134,9 +134,26 @@ void heading(Context& context, std::string_view text) {
     if (context.fonts.bold != nullptr) ImGui::PopFont();
 }
 
+std::string broken_at_spaces(std::string_view text, float width) {
+    std::string lines;
+    std::size_t begin = 0, at = 0;   // of the line, of the word
+    while (at < text.size()) {
+        const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
+        const bool breaks = at > begin && text_size(text.substr(begin, end - begin)).x > width;
+        if (breaks) lines.back() = '\n', begin = at;
+        lines += text.substr(at, end - at);
+        if (end < text.size()) lines += text[end];
+        at = end + 1;
+        if (end < text.size() && text[end] == '\n') begin = at;
+    }
+    return lines;
+}
+
 void wrapped_text(std::string_view text) {
     ImGui::PushTextWrapPos(0);
-    put_text(text);
+    const float width = ImGui::GetContentRegionAvail().x;
+    if (text_size(text).x <= width) put_text(text);
+    else put_text(broken_at_spaces(text, width));   // ImGui breaks lines behind the point of a number, too
     ImGui::PopTextWrapPos();
 }
 
@@ -189,8 +206,22 @@ bool checkbox(Context& context, std::string_view name, std::string_view label, b
     return changed;
 }
 
+namespace {
+
+/// Padding with which all choices fit into one row; the usual one where they do anyway, or would become too narrow.
+ImVec2 segment_padding(const Context& context, std::span<const char* const> choices) {
+    const ImVec2 usual = ImGui::GetStyle().FramePadding;
+    float room = ImGui::GetContentRegionAvail().x - static_cast<float>(choices.size());
+    for (const char* text : choices) room -= ImGui::CalcTextSize(text).x;
+    const float fitting = std::floor(room / (2 * static_cast<float>(choices.size())));
+    return {fitting < context.em * 0.2f ? usual.x : std::min(usual.x, fitting), usual.y};
+}
+
+}  // namespace
+
 bool segmented(Context& context, std::string_view name, std::span<const char* const> choices, int& chosen) {
     bool changed = false;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, segment_padding(context, choices));
     const float left = ImGui::GetCursorScreenPos().x;   // also of a second row, where the first has no room
     ImGui::PushID(name.data(), name.data() + name.size());
     for (int index = 0; index < static_cast<int>(choices.size()); ++index) {
@@ -208,6 +239,7 @@ bool segmented(Context& context, std::string_view name, std::span<const char* co
         ImGui::PopStyleColor(3);
         note(context, fmt::format("{}.{}", name, text), text_size(text).x);
     }
+    ImGui::PopStyleVar();
     ImGui::PopID();
     return changed;
 }

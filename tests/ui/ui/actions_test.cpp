@@ -2,6 +2,8 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include "tests/ui/support/harness.h"
 #include "ui/keys.h"
 
@@ -300,6 +302,24 @@ DOCTEST_TEST_CASE("progress: pause, snapshots, cancel") {
     DOCTEST_CHECK(asks(harness, "job.cancel", "cancel"));
     DOCTEST_CHECK(key_asks(harness, key::Escape, "cancel"));
     DOCTEST_CHECK(asks(harness, "job.file.cancel", "cancel_file_job"));
+}
+
+DOCTEST_TEST_CASE("a result that waits lies behind the last snapshot, which can be taken in its place") {
+    Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
+    harness.shell.show(ui::PanelId::Progress);
+    harness.frame(3);
+    DOCTEST_CHECK_FALSE(harness.rect("progress.take").enabled);   // it is the result
+    DOCTEST_CHECK_FALSE(harness.rect("progress.newest").enabled);
+    auto& model = harness.application.model();
+    const int last = static_cast<int>(model.snapshots.size()) - 1;
+    const auto bar = harness.rect("progress.snapshot");
+    const float step = bar.width / static_cast<float>(last + 2);
+    harness.drag({bar.x + bar.width - 8, bar.y + 8}, {bar.x + bar.width - 8 - step, bar.y + 8});
+    DOCTEST_CHECK(harness.application.asked(fmt::format("show_snapshot {}", last)));
+    model.shown_snapshot = last;
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "progress.take", fmt::format("take_snapshot {}", model.snapshots.back().iteration)));
+    DOCTEST_CHECK(asks(harness, "progress.newest", "show_snapshot -1"));
 }
 
 DOCTEST_TEST_CASE("a result that waits is applied or discarded") {

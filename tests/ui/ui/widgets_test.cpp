@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <sstream>
 
 #include "engine/base/file.h"
 #include "engine/base/random.h"
@@ -287,6 +288,25 @@ DOCTEST_TEST_CASE("the map of widgets is written as JSON") {
     const auto json = nlohmann::json::parse(read_file(scratch.path() / "map.json"));
     DOCTEST_CHECK(json.at("prompt.edit").at("width").get<float>() > 10);
     DOCTEST_CHECK(json.at("viewport").at("visible").get<bool>());
+}
+
+DOCTEST_TEST_CASE("long text breaks at spaces only, and nothing of it is lost") {
+    Harness harness({});
+    harness.frame();
+    const std::string text = "Estimate: about 3.3 s (draft 1.5 s, normal 3.3 s, fine 9.5 s), 0.15 TFLOP,\n567 MB of 23.2 GB free";
+    for (const float width : {1.0f, 60.0f, 120.0f, 250.0f, 2000.0f}) {
+        const std::string lines = ui::broken_at_spaces(text, width);
+        DOCTEST_REQUIRE(lines.size() == text.size());
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (lines[i] != text[i]) DOCTEST_CHECK((text[i] == ' ' && lines[i] == '\n'));
+        }
+        std::istringstream rows(lines);
+        for (std::string row; std::getline(rows, row);) {
+            const bool one_word = row.find(' ') == std::string::npos;
+            DOCTEST_CHECK((one_word || ImGui::CalcTextSize(row.c_str()).x <= width));
+        }
+    }
+    DOCTEST_CHECK(ui::broken_at_spaces("", 10).empty());
 }
 
 }  // namespace gse::test
