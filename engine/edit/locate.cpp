@@ -14,6 +14,7 @@
 #include "engine/base/log.h"
 #include "engine/base/random.h"
 #include "engine/edit/confidence.h"
+#include "engine/edit/ground_rows.h"
 #include "engine/edit/shape_room.h"
 #include "engine/edit/view_vote.h"
 #include "engine/edit/vocabulary.h"
@@ -27,6 +28,7 @@ namespace {
 
 constexpr std::size_t RecognisedViews = 6;   // pictures that are compared with words
 constexpr int LeastViews = 3;                // fewer voting views cannot tell front from back
+constexpr float GroundWeight = 0.5f;         // of tau: what ground under a thing keeps of its weight at most
 constexpr double LargestLabelShare = 0.97;   // of what the views see, where the sentence names other things too
 constexpr double LeastEvidenceShare = 0.2;  // of the mean evidence of the rows that are seen at all
 constexpr float LabelSeen = 0.5f;           // share of a pixel from which it shows the artist's label
@@ -352,6 +354,11 @@ private:
         const auto changed = localize::cut_label(input_.gaussians.spans(), cut, weights, tools_.threads);
         if (changed > 0) log::debug("{} splats took the label of those they belong to", changed);
         found.label = localize::label_from_weights(search.word, weights, request().tau, least);
+        if (const auto ground = ground_rows(input_.gaussians, *found.label.bits, input_.up, input_.front); !ground.empty()) {
+            for (const auto row : ground) weights.weight[row] = std::min(weights.weight[row], static_cast<float>(GroundWeight * request().tau));
+            log::debug("{} splats of the ground below \"{}\" are left to it", ground.size(), search.word);
+            found.label = localize::label_from_weights(search.word, weights, request().tau, least);
+        }
         if (count_bits(found.label) == 0)
             return nothing(search, SearchProblem::NothingLabelled,
                            fmt::format("the views agree on no splat for \"{}\"", search.word),

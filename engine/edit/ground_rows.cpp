@@ -1,0 +1,82 @@
+// Rows near the ground's height, by the nearest colours of ground and thing.
+#include "engine/edit/ground_rows.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "engine/base/check.h"
+#include "engine/edit/region_frame.h"
+#include "engine/edit/standing.h"
+
+namespace gse::edit {
+namespace {
+
+using Colour = std::array<float, 3>;
+
+constexpr double Thickness = 0.04;        // of the thing's height, up and down: the ground's rows
+constexpr double Around = 1.5;            // of the thing's half width: ground so far out is compared with
+constexpr double MostLow = 0.5;           // of the label: more of it is a ground itself, or as flat as one
+constexpr double Nearer = 0.5;            // distance to the ground's colour, over that to the thing's
+constexpr double Apart = 0.1;             // of a coefficient, 0.03 of a channel: colours of a thing nearer to a row are its own
+constexpr std::size_t LeastGround = 20;   // rows that make a ground
+constexpr std::size_t MostColours = 600;  // of each that a row is compared with
+
+/// Evenly chosen ones of many.
+void thin_out(std::vector<Colour>& colours) {
+    if (colours.size() <= MostColours) return;
+    for (std::size_t i = 0; i < MostColours; ++i) colours[i] = colours[i * colours.size() / MostColours];
+    colours.resize(MostColours);
+}
+
+float nearest(const std::vector<Colour>& colours, const Colour& to) {
+    float least = std::numeric_limits<float>::infinity();
+    for (const auto& colour : colours) {
+        float squared = 0;
+        for (std::size_t c = 0; c < 3; ++c) squared += (colour[c] - to[c]) * (colour[c] - to[c]);
+        least = std::min(least, squared);
+    }
+    return std::sqrt(least);
+}
+
+}  // namespace
+
+std::vector<std::size_t> ground_rows(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front) {
+    GSE_CHECK_EQ(bits.size(), set.size());
+    const auto standing = standing_of(set, bits, up, front);
+    if (!standing.found()) return {};
+    const Frame frame = make_frame(up, front);
+    const Vec3 foot = frame.to_frame(standing.foot);
+    const double thickness = Thickness * standing.height, reach = 0.5 * Around * standing.width();
+    const auto stride = static_cast<std::size_t>(sh_coefficient_count(set.sh_degree())) * 3;
+    const auto colour = [&](std::size_t row) {
+        const auto sh = set.sh().subspan(row * stride, 3);
+        return Colour{sh[0], sh[1], sh[2]};
+    };
+    std::vector<Colour> ground, thing;
+    std::vector<std::size_t> low;
+    for (std::size_t row = 0; row < bits.size(); ++row) {
+        const auto at = set.position().subspan(row * 3, 3);
+        const Vec3 p = frame.to_frame({at[0], at[1], at[2]});
+        if (!std::isfinite(p.x + p.y + p.z)) continue;
+        const bool is_low = std::abs(p.y - foot.y) <= thickness;
+        if (bits[row] == 0) {
+            if (is_low && std::hypot(p.x - foot.x, p.z - foot.z) <= reach) ground.push_back(colour(row));
+        } else if (is_low) {
+            low.push_back(row);
+        } else if (p.y > foot.y) {
+            thing.push_back(colour(row));
+        }
+    }
+    if (ground.size() < LeastGround || static_cast<double>(low.size()) > MostLow * static_cast<double>(low.size() + thing.size())) return {};
+    thin_out(ground);
+    thin_out(thing);
+    std::erase_if(low, [&](std::size_t row) {
+        const double own = nearest(thing, colour(row));
+        return !(own >= Apart && nearest(ground, colour(row)) <= Nearer * own);
+    });
+    return low;
+}
+
+}  // namespace gse::edit

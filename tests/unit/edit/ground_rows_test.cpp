@@ -1,0 +1,75 @@
+// What of a label is ground, and what is not.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "engine/base/random.h"
+#include "engine/edit/ground_rows.h"
+
+namespace {
+
+using namespace gse;
+
+const Vec3 Up{0, -1, 0}, Front{0, 0, -1};
+
+/// A thing 1 high and 0.6 wide on the ground y = 0, up is -y; a colour is that of the rows' first coefficients.
+struct Scene {
+    GaussianData data;
+    std::vector<std::uint8_t> bits;
+    Random random{3};
+
+    Scene& box(double half, double low, double high, const Vec3& colour, int count, bool labelled) {
+        for (int n = 0; n < count; ++n) {
+            const std::size_t i = data.size();
+            data.resize(i + 1);
+            const Vec3 at{random.uniform(-half, half), -random.uniform(low, high), random.uniform(-half, half)};
+            for (int axis = 0; axis < 3; ++axis) {
+                data.position[i * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(at[axis]);
+                data.sh[i * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(colour[axis] + random.uniform(-0.05, 0.05));
+            }
+            data.rotation[i * 4] = 1;
+            data.opacity_logit[i] = 2;
+            bits.push_back(labelled ? 1 : 0);
+        }
+        return *this;
+    }
+    std::vector<std::size_t> ground() const { return edit::ground_rows(GaussianSet(GaussianData(data)), bits, Up, Front); }
+};
+
+const Vec3 Red{1, -1, -1}, Green{-1, 0.5, -1};
+
+}  // namespace
+
+DOCTEST_TEST_CASE("ground that a label holds below a thing is told from the thing by height and colour") {
+    Scene bear;
+    bear.box(0.3, 0.02, 1, Red, 2000, true).box(0.3, -0.005, 0.005, Green, 60, true).box(2, -0.005, 0.005, Green, 3000, false);
+    const auto ground = bear.ground();
+    DOCTEST_REQUIRE(ground.size() == 60);
+    DOCTEST_CHECK(ground.front() == 2000);
+    DOCTEST_CHECK(ground.back() == 2059);
+}
+
+DOCTEST_TEST_CASE("a thing keeps rows of its own colour, and green ones that are high") {
+    Scene frog;   // as green as the grass it sits on
+    frog.box(0.3, 0, 1, Green, 2000, true).box(2, -0.005, 0.005, Green, 3000, false);
+    DOCTEST_CHECK(frog.ground().empty());
+    Scene tree;
+    tree.box(0.3, 0, 0.6, Red, 1000, true).box(0.3, 0.6, 1, Green, 1000, true).box(2, -0.005, 0.005, Green, 3000, false);
+    DOCTEST_CHECK(tree.ground().empty());
+}
+
+DOCTEST_TEST_CASE("a ground that is a label of its own, a thing without ground and an empty label lose nothing") {
+    Scene lawn;
+    lawn.box(2, -0.005, 0.005, Green, 3000, true).box(0.3, 0.02, 1, Red, 500, false).box(3, -0.005, 0.005, Green, 200, false);
+    DOCTEST_CHECK(lawn.ground().empty());
+    Scene floating;
+    floating.box(0.3, 0, 1, Red, 2000, true).box(0.3, -0.005, 0.005, Green, 60, true);
+    DOCTEST_CHECK(floating.ground().empty());
+    Scene nothing;
+    nothing.box(2, -0.005, 0.005, Green, 300, false);
+    DOCTEST_CHECK(nothing.ground().empty());
+}
