@@ -21,6 +21,7 @@ constexpr double MostLow = 0.5;           // of the label: more of it is a groun
 constexpr double Nearer = 0.5;            // distance to the ground's colour, over that to the thing's
 constexpr double Apart = 0.1;             // of a coefficient, 0.03 of a channel: colours of a thing nearer to a row are its own
 constexpr std::size_t LeastGround = 20;   // rows that make a ground
+constexpr std::size_t LeastBeside = 5;    // of them beyond the thing's half width, in each of four quarters: a ground reaches out on all sides
 constexpr std::size_t MostColours = 600;  // of each that a row is compared with
 
 /// Evenly chosen ones of many.
@@ -56,20 +57,25 @@ std::vector<std::size_t> ground_rows(const GaussianSet& set, const std::vector<s
     };
     std::vector<Colour> ground, thing;
     std::vector<std::size_t> low;
+    std::array<std::size_t, 4> beside{};
     for (std::size_t row = 0; row < bits.size(); ++row) {
         const auto at = set.position().subspan(row * 3, 3);
         const Vec3 p = frame.to_frame({at[0], at[1], at[2]});
         if (!std::isfinite(p.x + p.y + p.z)) continue;
         const bool is_low = std::abs(p.y - foot.y) <= thickness;
         if (bits[row] == 0) {
-            if (is_low && std::hypot(p.x - foot.x, p.z - foot.z) <= reach) ground.push_back(colour(row));
+            const double distance = std::hypot(p.x - foot.x, p.z - foot.z);
+            if (!is_low || distance > reach) continue;
+            ground.push_back(colour(row));
+            if (distance > reach / Around) ++beside[(p.x > foot.x ? 1u : 0u) + (p.z > foot.z ? 2u : 0u)];
         } else if (is_low) {
             low.push_back(row);
         } else if (p.y > foot.y) {
             thing.push_back(colour(row));
         }
     }
-    if (ground.size() < LeastGround || static_cast<double>(low.size()) > MostLow * static_cast<double>(low.size() + thing.size())) return {};
+    if (ground.size() < LeastGround || *std::min_element(beside.begin(), beside.end()) < LeastBeside) return {};
+    if (static_cast<double>(low.size()) > MostLow * static_cast<double>(low.size() + thing.size())) return {};
     thin_out(ground);
     thin_out(thing);
     std::erase_if(low, [&](std::size_t row) {

@@ -11,7 +11,7 @@ namespace gse::edit {
 
 /// Rows of the label `bits` [N] that are ground, ascending: they lie at the height of the ground that the labelled thing stands on, and in
 /// colour (of SH degree 0) are at most half as far from the ground around it as from what of the thing is higher. Masks of few pixels
-/// close over the gap between two legs, and what nobody sees below a thing goes with it. None where no ground is around, or where most
+/// close over the gap between two legs, and what nobody sees below a thing goes with it. None where no ground reaches out on all sides, or where most
 /// of the label is that low: a ground is a thing, too.
 std::vector<std::size_t> ground_rows(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front);
 

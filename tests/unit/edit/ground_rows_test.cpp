@@ -69,6 +69,9 @@ DOCTEST_TEST_CASE("a ground that is a label of its own, a thing without ground a
     Scene floating;
     floating.box(0.3, 0, 1, Red, 2000, true).box(0.3, -0.005, 0.005, Green, 60, true);
     DOCTEST_CHECK(floating.ground().empty());
+    Scene potted;   // what is not labelled lies within it: no ground
+    potted.box(0.3, 0, 1, Red, 2000, true).box(0.3, -0.005, 0.005, Green, 60, true).box(0.2, -0.005, 0.005, Green, 300, false);
+    DOCTEST_CHECK(potted.ground().empty());
     Scene nothing;
     nothing.box(2, -0.005, 0.005, Green, 300, false);
     DOCTEST_CHECK(nothing.ground().empty());
