@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "engine/base/check.h"
 #include "engine/edit/region_frame.h"
@@ -20,7 +21,7 @@ constexpr double GroundWidth = 1.5;         // of a foot's radius: so far out it
 constexpr std::size_t LeastGround = 20;     // rows that make a ground
 constexpr double FigureWidth = 0.75;        // of its width, the least that a figure is high
 
-std::vector<Vec3> shown_rows(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Frame& frame, bool labelled) {
+std::vector<Vec3> shown_rows(const GaussianSet& set, std::span<const std::uint8_t> bits, const Frame& frame, bool labelled) {
     std::vector<Vec3> points;
     for (std::size_t row = 0; row < bits.size(); ++row) {
         if ((bits[row] != 0) != labelled || !(set.opacity_logit()[row] > ShownLogit)) continue;
@@ -67,7 +68,7 @@ double ground_at(const std::vector<Vec3>& others, const Standing& thing, double 
 
 }  // namespace
 
-Standing standing_of(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front) {
+Standing standing_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front) {
     GSE_CHECK_EQ(bits.size(), set.size());
     const Frame frame = make_frame(up, front);
     const auto points = shown_rows(set, bits, frame, true);

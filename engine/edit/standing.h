@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "engine/math/vec.h"
 #include "engine/scene/gaussian_set.h"
@@ -21,7 +21,7 @@ struct Standing {
 /// Of what `bits` [N] label. Its foot is the middle of its lowest part (a tail or a head reaches out of a thing's middle, but stands on
 /// nothing), at the height of the rows around, not labelled, that reach out from under it, where there are such near its lowest ones or
 /// below them (a label may lack a stem, or hold some ground). The outermost rows and those too faint to be seen do not count.
-Standing standing_of(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front);
+Standing standing_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front);
 
 /// How high a figure would be that stands there: what is wider than high counts as high as others of its width are, as a car does
 /// beside a bear. World units.
