@@ -2,13 +2,10 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <vector>
 
-#include "engine/base/random.h"
 #include "engine/edit/ground_rows.h"
+#include "tests/unit/edit/box_rows.h"
 
 namespace {
 
@@ -16,28 +13,15 @@ using namespace gse;
 
 const Vec3 Up{0, -1, 0}, Front{0, 0, -1};
 
-/// A thing 1 high and 0.6 wide on the ground y = 0, up is -y; a colour is that of the rows' first coefficients.
+/// Things 1 high and 0.6 wide, and grounds.
 struct Scene {
-    GaussianData data;
-    std::vector<std::uint8_t> bits;
-    Random random{3};
+    test::BoxRows rows;
 
     Scene& box(double half, double low, double high, const Vec3& colour, int count, bool labelled) {
-        for (int n = 0; n < count; ++n) {
-            const std::size_t i = data.size();
-            data.resize(i + 1);
-            const Vec3 at{random.uniform(-half, half), -random.uniform(low, high), random.uniform(-half, half)};
-            for (int axis = 0; axis < 3; ++axis) {
-                data.position[i * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(at[axis]);
-                data.sh[i * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(colour[axis] + random.uniform(-0.05, 0.05));
-            }
-            data.rotation[i * 4] = 1;
-            data.opacity_logit[i] = 2;
-            bits.push_back(labelled ? 1 : 0);
-        }
+        rows.box(-half, half, low, high, -half, half, count, labelled, colour);
         return *this;
     }
-    std::vector<std::size_t> ground() const { return edit::ground_rows(GaussianSet(GaussianData(data)), bits, Up, Front); }
+    std::vector<std::size_t> ground() const { return edit::ground_rows(rows.set(), rows.bits, Up, Front); }
 };
 
 const Vec3 Red{1, -1, -1}, Green{-1, 0.5, -1};

@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "engine/base/random.h"
 #include "engine/edit/shape_room.h"
 #include "engine/edit/standing.h"
+#include "tests/unit/edit/box_rows.h"
 
 namespace {
 
@@ -17,31 +17,8 @@ using namespace gse;
 
 const Vec3 Up{0, -1, 0}, Front{0, 0, -1};
 
-/// Rows of boxes; up is -y, the ground is y = 0.
-struct Rows {
-    GaussianData data;
-    std::vector<std::uint8_t> bits;
-    Random random{7};
-
-    /// Heights from `low` to `high` above the ground.
-    Rows& box(double x0, double x1, double low, double high, double z0, double z1, int count, bool labelled) {
-        for (int i = 0; i < count; ++i)
-            row({random.uniform(x0, x1), -random.uniform(low, high), random.uniform(z0, z1)}, labelled);
-        return *this;
-    }
-    Rows& row(const Vec3& at, bool labelled, float opacity_logit = 2) {
-        const std::size_t i = data.size();
-        data.resize(i + 1);
-        for (int axis = 0; axis < 3; ++axis) {
-            data.position[i * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(at[axis]);
-            data.log_scale[i * 3 + static_cast<std::size_t>(axis)] = -4;
-        }
-        data.rotation[i * 4] = 1;
-        data.opacity_logit[i] = opacity_logit;
-        bits.push_back(labelled ? 1 : 0);
-        return *this;
-    }
-    edit::Standing standing() const { return edit::standing_of(GaussianSet(GaussianData(data)), bits, Up, Front); }
+struct Rows : test::BoxRows {
+    edit::Standing standing() const { return edit::standing_of(set(), bits, Up, Front); }
 };
 
 constexpr double Close = 0.04;   // of a thing 1 high: rows are drawn at random, and the outermost do not count
