@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ struct StarterPicture {
     /// The accessory map is that of the twin scene: the picture itself shows no accessory. Captions asked for with
     /// `insertion` then name the accessory, so the words learn where it belongs before it is there.
     bool bare_twin = false;
-    /// How much of each pixel what is new covers (the accessory, else the object), [S,S], 0..255; empty where the source does not tell.
+    /// How much of each pixel what is new covers (what is restyled, else the accessory, else the object), [S,S], 0..255; empty where the source
+    /// does not tell.
     std::vector<std::uint8_t> outline = {};
 };
 
@@ -65,6 +67,9 @@ public:
     /// The same views of the same scenes without what the caption's edit brings: the accessory, else the object, whose coverage then is that
     /// of the room in which another thing took its place. null = there are none.
     virtual const StarterSource* before() const { return nullptr; }
+    /// The part that the caption's edit gives another colour, material or ground: pictures of before() show it as it was, and there is no room.
+    /// null = something new comes.
+    virtual std::optional<StarterPart> restyled(std::uint64_t index) const { return static_cast<void>(index), std::nullopt; }
     /// Whether all pictures have their outline.
     virtual bool has_outlines() const { return false; }
     /// Changes when the same index would give another picture (names the picture cache).
@@ -125,6 +130,7 @@ struct StarterTrainParameters {
     double caption_dropout = 0.1;
     bool shapes = false;
     int shape_rank = 32;
+    double restyled_share = 0;
     bool bf16 = false;
     std::string device = "cpu";
     std::uint64_t seed = 1;
@@ -177,6 +183,9 @@ struct StarterTrainParameters {
           "Leave the initial model as it is and train a LoRA beside it for views in which a new thing is drawn, told exactly from where, on from "
           "the one that it has, if any; neither VAE nor image-text encoder are trained then.");
         f("shape_rank", self.shape_rank, "Rank of that LoRA.", Range{1, 1024});
+        f("restyled_share", self.restyled_share,
+          "Share of the scenes drawn with --pictures-only in which nothing new comes: the thing, its ground or what it wears gets another look.",
+          Range{0, 1});
         f("bf16", self.bf16, "Convolutions and matrix products of text encoder and UNet in bfloat16, norms and losses in float.");
         f("device", self.device, "cpu or cuda.");
         f("seed", self.seed, "Seed of pictures, weights, wording and noise.");

@@ -19,14 +19,14 @@
 namespace gse::training {
 namespace {
 
-constexpr std::int32_t ShardMagic = 0x31485347;   // "GSH1"
-constexpr std::uint8_t NoWord = 255;
+constexpr std::int32_t ShardMagic = 0x32485347;   // "GSH2"
+constexpr std::uint8_t NoWord = 255, NoPart = 255;
 constexpr std::uint64_t WordingStream = 7919;   // of a scene: how its captions are put
 
 using Bytes = std::vector<std::uint8_t>;
 
 struct Shard {
-    Bytes after, before, coverage, room, outline, words;
+    Bytes after, before, coverage, room, outline, words, restyled;
     std::vector<float> cameras, next_share, fronts;
 };
 
@@ -63,6 +63,7 @@ Shard empty_shard(const ShardRange& range) {
     shard.room.resize(count * cells);
     shard.outline.resize(count * pixels);
     shard.words.resize(count * wordings * 2 * ShardWords);
+    shard.restyled.resize(count);
     shard.cameras.resize(count * 2);
     shard.next_share.resize(count * wordings);
     shard.fronts.resize(count);
@@ -81,6 +82,8 @@ void draw(const neural::StarterSource& source, const ShardRange& range, const Wo
     copy_into(shard.after, i, count, after.rgb.data());
     copy_into(shard.coverage, i, count, after.coverage.data());
     copy_into(shard.outline, i, count, after.outline.data());
+    const auto restyled = source.restyled(index);
+    shard.restyled[i] = restyled ? static_cast<std::uint8_t>(*restyled) : NoPart;
     const auto camera = source.camera(index);
     shard.cameras[2 * i] = static_cast<float>(camera.azimuth), shard.cameras[2 * i + 1] = static_cast<float>(camera.elevation);
     shard.fronts[i] = static_cast<float>(camera.front);
@@ -107,7 +110,7 @@ void write(const Shard& shard, const ShardRange& range, const std::filesystem::p
         stream.write(reinterpret_cast<const char*>(values.data()), static_cast<std::streamsize>(values.size() * sizeof(values[0])));
     };
     put(std::vector<std::int32_t>{ShardMagic, static_cast<std::int32_t>(range.count), range.size, range.size / LatentCell, range.wordings, ShardWords});
-    for (const auto* bytes : {&shard.after, &shard.before, &shard.coverage, &shard.room, &shard.outline, &shard.words}) put(*bytes);
+    for (const auto* bytes : {&shard.after, &shard.before, &shard.coverage, &shard.room, &shard.outline, &shard.words, &shard.restyled}) put(*bytes);
     put(shard.cameras);
     put(shard.next_share);
     put(shard.fronts);
@@ -131,7 +134,7 @@ void write_picture_shard(const neural::StarterSource& source, const ShardRange& 
 
 void write_picture_shards(const neural::StarterTrainParameters& parameters, const std::filesystem::path& folder, const JobControl& job,
                           std::uint64_t per_file) {
-    const auto source = make_shape_source(parameters.seed);
+    const auto source = make_shape_source(parameters.seed, parameters.restyled_share);
     const auto views = static_cast<std::uint64_t>(source->views_of_scene()), count = static_cast<std::uint64_t>(parameters.pictures);
     const std::uint64_t each = std::max<std::uint64_t>(1, (per_file + views - 1) / views) * views, files = (count + each - 1) / each;
     auto words = source->vocabulary();

@@ -1,9 +1,12 @@
 // Draws captioned pictures of the synthetic world with their part masks.
 #include "engine/training/starter_source.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <optional>
 
@@ -24,6 +27,8 @@ struct Shot {
     std::array<float, 3> background{};
     double close_share = 0;   // of the picture that the accessory takes; 0 = the whole thing is in the picture
     Vec3 aside;               // of its middle, in its diagonals
+    std::optional<synth::Part> restyled;   // the part that the edit gives another look
+    double squeeze = 1;       // of pictures: what is restyled may have other proportions than all that there is to learn from
 };
 
 constexpr double MostClose = 0.7;   // distance of a close camera, where a thing is 1 high
@@ -151,14 +156,49 @@ struct Room {
     }
 };
 
-/// A scene before the edit of which it is the result: without its accessory, else with the shadow of another thing, which itself is gone.
+/// Another than the word of the list.
+std::string other_word(const std::vector<std::string>& words, const std::string& word, Random& random) {
+    std::vector<std::string> others;
+    std::copy_if(words.begin(), words.end(), std::back_inserter(others), [&](const std::string& other) { return other != word; });
+    return others.empty() ? word : others[random.below(others.size())];
+}
+
+/// The scene before `part` got the look that it has; never one that is kept out of training.
+synth::SceneSpec before_restyling(const synth::SceneSpec& after, synth::Part part, Random& random) {
+    synth::SceneSpec before = after;
+    do {
+        if (part == synth::Part::Ground) before.ground = other_word(synth::ground_words(), after.ground, random);
+        if (part == synth::Part::Object) before.material = other_word(synth::material_words(), after.material, random);
+        if (part == synth::Part::Accessory)
+            before.accessory_colour = other_word(synth::accessory_colour_words(after.accessory), after.accessory_colour, random);
+    } while (synth::held_out(before));
+    return before;
+}
+
+/// Whether a caption says what `part` looks like.
+bool tells_look(const synth::Caption& caption, const synth::SceneSpec& spec, synth::Part part) {
+    const auto is_look = [&](const synth::Caption::Grounding& grounding) {
+        if (grounding.part != part) return false;
+        const auto& colours = synth::accessory_colour_words(spec.accessory);
+        return part == synth::Part::Ground || (part == synth::Part::Object && grounding.word != spec.object) ||
+               std::find(colours.begin(), colours.end(), grounding.word) != colours.end();
+    };
+    return std::any_of(caption.groundings.begin(), caption.groundings.end(), is_look);
+}
+
+/// A scene before the edit of which it is the result: with another look of a part, without its accessory, else with the shadow of another thing,
+/// which itself is gone.
 struct SceneBefore {
     synth::SynthScene scene;
     std::vector<float> opacity_logit;   // [N]
     Room room;                          // of the thing that is gone, or that the accessory belongs to
     double share = 0;                   // by which it is larger
 
-    explicit SceneBefore(synth::SceneSpec spec, Random random) {
+    SceneBefore(synth::SceneSpec spec, std::optional<synth::Part> restyled, Random random) {
+        if (restyled) {
+            scene = synth::generate(before_restyling(spec, *restyled, random));
+            return;
+        }
         constexpr float Nothing = -20;
         const bool replaced = spec.accessory.empty();
         if (replaced) spec.object = synth::object_words()[random.below(synth::object_words().size())];
@@ -184,8 +224,8 @@ struct SceneBefore {
 class ShapeSource : public neural::StarterSource {
 public:
     /// `edited`: with what is new in it; else as it was before.
-    explicit ShapeSource(std::uint64_t seed, bool edited = true) : seed_(seed), edited_(edited) {
-        if (edited) before_ = std::make_unique<ShapeSource>(seed, false);
+    explicit ShapeSource(std::uint64_t seed, double restyled, bool edited = true) : seed_(seed), restyled_(restyled), edited_(edited) {
+        if (edited) before_ = std::make_unique<ShapeSource>(seed, restyled, false);
     }
 
     neural::StarterPicture picture(std::uint64_t index, int size) const override {
@@ -196,24 +236,27 @@ public:
         const Shot shot = shot_of(index);
         if (const std::pair wanted{seed_ * 2 + (edited_ ? 1 : 0), index / Views}; known != wanted) {
             scene = synth::generate(shot.spec);
-            if (!edited_) before.emplace(shot.spec, Random::stream(seed_ + 1, index / Views));
+            if (!edited_) before.emplace(shot.spec, shot.restyled, Random::stream(seed_ + 1, index / Views));
             known = wanted;
         }
-        const auto camera = shot.close_share > 0 ? close_camera(scene, shot, size)
-                                                 : synth::scene_camera(scene, shot.azimuth, shot.elevation, shot.zoom, size, size);
-        const auto is_new = shot.spec.accessory.empty() ? synth::Part::Object : synth::Part::Accessory;
+        auto camera = shot.close_share > 0 ? close_camera(scene, shot, size)
+                                           : synth::scene_camera(scene, shot.azimuth, shot.elevation, shot.zoom, size, size);
+        camera.fx *= shot.squeeze, camera.fy /= shot.squeeze;
+        const auto is_new = shot.restyled.value_or(shot.spec.accessory.empty() ? synth::Part::Object : synth::Part::Accessory);
         if (edited_) return painted(painter, scene, camera, shot.background, {}, static_cast<int>(is_new));
         auto picture = painted(painter, before->scene, camera, shot.background, before->opacity_logit);
         const std::size_t cells = picture.coverage.size() / neural::StarterPartCount;
         std::fill_n(picture.coverage.begin() + static_cast<std::ptrdiff_t>(cells), cells, std::uint8_t{0});
-        before->room.store(camera, before->share, &picture.coverage[cells]);
+        if (!shot.restyled) before->room.store(camera, before->share, &picture.coverage[cells]);
         return picture;
     }
     neural::StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool) const override {
         constexpr double Plain = 0.6, AnySide = 0.05;   // shares: the sentence in its plainest form; one that does not say from where
         const Shot shot = shot_of(index);
         Random random(seed);
-        const auto text = random.uniform() < Plain ? synth::full_caption(shot.spec).text : synth::random_caption(shot.spec, random).text;
+        auto caption = random.uniform() < Plain ? synth::full_caption(shot.spec) : synth::random_caption(shot.spec, random);
+        if (shot.restyled && !tells_look(caption, shot.spec, *shot.restyled)) caption = synth::full_caption(shot.spec);
+        const auto& text = caption.text;
         if (random.uniform() < AnySide) return {text, {}};
         const auto side = synth::side_blend(shot.azimuth);
         return {text + ", " + side.words, {}, text + ", " + side.next_words, side.share};
@@ -225,8 +268,14 @@ public:
         return {shot.azimuth, shot.elevation, synth::turn_of(shot.spec)};
     }
     const StarterSource* before() const override { return before_.get(); }
+    std::optional<neural::StarterPart> restyled(std::uint64_t index) const override {
+        const auto part = shot_of(index).restyled;
+        return part ? std::optional(static_cast<neural::StarterPart>(*part)) : std::nullopt;
+    }
     bool has_outlines() const override { return edited_; }
-    std::string identity() const override { return (edited_ ? "synthetic shapes 6 " : "synthetic shapes 6 before ") + std::to_string(seed_); }
+    std::string identity() const override {
+        return fmt::format("synthetic shapes 6 {}{}{}", edited_ ? "" : "before ", seed_, restyled_ > 0 ? fmt::format(" restyled {}", restyled_) : "");
+    }
 
 private:
     static constexpr int Views = 8;   // of a scene
@@ -242,13 +291,27 @@ private:
             shot.close_share = random.uniform(0.3, 0.75);
             shot.aside = {random.uniform(-0.15, 0.15), random.uniform(-0.15, 0.15), random.uniform(-0.15, 0.15)};
         }
+        restyle(shot, Random::stream(seed_ + 2, index / Views));
         random = Random::stream(random.next(), index % Views);
         shot.azimuth = random.uniform(-std::numbers::pi, std::numbers::pi);
         shot.elevation = random.uniform(0.05, 0.75);
         shot.zoom = zoom * random.uniform(0.9, 1.1);
         return shot;
     }
+    void restyle(Shot& shot, Random random) const {
+        constexpr double Accessory = 0.25, Ground = 0.3, Squeezed = 0.5, MostSqueezed = 0.3;   // shares; of the logarithm
+        if (!(random.uniform() < restyled_)) return;
+        const bool coloured = synth::accessory_colour_words(shot.spec.accessory).size() > 1;
+        if (coloured && random.uniform() < Accessory) {
+            shot.restyled = synth::Part::Accessory;
+        } else {
+            shot.restyled = random.uniform() < Ground ? synth::Part::Ground : synth::Part::Object;
+            shot.close_share = 0;
+        }
+        if (random.uniform() < Squeezed) shot.squeeze = std::exp(random.uniform(-MostSqueezed, MostSqueezed));
+    }
     std::uint64_t seed_;
+    double restyled_;   // share of the scenes
     bool edited_;
     std::unique_ptr<ShapeSource> before_;
 };
@@ -329,7 +392,9 @@ std::vector<std::uint8_t> to_bytes(const Image& image) {
     return bytes;
 }
 
-std::unique_ptr<neural::StarterSource> make_shape_source(std::uint64_t seed) { return std::make_unique<ShapeSource>(seed); }
+std::unique_ptr<neural::StarterSource> make_shape_source(std::uint64_t seed, double restyled) {
+    return std::make_unique<ShapeSource>(seed, restyled);
+}
 
 std::unique_ptr<neural::StarterSource> make_starter_source(std::uint64_t seed) {
     return std::make_unique<SyntheticSource>(seed);

@@ -22,11 +22,11 @@ def read_shard(path):
     """The arrays of a file of `gseditpro train-starter --pictures-only` (engine/training/picture_shards.h)."""
     raw = np.fromfile(path, np.uint8)
     magic, n, side, cells, wordings, words = (int(value) for value in raw[:24].view(np.int32))
-    if magic != 0x31485347 or (side, cells, wordings, words) != (SIDE, CELLS, WORDINGS, TOKENS - 2):
+    if magic != 0x32485347 or (side, cells, wordings, words) != (SIDE, CELLS, WORDINGS, TOKENS - 2):
         raise SystemExit(f"{path} is not a file of training pictures of this version")
     arrays, at = {}, 24
     for name, shape in (("after", (n, side, side, 3)), ("before", (n, side, side, 3)), ("cover", (n, 3, cells, cells)), ("room", (n, cells, cells)),
-                        ("outline", (n, side, side)), ("words", (n, wordings, 2, words))):
+                        ("outline", (n, side, side)), ("words", (n, wordings, 2, words)), ("restyled", (n,))):
         size = math.prod(shape)
         arrays[name] = raw[at:at + size].reshape(shape)
         at += size
@@ -40,17 +40,19 @@ def read_shard(path):
 class ShardReader:
     """Reads files in their order as they come to be."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, consume=False):
         self.ready = queue.Queue(4)
-        threading.Thread(target=self.run, args=(folder,), daemon=True).start()
+        threading.Thread(target=self.run, args=(folder, consume), daemon=True).start()
 
-    def run(self, folder):
+    def run(self, folder, consume):
         index = 0
         while True:
             path = f"{folder}/shard-{index}.bin"
             if os.path.exists(path):
                 self.ready.put(read_shard(path))
                 index += 1
+                if consume:
+                    os.remove(path)
             else:
                 time.sleep(0.2)
 
@@ -63,7 +65,7 @@ class Pictures:
         self.count, self.capacity, self.device, self.encode = 0, capacity, device, encode
         self.after, self.before = (empty(capacity, 4, CELLS, CELLS, dtype=torch.float16) for _ in range(2))
         self.cover, self.room, self.outline = empty(capacity, 3, CELLS, CELLS), empty(capacity, CELLS, CELLS), empty(capacity, SIDE, SIDE)
-        self.ids = empty(capacity, WORDINGS, 2, TOKENS, dtype=torch.int16)
+        self.ids, self.restyled = empty(capacity, WORDINGS, 2, TOKENS, dtype=torch.int16), empty(capacity)
         self.share, self.camera = empty(capacity, WORDINGS, dtype=torch.float32), empty(capacity, 6, dtype=torch.float32)
         self.rgb = empty(min(keep_rgb, capacity), SIDE, SIDE, 3)
         self.table, self.bos, self.eos = tokens[0].to(device), tokens[1], tokens[2]
@@ -78,6 +80,7 @@ class Pictures:
                 kept[first + i:first + i + len(pictures)] = self.encode(pictures).half()
         rows = slice(first, first + n)
         self.cover[rows], self.room[rows], self.outline[rows], self.share[rows] = part["cover"], part["room"], part["outline"], part["share"]
+        self.restyled[rows] = part["restyled"]
         azimuth, elevation = part["camera"].unbind(1)
         self.camera[rows] = torch.stack([azimuth.sin(), azimuth.cos(), (2 * azimuth).sin(), (2 * azimuth).cos(), elevation.sin(),
                                          torch.ones_like(azimuth)], 1)   # camera_features()
@@ -132,22 +135,39 @@ class Draw:
 
 
 NOTHING, SCENE, PLACE, AROUND, BACKGROUND = range(5)   # InpaintTask
+RESTYLE = 5   # all of the scene is shown; a part of it, the place of which is known, gets another look
+PARTS = 3     # Pictures.restyled of something new is larger
+
+
+def new_cells(pictures, chosen, worn):
+    """[B,G,G]: how much of each cell what is new covers, 0..255."""
+    restyled = pictures.restyled[chosen].long()
+    part = torch.where(restyled < PARTS, restyled, torch.where(worn, 2, 1))
+    return pictures.cover[chosen, part]
+
+
+def loose_outline(new, draw):
+    """[B,G,G] grown by up to two cells, as masks of labels are."""
+    grown = torch.stack([F.max_pool2d(new[:, None], 2 * r + 1, 1, r)[:, 0] for r in range(3)])
+    return grown[draw.integers(0, 3, len(new)), torch.arange(len(new), device=new.device)]
 
 
 def may_change(pictures, chosen, together, draw):
     """Task of each picture [B], where it may change and what is shown of it [B,1,G,G]."""
     batch, groups, wide = len(chosen), len(chosen) // together, lambda value: value[:, None, None]
-    cover, room = pictures.cover[chosen], (pictures.room[chosen] > 0).float()
-    worn = (cover[:, 2].flatten(1).amax(1) > 0).view(groups, together).any(1)
-    nothing, other = draw.uniform(groups) < 0.2, draw.uniform(groups) < 0.45
+    room = (pictures.room[chosen] > 0).float()
+    restyled = pictures.restyled[chosen].view(groups, together)[:, 0] < PARTS
+    worn = (pictures.cover[chosen, 2].flatten(1).amax(1) > 0).view(groups, together).any(1)
+    nothing, other = draw.uniform(groups) < torch.where(restyled, 0.1, 0.2), draw.uniform(groups) < 0.45
     task = torch.where(worn, torch.where(other, PLACE, SCENE), torch.where(other, BACKGROUND, AROUND))
-    task = torch.where(nothing, NOTHING, task).repeat_interleave(together)
-    new = (torch.where(wide(worn.repeat_interleave(together)), cover[:, 2], cover[:, 1]) >= LEAST_COVER).float()
-    in_room = (task != SCENE) & (room.flatten(1).amax(1) > 0) & ((task == PLACE) | (draw.uniform(batch) < 0.8))
+    task = torch.where(nothing, NOTHING, torch.where(restyled, RESTYLE, task)).repeat_interleave(together)
+    new = (new_cells(pictures, chosen, worn.repeat_interleave(together)) >= LEAST_COVER).float()
+    in_room = (task != SCENE) & (task != RESTYLE) & (room.flatten(1).amax(1) > 0) & ((task == PLACE) | (draw.uniform(batch) < 0.8))
     ar = torch.arange(CELLS, device=pictures.device).float()
     y, x = torch.meshgrid(ar, ar, indexing="ij")
     grid = (x[None], y[None])
-    mask = torch.where(wide(in_room), room, random_regions(new, draw, grid))
+    loose = (task == RESTYLE) & (draw.uniform(batch) < 0.85)
+    mask = torch.where(wide(in_room), room, torch.where(wide(loose), loose_outline(new, draw), random_regions(new, draw, grid)))
     r = draw.uniform(batch, low=-4, high=4)
     hole = ellipse(draw.uniform(batch, high=CELLS), draw.uniform(batch, low=0.3 * CELLS, high=CELLS), r.clamp(min=1e-3), (r / 2).clamp(min=1e-3), grid)
     hole = hole * (wide(r) > 0)
@@ -182,7 +202,10 @@ def make_batch(pictures, groups, together, scenes, draw):
     before = pictures.before[chosen].float()
     latents = torch.where(mask > 0, pictures.after[chosen].float(), before)
     cover = pictures.cover[chosen].float() / 255
-    weights = F.max_pool2d((cover[:, 1] + 2 * cover[:, 2])[:, None], 3, 1, 1) + 0.1 + 0.3 * mask
+    restyled = pictures.restyled[chosen].long()
+    changes = cover[torch.arange(batch, device=cover.device), restyled.clamp(max=PARTS - 1)]
+    counts = torch.where((restyled < PARTS)[:, None, None], 1.5 * changes, cover[:, 1] + 2 * cover[:, 2])
+    weights = F.max_pool2d(counts[:, None], 3, 1, 1) + 0.1 + 0.3 * mask
     tells = (task != NOTHING).float()[:, None, None, None]
     return {
         "ids": torch.cat([ids[:, 0], ids[:, 1]]), "share": torch.where(said, share, torch.zeros_like(share)).view(batch, 1, 1),

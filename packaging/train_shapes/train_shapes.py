@@ -37,6 +37,8 @@ def arguments():
     add("--layers", type=int, default=2, help="per block; one more than the model has begins as the identity")
     add("--capacity", type=int, default=600000, help="most pictures that are kept")
     add("--start", type=int, default=81920, help="pictures to wait for")
+    add("--consume", action="store_true", help="remove every file of pictures once it is read: drawing and training may go on on a small disk")
+    add("--save-every", type=float, default=0, help="seconds between two writings of what there is so far; 0 = only at the end")
     add("--check", action="store_true", help="only say the loss of what the model has")
     return parser.parse_args()
 
@@ -67,7 +69,7 @@ class Trainer:
         self.unet.to(self.device)
         self.alphas = alphas_cumprod().to(self.device)
         self.draw = Draw(self.device, 7)
-        self.reader = ShardReader(options.pictures)
+        self.reader = ShardReader(options.pictures, options.consume)
         self.pictures = Pictures(options.capacity, self.device, self.encode, self.tokens(), 100000 if options.decoder_seconds > 0 else 0)
         while self.pictures.count < min(options.start, options.capacity):
             self.pictures.add(self.reader.ready.get())
@@ -160,7 +162,7 @@ class Trainer:
     def run(self):
         self.prepare()
         step_on = self.captured() if self.cuda else self.step
-        begin, step, seconds = time.time(), 0, self.options.seconds
+        begin, step, seconds, saved = time.time(), 0, self.options.seconds, 0
         log = open(f"{self.options.out}/log/shapes.tsv", "w")
         log.write("step\tseconds\tlearning_rate\tpictures\tloss\tdiffusion\toutline\n")
         while time.time() - begin < seconds:
@@ -171,7 +173,7 @@ class Trainer:
                 self.optimizer.param_groups[0]["lr"] = rate
             step_on(self.batch())
             step += 1
-            if step % 96 == 0 and not self.reader.ready.empty() and self.pictures.count < self.pictures.capacity:
+            if step % 48 == 0 and not self.reader.ready.empty() and self.pictures.count < self.pictures.capacity:
                 self.pictures.add(self.reader.ready.get())
             if self.cuda and step % 16 == 0:
                 torch.cuda.synchronize()   # the clock is the GPU's
@@ -181,10 +183,20 @@ class Trainer:
             if step % (500 if self.cuda else 5) == 0:
                 say(f"step {step}, {seen / (time.time() - begin):.0f} pictures/s of {self.pictures.count}, loss, diffusion, outline:",
                     " ".join(f"{v:.4f}" for v in self.logged.tolist()))
-        with torch.no_grad():
-            for parameter, averaged in zip(self.parameters, self.averaged):
-                parameter.copy_(averaged)
+            if self.options.save_every > 0 and time.time() - begin > (saved + 1) * self.options.save_every:
+                saved, current = saved + 1, [p.detach().clone() for p in self.parameters]
+                log.flush()
+                self.set_weights(self.averaged)
+                say(f"{step} steps, averaged weights on held-out scenes: {self.held_out()}")
+                self.write()
+                self.set_weights(current)
+        self.set_weights(self.averaged)
         say(f"{step} steps, averaged weights on held-out scenes: {self.held_out()}")
+
+    @torch.no_grad()
+    def set_weights(self, values):
+        for parameter, value in zip(self.parameters, values):
+            parameter.copy_(value)
 
     def train_decoder(self):
         """L1 + 2 MSE + half of the gradients' L1 as for the whole VAE; what is new counts three times, and latents are off by a little, as
@@ -231,9 +243,9 @@ class Trainer:
         weights.save(f"{out}/shapes/diffusion_pytorch_model.safetensors", weights.quantized(self.unet.state_dict()))
         json.dump(self.config, open(f"{out}/shapes/config.json", "w"), indent=2)
         weights.save(f"{out}/vae/diffusion_pytorch_model.safetensors", {name: tensor.half() for name, tensor in self.vae.state_dict().items()})
-        for key in ("shape_lora", "shape_cameras"):
-            if key in facts:
-                os.remove(f"{out}/{facts.pop(key)}")
+        for path in (facts.pop(key) for key in ("shape_lora", "shape_cameras") if key in facts):
+            if os.path.exists(f"{out}/{path}"):
+                os.remove(f"{out}/{path}")
         facts.update(shape_unet="shapes", shape_views=TOGETHER, shape_training={name: value for name, value in vars(self.options).items() if name != "check"})
         json.dump(facts, open(f"{out}/gseditpro.json", "w"), indent=2)
 

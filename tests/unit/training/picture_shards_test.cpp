@@ -40,7 +40,7 @@ Bytes part(const Bytes& all, std::size_t index, std::size_t count) {
 DOCTEST_TEST_CASE("a file of training pictures holds what the source draws, with its words and cameras") {
     const gse::test::ScratchFolder scratch;
     const auto path = scratch.path() / "shard.bin";
-    const auto source = gse::training::make_shape_source(7);
+    const auto source = gse::training::make_shape_source(7, 0.5);
     gse::ThreadPool pool(2);
     gse::training::ShardRange range;
     range.first = 16;
@@ -50,10 +50,10 @@ DOCTEST_TEST_CASE("a file of training pictures holds what the source draws, with
     gse::training::write_picture_shard(*source, range, path, pool);
     const std::string text = gse::read_file(path);
     Cursor cursor{text};
-    DOCTEST_CHECK(cursor.take<std::int32_t>(6) == std::vector<std::int32_t>{0x31485347, 8, Size, Cells, 2, gse::training::ShardWords});
+    DOCTEST_CHECK(cursor.take<std::int32_t>(6) == std::vector<std::int32_t>{0x32485347, 8, Size, Cells, 2, gse::training::ShardWords});
     const auto after = cursor.take<std::uint8_t>(8 * Size * Size * 3), before = cursor.take<std::uint8_t>(8 * Size * Size * 3);
     const auto coverage = cursor.take<std::uint8_t>(8 * 3 * Cells * Cells), room = cursor.take<std::uint8_t>(8 * Cells * Cells);
-    const auto outline = cursor.take<std::uint8_t>(8 * Size * Size), words = cursor.take<std::uint8_t>(8 * 2 * 2 * gse::training::ShardWords);
+    const auto outline = cursor.take<std::uint8_t>(8 * Size * Size), words = cursor.take<std::uint8_t>(8 * 2 * 2 * gse::training::ShardWords), restyled = cursor.take<std::uint8_t>(8);
     const auto cameras = cursor.take<float>(16), shares = cursor.take<float>(16), fronts = cursor.take<float>(8);
     DOCTEST_CHECK(cursor.bytes.empty());
     auto known = source->vocabulary();
@@ -65,6 +65,8 @@ DOCTEST_TEST_CASE("a file of training pictures holds what the source draws, with
         DOCTEST_CHECK(part(coverage, i, 8) == picture.coverage);
         DOCTEST_CHECK(part(room, i, 8) == part(old.coverage, 1, 3));
         DOCTEST_CHECK(part(outline, i, 8) == picture.outline);
+        const auto of = source->restyled(16 + i);
+        DOCTEST_CHECK(restyled[i] == (of ? static_cast<int>(*of) : 255));
         DOCTEST_CHECK(cameras[2 * i] == static_cast<float>(source->camera(16 + i).azimuth));
         DOCTEST_CHECK(fronts[i] == static_cast<float>(source->camera(16 + i).front));
         const auto sentence = [&](std::size_t row) {

@@ -82,3 +82,39 @@ DOCTEST_TEST_CASE("a view of before lacks what the caption's edit brings, and no
     DOCTEST_CHECK(worn > 3);
     DOCTEST_CHECK(replaced > 3);
 }
+
+DOCTEST_TEST_CASE("what is restyled looked different before, where it is and nowhere else, and the caption tells its look") {
+    const auto source = gse::training::make_shape_source(6, 1), plain = gse::training::make_shape_source(6);
+    const auto views = static_cast<std::uint64_t>(source->views_of_scene());
+    DOCTEST_CHECK_FALSE(plain->restyled(0).has_value());
+    DOCTEST_CHECK(source->identity() != plain->identity());
+    std::set<gse::neural::StarterPart> parts;
+    for (std::uint64_t scene = 0; scene < 24; ++scene) {
+        const std::uint64_t index = scene * views + scene % views;
+        const auto part = source->restyled(index);
+        DOCTEST_REQUIRE((part.has_value() && source->before()->restyled(index) == part));
+        parts.insert(*part);
+        const auto after = source->picture(index, Size), before = source->before()->picture(index, Size);
+        constexpr std::size_t Cells = Size / 4;
+        double changed = 0, elsewhere = 0;
+        for (std::size_t cell = 0; cell < Cells * Cells; ++cell) {
+            const double covered = after.coverage[static_cast<std::size_t>(*part) * Cells * Cells + cell] / 255.0;
+            double difference = 0;
+            for (std::size_t k = 0; k < 16; ++k)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const std::size_t at = ((cell / Cells * 4 + k / 4) * Size + cell % Cells * 4 + k % 4) * 3 + c;
+                    difference += std::abs(after.rgb[at] - before.rgb[at]) / 48.0;
+                }
+            if (covered > 0.9) changed = std::max(changed, difference);
+            if (covered == 0) elsewhere = std::max(elsewhere, difference);
+        }
+        // Another look changes colours only: where nothing of the part is, both pictures are the same.
+        DOCTEST_CHECK(elsewhere == 0);
+        const double most_covered = *std::max_element(after.coverage.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(*part) * Cells * Cells),
+                                                      after.coverage.begin() + static_cast<std::ptrdiff_t>((static_cast<std::size_t>(*part) + 1) * Cells * Cells));
+        if (most_covered > 0.95 * 255) DOCTEST_CHECK(changed > 4);
+        // There is no room: nothing of another shape was there.
+        DOCTEST_CHECK(std::all_of(before.coverage.begin() + Cells * Cells, before.coverage.begin() + 2 * Cells * Cells, [](int room) { return room == 0; }));
+    }
+    DOCTEST_CHECK(parts.size() == 3);
+}
