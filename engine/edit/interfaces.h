@@ -88,6 +88,9 @@ public:
     virtual ~ViewGuidance() = default;
     /// Throws Error (Cancelled) on a stop request.
     virtual RoundTargets edit(const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) = 0;
+    /// Whether rounds that are not `anew` are drawn by a network that is shown the unedited views and keeps their shapes, however much noise
+    /// there is in the beginning.
+    virtual bool restyles() const { return false; }
 };
 
 /// One attention query: where in the image does each of these words of the prompt land?

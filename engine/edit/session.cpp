@@ -112,7 +112,7 @@ public:
         : base_(base),
           plan_(plan),
           label_(base.editable(plan.label)),
-          request_(loop_request(request, plan.mode, tools.views != nullptr)),
+          request_(loop_request(request, plan.mode, tools.views != nullptr, tools.views != nullptr && tools.views->restyles())),
           tools_(tools),
           set_(base.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
           preservation_({request.l1, request.ssim, request.preserve}),

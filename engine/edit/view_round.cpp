@@ -71,7 +71,8 @@ void grow_often(EditRequest& request, int fit_steps) {
 
 }  // namespace
 
-EditRequest loop_request(EditRequest request, EditMode mode, bool by_views) {
+EditRequest loop_request(EditRequest request, EditMode mode, bool by_views, bool restyles) {
+    if (restyles && mode == EditMode::Modify) suit(request.view_strength, EditRequest().view_strength, 1.0);   // shapes are shown, not left in the noise
     const auto plan = round_plan(request, mode);
     if (mode == EditMode::Replace || (by_views && plan.anew)) free_geometry(request);
     if (!by_views) return request;

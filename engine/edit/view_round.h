@@ -23,8 +23,8 @@ constexpr PreservationWeights FitWeights{1, 0, 10};
 /// The request as the loop goes by it, with what suits the kind of edit. With view guidance the steps are those of the fits, what
 /// is fitted has no mask to follow, and growth comes once in the middle of each round (views.md 8). What gets another shape may
 /// move, every splat for itself and without anchors, and grows often (views.md 17); settings that differ from the program's
-/// defaults stay as they are.
-EditRequest loop_request(EditRequest request, EditMode mode, bool by_views);
+/// defaults stay as they are. `restyles`: what redraws the views does (ViewGuidance::restyles()).
+EditRequest loop_request(EditRequest request, EditMode mode, bool by_views, bool restyles = false);
 
 /// Indices of the views to redraw, ascending: farthest-point sample of the cameras among those of which what may change covers
 /// a share of the picture, starting with the view that shows most of it. `covered`: share of each view's picture.

@@ -48,6 +48,8 @@ public:
     virtual std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const SdsParameters& parameters) const = 0;
     /// Whether its views() are shown the backdrops where they draw anew: they then know where in a scene a new thing goes.
     virtual bool knows_scene() const { return false; }
+    /// Whether its views() give things another look by a network that is shown them (edit::ViewGuidance::restyles()).
+    virtual bool restyles() const { return false; }
     /// Words the model was trained on; empty = an open vocabulary.
     virtual std::vector<std::string> known_words() const = 0;
     /// Side of the square images the model works at.

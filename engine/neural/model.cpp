@@ -64,13 +64,15 @@ public:
         return std::make_unique<SdsGuidance>(slow_, prompt, parameters);
     }
     std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const SdsParameters& parameters) const override {
-        return std::make_unique<DiffusionViews>(bundle_, prompt, parameters, with_shapes());
+        return std::make_unique<DiffusionViews>(bundle_, prompt, parameters, with_shapes(), restyles());
     }
     bool knows_scene() const override {
         const auto& facts = loaded_->facts;
         if (!facts.shape_unet.empty()) return shape_unet_shows_scene(loaded_->path / facts.shape_unet);
         return !facts.shape_lora.empty() && !facts.shape_cameras.empty() && shows_scene(SafetensorsFile(loaded_->path / facts.shape_cameras));
     }
+    /// What was tuned draws by itself: the network beside it knows nothing of that.
+    bool restyles() const override { return bundle_ == loaded_ && loaded_->facts.shape_restyles && !loaded_->facts.shape_unet.empty() && knows_scene(); }
     std::vector<std::string> known_words() const override { return bundle_->facts.vocabulary; }
     int image_size() const override { return static_cast<int>(bundle_->image_size()); }
     std::string name() const override { return bundle_->facts.name; }

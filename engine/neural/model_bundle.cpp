@@ -276,6 +276,7 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
     get("shape_lora", facts.shape_lora);
     get("shape_cameras", facts.shape_cameras);
     get("shape_unet", facts.shape_unet);
+    get("shape_restyles", facts.shape_restyles);
     get("viewpoint", facts.viewpoint);
     get("shape_views", facts.shape_views);
     if (facts.image_size < 0 || facts.image_size > 8192)

@@ -47,6 +47,8 @@ struct ModelFacts {
     /// Folder of a network of its own for the same, which takes the place of both (load_shape_unet()), relative to the model's; what is tuned or
     /// merged with a LoRA does not change it. Empty = it has none.
     std::string shape_unet;
+    /// Whether that network has learned to give what it is shown another colour, material or ground, too.
+    bool shape_restyles = false;
     /// Folder of the classifier that tells from where a picture shows a thing (ViewpointReader), relative to the model's; it needs an image-text
     /// encoder beside it. Empty = it has none.
     std::string viewpoint;

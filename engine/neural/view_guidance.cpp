@@ -89,7 +89,7 @@ struct DiffusionViews::Batch {
     torch::Tensor noise;
     torch::Tensor mask;       // [K,1,h,w]
     torch::Tensor contexts;   // [K,2,T,D] negative, positive
-    torch::Tensor behind;     // [K,C,h,w] latents of the backdrops, that what draws new things is shown; else undefined
+    torch::Tensor behind;     // [K,C,h,w] latents of the backdrops, else the unedited views, that what draws new things is shown; else undefined
     torch::Tensor inpaint;    // [K,2+C,h,w] the same with the mask
     torch::Tensor picture;    // [K,C,h,w] what a model that edits pictures is shown: the unedited views; else undefined
     torch::Tensor x;          // what the steps have made of it
@@ -97,11 +97,12 @@ struct DiffusionViews::Batch {
 };
 
 DiffusionViews::DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters,
-                               std::shared_ptr<const ModelBundle> shapes)
+                               std::shared_ptr<const ModelBundle> shapes, bool restyles)
     : bundle_(std::move(bundle)),
       shapes_(std::move(shapes)),
       prompt_(std::move(prompt)),
       parameters_(std::move(parameters)),
+      restyles_(restyles && shapes_ != nullptr),
       apart_(is_small(bundle_->unet->config()) && bundle_->device.is_cpu()) {}
 
 /// `exact`: the model knows every azimuth by the mixture of the sentences for the two sides beside it.
@@ -129,7 +130,7 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
     const auto cells = bundle_->latent_size();
     Batch batch;
     std::vector<torch::Tensor> clean(views.size()), original(views.size()), behind(views.size()), masks;
-    const bool inpaints = input.anew && shapes_ != nullptr && shapes_->unet->config().inpaint_channels > 0;
+    const bool inpaints = shown_scene(input) && shapes_->unet->config().inpaint_channels > 0;
     const auto latents = [&](const Image& image) {
         return image_to_latents(*bundle_, resize_square(to_tensor(image, bundle_->device), bundle_->image_size()), Codec::Quick);
     };
@@ -152,7 +153,7 @@ DiffusionViews::Batch DiffusionViews::prepare(const std::vector<edit::RoundView>
         batch.inpaint = inpainting(may_change, torch::ones_like(may_change), batch.behind);
     }
     const bool edits = takes_picture(bundle_->unet->config());   // such a model is told what to do, not what there is
-    batch.contexts = contexts(views, edits || input.sentence.empty() ? prompt_ : input.sentence, input.anew && shapes_ != nullptr);
+    batch.contexts = contexts(views, edits || input.sentence.empty() ? prompt_ : input.sentence, shown_scene(input));
     if (edits) batch.picture = batch.original / bundle_->scaling_factor();   // as the model is used to it: not scaled
     return batch;
 }
@@ -214,11 +215,11 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
                              const JobControl& job) const {
     const auto& schedule = bundle_->schedule;
     const auto timesteps = redraw_levels(bundle_->kind, schedule, input.strength, input.steps);
-    const double scale = input.anew ? parameters_.shape_guidance_scale : parameters_.view_guidance_scale;
+    const bool shapes = shown_scene(input);
+    const double scale = input.anew || shapes ? parameters_.shape_guidance_scale : parameters_.view_guidance_scale;
     Conditioning edited{batch.contexts, scale, batch.picture, parameters_.image_guidance_scale};
     // Others hold guidance themselves, or follow a picture.
     const bool pairs = !batch.picture.defined() && row_parts(bundle_->unet->config(), edited) == 2;
-    const bool shapes = input.anew && shapes_ != nullptr;
     std::vector<std::optional<double>> azimuths;
     if (shapes) {
         edited.views.cameras = cameras_of(views).to(bundle_->device);
@@ -229,7 +230,7 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
         if (!shapes) return output(bundle_->unet, batch.x, timesteps[step], edited);
         // In turns with those far around the thing and with neighbours, so that every view comes to know of all.
         return output_together(batch.x, timesteps[step], edited, view_groups(azimuths, shapes_->facts.shape_views, step % 2 == 0),
-                               step + 1 == timesteps.size() && batch.inpaint.defined() ? &batch.outline : nullptr);
+                               input.anew && step + 1 == timesteps.size() && batch.inpaint.defined() ? &batch.outline : nullptr);
     };
     const auto roots = [&](std::int64_t t) {
         const double a = schedule.alpha_cumprod(t);
@@ -302,7 +303,7 @@ edit::RoundTargets DiffusionViews::finish(const Batch& batch, const std::vector<
 /// What learned to draw new things learned to draw them from close by, too.
 edit::RoundTargets DiffusionViews::edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
                                         const JobControl& job) {
-    if (!input.anew || shapes_ == nullptr) return redraw(views, input, job);
+    if (!shown_scene(input)) return redraw(views, input, job);
     std::vector<edit::ViewSection> sections;
     std::vector<edit::RoundView> parts;
     for (const auto& view : views) {

@@ -24,14 +24,18 @@ std::vector<std::int64_t> redraw_levels(BundleKind kind, const NoiseSchedule& sc
 
 class DiffusionViews final : public edit::ViewGuidance {
 public:
-    /// `shapes`: the same model with what it learned for drawing new things; null = it has learned nothing of that kind.
+    /// `shapes`: the same model with what it learned for drawing new things; null = it has learned nothing of that kind. `restyles`: that draws
+    /// known things in another look, too.
     DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::string prompt, SdsParameters parameters,
-                   std::shared_ptr<const ModelBundle> shapes = nullptr);
+                   std::shared_ptr<const ModelBundle> shapes = nullptr, bool restyles = false);
     edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
                             const JobControl& job) override;
+    bool restyles() const override { return restyles_; }
 
 private:
     struct Batch;
+    /// Whether what draws new things draws this round.
+    bool shown_scene(const edit::RoundInput& input) const { return shapes_ != nullptr && (input.anew || restyles_); }
     edit::RoundTargets redraw(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job);
     Batch prepare(const std::vector<edit::RoundView>& views, const edit::RoundInput& input);
     void denoise(Batch& batch, const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) const;
@@ -49,6 +53,7 @@ private:
     std::shared_ptr<const ModelBundle> bundle_, shapes_;
     std::string prompt_;
     SdsParameters parameters_;
+    const bool restyles_;
     const bool apart_;   // views are shared out among threads, not operations
     std::map<std::string, torch::Tensor> encoded_;   // [1,T,D], one per sentence
     KeptLatents originals_;                          // of the unedited views: the same in every round

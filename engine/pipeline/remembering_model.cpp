@@ -309,6 +309,8 @@ public:
         return targets;
     }
 
+    bool restyles() const override { return model_->restyles(); }
+
 private:
     edit::RoundTargets drawn_by_networks(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) {
         if (!views_) views_ = model_->real().views(prompt_, parameters_);
@@ -359,6 +361,7 @@ std::optional<RememberingModel::Facts> RememberingModel::kept_facts() const {
         facts.kind = static_cast<neural::BundleKind>(json.at("kind").get<int>());
         facts.scores = json.at("scores").get<bool>();
         facts.knows_scene = json.at("knows_scene").get<bool>();
+        facts.restyles = json.at("restyles").get<bool>();
         facts.threshold = json.at("threshold").get<double>();
         facts.attention_size = json.at("attention_size").get<int>();
         return facts;
@@ -376,13 +379,13 @@ bool RememberingModel::known() const {
 const RememberingModel::Facts& RememberingModel::facts() const {
     if (known()) return *facts_;
     const auto& model = real();
-    Facts facts{model.known_words(), model.image_size(), model.name(), model.kind(), model.text_image_score() != nullptr, model.knows_scene(), 0.5, 0};
+    Facts facts{model.known_words(), model.image_size(), model.name(), model.kind(), model.text_image_score() != nullptr, model.knows_scene(), model.restyles(), 0.5, 0};
     const auto attention = model.attention();
     facts.threshold = attention->threshold();
     facts.attention_size = attention->image_size();
     const nlohmann::json json{{"words", facts.words},   {"image_size", facts.image_size}, {"name", facts.name},
                               {"kind", facts.kind},     {"scores", facts.scores},         {"knows_scene", facts.knows_scene},
-                              {"threshold", facts.threshold}, {"attention_size", facts.attention_size}};
+                              {"restyles", facts.restyles},   {"threshold", facts.threshold},     {"attention_size", facts.attention_size}};
     cache_->keep("facts of " + identity_, json_text(json));
     const std::lock_guard lock(mutex_);
     if (!facts_) facts_ = std::move(facts);
@@ -418,8 +421,9 @@ std::shared_ptr<RememberingModel> RememberingModel::tuned_model(const std::strin
     digest.text(question);
     auto model = std::make_shared<RememberingModel>(cache_, digest.hex(), std::move(loader));
     model->loaded_identity_ = loaded_identity_;
-    const auto facts = this->facts();
-    model->facts_ = facts;   // a tuning changes none of them
+    auto facts = this->facts();
+    facts.restyles = false;   // a tuning changes none of the others
+    model->facts_ = std::move(facts);
     return model;
 }
 

@@ -31,6 +31,7 @@ public:
     std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const neural::SdsParameters& parameters) const override;
     std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const neural::SdsParameters& parameters) const override;
     bool knows_scene() const override { return facts().knows_scene; }
+    bool restyles() const override { return facts().restyles; }
     std::vector<std::string> known_words() const override { return facts().words; }
     int image_size() const override { return facts().image_size; }
     std::string name() const override { return facts().name; }
@@ -63,7 +64,7 @@ private:
         std::string name;
         neural::BundleKind kind = neural::BundleKind::Plain;
         bool scores = false;       // it has a text-image encoder
-        bool knows_scene = false;
+        bool knows_scene = false, restyles = false;
         double threshold = 0.5;    // of its attention
         int attention_size = 0;
     };

@@ -209,6 +209,11 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true).geometry_share == usual.geometry_share);
     DOCTEST_CHECK(fields_to_json(edit::loop_request(usual, EditMode::Add, false)) == fields_to_json(usual));
     DOCTEST_CHECK(edit::loop_request(usual, EditMode::Replace, false).geometry_share == 1);   // by the paper's way, too
+    // What is shown the scene begins from noise alone, unless it is asked otherwise.
+    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true).view_strength == usual.view_strength);
+    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true, true).view_strength == 1);
+    request.view_strength = 0.5;
+    DOCTEST_CHECK(edit::loop_request(request, EditMode::Modify, true, true).view_strength == 0.5);
 }
 
 DOCTEST_TEST_CASE("the sentence before an edit lacks what the edit brings") {

@@ -188,6 +188,38 @@ DOCTEST_TEST_CASE("redrawn views: what draws new things is shown what lies behin
     DOCTEST_CHECK(drawn(true, 0.2f, false) == drawn(true, 0.7f, false));   // what was there is redrawn as it is
 }
 
+DOCTEST_TEST_CASE("redrawn views: what restyles is shown the unedited view, changes nothing beside the mask, and tells of nothing new") {
+    const TinyModel model;
+    const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
+    auto shapes = *bundle;
+    shapes.unet = with_scene_inputs(shapes.unet);
+    torch::manual_seed(3);
+    {
+        const torch::NoGradGuard no_grad;
+        for (auto& [name, weight] : scene_input_weights(shapes.unet))
+            if (name.starts_with("conv_inpaint.")) weight.normal_(0, 0.1);
+    }
+    const auto scene = std::make_shared<const ModelBundle>(std::move(shapes));
+    edit::RoundInput input;
+    input.steps = 2;
+    const auto drawn = [&](bool restyles, float original) {
+        auto views = wall_views();
+        for (auto& view : views) view.original = Image(40, 40, 3, original);
+        return DiffusionViews(bundle, "a bear", {}, scene, restyles).edit(views, input, {});
+    };
+    DOCTEST_CHECK_FALSE(DiffusionViews(bundle, "a bear", {}, nullptr, true).restyles());
+    DOCTEST_CHECK(DiffusionViews(bundle, "a bear", {}, scene, true).restyles());
+    const auto plain = drawn(false, 0.2f), restyled = drawn(true, 0.2f), other = drawn(true, 0.7f);
+    DOCTEST_CHECK(restyled.images[1].data != plain.images[1].data);
+    DOCTEST_CHECK(restyled.images[1].data != other.images[1].data);
+    DOCTEST_CHECK((restyled.outlines.empty() && restyled.changes.empty()));
+    auto views = wall_views();   // nothing may change: nothing does, whatever the autoencoder loses
+    for (auto& view : views) std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{0});
+    const auto kept = DiffusionViews(bundle, "a bear", {}, scene, true).edit(views, input, {});
+    for (std::size_t i = 0; i < views[0].rendered.data.size(); ++i)
+        DOCTEST_REQUIRE(std::abs(kept.images[0].data[i] - views[0].rendered.data[i]) < 1e-5f);
+}
+
 DOCTEST_TEST_CASE("redrawn views: where the model knows what lies behind a view, it tells what is new in it") {
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
@@ -272,6 +304,12 @@ DOCTEST_TEST_CASE("a model with a network of its own draws new things with it, a
     for (std::size_t v = 0; v < views.size(); ++v) DOCTEST_CHECK(same.images[v].data == redrawn.images[v].data);
     DOCTEST_CHECK((same.outlines.empty() && shapes.outlines.size() == views.size()));
     DOCTEST_CHECK(shapes.images[0].data != drawn(*plain, true).images[0].data);
+    DOCTEST_CHECK_FALSE((with->restyles() || plain->restyles()));
+    gse::write_file(model.path() / "gseditpro.json", R"({"shape_unet": "own", "shape_views": 2, "shape_restyles": true})");
+    const auto restyling = load_model(model.path(), "cpu");
+    DOCTEST_CHECK(restyling->restyles());
+    DOCTEST_CHECK(restyling->views("a bear", {})->restyles());
+    DOCTEST_CHECK(drawn(*restyling, false).images[0].data != redrawn.images[0].data);
 }
 
 DOCTEST_TEST_CASE("redrawing views can be stopped") {

@@ -103,6 +103,7 @@ public:
         return std::make_unique<FakeViews>(asked_);
     }
     bool knows_scene() const override { return true; }
+    bool restyles() const override { return true; }
     std::vector<std::string> known_words() const override { return {"bear", "caf\xc3\xa9"}; }
     int image_size() const override { return 96; }
     std::string name() const override { return "fake"; }
@@ -154,6 +155,7 @@ DOCTEST_TEST_CASE("remembering model: what it is and what it answered is known a
         DOCTEST_CHECK(model->image_size() == 96);
         DOCTEST_CHECK(model->name() == "fake");
         DOCTEST_CHECK(model->kind() == neural::BundleKind::Tcd);
+        DOCTEST_CHECK((model->knows_scene() && model->restyles()));
         DOCTEST_CHECK(model->known_words() == std::vector<std::string>{"bear", "caf\xc3\xa9"});
     };
     ask();
