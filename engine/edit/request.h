@@ -222,7 +222,10 @@ private:
         f("rounds", self.rounds, "How often they are redrawn, each time from what the scene has become.", Range{1, 20});
         f("view_steps", self.view_steps, "Denoising steps of a redrawn view.", Range{1, 100});
         f("fit_steps", self.fit_steps, "Optimisation steps after each round.", Range{1, 1e5});
-        f("view_strength", self.view_strength, "How far from the render a view is redrawn: 0 = not at all, 1 = from nothing.", Range{0.02, 1});
+        f("view_strength", self.view_strength,
+          "How far from the render a view is redrawn: 0 = not at all, 1 = from nothing. A model that is shown the scene beside it (the starter is) "
+          "begins from nothing unless another value is set.",
+          Range{0.02, 1});
         f("polish_steps", self.polish_steps,
           "Steps of score distillation at low noise after the last round; kept only where views that were not redrawn come nearer to what the "
           "model makes of them. 0 = none.",

@@ -108,8 +108,10 @@ DOCTEST_TEST_CASE("what is restyled looked different before, where it is and now
             if (covered > 0.9) changed = std::max(changed, difference);
             if (covered == 0) elsewhere = std::max(elsewhere, difference);
         }
-        // Another look changes colours only: where nothing of the part is, both pictures are the same.
-        DOCTEST_CHECK(elsewhere == 0);
+        // Another look changes colours only: where nothing of the part is, both pictures are the same. A cell whose coverage is rounded to 0
+        // may hold half a step of it, and pixels are rounded, too.
+        constexpr double Rounding = 0.5 + 0.5;
+        DOCTEST_CHECK(elsewhere < Rounding);
         const double most_covered = *std::max_element(after.coverage.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(*part) * Cells * Cells),
                                                       after.coverage.begin() + static_cast<std::ptrdiff_t>((static_cast<std::size_t>(*part) + 1) * Cells * Cells));
         if (most_covered > 0.95 * 255) DOCTEST_CHECK(changed > 4);
