@@ -31,8 +31,7 @@ void add_training_command(CLI::App& app, CommandContext& context) {
     command->callback([options, &context] {
         if (options->record) return write_training_record(options->work, options->output, context.job());
         if (options->pictures_only) return write_picture_shards(options->parameters, options->work, context.job());
-        const auto seed = options->parameters.seed;
-        const auto source = options->parameters.shapes ? make_shape_source(seed) : make_starter_source(seed);
+        const auto source = options->parameters.shapes ? make_shape_source(options->parameters.seed) : make_starter_source(options->parameters.seed);
         neural_api().train_starter(options->parameters, *source, options->work, options->output, context.job());
         write_training_record(options->work, options->output, context.job());
     });
