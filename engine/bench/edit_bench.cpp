@@ -33,7 +33,7 @@ EditPoint pulling(int iterations) {
 EditPoint redrawing(int views, int steps, int rounds) {
     return {"views",
             fmt::format("{}x{}x{}", views, steps, rounds),
-            {{"method", "views"}, {"edited_views", views}, {"view_steps", steps}, {"rounds", rounds}}};
+            {{"method", "views"}, {"edited_views", views}, {"view_steps", steps}, {"restyle_steps", steps}, {"rounds", rounds}}};
 }
 
 /// One of the settings' own points with another quality.
@@ -51,8 +51,7 @@ Error not_understood(const std::string& text, const std::string& form) {
 
 /// The settings' own point of each method and those asked for, each once.
 std::vector<EditPoint> points_of(const EditBenchParameters& parameters, const edit::EditRequest& request) {
-    std::vector<EditPoint> points{pulling(request.iterations),
-                                  redrawing(request.edited_views, request.view_steps, request.rounds)};
+    std::vector<EditPoint> points{pulling(request.iterations), of_quality(request.quality.c_str())};
     for (auto& point : points) point.standard = true;
     const auto add = [&](EditPoint point) {
         if (std::none_of(points.begin(), points.end(), [&](const auto& other) { return other.settings == point.settings; }))

@@ -20,7 +20,7 @@ struct EditBenchParameters {
     int held_out_views = 12;
     bool oracle_views = false;
     std::string sds = "25 50 100 200 rest";
-    std::string redraws = "draft 8x2x1 8x4x1 8x6x1 8x4x2 fine";
+    std::string redraws = "draft 8x1x1 8x4x1 8x2x2 fine";
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {

@@ -71,8 +71,15 @@ void grow_often(EditRequest& request, int fit_steps) {
 
 }  // namespace
 
+EditRequest restyling(EditRequest request, EditMode mode) {
+    if (mode != EditMode::Modify) return request;
+    suit(request.view_strength, EditRequest().view_strength, 1.0);
+    request.view_steps = request.restyle_steps;
+    return request;
+}
+
 EditRequest loop_request(EditRequest request, EditMode mode, bool by_views, bool restyles) {
-    if (restyles && mode == EditMode::Modify) suit(request.view_strength, EditRequest().view_strength, 1.0);   // shapes are shown, not left in the noise
+    if (restyles) request = restyling(std::move(request), mode);
     const auto plan = round_plan(request, mode);
     if (mode == EditMode::Replace || (by_views && plan.anew)) free_geometry(request);
     if (!by_views) return request;

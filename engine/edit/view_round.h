@@ -25,6 +25,8 @@ constexpr PreservationWeights FitWeights{1, 0, 10};
 /// move, every splat for itself and without anchors, and grows often (views.md 17); settings that differ from the program's
 /// defaults stay as they are. `restyles`: what redraws the views does (ViewGuidance::restyles()).
 EditRequest loop_request(EditRequest request, EditMode mode, bool by_views, bool restyles = false);
+/// What of that follows from `restyles` alone: shapes are shown, so that views begin from noise alone, in steps of their own number.
+EditRequest restyling(EditRequest request, EditMode mode);
 
 /// Indices of the views to redraw, ascending: farthest-point sample of the cameras among those of which what may change covers
 /// a share of the picture, starting with the view that shows most of it. `covered`: share of each view's picture.

@@ -15,6 +15,7 @@ struct SdsParameters {
     double guidance_scale = 4;
     double view_guidance_scale = 3;
     double shape_guidance_scale = 2;
+    double restyle_guidance_scale = 1.5;
     double image_guidance_scale = 1;
     double clamp = 1.0;
     double weight = 1.0;
@@ -36,6 +37,8 @@ struct SdsParameters {
         f("view_guidance_scale", self.view_guidance_scale,
           "The same where views are redrawn (method views).", Range{0, 200});
         f("shape_guidance_scale", self.shape_guidance_scale, "The same where they show something of a new shape.", Range{0, 200});
+        f("restyle_guidance_scale", self.restyle_guidance_scale,
+          "The same where a model that is shown the scene gives a thing another colour or material, or another ground.", Range{0, 200});
         f("image_guidance_scale", self.image_guidance_scale,
           "InstructPix2Pix: how closely the picture is kept to the unedited one. 1 = fast, with two thirds of the work; 1.5 is usual "
           "with it; below 1 turns all guidance off.",

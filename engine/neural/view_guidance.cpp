@@ -216,7 +216,7 @@ void DiffusionViews::denoise(Batch& batch, const std::vector<edit::RoundView>& v
     const auto& schedule = bundle_->schedule;
     const auto timesteps = redraw_levels(bundle_->kind, schedule, input.strength, input.steps);
     const bool shapes = shown_scene(input);
-    const double scale = input.anew || shapes ? parameters_.shape_guidance_scale : parameters_.view_guidance_scale;
+    const double scale = input.anew ? parameters_.shape_guidance_scale : shapes ? parameters_.restyle_guidance_scale : parameters_.view_guidance_scale;
     Conditioning edited{batch.contexts, scale, batch.picture, parameters_.image_guidance_scale};
     // Others hold guidance themselves, or follow a picture.
     const bool pairs = !batch.picture.defined() && row_parts(bundle_->unet->config(), edited) == 2;

@@ -273,7 +273,7 @@ Edited EditJob::probe(const ProbeSize& size) {
     plain.request.rounds = plain.request.shape_rounds = plain.request.add_rounds = size.early ? 2 : 1;
     plain.request.shape_fit_steps = size.steps;
     plain.request.edited_views = plain.request.shape_views = size.edited_views;
-    plain.request.view_steps = plain.request.shape_steps = size.view_steps;
+    plain.request.view_steps = plain.request.restyle_steps = plain.request.shape_steps = size.view_steps;
     plain.request.polish_steps = size.polish;
     JobControl quiet;
     std::stop_source redrawn;

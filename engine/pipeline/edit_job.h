@@ -105,6 +105,7 @@ public:
     const PlaceCost& place_cost() const { return workplace_->place_cost(); }
     /// Whether the model is shown the scene where something new is drawn.
     bool knows_scene() const { return workplace_->model().knows_scene(); }
+    bool restyles() const { return workplace_->model().restyles(); }
     /// Whether the pictures said which word is new, and not the recipe.
     bool target_read() const { return located_->target_read; }
     bool automatic_views() const { return views_->automatic; }

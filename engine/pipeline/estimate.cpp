@@ -122,7 +122,8 @@ void add_place(Sum& sum, const Measured& measured, const edit::EditRequest& requ
 
 }  // namespace
 
-Cost estimated_cost(const Measured& measured, const edit::EditRequest& request, const PlannedWork& work) {
+Cost estimated_cost(const Measured& measured, const edit::EditRequest& asked, const PlannedWork& work) {
+    const auto request = measured.restyles > 0 && edit::edits_by_views(asked) ? edit::restyling(asked, work.mode) : asked;
     Sum sum;
     sum.add(work.loaded ? 0 : 1, measured.load);
     sum.add(work.tune_steps, measured.tune_step, measured.tune_step_tflop);
@@ -181,6 +182,7 @@ void measure_search(Measured& measured, const EditJob& job, double seconds) {
     const auto asked = static_cast<double>(job.questions());
     if (asked <= 0) return;
     measured.draws_place = job.knows_scene() ? 1 : 0;
+    measured.restyles = job.restyles() ? 1 : 0;
     const auto& place = job.place_cost();
     const double words = words_of_search(job.located().mode, place.views > 0);
     auto use = job.times().networks("locate");

@@ -18,6 +18,7 @@ struct Measured {
     double rounds = -1;
     double pass = -1, pass_tflop = -1;
     double draws_place = -1;
+    double restyles = -1;
     double place_step = -1, place_step_tflop = -1;
     double idea = -1, idea_tflop = -1;
     double begin = -1;
@@ -45,6 +46,7 @@ struct Measured {
         f("pass", self.pass, "One pass of the UNet over one picture, in a search.", any);
         f("pass_tflop", self.pass_tflop, "Operations of that.", any);
         f("draws_place", self.draws_place, "1 where the model draws what is added to see where it goes, 0 where it does not.", any);
+        f("restyles", self.restyles, "1 where the model gives things another look by a network that is shown them, 0 where it does not.", any);
         f("place_step", self.place_step, "One guided denoising step of a view that is drawn for that, with its share of encoding and decoding.", any);
         f("place_step_tflop", self.place_step_tflop, "Operations of that.", any);
         f("idea", self.idea, "The pictures before the edit.", any);

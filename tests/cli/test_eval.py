@@ -79,13 +79,13 @@ class Evaluations(ProgramTest):
     def test_bench_edit_draws_a_curve_per_method(self):
         out = self.folder / "bench"
         process = run("-q", "bench", "edit", "--out", out, "--edits", 2, "--kinds", "recolour material", "--seed", 55, *QUICK,
-                      "--edited-views", 2, "--view-steps", 2, "--fit-steps", 10, "--sds", "6 12 rest", "--redraws", "2x2x1 3x1x2 draft")
+                      "--edited-views", 2, "--view-steps", 2, "--fit-steps", 10, "--sds", "6 12 rest", "--restyle-steps", 2, "--redraws", "2x2x1 3x1x2 draft")
         self.assertEqual(process.returncode, 0, process.stderr)
         report = json.loads((out / "edit.json").read_text())
         curves = {curve["method"]: {point["name"]: point for point in curve["points"]} for curve in report["curves"]}
         self.assertEqual(set(curves["sds"]), {"6", "12", "until at rest"})
-        self.assertEqual(set(curves["views"]), {"2x2x1", "3x1x2", "draft"})
-        self.assertEqual([name for points in curves.values() for name in points if points[name]["default"]], ["12", "2x2x1"])
+        self.assertEqual(set(curves["views"]), {"normal", "2x2x1", "3x1x2", "draft"})
+        self.assertEqual([name for points in curves.values() for name in points if points[name]["default"]], ["12", "normal"])
         self.assertIn("2x2x1", process.stdout)
         ran = [point for points in curves.values() for point in points.values() if point["ran"] > 0]
         for point in ran:
@@ -96,6 +96,7 @@ class Evaluations(ProgramTest):
         if ran:
             self.assertLess(curves["sds"]["6"]["tflop"], curves["sds"]["12"]["tflop"])
             self.assertLess(curves["views"]["2x2x1"]["unet"], curves["views"]["3x1x2"]["unet"])   # 4 and 6 denoising steps
+            self.assertEqual(curves["views"]["normal"]["unet"], curves["views"]["2x2x1"]["unet"])
             self.assertLess(curves["views"]["draft"]["unet"], curves["views"]["2x2x1"]["unet"])   # one view instead of two
             self.assertLessEqual(curves["sds"]["until at rest"]["unet"], curves["sds"]["12"]["unet"])
         self.assertTrue((out / "pareto.png").read_bytes().startswith(b"\x89PNG"))

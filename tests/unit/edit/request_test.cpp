@@ -212,6 +212,8 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     // What is shown the scene begins from noise alone, unless it is asked otherwise.
     DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true).view_strength == usual.view_strength);
     DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true, true).view_strength == 1);
+    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true, true).view_steps == usual.restyle_steps);
+    DOCTEST_CHECK(edit::restyling(usual, EditMode::Replace).view_steps == usual.view_steps);
     request.view_strength = 0.5;
     DOCTEST_CHECK(edit::loop_request(request, EditMode::Modify, true, true).view_strength == 0.5);
 }

@@ -109,6 +109,7 @@ DOCTEST_TEST_CASE("redrawn views: settings of the guidance that are said to have
     SdsParameters::visit_fields(parameters, [&](const char* name, auto& value, const char*, auto...) {
         using Value = std::remove_reference_t<decltype(value)>;
         if (std::string_view(name) == "image_guidance_scale") return;   // counts with models that are told what to do
+        if (std::string_view(name) == "restyle_guidance_scale") return;   // with those that restyle
         input.anew = std::string_view(name) == "shape_guidance_scale";
         const auto plain = drawn();
         const Value kept = value;
@@ -213,6 +214,11 @@ DOCTEST_TEST_CASE("redrawn views: what restyles is shown the unedited view, chan
     DOCTEST_CHECK(restyled.images[1].data != plain.images[1].data);
     DOCTEST_CHECK(restyled.images[1].data != other.images[1].data);
     DOCTEST_CHECK((restyled.outlines.empty() && restyled.changes.empty()));
+    SdsParameters harder;
+    harder.restyle_guidance_scale = 4;
+    auto grey = wall_views();
+    for (auto& view : grey) view.original = Image(40, 40, 3, 0.2f);
+    DOCTEST_CHECK(DiffusionViews(bundle, "a bear", harder, scene, true).edit(grey, input, {}).images[1].data != restyled.images[1].data);
     auto views = wall_views();   // nothing may change: nothing does, whatever the autoencoder loses
     for (auto& view : views) std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{0});
     const auto kept = DiffusionViews(bundle, "a bear", {}, scene, true).edit(views, input, {});
