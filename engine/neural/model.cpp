@@ -225,6 +225,7 @@ std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const
         if (mark == LoraMark::None) {   // nobody else holds these weights yet
             merge_lora(*bundle.unet, weights[i].unet, lora.strength);
             merge_lora(*bundle.text_encoder, weights[i].text, lora.strength);
+            bundle.facts.shape_restyles = false;   // the network beside it has none of that
         } else {
             fast.push_back({std::move(weights[i]), lora.strength, mark});
             log::info("the LoRA \"{}\" was distilled, as its name says: views are redrawn in few steps ({})", lora.file.filename().string(),

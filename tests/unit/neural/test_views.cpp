@@ -316,6 +316,14 @@ DOCTEST_TEST_CASE("a model with a network of its own draws new things with it, a
     DOCTEST_CHECK(restyling->restyles());
     DOCTEST_CHECK(restyling->views("a bear", {})->restyles());
     DOCTEST_CHECK(drawn(*restyling, false).images[0].data != redrawn.images[0].data);
+    // What was tuned, or merged with a LoRA, draws by itself.
+    LoraWeights style;
+    for (const auto& factor : new_lora(lora_targets(*load_bundle(model.path()).unet), 2, 7)) style.unet.push_back(factor);
+    write_lora(model.path() / "style.safetensors", style);
+    DOCTEST_CHECK_FALSE(restyling->load_lora(model.path() / "style.safetensors")->restyles());
+    ModelOptions merged;
+    merged.loras = {{model.path() / "style.safetensors", 1.0}};
+    DOCTEST_CHECK_FALSE(load_model(model.path(), merged)->restyles());
 }
 
 DOCTEST_TEST_CASE("redrawing views can be stopped") {
