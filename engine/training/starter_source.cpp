@@ -9,6 +9,7 @@
 #include <iterator>
 #include <numbers>
 #include <optional>
+#include <string>
 
 #include "engine/base/thread_pool.h"
 #include "engine/raster/rasterizer.h"
@@ -230,11 +231,11 @@ public:
 
     neural::StarterPicture picture(std::uint64_t index, int size) const override {
         thread_local ShotPainter painter;
-        thread_local std::pair<std::uint64_t, std::uint64_t> known{~0ull, ~0ull};   // views of a scene are asked for one after the other
+        thread_local std::pair<std::string, std::uint64_t> known;   // views of a scene are asked for one after the other
         thread_local synth::SynthScene scene;
         thread_local std::optional<SceneBefore> before;
         const Shot shot = shot_of(index);
-        if (const std::pair wanted{seed_ * 2 + (edited_ ? 1 : 0), index / Views}; known != wanted) {
+        if (const std::pair wanted{identity(), index / Views}; known != wanted) {
             scene = synth::generate(shot.spec);
             if (!edited_) before.emplace(shot.spec, shot.restyled, Random::stream(seed_ + 1, index / Views));
             known = wanted;

@@ -6,12 +6,22 @@
 #include <numbers>
 #include <numeric>
 #include <set>
+#include <string>
+#include <vector>
 
+#include "engine/synth/synth.h"
 #include "engine/training/starter_source.h"
 
 namespace {
 
 constexpr int Size = 32;
+
+/// Whether one of the words, or one that means the same, is in the text.
+bool says_one(const std::string& text, std::vector<std::string> words, const std::vector<std::string>& synonyms) {
+    words.insert(words.end(), synonyms.begin(), synonyms.end());
+    const auto spaced = ' ' + text.substr(0, text.find(',')) + ' ';
+    return std::any_of(words.begin(), words.end(), [&](const auto& word) { return spaced.find(' ' + word + ' ') != std::string::npos; });
+}
 
 std::string without_side(const std::string& text) { return text.substr(0, text.rfind(", ")); }
 
@@ -115,8 +125,20 @@ DOCTEST_TEST_CASE("what is restyled looked different before, where it is and now
         const double most_covered = *std::max_element(after.coverage.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(*part) * Cells * Cells),
                                                       after.coverage.begin() + static_cast<std::ptrdiff_t>((static_cast<std::size_t>(*part) + 1) * Cells * Cells));
         if (most_covered > 0.95 * 255) DOCTEST_CHECK(changed > 4);
+        // A picture's caption tells the look, however it is put.
+        for (std::uint64_t wording = 0; wording < 8; ++wording) {
+            const auto text = source->caption(index, wording, false).text;
+            DOCTEST_CAPTURE(text);
+            if (*part == gse::neural::StarterPart::Object) DOCTEST_CHECK(says_one(text, gse::synth::material_words(), {"wood", "gold"}));
+            if (*part == gse::neural::StarterPart::Ground) DOCTEST_CHECK(says_one(text, gse::synth::ground_words(), {"tiled", "lake"}));
+        }
         // There is no room: nothing of another shape was there.
         DOCTEST_CHECK(std::all_of(before.coverage.begin() + Cells * Cells, before.coverage.begin() + 2 * Cells * Cells, [](int room) { return room == 0; }));
     }
     DOCTEST_CHECK(parts.size() == 3);
+    // Another source of the same seed, asked in between, changes nothing.
+    const auto alone = plain->before()->picture(0, Size).rgb;
+    plain->before()->picture(views, Size);   // of another scene: nothing of the first is known
+    source->before()->picture(0, Size);
+    DOCTEST_CHECK(plain->before()->picture(0, Size).rgb == alone);
 }
