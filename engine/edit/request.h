@@ -132,8 +132,7 @@ struct LoopSettings {
     int view_steps = 3;
     int fit_steps = 40;
     double view_strength = 0.75;
-    // 24 of them, of seeds 55 and 56, by a network that is shown them, with guidance 1.5: 0.70 with 2 steps (32 passes in 8 views), with guidance 2
-    // 0.70 with 3 and 4 steps, 0.64 with 2; without guidance 0.68 with 2 steps and with 1.
+    // Other numbers of steps, with other guidance: assets/models/starter/TRAINING.md, other looks.
     int restyle_steps = 2;
     int polish_steps = 0;
     // Shapes by views: a thing that becomes another, or is new
