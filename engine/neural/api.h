@@ -97,7 +97,8 @@ inline TunedModel TextToImage::tune(const DreamBoothParameters& parameters, std:
 /// What a model is loaded with.
 struct ModelOptions {
     std::string device = "cpu";
-    /// Merged into the weights, in order; one that was distilled (lora_mark()) only into those that redraw views and sample.
+    /// Merged into the weights, in order; one that was distilled (lora_mark()) only into those that redraw views and sample. At strength 0 it
+    /// is read and checked, and no more.
     std::vector<LoraSpec> loras = {};
     /// Folder of the tiny autoencoder; empty = as the model says, or "taesd" beside its weights; "none" = none.
     std::string taesd = {};

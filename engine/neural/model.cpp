@@ -221,6 +221,7 @@ std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const
     DistilledLoras fast;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         const auto& lora = options.loras[i];
+        if (lora.strength == 0) continue;   // none, and the model stays what it is
         const auto mark = lora_mark(lora.file);
         if (mark == LoraMark::None) {   // nobody else holds these weights yet
             merge_lora(*bundle.unet, weights[i].unet, lora.strength);

@@ -210,7 +210,7 @@ ModelNature model_nature(const fs::path& model, const std::vector<LoraSpec>& lor
     }
     for (const auto& lora : loras) {
         const auto mark = lora_mark(lora.file);
-        if (nature.kind == BundleKind::Plain && mark != LoraMark::None)
+        if (nature.kind == BundleKind::Plain && lora.strength != 0 && mark != LoraMark::None)
             nature.kind = mark == LoraMark::Tcd ? BundleKind::Tcd : BundleKind::Lcm;
     }
     return nature;

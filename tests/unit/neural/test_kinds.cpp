@@ -300,4 +300,5 @@ DOCTEST_TEST_CASE("profile: a kind brings its steps, rounds and guidance, also b
     const auto marked = model_profile(plain.path(), {{plain.path() / "tcd lora.safetensors", 1}});
     DOCTEST_CHECK(marked.bundle == BundleKind::Tcd);
     DOCTEST_CHECK(value(marked, "guidance", "view_guidance_scale") == 1.0);
+    DOCTEST_CHECK(model_profile(plain.path(), {{plain.path() / "tcd lora.safetensors", 0}}).entries.empty());
 }

@@ -324,6 +324,8 @@ DOCTEST_TEST_CASE("a model with a network of its own draws new things with it, a
     ModelOptions merged;
     merged.loras = {{model.path() / "style.safetensors", 1.0}};
     DOCTEST_CHECK_FALSE(load_model(model.path(), merged)->restyles());
+    merged.loras.front().strength = 0;
+    DOCTEST_CHECK(load_model(model.path(), merged)->restyles());
 }
 
 DOCTEST_TEST_CASE("redrawing views can be stopped") {
