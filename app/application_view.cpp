@@ -86,7 +86,7 @@ Values Application::shown_values(const GaussianSet& set, int snapshot) {
 PictureRequest Application::picture_request() {
     const auto& state = document_.state();
     const int snapshot = model_.shown_snapshot;
-    const bool live = (work_.running() || pending_) && !snapshots_.empty();
+    const bool live = (edit_running() || pending_) && !snapshots_.empty();   // a search has none
     const ShownKey key{document_.revision(), content_, model_.view.mode, snapshot, state.active_label,
                        model_.view.tint_labels && model_.comparison == ui::Comparison::None, pending_.has_value()};
     if (!(key == shown_key_)) {

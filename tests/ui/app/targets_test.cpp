@@ -94,6 +94,36 @@ DOCTEST_TEST_CASE("a branch out of a fit asks the networks nothing") {
     DOCTEST_CHECK(model.target_rounds[0].targets[2].after->data == pictures[2].after->data);
 }
 
+DOCTEST_TEST_CASE("a search after a discarded edit shows the scene, not what the edit left behind") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    auto& app = session.app;
+    const auto& model = app.model();
+    ask_for_views(session, false, 100000);
+    app.edit();
+    DOCTEST_REQUIRE(session.until([&] { return !model.snapshots.empty(); }));
+    app.cancel();
+    DOCTEST_REQUIRE(session.until([&] { return model.result_waiting && !model.job.running; }));
+    app.discard_result();
+    app.update(session.preview);
+    const GaussianSet scene = session.preview.last.set;
+    auto request = model.request;
+    request.source = "grass";
+    request.prompt = "a bear on the snow";
+    app.set_request(request);
+    app.locate();
+    DOCTEST_REQUIRE(session.until([&] { return model.job.running; }, 60));
+    auto view = model.view;
+    view.mode = static_cast<int>(ui::DisplayMode::Depth);
+    app.set_view_settings(view);
+    app.update(session.preview);
+    DOCTEST_REQUIRE(model.job.running);
+    DOCTEST_CHECK(session.preview.last.set.shares_all_with(scene));
+    app.cancel();
+    DOCTEST_REQUIRE(session.idle());
+}
+
 DOCTEST_TEST_CASE("what an edit is estimated to take after the search, beside what it takes") {
     if (!networks()) return;
     const Place place;
