@@ -48,11 +48,11 @@ Squares squares_of(const float* found, const double* expected, std::size_t count
     return sum;
 }
 
-std::array<const std::vector<float>*, 6> tensors(const raster::Gradients& g) {
+std::array<const LineFloats*, 6> tensors(const raster::Gradients& g) {
     return {&g.position, &g.log_scale, &g.rotation, &g.opacity_logit, &g.sh, &g.mean2d_norm};
 }
 
-bool all_finite(const std::vector<float>& values) {
+bool all_finite(std::span<const float> values) {
     return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
 }
 

@@ -17,7 +17,7 @@ constexpr double CommonRate = 2;                 // times the colour's rate: mak
 constexpr float LargestGradient = 1e15f;         // larger ones overflow Adam's second moment
 
 /// True when all values of the row are finite and of a size that can be worked with.
-bool usable_row(const std::vector<float>& values, std::size_t row, std::size_t stride) {
+bool usable_row(std::span<const float> values, std::size_t row, std::size_t stride) {
     bool usable = true;
     for (std::size_t i = row * stride; i < (row + 1) * stride; ++i) usable &= std::abs(values[i]) <= LargestGradient;
     return usable;
@@ -147,7 +147,7 @@ void WorkingSet::find_bad_rows(const raster::Gradients& gradients) {
     }
 }
 
-void WorkingSet::load_gradient(const std::vector<float>& gradient, std::size_t stride) {
+void WorkingSet::load_gradient(std::span<const float> gradient, std::size_t stride) {
     gradient_.assign(gradient.begin(), gradient.end());
     for (std::size_t i = 0; i < bad_.size(); ++i)
         if (bad_[i] != 0)
@@ -187,7 +187,7 @@ void WorkingSet::step_geometry(const raster::Gradients& gradients, int iteration
     const double progress = request.iterations > 1 ? static_cast<double>(iteration) / (request.iterations - 1) : 0;
     const double from = std::max(request.rate_position, 1e-12), to = std::max(request.rate_position_end, 1e-12);
     const double position_rate = extent_ * std::exp(std::log(from) * (1 - progress) + std::log(to) * progress);
-    const auto update = [&](std::vector<float>& all, const std::vector<float>& gradient, std::size_t stride,
+    const auto update = [&](std::vector<float>& all, std::span<const float> gradient, std::size_t stride,
                             const std::vector<float>& anchor, double anchor_weight, AdamMoments& moments, double rate) {
         load_gradient(gradient, stride);
         const auto now = tail(all, stride);

@@ -107,7 +107,7 @@ private:
     }
     void step_geometry(const raster::Gradients& gradients, int iteration, const EditRequest& request);
     void step_colour(const raster::Gradients& gradients, const EditRequest& request);
-    void load_gradient(const std::vector<float>& gradient, std::size_t stride);
+    void load_gradient(std::span<const float> gradient, std::size_t stride);
     void guard(const EditRequest& request);
     /// Of the labelled row, as a logarithm.
     float largest_scale(std::size_t index) const;

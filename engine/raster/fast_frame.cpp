@@ -13,8 +13,8 @@ namespace gse::raster {
 namespace {
 
 /// Grows, never shrinks: what was allocated once stays.
-template <class T>
-void at_least(std::vector<T>& values, std::size_t count) {
+template <class Values>
+void at_least(Values& values, std::size_t count) {
     if (values.size() < count) values.resize(count);
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/aligned.h"
 #include "engine/base/thread_pool.h"
 #include "engine/math/camera.h"
 #include "engine/raster/depth_sort.h"
@@ -12,6 +13,9 @@
 #include "engine/raster/rasterizer.h"
 
 namespace gse::raster {
+
+/// More than this is not found in a cache again: it is written straight to memory, and its lines need not be fetched before.
+inline constexpr std::size_t CachedBytes = std::size_t{32} << 20;
 
 /// Slot of partial gradients of one (tile, Gaussian).
 struct alignas(64) PartialSlot {
@@ -61,6 +65,7 @@ public:
     std::uint32_t first_active() const { return first_active_; }
     PartialSlot* slots() { return slots_.data(); }
     std::uint32_t first_slot() const { return first_slot_; }
+    bool slots_past_caches() const { return (pair_count() - first_slot_) * sizeof(PartialSlot) > CachedBytes; }
 
     /// Rows are handled in chunks; a chunk's records lie densely at its first row's place.
     static constexpr std::size_t ChunkRows = 1024;
@@ -96,9 +101,9 @@ private:
     const float* values_ = nullptr;
     std::size_t rows_ = 0, drawn_ = 0, unusable_ = 0, tile_columns_ = 0, tile_rows_ = 0;
 
-    std::vector<Record> records_;      // [rows], with gaps
-    std::vector<std::uint32_t> keys_;  // [rows], with the same gaps
-    std::vector<PairRange> ranges_;    // [rows], with the same gaps; places in the chunk's pairs
+    LineVector<Record> records_;      // [rows], with gaps
+    LineVector<std::uint32_t> keys_;  // [rows], with the same gaps
+    LineVector<PairRange> ranges_;    // [rows], with the same gaps; places in the chunk's pairs
     std::vector<std::vector<TilePair>> pairs_;  // per chunk
     std::vector<std::uint32_t> chunk_pairs_;    // [chunks + 1]: pairs of all chunks before
     std::vector<std::size_t> chunk_drawn_, chunk_unusable_, chunk_first_;
@@ -109,13 +114,13 @@ private:
     std::vector<std::uint32_t> tile_counts_;    // [threads][tiles], from binning
     std::vector<std::uint32_t> tile_places_;    // [groups][2][tiles]: counts, then first places and ends
     std::vector<std::size_t> offsets_;          // [tiles + 1] into entries_
-    std::vector<TileEntry> entries_;
-    std::vector<TileLight> lights_;
+    LineVector<TileEntry> entries_;
+    LineVector<TileLight> lights_;
     std::vector<BlendScratch> scratch_;  // per worker
     TileDone finish_ = nullptr;
     void* finish_context_ = nullptr;
     std::uint32_t first_active_ = 0, first_slot_ = 0;
-    std::vector<PartialSlot> slots_;
+    LineVector<PartialSlot> slots_;
 };
 
 }  // namespace gse::raster

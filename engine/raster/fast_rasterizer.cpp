@@ -122,7 +122,7 @@ private:
         return {{frame.records(), nullptr, NoSplit}, list.data(),        static_cast<std::uint32_t>(list.size()),
                 frame.tile_x(tile), frame.tile_y(tile), frame.width(),
                 frame.height(),     ends,               &scratch,           frame.first_active(),
-                frame.first_slot(), frame.slots()->sums};
+                frame.first_slot(), frame.slots()->sums, frame.slots_past_caches()};
     }
 
     void backward_tile(std::size_t tile, BackwardScratch& scratch) {

@@ -117,6 +117,14 @@ void resize_gradients(std::size_t rows, std::size_t sh_stride, Gradients& output
     output.visible.resize(rows);
 }
 
+/// Of the coefficients' gradients, row by row in whole cache lines.
+static bool is_past_caches(const Frame& frame, const Gradients& output) {
+    constexpr std::size_t line_floats = CacheLine / sizeof(float);
+    const std::size_t stride = frame.source().sh_stride;
+    return output.sh.size() * sizeof(float) > CachedBytes && stride % line_floats == 0 &&
+           static_cast<std::size_t>(frame.view().sh_count) * 3 == stride;
+}
+
 void write_gradients(const Kernels& kernels, Frame& frame, std::size_t chunk, std::size_t first_row, Gradients& output) {
     const std::size_t begin = std::max(chunk * Frame::ChunkRows, first_row);
     const std::size_t end = std::min((chunk + 1) * Frame::ChunkRows, frame.row_count());
@@ -134,7 +142,8 @@ void write_gradients(const Kernels& kernels, Frame& frame, std::size_t chunk, st
                              first_row,
                              {output.position.data(), output.log_scale.data(), output.rotation.data(),
                               output.opacity_logit.data(), output.sh.data(), output.mean2d_norm.data(),
-                              output.visible.data()}};
+                              output.visible.data()},
+                             is_past_caches(frame, output)};
     kernels.gradient(job);
 }
 

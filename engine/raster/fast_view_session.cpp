@@ -237,7 +237,8 @@ void FastViewSession::backward_tile(std::size_t index, BackwardScratch& scratch)
                              &scratch,
                              split,
                              frame_.first_slot(),
-                             frame_.slots()->sums});
+                             frame_.slots()->sums,
+                             frame_.slots_past_caches()});
 }
 
 }  // namespace gse::raster

@@ -72,21 +72,38 @@ GSE_INLINE void clear_slot(float* slot) {
     for (int k = 0; k < PartialStride; k += F::W) store(slot + k, zero());
 }
 
+/// The same two of a job's slots, which may be too many for the caches.
+GSE_INLINE void fill_slot(const BackwardJob& job, const TileEntry& entry, const F* sums) {
+#ifdef GSE_HAS_STREAMS
+    if (job.past_caches) return stream_sums(sums, slot_of(job, entry));
+#endif
+    store_sums(sums, slot_of(job, entry));
+}
+
+GSE_INLINE void empty_slot(const BackwardJob& job, const TileEntry& entry) {
+#ifdef GSE_HAS_STREAMS
+    if (job.past_caches) return stream_zeros(slot_of(job, entry), PartialStride);
+#endif
+    clear_slot(slot_of(job, entry));
+}
+
 /// Slots of the active entries in [begin, end), which nothing reached.
 static void clear_rest(const BackwardJob& job, std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i)
-        if (job.entries[i].record >= job.first_record) clear_slot(slot_of(job, job.entries[i]));
+        if (job.entries[i].record >= job.first_record) empty_slot(job, job.entries[i]);
+#ifdef GSE_HAS_STREAMS
+    if (job.past_caches) end_streams();
+#endif
 }
 
 GSE_INLINE void prefetch_entry(const BackwardJob& job, std::uint32_t i) {
     if (i >= job.count) return;
     const TileEntry& entry = job.entries[i];
     __builtin_prefetch(&record_at(job.records, entry.record));
-    if (entry.record >= job.first_record) __builtin_prefetch(slot_of(job, entry), 1);
+    if (entry.record >= job.first_record && !job.past_caches) __builtin_prefetch(slot_of(job, entry), 1);
 }
 
-GSE_INLINE void backward_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch, float* slot) {
-    Sums sums;
+GSE_INLINE void sum_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch, Sums& sums) {
     for (F& sum : sums.s) sum = zero();
     M blended = none();
     for (std::uint32_t left = blocks; left != 0; left &= left - 1) {
@@ -94,7 +111,6 @@ GSE_INLINE void backward_record(const Record& r, std::uint32_t blocks, const Pix
         for (int sub = 0; sub < Subs; ++sub) backward_pixels(r, block * 16 + sub * F::W, grid, scratch, sums, blended);
     }
     sums.s[SumBlended] = only(blended, set(1.0f));
-    store_sums(sums.s, slot);
 }
 
 GSE_INLINE void pass_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch) {
@@ -158,9 +174,12 @@ static void backward(const BackwardJob& job) {
         if (entry.record < job.first_record)
             pass_record(r, blocks, grid, *job.scratch);
         else if (blocks == 0)
-            clear_slot(slot_of(job, entry));
-        else
-            backward_record(r, blocks, grid, *job.scratch, slot_of(job, entry));
+            empty_slot(job, entry);
+        else {
+            Sums sums;
+            sum_record(r, blocks, grid, *job.scratch, sums);
+            fill_slot(job, entry, sums.s);
+        }
     }
     clear_rest(job, i, reach.last_active);
 }
@@ -184,7 +203,7 @@ static void contribute(const BackwardJob& job) {
                                            sums.s[SumMasked]);
             if (!any(live)) alive &= ~(1u << block);
         }
-        store_sums(sums.s, slot_of(job, entry));
+        fill_slot(job, entry, sums.s);
     }
     clear_rest(job, i, job.count);
 }

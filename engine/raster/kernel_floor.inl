@@ -18,8 +18,9 @@ static std::size_t floor_backward(FloorScratch& scratch, const PixelGrid& grid) 
     for (int pixel = 0; pixel < TilePixels; pixel += F::W) store(scratch.backward.transmittance + pixel, set(1.0f));
     std::size_t blocks = 0;
     for (std::uint32_t i = 0; i < FloorRecords; ++i) {
-        backward_record(scratch.records[i], scratch.entries[i].blocks, grid, scratch.backward,
-                        scratch.partials + i * PartialStride);
+        Sums sums;
+        sum_record(scratch.records[i], scratch.entries[i].blocks, grid, scratch.backward, sums);
+        store_sums(sums.s, &scratch.partials[i * PartialStride]);
         blocks += static_cast<std::size_t>(__builtin_popcount(scratch.entries[i].blocks));
     }
     return blocks;

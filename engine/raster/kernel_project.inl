@@ -117,8 +117,8 @@ static void check_colours(ProjectJob& job) {
 }
 
 /// Asks for the coefficients of the next batch, of which most are drawn.
-GSE_INLINE void prefetch_coefficients(const ProjectJob& job, std::size_t row) {
-    const std::size_t end = row + F::W < job.end ? row + F::W : job.end;
+GSE_INLINE void prefetch_coefficients(const ProjectJob& job, std::size_t row, std::size_t count) {
+    const std::size_t end = row + count < job.end ? row + count : job.end;
     for (; row < end; ++row) prefetch_floats<0>(job.source.sh + row * job.source.sh_stride, job.view->sh_count * 3);
 }
 
@@ -134,12 +134,14 @@ static void project(ProjectJob& job) {
         raw.size = left < F::W ? static_cast<int>(left) : F::W;
         for (int lane = 0; lane < raw.size; ++lane)
             load_row(job.source, row + static_cast<std::size_t>(lane), lane, raw);
-        prefetch_coefficients(job, row + F::W);
         fill_batch(job.source, raw);
         unsigned drawn = 0, usable = 0;
         for (int at = 0; at < F::W; at += D::W) {
             Geometry g;
+            const std::size_t asked = row + static_cast<std::size_t>(F::W + at);
+            prefetch_coefficients(job, asked, (D::W + 1) / 2);
             compute_geometry(raw, at, *job.view, g);
+            prefetch_coefficients(job, asked + (D::W + 1) / 2, D::W / 2);
             const unsigned good = bits(usable_lanes(raw, at));
             drawn |= (bits(finish_records(*job.view, g, at, found)) & good) << at;
             usable |= good << at;

@@ -146,6 +146,7 @@ struct BackwardJob {
     std::uint32_t first_record;  // records from here on get gradients
     std::uint32_t first_slot;    // the first of theirs, where `partials` begin
     float* partials;
+    bool past_caches;            // slots are written straight to memory
 };
 
 /// Order of the sums in a slot of partial gradients. g is dL/d ln(alpha), w the weight alpha T.
@@ -177,6 +178,7 @@ struct GradientJob {
     std::size_t first_row, end_row;
     std::size_t out_row;  // the one that index 0 of the arrays belongs to
     GradientArrays out;
+    bool past_caches;  // coefficients of whole cache lines are written straight to memory
 };
 
 /// The innermost loops, for floor_bench.h.

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/aligned.h"
 #include "engine/base/image.h"
 #include "engine/base/thread_pool.h"
 #include "engine/math/camera.h"
@@ -48,13 +49,12 @@ struct ForwardOutput {
 
 /// Gradients of the rows [first_row, N): index 0 of every array belongs to first_row.
 struct Gradients {
-    std::vector<float> position;       // [M,3]
-    std::vector<float> log_scale;      // [M,3]
-    std::vector<float> rotation;       // [M,4] through the normalisation
-    std::vector<float> opacity_logit;  // [M]
-    std::vector<float> sh;             // [M,K,3]
-    std::vector<float>
-        mean2d_norm;  // [M] |dL/d(mean2d)| in NDC units (pixel gradient x W/2, H/2), for densification
+    LineFloats position;       // [M,3]
+    LineFloats log_scale;      // [M,3]
+    LineFloats rotation;       // [M,4] through the normalisation
+    LineFloats opacity_logit;  // [M]
+    LineFloats sh;             // [M,K,3]
+    LineFloats mean2d_norm;    // [M] |dL/d(mean2d)| in NDC units (pixel gradient x W/2, H/2), for densification
     std::vector<std::uint8_t> visible;  // [M] 1 where the row was blended into at least one pixel
 };
 

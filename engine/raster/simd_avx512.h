@@ -158,6 +158,21 @@ GSE_INLINE void store_columns(const float* from, int columns, float* const* rows
         for (int i = 0; i < row_count; ++i) _mm512_mask_storeu_ps(rows[i] + base, lanes, r[i]);
     }
 }
+/// store_columns of whole cache lines, and zeros, that go past the caches.
+#define GSE_HAS_STREAMS 1
+GSE_INLINE void stream_columns(const float* from, int columns, float* const* rows, int row_count) {
+    for (int base = 0; base < columns; base += 16) {
+        __m512 r[16];
+        for (int i = 0; i < 16; ++i) r[i] = _mm512_load_ps(from + (base + i) * 16);
+        transpose(r);
+        for (int i = 0; i < row_count; ++i) _mm512_stream_ps(rows[i] + base, r[i]);
+    }
+}
+GSE_INLINE void stream_zeros(float* to, std::size_t count) {
+    for (std::size_t i = 0; i < count; i += 16) _mm512_stream_ps(to + i, _mm512_setzero_ps());
+}
+/// What was streamed is there before what is stored from now on.
+GSE_INLINE void end_streams() { _mm_sfence(); }
 
 /// Four registers -> one whose every 128-bit quarter holds the four sums of that quarter.
 GSE_INLINE __m512 quarter_sums(__m512 a, __m512 b, __m512 c, __m512 d) {
@@ -166,8 +181,8 @@ GSE_INLINE __m512 quarter_sums(__m512 a, __m512 b, __m512 c, __m512 d) {
     return _mm512_castpd_ps(_mm512_unpacklo_pd(_mm512_castps_pd(ab), _mm512_castps_pd(cd))) +
            _mm512_castpd_ps(_mm512_unpackhi_pd(_mm512_castps_pd(ab), _mm512_castps_pd(cd)));
 }
-/// Horizontal sums of ten registers, into the first ten floats of `to`; the other six become 0.
-GSE_INLINE void store_sums(const F* a, float* to) {
+/// Horizontal sums of ten registers; the other six floats are 0.
+GSE_INLINE __m512 ten_sums(const F* a) {
     const __m512 x = quarter_sums(a[0].v, a[1].v, a[2].v, a[3].v);
     const __m512 y = quarter_sums(a[4].v, a[5].v, a[6].v, a[7].v);
     const __m512 nought = _mm512_setzero_ps();
@@ -175,9 +190,10 @@ GSE_INLINE void store_sums(const F* a, float* to) {
     const __m512 xy = _mm512_add_ps(_mm512_shuffle_f32x4(x, y, 0x44), _mm512_shuffle_f32x4(x, y, 0xee));
     const __m512 zz =
         _mm512_add_ps(_mm512_shuffle_f32x4(z, nought, 0x44), _mm512_shuffle_f32x4(z, nought, 0xee));
-    _mm512_store_ps(to,
-                    _mm512_add_ps(_mm512_shuffle_f32x4(xy, zz, 0x88), _mm512_shuffle_f32x4(xy, zz, 0xdd)));
+    return _mm512_add_ps(_mm512_shuffle_f32x4(xy, zz, 0x88), _mm512_shuffle_f32x4(xy, zz, 0xdd));
 }
+GSE_INLINE void store_sums(const F* a, float* to) { _mm512_store_ps(to, ten_sums(a)); }
+GSE_INLINE void stream_sums(const F* a, float* to) { _mm512_stream_ps(to, ten_sums(a)); }
 /// The masks of 16 entries -> for each block the list of the entries that touch it.
 #define GSE_HAS_LISTS 1
 GSE_INLINE void append_lists(const std::uint32_t* blocks, std::uint32_t first, std::uint16_t (*lists)[272],

@@ -3,6 +3,9 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
+#include "engine/raster/fast_frame.h"
 #include "tests/agree/raster/scenes.h"
 
 using namespace gse;
@@ -33,8 +36,8 @@ bool identical(const Results& a, const Results& b) {
            a.masked == b.masked && a.total == b.total;
 }
 
-template <class T>
-std::vector<T> tail(const std::vector<T>& all, std::size_t begin) {
+template <class Values>
+Values tail(const Values& all, std::size_t begin) {
     return {all.begin() + static_cast<std::ptrdiff_t>(begin), all.end()};
 }
 
@@ -86,6 +89,34 @@ DOCTEST_TEST_CASE("a restriction to rows gives exactly the tail of the full grad
             expected.visible = tail(full.visible, first);
             DOCTEST_CHECK(test::identical(part, expected));
         }
+    }
+}
+
+DOCTEST_TEST_CASE("gradients that go past the caches are those that do not") {
+    // 450,000 rows: coefficients and slots are more than Frame keeps in caches, those of the last rows are not.
+    const GaussianData data = test::random_scene({.count = 450000, .seed = 81, .log_scale = -5});
+    const std::size_t stride = data.sh_stride(), first = data.size() - 3001;
+    const Camera camera = test::test_camera(480, 360);
+    ThreadPool pool(2);
+    for (const std::string& kernels : raster::usable_kernels()) {
+        DOCTEST_CAPTURE(kernels);
+        const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
+        const Results full = run(*rasterizer, data, camera, 0);
+        DOCTEST_REQUIRE(full.gradients.sh.size() * sizeof(float) > CachedBytes);
+        DOCTEST_REQUIRE(full.image.pairs * sizeof(PartialSlot) > CachedBytes);
+        const Gradients part = run(*rasterizer, data, camera, first).gradients;
+        DOCTEST_CHECK(part.sh == tail(full.gradients.sh, first * stride));
+        DOCTEST_CHECK(part.position == tail(full.gradients.position, first * 3));
+        DOCTEST_CHECK(part.rotation == tail(full.gradients.rotation, first * 4));
+        DOCTEST_CHECK(part.visible == tail(full.gradients.visible, first));
+        std::size_t unseen = 0;
+        for (std::size_t row = 0; row < data.size(); ++row) {
+            if (full.gradients.visible[row] != 0) continue;
+            ++unseen;
+            const auto begin = full.gradients.sh.begin() + static_cast<std::ptrdiff_t>(row * stride);
+            if (std::any_of(begin, begin + static_cast<std::ptrdiff_t>(stride), [](float value) { return value != 0.0f; })) DOCTEST_FAIL("row " << row);
+        }
+        DOCTEST_CHECK(unseen > 1000);
     }
 }
 

@@ -128,7 +128,7 @@ inline void blank(Image& image, const std::vector<std::uint8_t>& ambiguous) {
         if (ambiguous[i / channels] != 0) image.data[i] = 0;
 }
 
-inline bool all_finite(const std::vector<float>& values) {
+inline bool all_finite(std::span<const float> values) {
     for (const float value : values)
         if (!std::isfinite(value)) return false;
     return true;

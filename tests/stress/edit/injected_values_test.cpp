@@ -48,7 +48,7 @@ public:
         whole_.backward(d_colour, d_alpha, first_row, output);
         if (random_.uniform() >= share_ || output.opacity_logit.empty()) return;
         const std::size_t rows = output.opacity_logit.size();
-        const std::array<std::vector<float>*, 6> tensors{&output.position, &output.log_scale,   &output.rotation,
+        const std::array<LineFloats*, 6> tensors{&output.position, &output.log_scale,   &output.rotation,
                                                          &output.opacity_logit, &output.sh, &output.mean2d_norm};
         for (int i = 0; i < 5; ++i) {
             const std::size_t which = random_.below(tensors.size()), row = random_.below(rows);

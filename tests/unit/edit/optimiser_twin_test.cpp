@@ -38,7 +38,7 @@ struct Attribute {
     std::size_t first_row;
     const std::vector<float>& anchor;
     const edit::AdamMoments& moments;
-    const std::vector<float>& gradient;
+    std::span<const float> gradient;
     std::size_t stride;
     double anchor_weight;
     std::array<double, 48> rates;

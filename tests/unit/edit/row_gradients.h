@@ -12,7 +12,7 @@ namespace gse::test {
 template <class Number>
 raster::Gradients row_gradients(const edit::WorkingSet& set, Number&& number) {
     raster::Gradients gradients;
-    const auto fill = [&](std::vector<float>& values, std::size_t stride) {
+    const auto fill = [&](LineFloats& values, std::size_t stride) {
         values.resize(set.labelled() * stride);
         for (auto& value : values) value = static_cast<float>(number());
     };

@@ -1,0 +1,52 @@
+// Arrays for what is walked through from end to end: they begin at a cache line, and large ones lie in large pages where the system
+// has some, so that fewer addresses have to be looked up.
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <vector>
+
+namespace gse {
+
+inline constexpr std::size_t CacheLine = 64;   // bytes
+
+/// `bytes` at a multiple of CacheLine, uninitialised; free_lines() gives them back and is told the same number. Throws std::bad_alloc.
+void* allocate_lines(std::size_t bytes);
+void free_lines(void* at, std::size_t bytes) noexcept;
+
+/// Wishes for large pages under memory that nothing was written to yet.
+void wish_large_pages(void* at, std::size_t bytes) noexcept;
+
+/// Reserves, in large pages where that takes new memory and much of it.
+template <class T>
+void reserve_large(std::vector<T>& values, std::size_t count) {
+    if (values.capacity() >= count) return;
+    values.reserve(count);
+    wish_large_pages(values.data() + values.size(), (count - values.size()) * sizeof(T));
+}
+
+template <class T>
+void resize_large(std::vector<T>& values, std::size_t count) {
+    reserve_large(values, count);
+    values.resize(count);
+}
+
+template <class T>
+struct LineAllocator {
+    using value_type = T;
+    LineAllocator() = default;
+    template <class U>
+    LineAllocator(const LineAllocator<U>&) {}
+    T* allocate(std::size_t count) {
+        if (count > static_cast<std::size_t>(-1) / sizeof(T)) throw std::bad_array_new_length();
+        return static_cast<T*>(allocate_lines(count * sizeof(T)));
+    }
+    void deallocate(T* values, std::size_t count) noexcept { free_lines(values, count * sizeof(T)); }
+    friend bool operator==(const LineAllocator&, const LineAllocator&) { return true; }
+};
+
+template <class T>
+using LineVector = std::vector<T, LineAllocator<T>>;
+using LineFloats = LineVector<float>;
+
+}  // namespace gse
