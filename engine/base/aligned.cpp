@@ -1,7 +1,5 @@
-// Memory by the line, and the wish for large pages.
+// Memory by the line, in large pages where there is much of it.
 #include "engine/base/aligned.h"
-
-#include <cstdint>
 
 #ifdef __linux__
 #include <sys/mman.h>
@@ -16,17 +14,11 @@ std::align_val_t alignment(std::size_t bytes) { return std::align_val_t{bytes >=
 
 }  // namespace
 
-void wish_large_pages([[maybe_unused]] void* at, [[maybe_unused]] std::size_t bytes) noexcept {
-#ifdef __linux__
-    if (bytes < WorthLargePages) return;
-    const std::size_t skipped = (LargePage - reinterpret_cast<std::uintptr_t>(at) % LargePage) % LargePage;
-    madvise(static_cast<std::byte*>(at) + skipped, (bytes - skipped) / LargePage * LargePage, MADV_HUGEPAGE);   // any answer will do
-#endif
-}
-
 void* allocate_lines(std::size_t bytes) {
     void* at = ::operator new(bytes, alignment(bytes));
-    wish_large_pages(at, bytes);
+#ifdef __linux__
+    if (bytes >= WorthLargePages) madvise(at, bytes / LargePage * LargePage, MADV_HUGEPAGE);   // a wish: any answer will do
+#endif
     return at;
 }
 

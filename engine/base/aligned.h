@@ -14,23 +14,6 @@ inline constexpr std::size_t CacheLine = 64;   // bytes
 void* allocate_lines(std::size_t bytes);
 void free_lines(void* at, std::size_t bytes) noexcept;
 
-/// Wishes for large pages under memory that nothing was written to yet.
-void wish_large_pages(void* at, std::size_t bytes) noexcept;
-
-/// Reserves, in large pages where that takes new memory and much of it.
-template <class T>
-void reserve_large(std::vector<T>& values, std::size_t count) {
-    if (values.capacity() >= count) return;
-    values.reserve(count);
-    wish_large_pages(values.data() + values.size(), (count - values.size()) * sizeof(T));
-}
-
-template <class T>
-void resize_large(std::vector<T>& values, std::size_t count) {
-    reserve_large(values, count);
-    values.resize(count);
-}
-
 template <class T>
 struct LineAllocator {
     using value_type = T;

@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <optional>
 
-#include "engine/base/aligned.h"
 #include "engine/base/error.h"
 #include "engine/base/memory.h"
 #include "engine/io/byte_reader.h"
@@ -292,7 +291,7 @@ Scene parse_gaussian_ply(Bytes bytes) {
     if (complete(layout.label)) attributes.push_back({layout.label, &label});
     if (complete(layout.label_weight)) attributes.push_back({layout.label_weight, &label_weight});
     for (const Attribute& attribute : attributes)
-        reserve_large(*attribute.target, static_cast<std::size_t>(vertex->count) * attribute.columns.size());
+        attribute.target->reserve(static_cast<std::size_t>(vertex->count) * attribute.columns.size());
     if (header.encoding == PlyEncoding::Ascii || vertex->has_list())
         read_walked_rows(body, *vertex, attributes);
     else

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "engine/base/aligned.h"
 #include "engine/base/check.h"
 
 namespace gse {
@@ -32,11 +31,11 @@ std::vector<float> copy(std::span<const float> values) { return {values.begin(),
 }  // namespace
 
 void GaussianData::resize(std::size_t n) {
-    resize_large(position, n * 3);
-    resize_large(log_scale, n * 3);
-    resize_large(rotation, n * 4);
-    resize_large(opacity_logit, n);
-    resize_large(sh, n * sh_stride());
+    position.resize(n * 3);
+    log_scale.resize(n * 3);
+    rotation.resize(n * 4);
+    opacity_logit.resize(n);
+    sh.resize(n * sh_stride());
 }
 
 void GaussianData::append_row(const GaussianData& other, std::size_t row) {

@@ -23,16 +23,3 @@ DOCTEST_TEST_CASE("arrays of lines begin at a line, small and large, and keep wh
     const LineFloats copy = values;
     DOCTEST_CHECK(copy == values);
 }
-
-DOCTEST_TEST_CASE("a vector that grows in large pages keeps what is in it") {
-    std::vector<float> values{1, 2, 3};
-    resize_large(values, 5000000);   // 20 MB: new memory that does not begin at a large page
-    DOCTEST_CHECK(values[2] == 3);
-    DOCTEST_CHECK(values[3] == 0);
-    DOCTEST_CHECK(values.back() == 0);
-    const float* at = values.data();
-    resize_large(values, 10);
-    reserve_large(values, 100);
-    DOCTEST_CHECK(values.size() == 10);
-    DOCTEST_CHECK(values.data() == at);
-}
