@@ -14,13 +14,14 @@
 namespace gse::ui {
 namespace {
 
-std::string proof_text(const EditNode& edit) {
+/// `where`: "outside", or in more words.
+std::string proof_text(const EditNode& edit, const char* where) {
     if (edit.changed_outside_label > 0)
-        return fmt::format("outside the label: {} splats changed", count_text(edit.changed_outside_label));
+        return fmt::format("{}: {} splats changed", where, count_text(edit.changed_outside_label));
     const std::string psnr = std::isfinite(edit.psnr_outside_db) && edit.psnr_outside_db > 0
                                  ? fmt::format(", {:.1f} dB", edit.psnr_outside_db)
                                  : "";
-    return fmt::format("outside the label: 0 splats changed{}", psnr);
+    return fmt::format("{}: 0 splats changed{}", where, psnr);
 }
 
 void draw_buttons(Context& context, const EditNode& edit, std::size_t place, std::size_t count) {
@@ -92,9 +93,9 @@ void draw_edit(Context& context, std::size_t place, std::size_t count) {
         context.actions.set_edit_enabled(edit.id, enabled);
     const bool clean = edit.changed_outside_label == 0;
     ImGui::PushStyleColor(ImGuiCol_Text, clean ? palette::Good : palette::Warning);
-    ImGui::TextUnformatted(shortened(proof_text(edit), ImGui::GetContentRegionAvail().x).c_str());
+    ImGui::TextUnformatted(shortened(proof_text(edit, "outside"), ImGui::GetContentRegionAvail().x).c_str());
     ImGui::PopStyleColor();
-    tooltip(proof_text(edit));
+    tooltip(proof_text(edit, "outside the label"));
     draw_strength(context, edit);
     draw_buttons(context, edit, place, count);
     if (edit.seconds > 0) {
