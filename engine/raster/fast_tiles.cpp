@@ -45,6 +45,14 @@ void for_quads(const TileArea& tile, Body&& body) {
     }
 }
 
+/// Whether the coefficients' gradients are too many for the caches, and each row's are whole cache lines.
+bool is_past_caches(const Frame& frame, const Gradients& output) {
+    constexpr std::size_t line_floats = CacheLine / sizeof(float);
+    const std::size_t stride = frame.source().sh_stride;
+    return output.sh.size() * sizeof(float) > CachedBytes && stride % line_floats == 0 &&
+           static_cast<std::size_t>(frame.view().sh_count) * 3 == stride;
+}
+
 }  // namespace
 
 void resize_output(int width, int height, ForwardOutput& output) {
@@ -115,14 +123,6 @@ void resize_gradients(std::size_t rows, std::size_t sh_stride, Gradients& output
     output.sh.resize(rows * sh_stride);
     output.mean2d_norm.resize(rows);
     output.visible.resize(rows);
-}
-
-/// Of the coefficients' gradients, row by row in whole cache lines.
-static bool is_past_caches(const Frame& frame, const Gradients& output) {
-    constexpr std::size_t line_floats = CacheLine / sizeof(float);
-    const std::size_t stride = frame.source().sh_stride;
-    return output.sh.size() * sizeof(float) > CachedBytes && stride % line_floats == 0 &&
-           static_cast<std::size_t>(frame.view().sh_count) * 3 == stride;
 }
 
 void write_gradients(const Kernels& kernels, Frame& frame, std::size_t chunk, std::size_t first_row, Gradients& output) {

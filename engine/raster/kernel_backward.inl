@@ -72,18 +72,22 @@ GSE_INLINE void clear_slot(float* slot) {
     for (int k = 0; k < PartialStride; k += F::W) store(slot + k, zero());
 }
 
-/// The same two of a job's slots, which may be too many for the caches.
-GSE_INLINE void fill_slot(const BackwardJob& job, const TileEntry& entry, const F* sums) {
-#ifdef GSE_HAS_STREAMS
-    if (job.past_caches) return stream_sums(sums, slot_of(job, entry));
+#ifndef GSE_HAS_STREAMS
+constexpr bool HasStreams = false;   // these are never called
+GSE_INLINE void stream_columns(const float*, int, float* const*, int) {}
+GSE_INLINE void stream_sums(const F*, float*) {}
+GSE_INLINE void stream_zeros(float*, std::size_t) {}
+GSE_INLINE void end_streams() {}
 #endif
+
+/// store_sums and clear_slot of a job's slot; there may be too many for the caches.
+GSE_INLINE void fill_slot(const BackwardJob& job, const TileEntry& entry, const F* sums) {
+    if (HasStreams && job.past_caches) return stream_sums(sums, slot_of(job, entry));
     store_sums(sums, slot_of(job, entry));
 }
 
 GSE_INLINE void empty_slot(const BackwardJob& job, const TileEntry& entry) {
-#ifdef GSE_HAS_STREAMS
-    if (job.past_caches) return stream_zeros(slot_of(job, entry), PartialStride);
-#endif
+    if (HasStreams && job.past_caches) return stream_zeros(slot_of(job, entry), PartialStride);
     clear_slot(slot_of(job, entry));
 }
 
@@ -91,16 +95,14 @@ GSE_INLINE void empty_slot(const BackwardJob& job, const TileEntry& entry) {
 static void clear_rest(const BackwardJob& job, std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i)
         if (job.entries[i].record >= job.first_record) empty_slot(job, job.entries[i]);
-#ifdef GSE_HAS_STREAMS
-    if (job.past_caches) end_streams();
-#endif
+    if (HasStreams && job.past_caches) end_streams();
 }
 
 GSE_INLINE void prefetch_entry(const BackwardJob& job, std::uint32_t i) {
     if (i >= job.count) return;
     const TileEntry& entry = job.entries[i];
     __builtin_prefetch(&record_at(job.records, entry.record));
-    if (entry.record >= job.first_record && !job.past_caches) __builtin_prefetch(slot_of(job, entry), 1);
+    if (entry.record >= job.first_record && !(HasStreams && job.past_caches)) __builtin_prefetch(slot_of(job, entry), 1);
 }
 
 GSE_INLINE void sum_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch, Sums& sums) {

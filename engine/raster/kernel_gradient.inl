@@ -220,9 +220,7 @@ static void write_gradients(const GradientJob& job, GradientBatch& batch) {
         sh[lane] = job.out.sh + row * job.source.sh_stride;
         for (auto k = static_cast<std::size_t>(job.view->sh_count) * 3; k < job.source.sh_stride; ++k) sh[lane][k] = 0.0f;
     }
-#ifdef GSE_HAS_STREAMS
-    if (job.past_caches) return stream_columns(batch.coefficient_gradients[0], job.view->sh_count * 3, sh, batch.raw.size);
-#endif
+    if (HasStreams && job.past_caches) return stream_columns(batch.coefficient_gradients[0], job.view->sh_count * 3, sh, batch.raw.size);
     store_columns(batch.coefficient_gradients[0], job.view->sh_count * 3, sh, batch.raw.size);
 }
 
@@ -238,9 +236,7 @@ static void clear_rows(const GradientJob& job, std::size_t begin, std::size_t en
         job.out.mean2d_norm[row] = 0.0f;
         job.out.visible[row] = 0;
     }
-#ifdef GSE_HAS_STREAMS
-    if (job.past_caches) return stream_zeros(job.out.sh + (begin - job.out_row) * stride, (end - begin) * stride);
-#endif
+    if (HasStreams && job.past_caches) return stream_zeros(job.out.sh + (begin - job.out_row) * stride, (end - begin) * stride);
     __builtin_memset(job.out.sh + (begin - job.out_row) * stride, 0, (end - begin) * stride * sizeof(float));
 }
 
@@ -248,7 +244,8 @@ static void clear_rows(const GradientJob& job, std::size_t begin, std::size_t en
 GSE_INLINE void prefetch_gradients(const GradientJob& job, std::size_t row, std::size_t& asked) {
     const std::size_t stride = job.source.sh_stride;
     prefetch_floats<0>(job.source.sh + row * stride, job.view->sh_count * 3);
-    for (; asked <= row && !job.past_caches; ++asked) prefetch_floats<1>(job.out.sh + (asked - job.out_row) * stride, static_cast<int>(stride));
+    if (HasStreams && job.past_caches) return;   // nothing is fetched to be overwritten
+    for (; asked <= row; ++asked) prefetch_floats<1>(job.out.sh + (asked - job.out_row) * stride, static_cast<int>(stride));
 }
 
 static void finish_batch(const GradientJob& job, GradientBatch& batch) {
@@ -297,7 +294,5 @@ static void gradient(const GradientJob& job) {
     }
     clear_rows(job, next, job.end_row);
     finish_batch(job, batch);
-#ifdef GSE_HAS_STREAMS
-    if (job.past_caches) end_streams();
-#endif
+    if (HasStreams && job.past_caches) end_streams();
 }

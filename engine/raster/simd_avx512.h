@@ -160,6 +160,7 @@ GSE_INLINE void store_columns(const float* from, int columns, float* const* rows
 }
 /// store_columns of whole cache lines, and zeros, that go past the caches.
 #define GSE_HAS_STREAMS 1
+constexpr bool HasStreams = true;
 GSE_INLINE void stream_columns(const float* from, int columns, float* const* rows, int row_count) {
     for (int base = 0; base < columns; base += 16) {
         __m512 r[16];
