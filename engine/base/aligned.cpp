@@ -1,27 +1,36 @@
-// Memory by the line, in large pages where there is much of it.
+// Memory by the line, in huge pages where there is much of it.
 #include "engine/base/aligned.h"
 
-#ifdef __linux__
+#include <cstdint>
+
+#if defined(__linux__)
 #include <sys/mman.h>
 #endif
 
 namespace gse {
 namespace {
 
-constexpr std::size_t LargePage = std::size_t{2} << 20, WorthLargePages = 2 * LargePage;
+constexpr std::size_t HugePage = std::size_t{2} << 20;       // of x86-64 and most others
+constexpr std::size_t WorthHugePages = 2 * HugePage;
 
-std::align_val_t alignment(std::size_t bytes) { return std::align_val_t{bytes >= WorthLargePages ? LargePage : CacheLine}; }
+std::align_val_t alignment(std::size_t bytes) { return std::align_val_t{bytes >= WorthHugePages ? HugePage : CacheLine}; }
 
 }  // namespace
 
-void* allocate_lines(std::size_t bytes) {
-    void* at = ::operator new(bytes, alignment(bytes));
-#ifdef __linux__
-    if (bytes >= WorthLargePages) madvise(at, bytes / LargePage * LargePage, MADV_HUGEPAGE);   // a wish: any answer will do
+void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) noexcept {
+#if defined(MADV_HUGEPAGE)
+    const auto begin = (reinterpret_cast<std::uintptr_t>(memory) + HugePage - 1) / HugePage * HugePage;
+    const auto end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / HugePage * HugePage;
+    if (begin < end) static_cast<void>(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE));
 #endif
-    return at;
 }
 
-void free_lines(void* at, std::size_t bytes) noexcept { ::operator delete(at, alignment(bytes)); }
+void* allocate_lines(std::size_t bytes) {
+    void* memory = ::operator new(bytes, alignment(bytes));
+    if (bytes >= WorthHugePages) prefer_huge_pages(memory, bytes);
+    return memory;
+}
+
+void free_lines(void* memory, std::size_t bytes) noexcept { ::operator delete(memory, alignment(bytes)); }
 
 }  // namespace gse

@@ -1,4 +1,4 @@
-// Arrays for what is walked through from end to end: they begin at a cache line, and large ones lie in large pages where the system
+// Arrays for what is walked through from end to end: they begin at a cache line, and large ones lie in huge pages where the system
 // has some, so that fewer addresses have to be looked up.
 #pragma once
 
@@ -10,9 +10,12 @@ namespace gse {
 
 inline constexpr std::size_t CacheLine = 64;   // bytes
 
+/// Asks for huge pages where whole ones fit into memory that was not written to yet. Where the system has none, nothing happens.
+void prefer_huge_pages(void* memory, std::size_t bytes) noexcept;
+
 /// `bytes` at a multiple of CacheLine, uninitialised; free_lines() gives them back and is told the same number. Throws std::bad_alloc.
 void* allocate_lines(std::size_t bytes);
-void free_lines(void* at, std::size_t bytes) noexcept;
+void free_lines(void* memory, std::size_t bytes) noexcept;
 
 template <class T>
 struct LineAllocator {

@@ -8,14 +8,12 @@
 #if defined(__GLIBC__)
 #include <malloc.h>
 #endif
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
 
-#include <cstdint>
 #include <mutex>
 #include <new>
 #include <vector>
+
+#include "engine/base/aligned.h"
 
 namespace gse::neural {
 namespace {
@@ -26,21 +24,10 @@ struct alignas(64) BufferHeader {
 };
 
 constexpr std::size_t Granularity = std::size_t{64} << 10;   // sizes are rounded up to it
-constexpr std::size_t HugePage = std::size_t{2} << 20;       // of x86-64 and most others
 constexpr std::size_t FitShare = 8;   // a kept buffer may be longer than asked for by this part
 
 std::byte* data_of(BufferHeader* header) { return reinterpret_cast<std::byte*>(header + 1); }
 BufferHeader* header_of(void* data) { return static_cast<BufferHeader*>(data) - 1; }
-
-/// Asks for huge pages where whole ones fit: a fault for each 4 KiB costs as much as what is computed with large models. Where the
-/// system has none, nothing happens.
-void prefer_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
-#if defined(MADV_HUGEPAGE)
-    const auto begin = (reinterpret_cast<std::uintptr_t>(memory) + HugePage - 1) / HugePage * HugePage;
-    const auto end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / HugePage * HugePage;
-    if (begin < end) static_cast<void>(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE));
-#endif
-}
 
 class BufferCache final : public c10::Allocator {
 public:
@@ -97,7 +84,7 @@ private:
             release();
             memory = c10::alloc_cpu(sizeof(BufferHeader) + bytes);
         }
-        prefer_huge_pages(memory, sizeof(BufferHeader) + bytes);
+        prefer_huge_pages(memory, sizeof(BufferHeader) + bytes);   // a fault for each 4 KiB costs as much as what is computed with large models
         return data_of(new (memory) BufferHeader{bytes});
     }
 
