@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <memory>
 
-#include "app/process.h"
 #include "engine/base/log.h"
 #include "engine/base/printable.h"
+#include "engine/base/process.h"
 #include "engine/base/progress_bar.h"
 
 #ifndef GSE_VERSION

@@ -1,9 +1,9 @@
-// What the program does with its own process: interrupts, failing output, the right BLAS kernels.
+// What the program does with its own process: interrupts, writes that fail, the right BLAS kernels.
 #pragma once
 
 #include <stop_token>
 
-namespace gse::app {
+namespace gse {
 
 /// A token that Ctrl-C (SIGINT) or SIGTERM turns on; a second Ctrl-C ends the program at once.
 std::stop_token interrupt_token();
@@ -12,11 +12,8 @@ std::stop_token interrupt_token();
 /// standard streams are stood in for.
 void let_writes_fail();
 
-/// Brings what was printed to its place; false, after a sentence on stderr, when that or an earlier print failed.
-bool flush_output();
-
 /// OpenBLAS before 0.3.26 does not know AMD's AVX-512 processors and falls back to half-width kernels; the core type can
 /// only be chosen before the library is loaded, so the program restarts itself once with OPENBLAS_CORETYPE set.
 void prefer_fast_blas(char** argv);
 
-}  // namespace gse::app
+}  // namespace gse

@@ -1,25 +1,16 @@
-// Signals, rusage and the restart for OpenBLAS.
-#include "app/process.h"
+// Signals, closed streams and the restart for OpenBLAS.
+#include "engine/base/process.h"
 
 #include <fcntl.h>
 #include <signal.h>
-#include <sys/resource.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
-#include <iostream>
-#include <sstream>
-#include <string>
 #include <thread>
 
-namespace gse::app {
+namespace gse {
 namespace {
 
 std::atomic<int> interrupts{0};
@@ -66,16 +57,6 @@ void let_writes_fail() {
         if (fcntl(standard, F_GETFD) < 0) static_cast<void>(open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY));
 }
 
-bool flush_output() {
-    errno = 0;
-    std::cout.flush();
-    const bool flushed = std::fflush(stdout) == 0 && std::cout.good() && std::ferror(stdout) == 0;
-    if (flushed) return true;
-    const std::string reason = errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : std::string();
-    std::fprintf(stderr, "gseditpro: the output cannot be printed%s; files that were asked for are written\n", reason.c_str());
-    return false;
-}
-
 void prefer_fast_blas(char** argv) {
     // Threads of the networks sleep when they wait: spinning halves the speed as soon as anything else runs.
     setenv("OMP_WAIT_POLICY", "passive", 0);
@@ -90,4 +71,4 @@ void prefer_fast_blas(char** argv) {
 #endif
 }
 
-}  // namespace gse::app
+}  // namespace gse
