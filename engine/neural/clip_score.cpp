@@ -8,6 +8,7 @@
 
 #include "engine/base/error.h"
 #include "engine/neural/images.h"
+#include "engine/neural/safetensors.h"
 #include "engine/neural/tokenizer.h"
 #include "engine/neural/torch_errors.h"
 #include "engine/neural/viewpoint_model.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/neural/config.h"
+#include "engine/neural/safetensors.h"
 #include "engine/neural/weights.h"
 
 namespace gse::neural {

@@ -318,9 +318,9 @@ std::int64_t check_files(const Parts& parts, const WeightFiles& files, const Pla
     const UNet unet(parts.unet, described);
     const AutoencoderKl vae(parts.vae, described);
     const ClipTextEncoder text(parts.text, described);
-    check_weights(*text, key_shapes(files.text), plans.text, parts.text_file);
-    check_weights(*unet, key_shapes(files.unet), plans.unet, parts.unet_file);
-    check_weights(*vae, key_shapes(files.vae), plans.vae, parts.vae_file);
+    check_weights(*text, files.text.shapes(), plans.text, parts.text_file);
+    check_weights(*unet, files.unet.shapes(), plans.unet, parts.unet_file);
+    check_weights(*vae, files.vae.shapes(), plans.vae, parts.vae_file);
     return count_parameters(*unet) + count_parameters(*vae) + count_parameters(*text);
 }
 

@@ -144,6 +144,12 @@ SafetensorsFile::SafetensorsFile(const std::filesystem::path& path) : path_(path
     check_tiling(entries_, static_cast<std::size_t>(file_.size()) - data_begin_, path);
 }
 
+KeyShapes SafetensorsFile::shapes() const {
+    KeyShapes shapes;
+    for (const auto& [name, entry] : entries_) shapes.emplace(name, entry.shape);
+    return shapes;
+}
+
 torch::Tensor SafetensorsFile::read(const Entry& entry) const {
     auto tensor = torch::empty(entry.shape, torch::TensorOptions().dtype(entry.dtype));
     file_.read(data_begin_ + entry.begin, {static_cast<std::byte*>(tensor.data_ptr()), entry.end - entry.begin});

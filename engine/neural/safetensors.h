@@ -10,11 +10,12 @@
 #include <vector>
 
 #include "engine/base/file.h"
+#include "engine/neural/tensor_file.h"
 
 namespace gse::neural {
 
-/// One open file. Tensors are read on request, each into memory of its own, so the object may go before them.
-class SafetensorsFile {
+/// One open file.
+class SafetensorsFile final : public TensorFile {
 public:
     struct Entry {
         torch::Dtype dtype = torch::kFloat32;
@@ -25,17 +26,15 @@ public:
     /// Throws Error (NotFound, Unreadable, Malformed).
     explicit SafetensorsFile(const std::filesystem::path& path);
 
-    const std::filesystem::path& path() const { return path_; }
+    const std::filesystem::path& path() const override { return path_; }
+    KeyShapes shapes() const override;
     const std::map<std::string, Entry>& entries() const { return entries_; }
     const std::map<std::string, std::string>& metadata() const { return metadata_; }
     bool contains(const std::string& name) const { return entries_.contains(name); }
 
-    /// The tensor in the type of the file. Throws Error (Model) when it is not there, (Unreadable) when the file was cut off
-    /// since it was opened.
-    torch::Tensor tensor(const std::string& name) const;
-    /// Copies the tensor into `target` (same number of elements), converting to its type and device; one of quantized() as the numbers that it
-    /// stands for. Throws Error as tensor(), and (Malformed) when its scales do not fit.
-    void copy_to(const std::string& name, torch::Tensor target) const;
+    torch::Tensor tensor(const std::string& name) const override;
+    /// One of quantized() as the numbers that it stands for. Throws Error as the others, and (Malformed) when its scales do not fit.
+    void copy_to(const std::string& name, torch::Tensor target) const override;
 
 private:
     torch::Tensor read(const Entry& entry) const;

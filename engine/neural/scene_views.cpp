@@ -95,7 +95,7 @@ UNet load_shape_unet(const std::filesystem::path& folder) {
     LoadPlan plan = unet_plan();
     plan.what = "UNet for new things";
     plan.ignore = [](const std::string& name) { return name.ends_with(QuantizationScale); };
-    check_weights(*UNet(config, WeightOptions{torch::kMeta, torch::kFloat32, false}), key_shapes(file), plan, file.path());   // before memory is taken
+    check_weights(*UNet(config, WeightOptions{torch::kMeta, torch::kFloat32, false}), file.shapes(), plan, file.path());   // before memory is taken
     UNet unet(config, WeightOptions{torch::kCPU, torch::kFloat32, false});
     load_weights(*unet, file, plan);
     for (auto& parameter : unet->parameters()) parameter.set_requires_grad(false);

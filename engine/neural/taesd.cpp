@@ -5,6 +5,7 @@
 
 #include "engine/base/error.h"
 #include "engine/neural/network_use.h"
+#include "engine/neural/safetensors.h"
 #include "engine/neural/weights.h"
 
 namespace gse::neural {

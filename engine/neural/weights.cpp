@@ -37,12 +37,6 @@ WeightSource source_of(const LoadPlan& plan, const std::string& name) {
 
 }  // namespace
 
-KeyShapes key_shapes(const SafetensorsFile& file) {
-    KeyShapes shapes;
-    for (const auto& [name, entry] : file.entries()) shapes.emplace(name, entry.shape);
-    return shapes;
-}
-
 std::set<std::string> check_weights(const torch::nn::Module& module, const KeyShapes& shapes,
                                     const LoadPlan& plan, const std::filesystem::path& path) {
     std::vector<std::string> missing, wrong;
@@ -82,9 +76,9 @@ std::set<std::string> check_weights(const torch::nn::Module& module, const KeySh
     return used;
 }
 
-std::set<std::string> load_weights(torch::nn::Module& module, const SafetensorsFile& file,
+std::set<std::string> load_weights(torch::nn::Module& module, const TensorFile& file,
                                    const LoadPlan& plan) {
-    auto used = check_weights(module, key_shapes(file), plan, file.path());
+    auto used = check_weights(module, file.shapes(), plan, file.path());
     const auto parameters = module.named_parameters().pairs();
     const auto load = [&](const std::string& name, torch::Tensor value) {
         const auto source = source_of(plan, name);

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "engine/neural/layers.h"
-#include "engine/neural/safetensors.h"
+#include "engine/neural/tensor_file.h"
 
 namespace gse::neural {
 
@@ -30,16 +30,12 @@ struct LoadPlan {
 
 /// Copies all parameters of `module` from `file`. Throws Error (Model) that names the missing, the left-over
 /// or the mis-shaped key (the first, and how many more). Returns the keys of the file that were used.
-std::set<std::string> load_weights(torch::nn::Module& module, const SafetensorsFile& file,
+std::set<std::string> load_weights(torch::nn::Module& module, const TensorFile& file,
                                    const LoadPlan& plan);
 
 /// The same check on names and shapes only (module on torch::kMeta, a manifest): `shapes` are the keys of the
 /// file.
-using KeyShapes = std::map<std::string, std::vector<std::int64_t>>;
 std::set<std::string> check_weights(const torch::nn::Module& module, const KeyShapes& shapes,
                                     const LoadPlan& plan, const std::filesystem::path& path);
-
-/// Names and shapes of all tensors of a file.
-KeyShapes key_shapes(const SafetensorsFile& file);
 
 }  // namespace gse::neural
