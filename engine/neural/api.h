@@ -113,6 +113,9 @@ public:
     /// Loads a diffusers folder or a single-file checkpoint. Throws Error (Model, NotFound); what is wrong with a LoRA is said
     /// before any weight is read.
     virtual std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const ModelOptions& options) = 0;
+    /// Cuts masks out of pictures: SAM or MobileSAM, from a file or a folder. May be used from several threads. Throws Error (NotFound,
+    /// Malformed, Unsupported, Model).
+    virtual std::unique_ptr<edit::Segmenter> load_segmenter(const std::filesystem::path& path, const std::string& device) = 0;
     virtual void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
                                const std::filesystem::path& work, const std::filesystem::path& output,
                                const JobControl& job) = 0;

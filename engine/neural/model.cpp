@@ -2,6 +2,7 @@
 #include "engine/neural/model.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <mutex>
 #include <regex>
@@ -189,8 +190,19 @@ private:
 
 }  // namespace
 
+namespace {
+
+std::atomic<bool> blas_threads_set = false;
+
+}  // namespace
+
 void set_blas_threads(int count) {
+    blas_threads_set = true;
     if (openblas_set_num_threads != nullptr) openblas_set_num_threads(count);
+}
+
+void prefer_one_blas_thread() {
+    if (!blas_threads_set && openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
 }
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }

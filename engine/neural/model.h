@@ -19,5 +19,7 @@ void set_threads(int count);
 
 /// Threads of OpenBLAS, which has its own beside torch's; nothing happens with another library.
 void set_blas_threads(int count);
+/// One, unless a model that was loaded has set them: for work that callers share out themselves.
+void prefer_one_blas_thread();
 
 }  // namespace gse::neural

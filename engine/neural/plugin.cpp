@@ -5,7 +5,9 @@
 #include <thread>
 
 #include "engine/neural/api.h"
+#include "engine/neural/buffer_cache.h"
 #include "engine/neural/model.h"
+#include "engine/neural/sam_segmenter.h"
 #include "engine/neural/torch_errors.h"
 
 namespace gse::neural {
@@ -16,6 +18,11 @@ public:
     std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path,
                                             const ModelOptions& options) override {
         return neural::load_model(path, options);
+    }
+    std::unique_ptr<edit::Segmenter> load_segmenter(const std::filesystem::path& path, const std::string& device) override {
+        keep_buffers();
+        prefer_one_blas_thread();   // views are segmented side by side
+        return load_sam_segmenter(path, device);
     }
     void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
                        const std::filesystem::path& work, const std::filesystem::path& output,
