@@ -16,6 +16,7 @@
 #include "engine/localize/focus.h"
 #include "engine/pipeline/neural_loader.h"
 #include "engine/pipeline/probe.h"
+#include "engine/pipeline/segmenters.h"
 
 namespace gse::pipeline {
 namespace {
@@ -61,15 +62,17 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     times_.begin("load_scene");
     recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
     recipe_.job.lora = absolute_loras(recipe_.job);
+    if (!recipe_.job.segmenter.empty()) recipe_.job.segmenter = std::filesystem::absolute(recipe_.job.segmenter).lexically_normal().string();
     Scene scene = load_scene(recipe_.job.scene);
     if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene);
     times_.end();
     GivenCameras given;
     if (recipe_.job.cameras != "none") given.cameras = scene_cameras(recipe_.job.scene, recipe_.job.cameras);
     times_.begin("load_model");
-    auto model = open_recipe_model(recipe_.job, std::move(cache));
+    auto model = open_recipe_model(recipe_.job, cache);
+    auto segmenter = open_segmenter(recipe_.job, std::move(cache));
     times_.end();
-    begin(std::move(scene), std::move(model), given);
+    begin(std::move(scene), std::move(model), std::move(segmenter), given);
 }
 
 EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
@@ -86,7 +89,7 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
     GivenCameras given;
     for (std::size_t i = 0; i < input.view_words.size(); ++i) given.words[input.cameras[i].name] = input.view_words[i];
     given.cameras = std::move(input.cameras);
-    begin(std::move(input.scene), std::move(model), given);
+    begin(std::move(input.scene), std::move(model), std::move(input.segmenter), given);
 }
 
 void EditJob::check_recipe(const neural::TextToImage* model) {
@@ -121,8 +124,8 @@ void EditJob::check_length() const {
     log::warning("the model reads {} words of the sentence: from \"{}\" on nothing counts", read, words[read]);
 }
 
-void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, const GivenCameras& given) {
-    workplace_ = std::make_unique<Workplace>(std::move(scene), std::move(model), recipe_.job);
+void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, std::shared_ptr<edit::Segmenter> segmenter, const GivenCameras& given) {
+    workplace_ = std::make_unique<Workplace>(std::move(scene), std::move(model), recipe_.job, std::move(segmenter));
     auto words = edit::words_of(recipe_.request.prompt);
     for (auto& word : edit::words_of(recipe_.request.source)) words.push_back(std::move(word));
     std::sort(words.begin(), words.end());

@@ -27,6 +27,7 @@ struct EditJobInput {
     std::vector<std::string> view_words = {};      // one for each of `cameras` where it is known; else from the recipe's front
     std::optional<neural::TunedModel> tuned = {};  // what another job learned of this scene for these words and settings
     std::vector<std::string> said = {};            // words that the scene is known to show: no news
+    std::shared_ptr<edit::Segmenter> segmenter = {};   // null = the one that needs no weights
 };
 
 /// A run from stage to stage (views.h, search.h, loop.h): keeps what each came to and how long it took.
@@ -106,6 +107,8 @@ public:
     /// Whether the model is shown the scene where something new is drawn.
     bool knows_scene() const { return workplace_->model().knows_scene(); }
     bool restyles() const { return workplace_->model().restyles(); }
+    /// What cuts masks out of pictures.
+    std::string segmenter_name() const { return workplace_->segmenter().name(); }
     /// Whether the pictures said which word is new, and not the recipe.
     bool target_read() const { return located_->target_read; }
     bool automatic_views() const { return views_->automatic; }
@@ -120,7 +123,7 @@ public:
 private:
     void check_recipe(const neural::TextToImage* model);
     void check_length() const;
-    void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, const GivenCameras& given);
+    void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, std::shared_ptr<edit::Segmenter> segmenter, const GivenCameras& given);
     void take(Located located);
     void look_again(const EditRecipe& recipe);
     std::vector<Image> instance_pictures();

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "engine/edit/grabcut_segmenter.h"
 #include "engine/edit/instruction.h"
 #include "engine/pipeline/neural_loader.h"
 #include "engine/pipeline/recipe_model.h"
+#include "engine/pipeline/segmenters.h"
 
 namespace gse::pipeline {
 namespace {
@@ -73,11 +73,10 @@ Edited edit_scene(Workplace& workplace, const GaussianSet& scene, const Located&
     tools.new_label = observer.new_label;
     tools.start = observer.start ? &*observer.start : nullptr;
     const auto attention = without_memory(model).attention(recipe.attention);   // every render is another question
-    const auto segmenter = edit::make_default_segmenter();
     // What the words did not find, their attention does not follow either.
     const bool lost = located.by_label() && located.result.mode == edit::EditMode::Modify;
     tools.attention = lost ? nullptr : attention.get();
-    tools.segmenter = segmenter.get();
+    tools.segmenter = by_views ? &workplace.segmenter() : &without_memory(workplace.segmenter());
     tools.word = dynamic_word(located, request);
     tools.views = views.get();
     tools.known = model.known_words();

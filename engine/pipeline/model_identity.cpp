@@ -99,13 +99,30 @@ std::string processor() {
     return {};
 }
 
+std::string library_line(AnswerMemory& memory) {
+    const auto library = neural_library();
+    return library.empty() ? std::string() : "library " + contents_of(library, memory) + "\n";
+}
+
+std::string digest_of_text(const std::string& text) {
+    Digest digest;
+    digest.text(text);
+    return digest.hex();
+}
+
 }  // namespace
+
+std::string segmenter_identity(const JobParameters& job, AnswerMemory& memory, int version) {
+    const fs::path path(job.segmenter);
+    return digest_of_text(fmt::format("segmenter, version {}\n{}\n{}device {}\n", version, processor(), library_line(memory), job.device) +
+                          (fs::is_directory(path) ? contents_below(path, memory) : "weights " + contents_of(path, memory) + "\n"));
+}
 
 std::string model_identity(const JobParameters& job, AnswerMemory& memory, int version) {
     const auto path = model_path(job);
     const bool folder = fs::is_directory(path);
     std::string text = fmt::format("version {}\n{}\nname {}\n", version, processor(), path.filename().string());
-    if (const auto library = neural_library(); !library.empty()) text += "library " + contents_of(library, memory) + "\n";
+    text += library_line(memory);
     text += fmt::format("device {}, precision {}, tiny autoencoder {}\n", job.device, job.precision, job.taesd == "none" ? "off" : "on");
     text += folder ? contents_below(path, memory) : contents_beside(path, memory);
     if (const auto tiny = named_taesd(job, folder ? path : path.parent_path()); !tiny.empty() && fs::is_directory(tiny))
@@ -113,9 +130,7 @@ std::string model_identity(const JobParameters& job, AnswerMemory& memory, int v
     for (const auto& lora : neural::find_loras(job.lora))   // its name may say that it was distilled
         text += fmt::format("lora {} {} {}\n", static_cast<int>(neural::lora_mark(lora.file)), lora.strength,
                             contents_of(lora.file, memory));
-    Digest digest;
-    digest.text(text);
-    return digest.hex();
+    return digest_of_text(text);
 }
 
 }  // namespace gse::pipeline

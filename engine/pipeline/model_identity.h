@@ -15,5 +15,7 @@ constexpr int AnswersVersion = 1;
 /// device, precision and processor, and with `version`; of names, only the model's own counts. The contents of a file are read
 /// once as long as its size and times stay (remembered in `memory`). Throws Error (NotFound, Unreadable).
 std::string model_identity(const JobParameters& job, AnswerMemory& memory, int version = AnswersVersion);
+/// The same of the weights that `job.segmenter` names.
+std::string segmenter_identity(const JobParameters& job, AnswerMemory& memory, int version = AnswersVersion);
 
 }  // namespace gse::pipeline

@@ -34,8 +34,8 @@ private:
 
 }  // namespace
 
-Workplace::Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job)
-    : scene_(std::move(scene)), model_(std::move(model)), segmenter_(edit::make_default_segmenter()) {
+Workplace::Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job, std::shared_ptr<edit::Segmenter> segmenter)
+    : scene_(std::move(scene)), model_(std::move(model)), segmenter_(segmenter ? std::move(segmenter) : edit::make_default_segmenter()) {
     const auto statistics = compute_statistics(scene_.gaussians);
     if (statistics.visible_rows == 0)
         throw Error(ErrorCode::InvalidArgument, "the scene has no splat that can be seen", "open another scene", job.scene);
