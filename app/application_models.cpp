@@ -8,6 +8,7 @@
 #include "engine/neural/lora_spec.h"
 #include "engine/pipeline/model_catalogue.h"
 #include "engine/pipeline/model_settings.h"
+#include "engine/pipeline/segmenters.h"
 
 namespace gse::app {
 namespace {
@@ -223,6 +224,32 @@ void Application::remove_lora(std::size_t index) {
     auto loras = loras_;
     loras.erase(loras.begin() + static_cast<std::ptrdiff_t>(index));
     try_loras(std::move(loras));
+}
+
+/// Weights are loaded before they count; what is in use stays where that fails.
+void Application::choose_segmenter(const std::string& path) {
+    if (work_.running()) return toast("What cuts out masks can be changed when the job is done.");
+    const auto use = [this](const std::string& chosen) {
+        model_.segmenter = {chosen};
+        segmenter_path_ = chosen;
+        save_settings();
+    };
+    if (path.empty()) return use({});
+    JobParameters job;
+    job.segmenter = std::filesystem::absolute(path).lexically_normal().string();
+    job.device = model_.model_settings.device;
+    model_.segmenter.checking = true;
+    work_.start({"Check the segmenter",
+                 [job, cache = cache_](const JobControl& control) {
+                     control.report("loading the segmenter", 0, 0);
+                     open_segmenter(job, cache);
+                 },
+                 [this, use, chosen = job.segmenter](const Error* error) {
+                     model_.segmenter.checking = false;
+                     if (error == nullptr) return use(chosen);
+                     const auto file = std::filesystem::path(chosen).filename().string();
+                     toast(fmt::format("\"{}\": {}. What was in use stays.", file, reason_of(*error)), true);
+                 }});
 }
 
 /// A model that was in use and cannot be loaded any more gives way to the one that comes with the program. LoRAs go first.

@@ -7,7 +7,6 @@
 
 #include "app/application.h"
 #include "app/engine_names.h"
-#include "app/process.h"
 #include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
@@ -21,6 +20,7 @@
 #include "engine/pipeline/model_settings.h"
 #include "engine/pipeline/neural_loader.h"
 #include "engine/pipeline/scene_tools.h"
+#include "engine/pipeline/segmenters.h"
 #include "engine/scene/label_ops.h"
 #include "ui/sentence.h"
 
@@ -37,6 +37,7 @@ EditRecipe Application::current_recipe() const {
     recipe.job.scene = scene_path_;
     recipe.job.model = model_path_;
     recipe.job.lora = loras_;
+    recipe.job.segmenter = segmenter_path_;
     recipe.request = model_.request;
     recipe.use_dreambooth = model_.model_settings.learn_scene;
     recipe.dreambooth = model_.model_settings.learning;
@@ -127,12 +128,14 @@ struct Search {
     bool first_load = false;   // in this process: the libraries come with it
     PlannedMemory memory;
     neural::NetworkUse use;
+    std::shared_ptr<edit::Segmenter> segmenter;   // null = GrabCut
 };
 
 void load(Search& search, const JobParameters& job, const std::shared_ptr<DiskCache>& cache, const JobControl& control) {
     control.report("loading the model", 0, 0);
-    if (search.model) return use_threads(job);
-    search.model = open_recipe_model(job, cache);
+    if (search.model) use_threads(job);
+    else search.model = open_recipe_model(job, cache);
+    search.segmenter = open_segmenter(job, cache);   // after the model: its failure is not the model's
 }
 
 /// Of a model that was needed for more than the cache holds.
@@ -185,7 +188,7 @@ void Application::locate() {
         const auto before = network_use();
         load(*search, recipe.job, cache, control);
         const PeakMemory peak;
-        search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned, said}, control);
+        search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned, said, search->segmenter}, control);
         look(*search);
         search->use = network_use() - before;
         if (search->job->found() && !steps_measured(measured, *search->job)) measure_steps(search->measured, *search->job);
@@ -328,7 +331,7 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
             search->job->take_settings(recipe, label.empty());
             if (!search->job->found() && !label.empty()) search->job->use_label(label);
         } else {
-            search->job = std::make_shared<EditJob>(open, EditJobInput{scene, views, search->model, label, {}, tuned, said}, control);
+            search->job = std::make_shared<EditJob>(open, EditJobInput{scene, views, search->model, label, {}, tuned, said, search->segmenter}, control);
             look(*search);
         }
         run_measured(*search, label, *live, *pending, peak);

@@ -148,6 +148,12 @@ struct LoraView {
     double strength = 1;
 };
 
+/// What cuts masks out of pictures.
+struct SegmenterView {
+    std::string path;        // of its weights; empty = GrabCut, which needs none
+    bool checking = false;   // others are being loaded, to see whether they can be used
+};
+
 struct LogLine {
     log::Level level = log::Level::Info;
     std::string time;            // "14:02:07"
@@ -326,6 +332,7 @@ struct ViewModel {
     bool edits_by_instruction = false;           // the model in use is told what to do, too
     std::vector<LoraView> loras;
     bool loras_checking = false;                 // others are being loaded, to see whether they can be used
+    SegmenterView segmenter;
     std::vector<LogLine> log;
     std::vector<Toast> toasts;
     ViewSettings view;

@@ -106,6 +106,40 @@ void draw_loras(Context& context) {
     if (button(context, {.name = "models.lora.browse", .text = "Browse..."})) ask_lora(context);
 }
 
+void ask_segmenter(Context& context) {
+    auto& actions = context.actions;
+    context.state.files.ask({.title = "Weights of SAM or MobileSAM",
+                             .confirm = "Use",
+                             .extensions = {".safetensors", ".pth", ".pt"},
+                             .saves = false,
+                             .folder_allowed = true,
+                             .start = context.state.segmenter_path,
+                             .answer = [&actions](const std::filesystem::path& path) { actions.choose_segmenter(utf8_of(path)); }});
+}
+
+/// What cuts out what the attention finds.
+void draw_segmenter(Context& context) {
+    heading(context, "Masks");
+    const auto& segmenter = context.model.segmenter;
+    if (segmenter.path.empty()) {
+        dim_text("GrabCut cuts out what the attention finds. SAM or MobileSAM, where you have the weights, follows outlines better.");
+    } else {
+        dim_text(fmt::format("Cut out by {}", shortened(segmenter.path, ImGui::GetContentRegionAvail().x - context.em * 4)));
+        tooltip(segmenter.path);
+        if (button(context, {.name = "models.segmenter.none", .text = "Back to GrabCut"})) context.actions.choose_segmenter({});
+    }
+    if (segmenter.checking) dim_text("The weights are being loaded, to see whether they can be used.");
+    auto& text = context.state.segmenter_path;
+    const bool entered = text_input(context, "models.segmenter.path", text, "sam_vit_b.pth, mobile_sam.pt, ...", ImGuiInputTextFlags_EnterReturnsTrue);
+    if (button(context, {.name = "models.segmenter.use", .text = "Use", .why_off = text.empty() ? "Type a path first" : ""}) ||
+        (entered && !text.empty())) {
+        context.actions.choose_segmenter(text);
+        text.clear();
+    }
+    flow(button_width("Browse..."));
+    if (button(context, {.name = "models.segmenter.browse", .text = "Browse..."})) ask_segmenter(context);
+}
+
 }  // namespace
 
 void draw_models_panel(Context& context) {
@@ -124,6 +158,7 @@ void draw_models_panel(Context& context) {
         }
     }
     draw_loras(context);
+    draw_segmenter(context);
     heading(context, "Another model");
     const bool entered = text_input(context, "models.path", context.state.model_path,
                                     "path of a folder or .safetensors", ImGuiInputTextFlags_EnterReturnsTrue);
@@ -134,7 +169,7 @@ void draw_models_panel(Context& context) {
         context.actions.choose_model(context.state.model_path);
     flow(button_width("Locate..."));
     if (button(context, {.name = "models.browse", .text = "Browse..."})) ask_model(context);
-    dim_text("Pickled .ckpt and .pt files are refused: they can run programs. Convert them to .safetensors.");
+    dim_text("Pickled .ckpt and .pt models are refused: they can run programs. Convert them to .safetensors.");
 }
 
 }  // namespace gse::ui
