@@ -351,7 +351,7 @@ Json TextEncoderConfig::to_json() const {
 
 VisionEncoderConfig VisionEncoderConfig::from_json(const Json& json, const std::filesystem::path& path) {
     const Reader reader(json, path);
-    reader.expect("model_type", {"clip_vision_model"});
+    reader.expect("model_type", {"clip_vision_model", "clipseg_vision_model"});
     reader.expect("hidden_act", {"quick_gelu", "gelu"});
     VisionEncoderConfig config;
     reader.get("hidden_size", config.hidden_size);
@@ -392,9 +392,10 @@ Json VisionEncoderConfig::to_json() const {
     return json;
 }
 
-ClipConfig ClipConfig::from_json(const Json& json, const std::filesystem::path& path) {
-    const Reader reader(json, path);
-    reader.expect("model_type", {"clip"});
+namespace {
+
+ClipConfig read_towers(const Reader& reader, const std::filesystem::path& path) {
+    const Json& json = reader.json();
     ClipConfig config;
     reader.get("projection_dim", config.projection_dim);
     reader.positive("projection_dim", config.projection_dim, MaxWidth);
@@ -407,6 +408,39 @@ ClipConfig ClipConfig::from_json(const Json& json, const std::filesystem::path& 
         config.vision = VisionEncoderConfig::from_json(json.at("vision_config"), path);
     config.text.projection_dim = config.projection_dim;
     config.text.with_projection = true;
+    return config;
+}
+
+}  // namespace
+
+ClipConfig ClipConfig::from_json(const Json& json, const std::filesystem::path& path) {
+    const Reader reader(json, path);
+    reader.expect("model_type", {"clip"});
+    return read_towers(reader, path);
+}
+
+ClipSegConfig ClipSegConfig::from_json(const Json& json, const std::filesystem::path& path) {
+    const Reader reader(json, path);
+    if (!reader.has("model_type") || json.at("model_type") != "clipseg")
+        throw Error(ErrorCode::Model, "this is no CLIPSeg model", "its config.json says \"model_type\": \"clipseg\"", path);
+    ClipSegConfig config;
+    config.clip = read_towers(reader, path);
+    reader.get("extract_layers", config.extract_layers);
+    reader.get("reduce_dim", config.reduce_dim);
+    reader.get("decoder_num_attention_heads", config.decoder_num_attention_heads);
+    reader.get("decoder_intermediate_size", config.decoder_intermediate_size);
+    reader.get("conditional_layer", config.conditional_layer);
+    reader.get("use_complex_transposed_convolution", config.use_complex_transposed_convolution);
+    reader.positive("reduce_dim", config.reduce_dim, MaxWidth);
+    reader.positive("decoder_num_attention_heads", config.decoder_num_attention_heads, config.reduce_dim);
+    reader.positive("decoder_intermediate_size", config.decoder_intermediate_size, MaxWidth);
+    reader.positive("extract_layers (count)", static_cast<std::int64_t>(config.extract_layers.size()), config.clip.vision.num_hidden_layers);
+    for (const auto layer : config.extract_layers)
+        if (layer < 0 || layer >= config.clip.vision.num_hidden_layers) reader.malformed(fmt::format("\"extract_layers\" names the layer {}, which is not there", layer));
+    if (config.reduce_dim % config.decoder_num_attention_heads != 0)
+        reader.malformed("\"reduce_dim\" is not a multiple of \"decoder_num_attention_heads\"");
+    if (config.use_complex_transposed_convolution && config.clip.vision.patch_size % 4 != 0)
+        reader.malformed("the image encoder's patch_size is not a multiple of 4");
     return config;
 }
 

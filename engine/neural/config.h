@@ -125,6 +125,19 @@ struct ClipConfig {
     Json to_json() const;
 };
 
+/// config.json of CLIPSeg (CLIPSegForImageSegmentation): CLIP's towers and a small decoder on top.
+struct ClipSegConfig {
+    ClipConfig clip;
+    std::vector<std::int64_t> extract_layers = {3, 6, 9};   // of the image encoder, that the decoder is shown
+    std::int64_t reduce_dim = 64;
+    std::int64_t decoder_num_attention_heads = 4;
+    std::int64_t decoder_intermediate_size = 2048;
+    std::int64_t conditional_layer = 0;                      // where the words come in
+    bool use_complex_transposed_convolution = false;
+
+    static ClipSegConfig from_json(const Json& json, const std::filesystem::path& path);
+};
+
 /// scheduler/scheduler_config.json.
 struct SchedulerConfig {
     std::string class_name = "DDIMScheduler";

@@ -2,14 +2,12 @@
 #include "engine/neural/sam_segmenter.h"
 
 #include <algorithm>
-#include <list>
-#include <mutex>
 #include <utility>
 
 #include "engine/base/check.h"
-#include "engine/base/digest.h"
 #include "engine/neural/images.h"
 #include "engine/neural/model_bundle.h"
+#include "engine/neural/picture_memory.h"
 #include "engine/neural/sam_model.h"
 #include "engine/neural/torch_errors.h"
 
@@ -20,7 +18,7 @@ constexpr std::size_t MostPictures = 64;   // 4 MB each with SAM's weights
 
 class SamSegmenter final : public edit::Segmenter {
 public:
-    SamSegmenter(SamModel model, const torch::Device& device) : model_(std::move(model)), device_(device) {}
+    SamSegmenter(SamModel model, const torch::Device& device) : model_(std::move(model)), device_(device), pictures_(MostPictures) {}
 
     Mask segment(const Image& image, const std::vector<edit::PointPrompt>& points, const std::optional<edit::BoxPrompt>& box,
                  const Image&) override {
@@ -60,28 +58,12 @@ private:
     }
 
     torch::Tensor embedding(const Image& image) {
-        Digest digest;
-        digest.image(image);
-        const auto key = digest.hex();
-        {
-            const std::lock_guard lock(mutex_);
-            const auto known = std::find_if(remembered_.begin(), remembered_.end(), [&](const auto& entry) { return entry.first == key; });
-            if (known != remembered_.end()) {
-                remembered_.splice(remembered_.begin(), remembered_, known);
-                return known->second;
-            }
-        }
-        auto embedding = model_->embed(model_->pixels(to_tensor(image, device_)));
-        const std::lock_guard lock(mutex_);
-        remembered_.emplace_front(key, embedding);
-        if (remembered_.size() > MostPictures) remembered_.pop_back();
-        return embedding;
+        return pictures_.get(image, [&] { return model_->embed(model_->pixels(to_tensor(image, device_))); });
     }
 
     SamModel model_;
     torch::Device device_;
-    std::mutex mutex_;
-    std::list<std::pair<std::string, torch::Tensor>> remembered_;   // by the digest of the picture, the last first
+    PictureMemory<torch::Tensor> pictures_;
 };
 
 }  // namespace

@@ -122,7 +122,7 @@ void draw_segmenter(Context& context) {
     heading(context, "Masks");
     const auto& segmenter = context.model.segmenter;
     if (segmenter.path.empty()) {
-        dim_text("GrabCut cuts out what the attention finds. SAM or MobileSAM, where you have the weights, follows outlines better.");
+        dim_text("GrabCut cuts out what the attention finds. SAM or MobileSAM does it instead where you have the weights.");
     } else {
         dim_text(fmt::format("Cut out by {}", shortened(segmenter.path, ImGui::GetContentRegionAvail().x - context.em * 4)));
         tooltip(segmenter.path);

@@ -30,6 +30,26 @@ struct GoldenCase {
     bool present;
 };
 
+/// Names and shapes of the tensors of a published model: a line each, the name, a tab, "3x4" or "scalar" or nothing.
+inline neural::KeyShapes read_manifest(const std::filesystem::path& path) {
+    neural::KeyShapes shapes;
+    std::ifstream stream(path);
+    for (std::string line; std::getline(stream, line);) {
+        const auto tab = line.find('\t');
+        if (line.empty() || tab == std::string::npos || line.starts_with('#') || line.starts_with("key")) continue;
+        std::vector<std::int64_t> shape;
+        auto text = line.substr(tab + 1, line.find('\t', tab + 1) - tab - 1);
+        if (text == "scalar") text.clear();
+        for (std::size_t at = 0; at < text.size();) {
+            std::size_t used = 0;
+            shape.push_back(std::stoll(text.substr(at), &used));
+            at += used + 1;
+        }
+        shapes.emplace(line.substr(0, tab), shape);
+    }
+    return shapes;
+}
+
 /// Largest absolute difference; infinite for a wrong shape or a value that is not a number.
 inline double difference(const torch::Tensor& actual, const torch::Tensor& expected) {
     if (actual.numel() == 0 && expected.numel() == 0) return 0;

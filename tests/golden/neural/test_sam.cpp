@@ -106,24 +106,6 @@ void check_sam(const std::filesystem::path& weights, const SafetensorsFile& io, 
     check_pixels(io, model);
 }
 
-KeyShapes read_manifest(const std::filesystem::path& path) {
-    KeyShapes shapes;
-    std::ifstream stream(path);
-    for (std::string line; std::getline(stream, line);) {
-        const auto tab = line.find('\t');
-        if (line.empty() || tab == std::string::npos || line.starts_with('#') || line.starts_with("key")) continue;
-        std::vector<std::int64_t> shape;
-        const auto text = line.substr(tab + 1, line.find('\t', tab + 1) - tab - 1);
-        for (std::size_t at = 0; at < text.size();) {
-            std::size_t used = 0;
-            shape.push_back(std::stoll(text.substr(at), &used));
-            at += used + 1;
-        }
-        shapes.emplace(line.substr(0, tab), shape);
-    }
-    return shapes;
-}
-
 }  // namespace
 
 DOCTEST_TEST_CASE("sam: names of segment-anything, safetensors and torch.save") {
