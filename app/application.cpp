@@ -272,6 +272,7 @@ void Application::save_settings() {
     json["model"] = model_path_;
     json["loras"] = loras_;
     json["segmenter"] = segmenter_path_;
+    json["text_segmenter"] = text_segmenter_path_;
     for (const auto& [key, measured] : measured_) json["measured"][key] = fields_to_json(measured);
     if (!layout_.empty()) json["layout"] = layout_;
     gse::save_settings(json);
@@ -299,7 +300,7 @@ void Application::load_settings() {
     model_.cache_bytes = cached_bytes(cache_->folder());
     model_path_ = text("model");
     loras_ = texts_of(json, "loras");
-    model_.segmenter.path = segmenter_path_ = text("segmenter");
+    model_.segmenters = {ui::SegmenterView{segmenter_path_ = text("segmenter")}, ui::SegmenterView{text_segmenter_path_ = text("text_segmenter")}};
     layout_ = text("layout");
     layout_loaded_ = !layout_.empty();
 }

@@ -161,7 +161,7 @@ public:
     void set_request(const edit::EditRequest& request) override;
     void choose_model(const std::string& path) override;
     void add_lora(const std::string& text) override;
-    void choose_segmenter(const std::string& path) override;
+    void choose_segmenter(ui::SegmenterRole role, const std::string& path) override;
     void set_lora_strength(std::size_t index, double strength) override;
     void remove_lora(std::size_t index) override;
     void set_exports(const ui::ExportSettings& settings) override;
@@ -330,7 +330,7 @@ private:
     // Work
     std::shared_ptr<neural::TextToImage> text_model_;
     std::string text_model_key_, model_path_, model_tried_;
-    std::string segmenter_path_;       // weights of SAM; empty = GrabCut
+    std::string segmenter_path_, text_segmenter_path_;   // weights of SAM and CLIPSeg; empty = none
     std::vector<std::string> loras_;   // FILE or FILE:strength, merged into the model in use
     neural::ModelProfile profile_;   // of the model in use
     EditRecipe defaults_;            // what settings are that nobody chose

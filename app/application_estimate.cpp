@@ -21,7 +21,8 @@ std::string Application::measured_key() const {
     // A LoRA takes time to read, memory of its own where it is distilled, and another number of passes per step.
     std::string key = fmt::format("{} at {} px", model_in_use(), model_.request.image_size);
     for (const auto& lora : loras_) key += fmt::format(" with {}", lora);
-    if (!segmenter_path_.empty()) key += " and masks by " + segmenter_path_;
+    for (const auto& segmenter : {segmenter_path_, text_segmenter_path_})
+        if (!segmenter.empty()) key += " and masks by " + segmenter;
     if (const auto& precision = model_.model_settings.precision; precision != "auto") key += " in " + precision;
     return key;
 }

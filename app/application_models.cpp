@@ -227,25 +227,26 @@ void Application::remove_lora(std::size_t index) {
 }
 
 /// Weights are loaded before they count; what is in use stays where that fails.
-void Application::choose_segmenter(const std::string& path) {
+void Application::choose_segmenter(ui::SegmenterRole role, const std::string& path) {
     if (work_.running()) return toast("What cuts out masks can be changed when the job is done.");
-    const auto use = [this](const std::string& chosen) {
-        model_.segmenter = {chosen};
-        segmenter_path_ = chosen;
+    const bool by_clicks = role == ui::SegmenterRole::Clicks;
+    auto& shown = model_.segmenters[static_cast<std::size_t>(role)];
+    const auto use = [this, by_clicks, &shown](const std::string& chosen) {
+        shown.path = (by_clicks ? segmenter_path_ : text_segmenter_path_) = chosen;
         save_settings();
     };
     if (path.empty()) return use({});
     JobParameters job;
-    job.segmenter = std::filesystem::absolute(path).lexically_normal().string();
+    const auto chosen = (by_clicks ? job.segmenter : job.text_segmenter) = std::filesystem::absolute(path).lexically_normal().string();
     job.device = model_.model_settings.device;
-    model_.segmenter.checking = true;
+    shown.checking = true;
     work_.start({"Check the segmenter",
                  [job, cache = cache_](const JobControl& control) {
                      control.report("loading the segmenter", 0, 0);
-                     open_segmenter(job, cache);
+                     open_segmenters(job, cache);
                  },
-                 [this, use, chosen = job.segmenter](const Error* error) {
-                     model_.segmenter.checking = false;
+                 [this, use, chosen, &shown](const Error* error) {
+                     shown.checking = false;
                      if (error == nullptr) return use(chosen);
                      const auto file = std::filesystem::path(chosen).filename().string();
                      toast(fmt::format("\"{}\": {}. What was in use stays.", file, reason_of(*error)), true);

@@ -38,6 +38,7 @@ EditRecipe Application::current_recipe() const {
     recipe.job.model = model_path_;
     recipe.job.lora = loras_;
     recipe.job.segmenter = segmenter_path_;
+    recipe.job.text_segmenter = text_segmenter_path_;
     recipe.request = model_.request;
     recipe.use_dreambooth = model_.model_settings.learn_scene;
     recipe.dreambooth = model_.model_settings.learning;
@@ -128,14 +129,14 @@ struct Search {
     bool first_load = false;   // in this process: the libraries come with it
     PlannedMemory memory;
     neural::NetworkUse use;
-    std::shared_ptr<edit::Segmenter> segmenter;   // null = GrabCut
+    Segmenters segmenters;
 };
 
 void load(Search& search, const JobParameters& job, const std::shared_ptr<DiskCache>& cache, const JobControl& control) {
     control.report("loading the model", 0, 0);
     if (search.model) use_threads(job);
     else search.model = open_recipe_model(job, cache);
-    search.segmenter = open_segmenter(job, cache);   // after the model: its failure is not the model's
+    search.segmenters = open_segmenters(job, cache);   // after the model: its failure is not the model's
 }
 
 /// Of a model that was needed for more than the cache holds.
@@ -188,7 +189,7 @@ void Application::locate() {
         const auto before = network_use();
         load(*search, recipe.job, cache, control);
         const PeakMemory peak;
-        search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned, said, search->segmenter}, control);
+        search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned, said, search->segmenters}, control);
         look(*search);
         search->use = network_use() - before;
         if (search->job->found() && !steps_measured(measured, *search->job)) measure_steps(search->measured, *search->job);
@@ -331,7 +332,7 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
             search->job->take_settings(recipe, label.empty());
             if (!search->job->found() && !label.empty()) search->job->use_label(label);
         } else {
-            search->job = std::make_shared<EditJob>(open, EditJobInput{scene, views, search->model, label, {}, tuned, said, search->segmenter}, control);
+            search->job = std::make_shared<EditJob>(open, EditJobInput{scene, views, search->model, label, {}, tuned, said, search->segmenters}, control);
             look(*search);
         }
         run_measured(*search, label, *live, *pending, peak);

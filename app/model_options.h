@@ -7,7 +7,7 @@
 
 namespace gse::app {
 
-/// --model, --lora (any number of times), --taesd, --segmenter, --precision.
+/// --model, --lora (any number of times), --taesd, --segmenter, --text-segmenter, --precision.
 void add_model_options(CLI::App& command, pipeline::JobParameters& job);
 
 }  // namespace gse::app

@@ -86,7 +86,7 @@ public:
     virtual void add_lora(const std::string& text) = 0;            // FILE or FILE:strength; these three load the model anew, and
     virtual void set_lora_strength(std::size_t index, double strength) = 0;   // leave it as it was where that fails
     virtual void remove_lora(std::size_t index) = 0;
-    virtual void choose_segmenter(const std::string& path) = 0;    // weights of SAM; empty = GrabCut. Tried before they count
+    virtual void choose_segmenter(SegmenterRole role, const std::string& path) = 0;   // weights, tried before they count; empty = none
     // Export
     virtual void set_exports(const ExportSettings& settings) = 0;
     virtual void export_picture() = 0;

@@ -185,8 +185,8 @@ public:
     void remove_lora(std::size_t index) override {
         later([this, index] { target_->remove_lora(index); });
     }
-    void choose_segmenter(const std::string& path) override {
-        later([this, path] { target_->choose_segmenter(path); });
+    void choose_segmenter(SegmenterRole role, const std::string& path) override {
+        later([this, role, path] { target_->choose_segmenter(role, path); });
     }
     void set_exports(const ExportSettings& settings) override {
         later([this, settings] { target_->set_exports(settings); });

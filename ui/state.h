@@ -140,7 +140,8 @@ struct UiState {
     } leave_asked;                   // asked about once more: an edit was discarded, other work may be left
     std::uint64_t question_seen = 0;   // number of the application's last question that was shown
     std::string open_asked;  // path to open, from outside; empty = none
-    std::string model_path, lora_text, segmenter_path;
+    std::string model_path, lora_text;
+    std::array<std::string, 2> segmenter_paths;   // typed, by SegmenterRole
     std::string focus;  // widget that takes the keyboard next frame
     bool animating = false;
 };

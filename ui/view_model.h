@@ -148,9 +148,12 @@ struct LoraView {
     double strength = 1;
 };
 
+/// What a segmenter finds by: clicks on the attention (SAM), or a noun (CLIPSeg).
+enum class SegmenterRole : std::uint8_t { Clicks, Words };
+
 /// What cuts masks out of pictures.
 struct SegmenterView {
-    std::string path;        // of its weights; empty = GrabCut, which needs none
+    std::string path;        // of its weights; empty = none: GrabCut follows clicks, and nouns are left to the attention
     bool checking = false;   // others are being loaded, to see whether they can be used
 };
 
@@ -332,7 +335,7 @@ struct ViewModel {
     bool edits_by_instruction = false;           // the model in use is told what to do, too
     std::vector<LoraView> loras;
     bool loras_checking = false;                 // others are being loaded, to see whether they can be used
-    SegmenterView segmenter;
+    std::array<SegmenterView, 2> segmenters;     // by SegmenterRole
     std::vector<LogLine> log;
     std::vector<Toast> toasts;
     ViewSettings view;

@@ -119,7 +119,7 @@ private:
 
     /// Share of the views in which the text segmenter sees the target word; nothing without one.
     std::optional<double> found_share() {
-        if (tools_.text_segmenter == nullptr || request().mode != "auto" || renders_.empty())
+        if (tools_.text_segmenter == nullptr || request().mode != "auto" || request().target.empty() || renders_.empty())
             return std::nullopt;
         int found = 0;
         for (const auto& render : renders_) {

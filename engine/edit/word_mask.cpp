@@ -26,19 +26,6 @@ struct SmallMap {
     Mask region;
 };
 
-BoxPrompt bounds(const Mask& mask) {
-    BoxPrompt box{static_cast<double>(mask.width), static_cast<double>(mask.height), 0, 0};
-    for (int y = 0; y < mask.height; ++y)
-        for (int x = 0; x < mask.width; ++x) {
-            if (mask.at(x, y) == 0) continue;
-            box.x0 = std::min(box.x0, static_cast<double>(x));
-            box.y0 = std::min(box.y0, static_cast<double>(y));
-            box.x1 = std::max(box.x1, x + 1.0);
-            box.y1 = std::max(box.y1, y + 1.0);
-        }
-    return box;
-}
-
 SmallMap small_map(const Image& map, double threshold, const SearchSettings& settings) {
     const int height = std::max(1, ClusterGrid * map.height / map.width);
     SmallMap small{localize::resize_image(map, ClusterGrid, height), {}};
@@ -102,7 +89,7 @@ void refine(WordMask& found, const Image& picture, const Image& map, const std::
     if (text_fits && localize::mask_iou(*from_text, found.region) >= LeastOverlapIou)
         return accept_text();
     if (tools.segmenter != nullptr) {
-        Mask mask = tools.segmenter->segment(picture, found.points, bounds(found.region), map);
+        Mask mask = tools.segmenter->segment(picture, found.points, bounds_of(found.region), map);
         mask = localize::clean_clusters(mask, map, {1.5, 1}, settings.keep_mass);
         const double mass = localize::captured_mass(map, found.region, mask);
         if (sane(mask, found.region) && mass >= std::max(settings.fallback_mass, text_mass)) {
@@ -114,6 +101,19 @@ void refine(WordMask& found, const Image& picture, const Image& map, const std::
 }
 
 }  // namespace
+
+BoxPrompt bounds_of(const Mask& mask) {
+    BoxPrompt box{static_cast<double>(mask.width), static_cast<double>(mask.height), 0, 0};
+    for (int y = 0; y < mask.height; ++y)
+        for (int x = 0; x < mask.width; ++x) {
+            if (mask.at(x, y) == 0) continue;
+            box.x0 = std::min(box.x0, static_cast<double>(x));
+            box.y0 = std::min(box.y0, static_cast<double>(y));
+            box.x1 = std::max(box.x1, x + 1.0);
+            box.y1 = std::max(box.y1, y + 1.0);
+        }
+    return box;
+}
 
 std::size_t normalise_maximum(Image& map) {
     std::size_t broken = 0;

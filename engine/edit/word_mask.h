@@ -31,6 +31,9 @@ struct WordMaskTools {
     TextSegmenter* text_segmenter = nullptr;
 };
 
+/// The least box around a mask's pixels, which has some.
+BoxPrompt bounds_of(const Mask& mask);
+
 /// Scales an attention map to a maximum of 1; negative and non-finite values become 0. Returns how many were not finite.
 std::size_t normalise_maximum(Image& map);
 

@@ -116,6 +116,8 @@ public:
     /// Cuts masks out of pictures: SAM or MobileSAM, from a file or a folder. May be used from several threads. Throws Error (NotFound,
     /// Malformed, Unsupported, Model).
     virtual std::unique_ptr<edit::Segmenter> load_segmenter(const std::filesystem::path& path, const std::string& device) = 0;
+    /// Finds nouns in pictures: CLIPSeg, from a folder. The same of threads and errors.
+    virtual std::unique_ptr<edit::TextSegmenter> load_text_segmenter(const std::filesystem::path& folder, const std::string& device) = 0;
     virtual void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
                                const std::filesystem::path& work, const std::filesystem::path& output,
                                const JobControl& job) = 0;

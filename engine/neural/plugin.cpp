@@ -8,6 +8,7 @@
 #include "engine/neural/buffer_cache.h"
 #include "engine/neural/model.h"
 #include "engine/neural/sam_segmenter.h"
+#include "engine/neural/text_segmenter.h"
 #include "engine/neural/torch_errors.h"
 
 namespace gse::neural {
@@ -23,6 +24,11 @@ public:
         keep_buffers();
         prefer_one_blas_thread();   // views are segmented side by side
         return load_sam_segmenter(path, device);
+    }
+    std::unique_ptr<edit::TextSegmenter> load_text_segmenter(const std::filesystem::path& folder, const std::string& device) override {
+        keep_buffers();
+        prefer_one_blas_thread();
+        return neural::load_text_segmenter(folder, device);
     }
     void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
                        const std::filesystem::path& work, const std::filesystem::path& output,

@@ -16,7 +16,6 @@
 #include "engine/localize/focus.h"
 #include "engine/pipeline/neural_loader.h"
 #include "engine/pipeline/probe.h"
-#include "engine/pipeline/segmenters.h"
 
 namespace gse::pipeline {
 namespace {
@@ -62,7 +61,8 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     times_.begin("load_scene");
     recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
     recipe_.job.lora = absolute_loras(recipe_.job);
-    if (!recipe_.job.segmenter.empty()) recipe_.job.segmenter = std::filesystem::absolute(recipe_.job.segmenter).lexically_normal().string();
+    for (auto* weights : {&recipe_.job.segmenter, &recipe_.job.text_segmenter})
+        if (!weights->empty()) *weights = std::filesystem::absolute(*weights).lexically_normal().string();
     Scene scene = load_scene(recipe_.job.scene);
     if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene);
     times_.end();
@@ -70,9 +70,9 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     if (recipe_.job.cameras != "none") given.cameras = scene_cameras(recipe_.job.scene, recipe_.job.cameras);
     times_.begin("load_model");
     auto model = open_recipe_model(recipe_.job, cache);
-    auto segmenter = open_segmenter(recipe_.job, std::move(cache));
+    auto segmenters = open_segmenters(recipe_.job, cache);
     times_.end();
-    begin(std::move(scene), std::move(model), std::move(segmenter), given);
+    begin(std::move(scene), std::move(model), std::move(segmenters), given);
 }
 
 EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
@@ -89,7 +89,7 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
     GivenCameras given;
     for (std::size_t i = 0; i < input.view_words.size(); ++i) given.words[input.cameras[i].name] = input.view_words[i];
     given.cameras = std::move(input.cameras);
-    begin(std::move(input.scene), std::move(model), std::move(input.segmenter), given);
+    begin(std::move(input.scene), std::move(model), std::move(input.segmenters), given);
 }
 
 void EditJob::check_recipe(const neural::TextToImage* model) {
@@ -124,8 +124,8 @@ void EditJob::check_length() const {
     log::warning("the model reads {} words of the sentence: from \"{}\" on nothing counts", read, words[read]);
 }
 
-void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, std::shared_ptr<edit::Segmenter> segmenter, const GivenCameras& given) {
-    workplace_ = std::make_unique<Workplace>(std::move(scene), std::move(model), recipe_.job, std::move(segmenter));
+void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters, const GivenCameras& given) {
+    workplace_ = std::make_unique<Workplace>(std::move(scene), std::move(model), recipe_.job, std::move(segmenters));
     auto words = edit::words_of(recipe_.request.prompt);
     for (auto& word : edit::words_of(recipe_.request.source)) words.push_back(std::move(word));
     std::sort(words.begin(), words.end());

@@ -14,6 +14,7 @@
 #include "engine/pipeline/recipe.h"
 #include "engine/pipeline/recipe_model.h"
 #include "engine/pipeline/search.h"
+#include "engine/pipeline/segmenters.h"
 #include "engine/pipeline/stage_times.h"
 
 namespace gse::pipeline {
@@ -27,7 +28,7 @@ struct EditJobInput {
     std::vector<std::string> view_words = {};      // one for each of `cameras` where it is known; else from the recipe's front
     std::optional<neural::TunedModel> tuned = {};  // what another job learned of this scene for these words and settings
     std::vector<std::string> said = {};            // words that the scene is known to show: no news
-    std::shared_ptr<edit::Segmenter> segmenter = {};   // null = the one that needs no weights
+    Segmenters segmenters = {};
 };
 
 /// A run from stage to stage (views.h, search.h, loop.h): keeps what each came to and how long it took.
@@ -123,7 +124,7 @@ public:
 private:
     void check_recipe(const neural::TextToImage* model);
     void check_length() const;
-    void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, std::shared_ptr<edit::Segmenter> segmenter, const GivenCameras& given);
+    void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters, const GivenCameras& given);
     void take(Located located);
     void look_again(const EditRecipe& recipe);
     std::vector<Image> instance_pictures();

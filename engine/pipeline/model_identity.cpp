@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t PieceBytes = std::size_t{1} << 20;
-constexpr std::array<std::string_view, 3> ModelEndings{".safetensors", ".json", ".txt"};   // nothing else of a model is read
+constexpr std::array<std::string_view, 4> ModelEndings{".safetensors", ".json", ".txt", ".bin"};   // nothing else of a model is read
 
 std::string digest_of(const fs::path& path) {
     const InputFile file(path);
@@ -112,9 +112,8 @@ std::string digest_of_text(const std::string& text) {
 
 }  // namespace
 
-std::string segmenter_identity(const JobParameters& job, AnswerMemory& memory, int version) {
-    const fs::path path(job.segmenter);
-    return digest_of_text(fmt::format("segmenter, version {}\n{}\n{}device {}\n", version, processor(), library_line(memory), job.device) +
+std::string segmenter_identity(const fs::path& path, const std::string& device, AnswerMemory& memory, int version) {
+    return digest_of_text(fmt::format("segmenter, version {}\n{}\n{}device {}\n", version, processor(), library_line(memory), device) +
                           (fs::is_directory(path) ? contents_below(path, memory) : "weights " + contents_of(path, memory) + "\n"));
 }
 

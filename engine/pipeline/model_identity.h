@@ -1,6 +1,7 @@
 // What a model's answers follow from, as text: contents of its files, how it is loaded, the code that computes.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "engine/base/answer_memory.h"
@@ -15,7 +16,7 @@ constexpr int AnswersVersion = 1;
 /// device, precision and processor, and with `version`; of names, only the model's own counts. The contents of a file are read
 /// once as long as its size and times stay (remembered in `memory`). Throws Error (NotFound, Unreadable).
 std::string model_identity(const JobParameters& job, AnswerMemory& memory, int version = AnswersVersion);
-/// The same of the weights that `job.segmenter` names.
-std::string segmenter_identity(const JobParameters& job, AnswerMemory& memory, int version = AnswersVersion);
+/// The same of a segmenter's weights: a file or a folder.
+std::string segmenter_identity(const std::filesystem::path& weights, const std::string& device, AnswerMemory& memory, int version = AnswersVersion);
 
 }  // namespace gse::pipeline

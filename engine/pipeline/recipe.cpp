@@ -76,7 +76,7 @@ EditRecipe read_recipe(const std::filesystem::path& path) {
         throw Error(ErrorCode::InvalidArgument, "in the recipe, " + error.message(), hint, path);
     }
     for (auto& lora : recipe.job.lora) lora = lora_beside(path_of_text(lora), path.parent_path());
-    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd, &recipe.job.segmenter}) {
+    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd, &recipe.job.segmenter, &recipe.job.text_segmenter}) {
         *name = path_of_text(*name);
         if (name->empty() || *name == "none" || std::filesystem::path(*name).is_absolute()) continue;
         *name = std::filesystem::weakly_canonical(path.parent_path() / *name).string();
@@ -89,6 +89,7 @@ std::string search_key(const EditRecipe& recipe) {
              fields_to_json(recipe.attention), surroundings(recipe.job), recipe.job.use_label};
     if (recipe.use_dreambooth) key.push_back(fields_to_json(recipe.dreambooth));
     if (!recipe.job.segmenter.empty()) key.push_back({{"segmenter", recipe.job.segmenter}});
+    if (!recipe.job.text_segmenter.empty()) key.push_back({{"text_segmenter", recipe.job.text_segmenter}});
     return key.dump();
 }
 

@@ -24,6 +24,7 @@ struct JobParameters {
     std::vector<std::string> lora;
     std::string taesd;
     std::string segmenter;
+    std::string text_segmenter;
     std::string device = "cpu";
     std::string precision = "auto";
     int threads = 1;
@@ -46,6 +47,8 @@ struct JobParameters {
           "Folder of a tiny autoencoder (TAESD), for all pictures but the last; empty = \"taesd\" beside the weights, \"none\" = not used.");
         f("segmenter", self.segmenter,
           "Weights of SAM or MobileSAM (.safetensors, .pth or .pt) that cut out what the attention finds; empty = GrabCut, which needs none.");
+        f("text_segmenter", self.text_segmenter,
+          "Folder of CLIPSeg, which finds a noun in a picture by itself; where it agrees with the attention, its mask counts. Empty = none.");
         f("device", self.device, "Where the networks run: cpu or cuda.");
         f("precision", self.precision,
           "Numbers the UNet computes in: fp32, bf16 (AVX-512 BF16 or AMX), or auto: bf16 where a large model was measured to be faster with it.");

@@ -34,8 +34,9 @@ private:
 
 }  // namespace
 
-Workplace::Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job, std::shared_ptr<edit::Segmenter> segmenter)
-    : scene_(std::move(scene)), model_(std::move(model)), segmenter_(segmenter ? std::move(segmenter) : edit::make_default_segmenter()) {
+Workplace::Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job, Segmenters segmenters)
+    : scene_(std::move(scene)), model_(std::move(model)), segmenters_(std::move(segmenters)) {
+    if (!segmenters_.clicks) segmenters_.clicks = edit::make_default_segmenter();
     const auto statistics = compute_statistics(scene_.gaussians);
     if (statistics.visible_rows == 0)
         throw Error(ErrorCode::InvalidArgument, "the scene has no splat that can be seen", "open another scene", job.scene);
@@ -75,7 +76,7 @@ void Workplace::ask(const neural::AttentionParameters& attention) {
 edit::LocateTools Workplace::tools(const Views& views, const JobControl& control) {
     if (renders_key_ != views.key) renders_ = {};
     renders_key_ = views.key;
-    edit::LocateTools tools{painter_.rasterizer(), *attention_, segmenter_.get(), nullptr, control};
+    edit::LocateTools tools{painter_.rasterizer(), *attention_, segmenters_.clicks.get(), segmenters_.words.get(), control};
     tools.memory = &renders_;
     tools.threads = &threads_;
     tools.recognition = recognition_.get();

@@ -12,6 +12,7 @@
 #include "engine/neural/api.h"
 #include "engine/neural/network_use.h"
 #include "engine/pipeline/scene_tools.h"
+#include "engine/pipeline/segmenters.h"
 #include "engine/pipeline/views.h"
 
 namespace gse::pipeline {
@@ -26,9 +27,9 @@ struct PlaceCost {
 /// Scene and model of a run. What they have answered is remembered: that changes how long a stage takes, never what comes of it.
 class Workplace {
 public:
-    /// Of the job, the up axis counts. `segmenter`: null = the one that needs no weights. Throws Error (InvalidArgument) for a scene of
+    /// Of the job, the up axis counts. `segmenters`: where null, the one that needs no weights. Throws Error (InvalidArgument) for a scene of
     /// which nothing can be seen.
-    Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job, std::shared_ptr<edit::Segmenter> segmenter = nullptr);
+    Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job, Segmenters segmenters = {});
 
     const Scene& scene() const { return scene_; }
     /// The scene without what cannot be drawn; such splats stay as they are and count nowhere.
@@ -51,7 +52,7 @@ public:
     std::unique_ptr<edit::ViewGuidance> place_drawing(const edit::EditRequest& request);
     const PlaceCost& place_cost() const { return place_cost_; }
     edit::Recognition& recognition() { return *recognition_; }
-    edit::Segmenter& segmenter() { return *segmenter_; }
+    edit::Segmenter& segmenter() { return *segmenters_.clicks; }
     /// Renders in [0,1]. Throws Error (Cancelled) on a stop request.
     std::vector<Image> pictures(const std::vector<View>& views, const raster::Settings& settings, const JobControl& control);
     /// Pictures that the networks were asked about so far.
@@ -68,7 +69,7 @@ private:
     ThreadPool threads_;
     std::unique_ptr<edit::CachedAttention> attention_;
     std::unique_ptr<edit::Recognition> recognition_;
-    std::shared_ptr<edit::Segmenter> segmenter_;
+    Segmenters segmenters_;
     edit::ViewMemory renders_;   // of the views with this key
     std::string renders_key_;
     PlaceCost place_cost_;

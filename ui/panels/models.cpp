@@ -106,38 +106,69 @@ void draw_loras(Context& context) {
     if (button(context, {.name = "models.lora.browse", .text = "Browse..."})) ask_lora(context);
 }
 
-void ask_segmenter(Context& context) {
-    auto& actions = context.actions;
-    context.state.files.ask({.title = "Weights of SAM or MobileSAM",
-                             .confirm = "Use",
-                             .extensions = {".safetensors", ".pth", ".pt"},
-                             .saves = false,
-                             .folder_allowed = true,
-                             .start = context.state.segmenter_path,
-                             .answer = [&actions](const std::filesystem::path& path) { actions.choose_segmenter(utf8_of(path)); }});
+/// What the panel says of a segmenter.
+struct SegmenterTexts {
+    SegmenterRole role;
+    const char* name;      // of its widgets
+    const char* none;      // where there is none
+    const char* used;      // before the path
+    const char* back;      // button that does without
+    const char* hint;
+    const char* question;
+    std::vector<std::string> extensions;   // none = a folder
+};
+
+const SegmenterTexts& segmenter_texts(SegmenterRole role) {
+    static const SegmenterTexts clicks{SegmenterRole::Clicks,
+                                       "models.segmenter",
+                                       "GrabCut cuts out what the attention finds. SAM or MobileSAM does it instead where you have the weights.",
+                                       "Cut out by",
+                                       "Back to GrabCut",
+                                       "sam_vit_b.pth, mobile_sam.pt, ...",
+                                       "Weights of SAM or MobileSAM",
+                                       {".safetensors", ".pth", ".pt"}};
+    static const SegmenterTexts words{SegmenterRole::Words,
+                                      "models.words_segmenter",
+                                      "The attention alone says where a word is. CLIPSeg is asked too where you have its folder.",
+                                      "Words are looked for by",
+                                      "Without it",
+                                      "folder of CLIPSeg",
+                                      "A folder of CLIPSeg: config.json, merges.txt and weights",
+                                      {}};
+    return role == SegmenterRole::Clicks ? clicks : words;
 }
 
-/// What cuts out what the attention finds.
-void draw_segmenter(Context& context) {
-    heading(context, "Masks");
-    const auto& segmenter = context.model.segmenter;
+void ask_segmenter(Context& context, const SegmenterTexts& texts) {
+    auto& actions = context.actions;
+    context.state.files.ask({.title = texts.question,
+                             .confirm = "Use",
+                             .extensions = texts.extensions,
+                             .saves = false,
+                             .folder_allowed = true,
+                             .start = context.state.segmenter_paths[static_cast<std::size_t>(texts.role)],
+                             .answer = [&actions, role = texts.role](const std::filesystem::path& path) { actions.choose_segmenter(role, utf8_of(path)); }});
+}
+
+void draw_segmenter(Context& context, const SegmenterTexts& texts) {
+    const auto& segmenter = context.model.segmenters[static_cast<std::size_t>(texts.role)];
+    const std::string name = texts.name;
     if (segmenter.path.empty()) {
-        dim_text("GrabCut cuts out what the attention finds. SAM or MobileSAM does it instead where you have the weights.");
+        dim_text(texts.none);
     } else {
-        dim_text(fmt::format("Cut out by {}", shortened(segmenter.path, ImGui::GetContentRegionAvail().x - context.em * 4)));
+        dim_text(texts.used);
+        ImGui::TextUnformatted(shortened(segmenter.path, ImGui::GetContentRegionAvail().x).c_str());
         tooltip(segmenter.path);
-        if (button(context, {.name = "models.segmenter.none", .text = "Back to GrabCut"})) context.actions.choose_segmenter({});
+        if (button(context, {.name = name + ".none", .text = texts.back})) context.actions.choose_segmenter(texts.role, {});
     }
     if (segmenter.checking) dim_text("The weights are being loaded, to see whether they can be used.");
-    auto& text = context.state.segmenter_path;
-    const bool entered = text_input(context, "models.segmenter.path", text, "sam_vit_b.pth, mobile_sam.pt, ...", ImGuiInputTextFlags_EnterReturnsTrue);
-    if (button(context, {.name = "models.segmenter.use", .text = "Use", .why_off = text.empty() ? "Type a path first" : ""}) ||
-        (entered && !text.empty())) {
-        context.actions.choose_segmenter(text);
+    auto& text = context.state.segmenter_paths[static_cast<std::size_t>(texts.role)];
+    const bool entered = text_input(context, name + ".path", text, texts.hint, ImGuiInputTextFlags_EnterReturnsTrue);
+    if (button(context, {.name = name + ".use", .text = "Use", .why_off = text.empty() ? "Type a path first" : ""}) || (entered && !text.empty())) {
+        context.actions.choose_segmenter(texts.role, text);
         text.clear();
     }
     flow(button_width("Browse..."));
-    if (button(context, {.name = "models.segmenter.browse", .text = "Browse..."})) ask_segmenter(context);
+    if (button(context, {.name = name + ".browse", .text = "Browse..."})) ask_segmenter(context, texts);
 }
 
 }  // namespace
@@ -158,7 +189,9 @@ void draw_models_panel(Context& context) {
         }
     }
     draw_loras(context);
-    draw_segmenter(context);
+    heading(context, "Masks");
+    draw_segmenter(context, segmenter_texts(SegmenterRole::Clicks));
+    draw_segmenter(context, segmenter_texts(SegmenterRole::Words));
     heading(context, "Another model");
     const bool entered = text_input(context, "models.path", context.state.model_path,
                                     "path of a folder or .safetensors", ImGuiInputTextFlags_EnterReturnsTrue);

@@ -19,24 +19,24 @@ DOCTEST_TEST_CASE("a segmenter: bad weights change nothing, good ones cut out th
         session.open_bear();
         auto& app = session.app;
         for (const auto& path : {bad, place.folder / "gone.pth"}) {
-            app.choose_segmenter(path.string());
-            DOCTEST_CHECK(app.model().segmenter.checking);
+            app.choose_segmenter(ui::SegmenterRole::Clicks, path.string());
+            DOCTEST_CHECK(app.model().segmenters[0].checking);
             DOCTEST_REQUIRE(session.settled());
-            DOCTEST_CHECK(!app.model().segmenter.checking);
-            DOCTEST_CHECK(app.model().segmenter.path.empty());
+            DOCTEST_CHECK(!app.model().segmenters[0].checking);
+            DOCTEST_CHECK(app.model().segmenters[0].path.empty());
             DOCTEST_CHECK(app.model().toasts.back().is_error);
             DOCTEST_CHECK(app.model().toasts.back().text.find("segmenter") != std::string::npos);
         }
-        app.choose_segmenter(weights.string());
+        app.choose_segmenter(ui::SegmenterRole::Clicks, weights.string());
         DOCTEST_REQUIRE(session.settled());
-        DOCTEST_CHECK(app.model().segmenter.path == weights.string());
+        DOCTEST_CHECK(app.model().segmenters[0].path == weights.string());
         app.locate();
         DOCTEST_REQUIRE(session.settled());   // of weights drawn at random; whether they find anything is theirs
         app.shut_down();
     }
     Session again;
-    DOCTEST_CHECK(again.app.model().segmenter.path == weights.string());
-    again.app.choose_segmenter({});
-    DOCTEST_CHECK(again.app.model().segmenter.path.empty());
+    DOCTEST_CHECK(again.app.model().segmenters[0].path == weights.string());
+    again.app.choose_segmenter(ui::SegmenterRole::Clicks, {});
+    DOCTEST_CHECK(again.app.model().segmenters[0].path.empty());
     again.app.shut_down();
 }

@@ -39,7 +39,7 @@ const std::vector<edit::PointPrompt> Clicks{{40.5, 30.5, true}, {5.5, 5.5, false
 
 }  // namespace
 
-DOCTEST_TEST_CASE("without weights a job has no segmenter of its own") { DOCTEST_CHECK(open_segmenter({}, nullptr) == nullptr); }
+DOCTEST_TEST_CASE("without weights a job has no segmenter of its own") { DOCTEST_CHECK(open_segmenters({}, nullptr).clicks == nullptr); }
 
 DOCTEST_TEST_CASE("masks are remembered: the same picture and clicks ask no network, other clicks do") {
     const auto job = tiny_sam();
@@ -47,14 +47,14 @@ DOCTEST_TEST_CASE("masks are remembered: the same picture and clicks ask no netw
     const test::ScratchFolder scratch;
     const auto cache = std::make_shared<DiskCache>(scratch.path() / "answers", Room);
     const auto image = noise(96, 64);
-    const auto first = open_segmenter(job, cache);
+    const auto first = open_segmenters(job, cache).clicks;
     DOCTEST_REQUIRE(first != nullptr);
     DOCTEST_CHECK(first->trusted());
     DOCTEST_CHECK(first->name() == "SAM");
     const auto mask = first->segment(image, Clicks, std::nullopt, {});
     DOCTEST_CHECK(mask.width == image.width);
     DOCTEST_CHECK(mask.data == without_memory(*first).segment(image, Clicks, std::nullopt, {}).data);
-    const auto again = open_segmenter(job, cache);
+    const auto again = open_segmenters(job, cache).clicks;
     const auto before = network_use();
     DOCTEST_CHECK(again->segment(image, Clicks, std::nullopt, {}).data == mask.data);
     DOCTEST_CHECK((network_use() - before).flop == 0);
@@ -63,14 +63,14 @@ DOCTEST_TEST_CASE("masks are remembered: the same picture and clicks ask no netw
     others[0].positive = false;
     again->segment(image, others, std::nullopt, {});
     DOCTEST_CHECK((network_use() - before).flop > 0);
-    const auto without = open_segmenter(job, nullptr);
+    const auto without = open_segmenters(job, nullptr).clicks;
     DOCTEST_CHECK(without->segment(image, Clicks, std::nullopt, {}).data == mask.data);
 }
 
 DOCTEST_TEST_CASE("threads that ask at once get what one gets") {
     const auto job = tiny_sam();
     if (!ready(job)) return;
-    const auto segmenter = open_segmenter(job, nullptr);
+    const auto segmenter = open_segmenters(job, nullptr).clicks;
     const auto image = noise(64, 64);
     const auto alone = segmenter->segment(image, Clicks, std::nullopt, {});
     ThreadPool pool(4);
@@ -88,7 +88,7 @@ DOCTEST_TEST_CASE("weights that cannot be used are refused with their name, and 
     job.segmenter = (scratch.path() / "gone.pth").string();
     const auto refused = [&](ErrorCode code) {
         try {
-            open_segmenter(job, std::make_shared<DiskCache>(scratch.path() / "answers", Room));
+            open_segmenters(job, std::make_shared<DiskCache>(scratch.path() / "answers", Room));
             DOCTEST_FAIL("it was opened");
         } catch (const Error& error) {
             DOCTEST_CHECK(error.code() == code);
