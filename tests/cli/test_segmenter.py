@@ -42,6 +42,12 @@ class Segmenter(ProgramTest):
                 self.assertEqual(len(process.stderr.strip().splitlines()), 1, process.stderr)
                 self.assertFalse((self.folder / "out").exists())
 
+    def test_a_folder_that_is_no_clipseg_is_refused(self):
+        process = self.locate("--text-segmenter", self.folder, "--out", self.folder / "out")
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("config.json", process.stderr)
+        self.assertFalse((self.folder / "out").exists())
+
 
 if __name__ == "__main__":
     unittest.main()

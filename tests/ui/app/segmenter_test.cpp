@@ -27,6 +27,11 @@ DOCTEST_TEST_CASE("a segmenter: bad weights change nothing, good ones cut out th
             DOCTEST_CHECK(app.model().toasts.back().is_error);
             DOCTEST_CHECK(app.model().toasts.back().text.find("segmenter") != std::string::npos);
         }
+        app.choose_segmenter(ui::SegmenterRole::Words, place.folder.string());   // no CLIPSeg
+        DOCTEST_CHECK(app.model().segmenters[1].checking);
+        DOCTEST_REQUIRE(session.settled());
+        DOCTEST_CHECK(app.model().segmenters[1].path.empty());
+        DOCTEST_CHECK(app.model().toasts.back().text.find("segmenter") != std::string::npos);
         app.choose_segmenter(ui::SegmenterRole::Clicks, weights.string());
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().segmenters[0].path == weights.string());

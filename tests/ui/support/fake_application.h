@@ -117,8 +117,8 @@ public:
     void set_viewport_size(int width, int height) override;
     void set_request(const edit::EditRequest& request) override;
     void choose_model(const std::string& path) override { calls.push_back("choose_model " + path); }
-    void choose_segmenter(SegmenterRole role, const std::string& path) override {
-        calls.push_back((role == SegmenterRole::Clicks ? "choose_segmenter " : "choose_text_segmenter ") + path);
+    void choose_segmenter(ui::SegmenterRole role, const std::string& path) override {
+        calls.push_back((role == ui::SegmenterRole::Clicks ? "choose_segmenter " : "choose_text_segmenter ") + path);
     }
     void add_lora(const std::string& text) override { calls.push_back("add_lora " + text); }
     void set_lora_strength(std::size_t index, double strength) override {
