@@ -138,6 +138,7 @@ public:
     void rename_label(int index, const std::string& name) override;
     void delete_label(int index) override;
     void select(const ui::ScreenRegion& region, ui::SetOperation operation, bool stroke_ends) override;
+    void cut_out(const ui::ScreenRegion& box, ui::SetOperation operation) override;
     void grow_label(int steps) override;
     void invert_label() override;
     void clear_label() override;

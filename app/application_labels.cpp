@@ -8,6 +8,8 @@
 #include "engine/base/json.h"
 #include "engine/base/log.h"
 #include "engine/base/random.h"
+#include "engine/pipeline/cut_out.h"
+#include "engine/pipeline/segmenters.h"
 #include "engine/scene/label_ops.h"
 #include "engine/scene/strength.h"
 
@@ -114,6 +116,24 @@ void Application::select(const ui::ScreenRegion& region, ui::SetOperation operat
                      [&](NamedLabel label) { return combine(std::move(label), rows, operation_of(operation)); },
                      fmt::format("stroke{}", stroke_));
     if (stroke_ends) ++stroke_;
+}
+
+void Application::cut_out(const ui::ScreenRegion& box, ui::SetOperation operation) {
+    if (!require_scene()) return;
+    if (work_.running()) return toast("Things can be cut out when the job is done.");
+    CutOutRequest request{model_.camera, screen_area(box), {}, model_.view.front_only};
+    request.settings.background = parse_colour(model_.view.background);
+    request.settings.antialiased = document_.state().info.antialiased;
+    auto rows = std::make_shared<std::vector<std::uint8_t>>();
+    work_.start({"Cut out", [=, set = document_.state().current, job = current_recipe().job, cache = cache_](const JobControl& control) {
+                     control.report("cutting out what is in the box", 0, 0);
+                     *rows = pipeline::cut_out(set, request, open_segmenters(job, cache).clicks.get());
+                 },
+                 [this, rows, operation](const Error* error) {
+                     if (error != nullptr) return report_error(*error);
+                     if (rows->size() != document_.state().current.size()) return;   // another scene meanwhile
+                     change_label("Cut out", [&](NamedLabel label) { return combine(std::move(label), *rows, operation_of(operation)); });
+                 }});
 }
 
 void Application::grow_label(int steps) {

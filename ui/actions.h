@@ -58,6 +58,7 @@ public:
     virtual void rename_label(int index, const std::string& name) = 0;
     virtual void delete_label(int index) = 0;
     virtual void select(const ScreenRegion& region, SetOperation operation, bool stroke_ends) = 0;
+    virtual void cut_out(const ScreenRegion& box, SetOperation operation) = 0;    // selects the thing in the box
     virtual void grow_label(int steps) = 0;                        // negative shrinks
     virtual void invert_label() = 0;
     virtual void clear_label() = 0;

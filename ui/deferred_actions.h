@@ -110,6 +110,9 @@ public:
     void select(const ScreenRegion& region, SetOperation operation, bool stroke_ends) override {
         later([this, region, operation, stroke_ends] { target_->select(region, operation, stroke_ends); });
     }
+    void cut_out(const ScreenRegion& box, SetOperation operation) override {
+        later([this, box, operation] { target_->cut_out(box, operation); });
+    }
     void grow_label(int steps) override {
         later([this, steps] { target_->grow_label(steps); });
     }

@@ -20,7 +20,7 @@ struct KeyHelp {
 };
 
 /// The fixed set; what the shortcuts and the camera do must agree with it.
-inline constexpr std::array<KeyHelp, 46> KeyTable{{
+inline constexpr std::array<KeyHelp, 47> KeyTable{{
     {"Camera", "Left drag (no tool), middle drag", "Orbit"},
     {"Camera", "Shift + middle drag, right drag", "Pan"},
     {"Camera", "Wheel", "Zoom to the cursor"},
@@ -32,6 +32,7 @@ inline constexpr std::array<KeyHelp, 46> KeyTable{{
     {"Labels", "B", "Brush"},
     {"Labels", "R", "Rectangle"},
     {"Labels", "L", "Lasso"},
+    {"Labels", "C", "Cut out the thing in a box"},
     {"Labels", "Shift", "Add"},
     {"Labels", "Ctrl", "Remove"},
     {"Labels", "Alt, Shift + Ctrl", "Intersect"},

@@ -92,6 +92,8 @@ void select_menu(Context& context) {
         set_tool(context, Tool::Rectangle);
     if (item(context, {"menu.lasso", "Lasso", "L", open, tool == Tool::Lasso}))
         set_tool(context, Tool::Lasso);
+    if (item(context, {"menu.cut_out", "Cut out", "C", open, tool == Tool::CutOut}))
+        set_tool(context, Tool::CutOut);
     if (item(context, {"menu.front", "Front only", "N", "", context.view.front_only})) {
         context.view.front_only = !context.view.front_only;
         context.view_changed = true;

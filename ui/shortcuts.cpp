@@ -51,6 +51,7 @@ void plain_keys(Context& context) {
     if (pressed('B')) set_tool(context, Tool::Brush);
     if (pressed('R')) set_tool(context, Tool::Rectangle);
     if (pressed('L')) set_tool(context, Tool::Lasso);
+    if (pressed('C')) set_tool(context, Tool::CutOut);
     if (pressed('F')) frame_selection(context);
     if (pressed('H')) go_home(context);
     if (pressed('N')) toggle(context, &ViewSettings::front_only);

@@ -234,6 +234,7 @@ void grow_once(std::span<const float> position, double radius, std::vector<std::
 
 std::vector<std::uint8_t> rows_in_area(const GaussianSet& set, const Camera& camera, const ScreenArea& area,
                                        const PickOptions& options) {
+    const auto scaled = [](double place, int size, int of) { return std::clamp(static_cast<int>(place * size / of), 0, size - 1); };
     std::vector<std::uint8_t> rows(set.size(), 0);
     if (set.empty() || camera.width <= 0 || camera.height <= 0) return rows;
     const AreaMask mask(area, camera.width, camera.height);
@@ -254,11 +255,10 @@ std::vector<std::uint8_t> rows_in_area(const GaussianSet& set, const Camera& cam
             if (!(p.z > near) || !(static_cast<double>(opacity[row]) >= least_logit)) continue;
             const double x = camera.fx * p.x / p.z + camera.cx, y = camera.fy * p.y / p.z + camera.cy;
             if (!mask.at(x, y)) continue;
+            if (options.mask != nullptr && options.mask->at(scaled(x, options.mask->width, camera.width), scaled(y, options.mask->height, camera.height)) == 0) continue;
             if (depth != nullptr) {
-                const int dx = std::min(static_cast<int>(x * depth->width / camera.width), depth->width - 1);
-                const int dy =
-                    std::min(static_cast<int>(y * depth->height / camera.height), depth->height - 1);
-                const double z = static_cast<double>(depth->at(dx, dy, 0));
+                const double z = static_cast<double>(
+                    depth->at(scaled(x, depth->width, camera.width), scaled(y, depth->height, camera.height), 0));
                 if (z > 0 && std::isfinite(z) && p.z > z * (1 + options.depth_tolerance)) continue;
             }
             rows[row] = 1;

@@ -27,6 +27,7 @@ struct PickOptions {
     /// [h,w,1] camera z per pixel, alpha-normalised (0 or not finite = nothing there), at any resolution of
     /// the same view; null = everything under the area, in front or behind.
     const Image* depth = nullptr;
+    const Mask* mask = nullptr;        // of the same view at any resolution: rows outside of it do not count; null = no more limits
     double depth_tolerance = 0.02;     // front: z <= depth * (1 + tolerance)
     double near = 0;                   // nearer rows are not drawn and not picked; 0 = as they are drawn (depth_range.h)
     double least_opacity = 1.0 / 255;  // fainter rows cannot be seen and are not picked

@@ -14,7 +14,7 @@
 namespace gse::ui {
 namespace {
 
-constexpr std::array<const char*, 3> ToolNames{"Brush", "Rectangle", "Lasso"};
+constexpr std::array<const char*, 4> ToolNames{"Brush", "Rectangle", "Lasso", "Cut out"};
 constexpr std::array<const char*, 4> OperationNames{"Add", "Remove", "Intersect", "Replace"};
 
 void draw_rename(Context& context, int index) {
@@ -106,9 +106,9 @@ void draw_threshold(Context& context, const NamedLabel& label) {
 
 void draw_tools(Context& context, const std::string& why) {
     auto& viewport = context.state.viewport;
-    constexpr std::array<Icon, 3> Icons{Icon::Brush, Icon::Rectangle, Icon::Lasso};
-    constexpr std::array<Tool, 3> Tools{Tool::Brush, Tool::Rectangle, Tool::Lasso};
-    constexpr std::array<const char*, 3> Keys{"B", "R", "L"};
+    constexpr std::array<Icon, 4> Icons{Icon::Brush, Icon::Rectangle, Icon::Lasso, Icon::CutOut};
+    constexpr std::array<Tool, 4> Tools{Tool::Brush, Tool::Rectangle, Tool::Lasso, Tool::CutOut};
+    constexpr std::array<const char*, 4> Keys{"B", "R", "L", "C"};
     for (std::size_t at = 0; at < Tools.size(); ++at) {
         if (at > 0) ImGui::SameLine();
         if (icon_button(context, {.name = fmt::format("labels.tool.{}", ToolNames[at]),

@@ -180,6 +180,7 @@ void draw_hint(Context& context, ImDrawList* list) {
     if (state.tool == Tool::Orbit) return;
     std::string text = state.tool == Tool::Brush       ? "Brush: drag to paint"
                        : state.tool == Tool::Rectangle ? "Rectangle: drag a box"
+                       : state.tool == Tool::CutOut    ? "Cut out: drag a box around a thing"
                                                        : "Lasso: drag around";
     const float room = state.high.x - state.low.x - context.em * 2;
     for (const char* part :

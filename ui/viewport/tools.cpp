@@ -1,4 +1,4 @@
-// Brush, rectangle and lasso in the viewport, the wipe's handle, and the cursor that shows what they will do.
+// Brush, rectangle, lasso and box in the viewport, the wipe's handle, and the cursor that shows what they will do.
 #include <algorithm>
 #include <cmath>
 
@@ -73,7 +73,8 @@ void end_stroke(Context& context, ImVec2 mouse) {
         const bool whole = state.stroke_operation == SetOperation::Intersect;
         return send_circles(context, whole ? 0 : state.path.size() - (state.path.size() > 1 ? 1 : 0), true);
     }
-    if (state.tool == Tool::Rectangle) {
+    const bool box = state.tool == Tool::Rectangle || state.tool == Tool::CutOut;
+    if (box) {
         const ImVec2 a = state.stroke_start;
         if (std::abs(a.x - mouse.x) < 2 || std::abs(a.y - mouse.y) < 2) return;
         state.path = {{a.x, a.y}, {mouse.x, a.y}, {mouse.x, mouse.y}, {a.x, mouse.y}};
@@ -81,6 +82,7 @@ void end_stroke(Context& context, ImVec2 mouse) {
     if (state.path.size() < 3) return;
     ScreenRegion region;
     for (const auto& point : state.path) region.polygon.push_back(to_texture(context, point));
+    if (state.tool == Tool::CutOut) return context.actions.cut_out(region, state.stroke_operation);
     context.actions.select(region, state.stroke_operation, true);
 }
 
@@ -142,7 +144,7 @@ void draw_stroke(Context& context, ImDrawList* list, ImVec2 mouse) {
         for (const auto& point : state.path) list->PathLineTo({point[0], point[1]});
         list->PathStroke(with_alpha(colour, 0.25f), ImDrawFlags_None, context.view.brush_px * 2);
     }
-    if (state.tool == Tool::Rectangle) {
+    if (state.tool == Tool::Rectangle || state.tool == Tool::CutOut) {
         list->AddRectFilled(state.stroke_start, mouse, with_alpha(colour, 0.15f));
         list->AddRect(state.stroke_start, mouse, colour, 0, 0, std::max(1.0f, context.em * 0.08f));
     }

@@ -124,6 +124,12 @@ void draw_tool(const Pen& pen, Icon icon) {
             pen.circle(-0.45f, 0.3f, 0.17f);
             pen.path({{-0.45f, 0.47f}, {-0.35f, 0.7f}, {-0.6f, 0.9f}});
             break;
+        case Icon::CutOut:   // a thing between the corners of a box
+            for (const float x : {-0.8f, 0.8f})
+                for (const float y : {-0.8f, 0.8f}) pen.path({{x, y * 0.5f}, {x, y}, {x * 0.5f, y}});
+            pen.dot(0, -0.2f, 0.24f);
+            pen.ellipse(0, 0.3f, 0.42f, 0.26f);
+            break;
         default:
             draw_place(pen, icon);
     }

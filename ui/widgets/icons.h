@@ -13,6 +13,7 @@ enum class Icon {
     Brush,
     Rectangle,
     Lasso,
+    CutOut,
     FrontOnly,
     Through,
     Undo,

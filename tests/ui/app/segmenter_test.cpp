@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/file.h"
+#include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 
 using namespace gse;
@@ -44,4 +45,26 @@ DOCTEST_TEST_CASE("a segmenter: bad weights change nothing, good ones cut out th
     again.app.choose_segmenter(ui::SegmenterRole::Clicks, {});
     DOCTEST_CHECK(again.app.model().segmenters[0].path.empty());
     again.app.shut_down();
+}
+
+DOCTEST_TEST_CASE("a thing in a box is cut out in the background, one step of undo, and no model is loaded for it") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    ui::ScreenRegion box;   // around the bear, which is small in the home view
+    const auto& camera = app.model().camera;
+    const auto cx = static_cast<float>(camera.width) / 2, cy = static_cast<float>(camera.height) / 2;
+    box.polygon = {{cx - 40, cy - 40}, {cx + 40, cy - 40}, {cx + 40, cy + 40}, {cx - 40, cy + 40}};
+    app.cut_out(box, ui::SetOperation::Replace);
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK(app.model().job.error.empty());
+    const auto& state = app.document().state();
+    DOCTEST_REQUIRE(state.active_label >= 0);
+    const auto cut = count_labelled(state.labels[static_cast<std::size_t>(state.active_label)]);
+    DOCTEST_CHECK(cut > 50);
+    DOCTEST_CHECK(cut < state.current.size() / 2);   // the bear's front, where six of ten splats are the bear's
+    app.undo();
+    DOCTEST_CHECK(app.document().state().labels.empty());
+    app.shut_down();
 }

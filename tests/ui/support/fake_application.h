@@ -86,6 +86,7 @@ public:
     }
     void delete_label(int index) override;
     void select(const ui::ScreenRegion& region, ui::SetOperation operation, bool stroke_ends) override;
+    void cut_out(const ui::ScreenRegion& box, ui::SetOperation) override { calls.push_back("cut_out " + std::to_string(box.polygon.size())); }
     void grow_label(int steps) override { calls.push_back("grow_label " + std::to_string(steps)); }
     void invert_label() override { calls.push_back("invert_label"); }
     void clear_label() override { calls.push_back("clear_label"); }

@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/ui/support/harness.h"
@@ -187,6 +188,20 @@ DOCTEST_TEST_CASE("the brush paints with the operation of the keys") {
                       std::vector<ui::SetOperation>{ui::SetOperation::Intersect});
     }
     harness.modifiers(false, false, false);
+    harness.key(key::Escape);
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
+}
+
+DOCTEST_TEST_CASE("a box of the tool that cuts out asks for what is in it, once") {
+    Harness harness({1280, 720, 1, Situation::Located, false});
+    harness.key('C');
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
+    harness.drag(in_viewport(harness, 0.25f, 0.25f), in_viewport(harness, 0.5f, 0.75f));
+    const auto& calls = harness.application.calls;
+    DOCTEST_CHECK(std::count(calls.begin(), calls.end(), "cut_out 4") == 1);
+    DOCTEST_CHECK(harness.application.regions.empty());   // nothing was selected by the box itself
+    harness.click("tool.cut_out");   // in use already
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
     harness.key(key::Escape);
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
 }

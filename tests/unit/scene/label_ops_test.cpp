@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/unit/scene/random_sets.h"
@@ -117,6 +118,21 @@ DOCTEST_TEST_CASE("front only takes what the depth shows, invisible and hidden r
     }
     DOCTEST_CHECK(hidden > 100);
     DOCTEST_CHECK(rows_in_area(set, camera, {}) == std::vector<std::uint8_t>(set.size(), 0));
+}
+
+DOCTEST_TEST_CASE("rows outside a mask of the view do not count, at any resolution of it") {
+    const GaussianSet set = cloud(3000, 3);
+    const Camera camera = camera_at(4);
+    ScreenArea all;
+    all.polygon = {{-10, -10}, {1000, -10}, {1000, 1000}, {-10, 1000}};
+    Mask upper(80, 60);   // a fifth of the resolution
+    for (int y = 0; y < 30; ++y)
+        for (int x = 0; x < 80; ++x) upper.at(x, y) = 1;
+    PickOptions options;
+    options.mask = &upper;
+    const auto rows = rows_in_area(set, camera, all, options), every = rows_in_area(set, camera, all);
+    for (std::size_t row = 0; row < set.size(); ++row) DOCTEST_CHECK((rows[row] != 0) == (every[row] != 0 && project(set, camera, row).y < 150));
+    DOCTEST_CHECK(std::count(rows.begin(), rows.end(), std::uint8_t{1}) > 500);
 }
 
 DOCTEST_TEST_CASE("operations are those of sets, and weights stay as they are") {

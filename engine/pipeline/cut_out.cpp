@@ -1,0 +1,146 @@
+// Picture, box, mask, votes.
+#include "engine/pipeline/cut_out.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "engine/edit/grabcut_segmenter.h"
+#include "engine/localize/back_projection.h"
+#include "engine/pipeline/scene_tools.h"
+
+namespace gse::pipeline {
+namespace {
+
+constexpr int LongestSide = 512;     // pixels of the picture: GrabCut takes a third of a second for it
+constexpr double Surroundings = 0.5;  // of the box's sides, that the picture shows around it
+constexpr double MostEnlarged = 4;    // of the screen's pixels
+
+/// The part of the view around the area.
+struct Section {
+    Camera camera;
+    double left = 0, top = 0, scale = 1;   // of its pixels in the view's
+    ScreenArea area;                       // in its pixels
+    edit::BoxPrompt box;
+};
+
+edit::BoxPrompt box_of(const ScreenArea& area) {
+    edit::BoxPrompt box{1e9, 1e9, -1e9, -1e9};
+    for (const auto& point : area.polygon)
+        box = {std::min<double>(box.x0, point[0]), std::min<double>(box.y0, point[1]), std::max<double>(box.x1, point[0]), std::max<double>(box.y1, point[1])};
+    return box;
+}
+
+std::optional<Section> section_of(const CutOutRequest& request) {
+    const auto& view = request.camera;
+    auto box = box_of(request.area);
+    const double across = (box.x1 - box.x0) * Surroundings, down = (box.y1 - box.y0) * Surroundings;
+    Section section;
+    section.left = std::floor(std::clamp(box.x0 - across, 0.0, 1.0 * view.width));
+    section.top = std::floor(std::clamp(box.y0 - down, 0.0, 1.0 * view.height));
+    const double width = std::ceil(std::clamp(box.x1 + across, 0.0, 1.0 * view.width)) - section.left;
+    const double height = std::ceil(std::clamp(box.y1 + down, 0.0, 1.0 * view.height)) - section.top;
+    if (request.area.polygon.empty() || box.x1 - box.x0 < 1 || box.y1 - box.y0 < 1 || width < 1 || height < 1) return std::nullopt;
+    section.scale = std::min(MostEnlarged, LongestSide / std::max(width, height));
+    section.camera = view;
+    section.camera.width = std::max(1, static_cast<int>(std::lround(width * section.scale)));
+    section.camera.height = std::max(1, static_cast<int>(std::lround(height * section.scale)));
+    section.camera.fx *= section.scale, section.camera.fy *= section.scale;
+    section.camera.cx = (view.cx - section.left) * section.scale, section.camera.cy = (view.cy - section.top) * section.scale;
+    for (const auto& point : request.area.polygon)
+        section.area.polygon.push_back({static_cast<float>((point[0] - section.left) * section.scale), static_cast<float>((point[1] - section.top) * section.scale)});
+    box = box_of(section.area);
+    section.box = {std::clamp(box.x0, 0.0, 1.0 * section.camera.width), std::clamp(box.y0, 0.0, 1.0 * section.camera.height),
+                   std::clamp(box.x1, 0.0, 1.0 * section.camera.width), std::clamp(box.y1, 0.0, 1.0 * section.camera.height)};
+    return section;
+}
+
+bool holds(const edit::BoxPrompt& box, int x, int y) { return x + 0.5 >= box.x0 && x + 0.5 < box.x1 && y + 0.5 >= box.y0 && y + 0.5 < box.y1; }
+
+Mask mask_of(const Section& section) {
+    Mask mask(section.camera.width, section.camera.height);
+    for (int y = 0; y < mask.height; ++y)
+        for (int x = 0; x < mask.width; ++x) mask.at(x, y) = holds(section.box, x, y) ? 1 : 0;
+    return mask;
+}
+
+/// What of the box's pixels of a colour the surroundings do not explain, in [0,1]: GrabCut begins with it, because most of a box may
+/// show what is around the thing.
+Image unexplained(const Image& picture, const edit::BoxPrompt& box) {
+    constexpr int levels = 16;   // of a channel
+    const auto bin_of = [&](int x, int y) {
+        std::size_t bin = 0;
+        for (int c = 0; c < 3; ++c) bin = bin * levels + static_cast<std::size_t>(std::min(levels - 1, static_cast<int>(picture.at(x, y, c) * levels)));
+        return bin;
+    };
+    std::vector<double> inside(levels * levels * levels), outside(inside.size());
+    double in = 0, out = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const bool within = holds(box, x, y);
+            ++(within ? inside : outside)[bin_of(x, y)];
+            ++(within ? in : out);
+        }
+    Image hint(picture.width, picture.height, 1);
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            if (!holds(box, x, y)) continue;
+            const auto bin = bin_of(x, y);
+            hint.at(x, y, 0) = out > 0 ? static_cast<float>(std::max(0.0, 1 - outside[bin] / out * in / inside[bin])) : 1.0f;
+        }
+    return hint;
+}
+
+/// Rows that are seen mostly inside the mask, the most visible first, until they make up nearly all of it: what hides behind them is
+/// seen through them a little.
+std::vector<std::uint8_t> seen_rows(const GaussianSet& set, const Camera& camera, const Mask& mask, const raster::Settings& settings, Painter& painter) {
+    constexpr double mostly = 0.5, nearly_all = 0.98;
+    localize::MaskedView view{camera, Image(mask.width, mask.height, 1)};
+    std::copy(mask.data.begin(), mask.data.end(), view.mask.data.begin());
+    const auto votes = localize::back_project(set.spans(), {&view, 1}, settings, painter.rasterizer());
+    std::vector<std::uint32_t> inside;
+    double all = 0;
+    for (std::size_t row = 0; row < set.size(); ++row) {
+        if (!(static_cast<double>(votes.weight[row]) > mostly) || !(votes.evidence[row] > 0)) continue;
+        inside.push_back(static_cast<std::uint32_t>(row));
+        all += votes.evidence[row];
+    }
+    std::sort(inside.begin(), inside.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return votes.evidence[a] != votes.evidence[b] ? votes.evidence[a] > votes.evidence[b] : a < b;
+    });
+    std::vector<std::uint8_t> rows(set.size(), 0);
+    double sum = 0;
+    for (std::size_t i = 0; i < inside.size() && sum < nearly_all * all; ++i) {
+        rows[inside[i]] = 1;
+        sum += votes.evidence[inside[i]];
+    }
+    return rows;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter) {
+    const auto section = section_of(request);
+    if (!section) return std::vector<std::uint8_t>(set.size(), 0);
+    Painter painter;
+    Image picture = painter.paint(set.spans(), section->camera, request.settings).colour;
+    for (auto& value : picture.data) value = std::clamp(value, 0.0f, 1.0f);
+    std::unique_ptr<edit::Segmenter> own;
+    if (segmenter == nullptr) {   // what is outside of a box that was drawn around a thing is not the thing
+        own = edit::grabcut_available() ? edit::make_grabcut_segmenter({.box_margin = 0}) : edit::make_default_segmenter();
+        segmenter = own.get();
+    }
+    Mask mask = segmenter->segment(picture, {}, section->box, unexplained(picture, section->box));
+    const Mask whole = mask_of(*section);
+    for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] &= whole.data[i];
+    const bool found = mask.count() > 0;
+    if (request.front_only) return seen_rows(set, section->camera, found ? mask : whole, request.settings, painter);
+    PickOptions options;
+    options.pool = &painter.pool();
+    if (!found) return rows_in_area(set, request.camera, request.area, options);
+    options.mask = &mask;
+    return rows_in_area(set, section->camera, section->area, options);
+}
+
+}  // namespace gse::pipeline
