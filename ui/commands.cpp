@@ -279,7 +279,7 @@ void label_by_hand(Context& context, const std::string& name) {
         context.actions.add_label(name);
     else
         context.actions.set_active_label(static_cast<int>(found - labels.begin()));
-    context.state.viewport.tool = Tool::Brush;
+    context.state.viewport.tool = Tool::CutOut;   // a box is the quickest way to a thing; the other tools correct it
     context.state.viewport.stroke = false;
     show_panel(context.state, PanelId::Labels);
 }

@@ -6,6 +6,7 @@
 
 #include "tests/ui/support/harness.h"
 #include "ui/keys.h"
+#include "ui/state.h"
 
 namespace gse::test {
 namespace {
@@ -149,6 +150,7 @@ DOCTEST_TEST_CASE("an unknown source is refused before work; a label by hand is 
     DOCTEST_CHECK(!harness.rect("prompt.edit").enabled);
     DOCTEST_CHECK(harness.find("prompt.source.suggestion") == nullptr);   // "in" is no thing
     DOCTEST_CHECK(asks(harness, "prompt.source.by_hand", "add_label sign"));
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
     harness.frame(3);
     DOCTEST_CHECK(harness.find("panel.Labels") != nullptr);
     model.labelled_by_hand = true;   // something was painted
