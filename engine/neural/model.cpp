@@ -65,7 +65,7 @@ public:
         return std::make_unique<SdsGuidance>(slow_, prompt, parameters);
     }
     std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const SdsParameters& parameters) const override {
-        return std::make_unique<DiffusionViews>(bundle_, prompt, parameters, with_shapes(), restyles());
+        return std::make_unique<DiffusionViews>(bundle_, prompt, parameters, with_shapes(), parameters.restyle && restyles());
     }
     bool knows_scene() const override {
         const auto& facts = loaded_->facts;

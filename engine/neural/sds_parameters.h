@@ -15,6 +15,7 @@ struct SdsParameters {
     double guidance_scale = 4;
     double view_guidance_scale = 3;
     double shape_guidance_scale = 2;
+    bool restyle = true;
     double restyle_guidance_scale = 1.5;
     double image_guidance_scale = 1;
     double clamp = 1.0;
@@ -37,6 +38,9 @@ struct SdsParameters {
         f("view_guidance_scale", self.view_guidance_scale,
           "The same where views are redrawn (method views).", Range{0, 200});
         f("shape_guidance_scale", self.shape_guidance_scale, "The same where they show something of a new shape.", Range{0, 200});
+        f("restyle", self.restyle,
+          "Another colour, material or ground is drawn by the network that is shown the scene, where the model has one; where its pictures "
+          "hardly show what was asked, the model itself draws them all the same.");
         f("restyle_guidance_scale", self.restyle_guidance_scale,
           "The same where a model that is shown the scene gives a thing another colour or material, or another ground.", Range{0, 200});
         f("image_guidance_scale", self.image_guidance_scale,

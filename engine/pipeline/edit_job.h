@@ -107,7 +107,7 @@ public:
     const PlaceCost& place_cost() const { return workplace_->place_cost(); }
     /// Whether the model is shown the scene where something new is drawn.
     bool knows_scene() const { return workplace_->model().knows_scene(); }
-    bool restyles() const { return workplace_->model().restyles(); }
+    bool restyles() const { return recipe_.guidance.restyle && workplace_->model().restyles(); }
     /// What cuts masks out of pictures.
     std::string segmenter_name() const { return workplace_->segmenter().name(); }
     /// Whether the pictures said which word is new, and not the recipe.

@@ -309,7 +309,7 @@ public:
         return targets;
     }
 
-    bool restyles() const override { return model_->restyles(); }
+    bool restyles() const override { return parameters_.restyle && model_->restyles(); }
 
 private:
     edit::RoundTargets drawn_by_networks(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) {
