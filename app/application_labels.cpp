@@ -125,7 +125,9 @@ void Application::cut_out(const ui::ScreenRegion& box, ui::SetOperation operatio
     request.settings.background = parse_colour(model_.view.background);
     request.settings.antialiased = document_.state().info.antialiased;
     auto rows = std::make_shared<std::vector<std::uint8_t>>();
-    work_.start({"Cut out", [=, set = document_.state().current, job = current_recipe().job, cache = cache_](const JobControl& control) {
+    auto job = current_recipe().job;
+    job.text_segmenter.clear();   // no word is looked for
+    work_.start({"Cut out", [=, set = document_.state().current, cache = cache_](const JobControl& control) {
                      control.report("cutting out what is in the box", 0, 0);
                      *rows = pipeline::cut_out(set, request, open_segmenters(job, cache).clicks.get());
                  },
