@@ -31,7 +31,7 @@ struct Prompt {
 constexpr Prompt Prompts[] = {{"point", true}, {"two_points_single", false}, {"box", false}, {"box_point", true}, {"none", true}, {"point_mask_input", true}, {"batch_boxes", false}};
 
 /// The prompt of that name, in pixels of the encoder's picture as the reference scales them.
-SamPrompts prompts_of(const SafetensorsFile& io, const SamModel& model, const std::string& name, double scale) {
+SamPrompts prompts_of(const SafetensorsFile& io, const std::string& name, double scale) {
     SamPrompts prompts;
     const bool with_mask = name == "point_mask_input";
     const std::string clicks = with_mask && !io.contains(name + ".point_coords") ? "point" : name;
@@ -42,7 +42,6 @@ SamPrompts prompts_of(const SafetensorsFile& io, const SamModel& model, const st
     if (io.contains(name + ".box")) prompts.boxes = (io.tensor(name + ".box") * scale).view({1, 4});
     if (io.contains(name + ".boxes")) prompts.boxes = io.tensor(name + ".boxes") * scale;
     if (with_mask) prompts.mask = io.tensor(name + ".mask_input");
-    static_cast<void>(model);
     return prompts;
 }
 
@@ -51,7 +50,7 @@ void check_prompts(const SafetensorsFile& io, const SamModel& model, Margins& ma
     const double scale = model->scale(picture.size(0), picture.size(1));
     for (const auto& [name, several] : Prompts) {
         const std::string prefix = std::string(name) + ".";
-        const auto encoded = model->encode(prompts_of(io, model, name, scale));
+        const auto encoded = model->encode(prompts_of(io, name, scale));
         if (io.contains(prefix + "sparse_embeddings")) margins.near(prefix + "sparse", encoded.sparse, io.tensor(prefix + "sparse_embeddings"), tolerance);
         if (io.contains(prefix + "dense_embeddings")) margins.near(prefix + "dense", encoded.dense.contiguous(), io.tensor(prefix + "dense_embeddings"), tolerance);
         const auto masks = model->masks(io.tensor("image_embeddings"), encoded, several);
@@ -66,14 +65,23 @@ void check_prompts(const SafetensorsFile& io, const SamModel& model, Margins& ma
     }
 }
 
+/// The embedding and all layers that the reference has; returns how many.
+template <class Near>
+std::size_t compare_encoder(const SafetensorsFile& io, const SamModel& model, const Near& near) {
+    SamTrace trace;
+    near("embedding", model->embed(io.tensor("preprocessed"), &trace), io.tensor("image_embeddings"));
+    std::size_t compared = 0;
+    for (const auto& [layer, output] : trace)
+        if (io.contains(layer)) near(layer, output, io.tensor(layer)), ++compared;
+    return compared;
+}
+
 void check_pixels(const SafetensorsFile& io, const SamModel& model) {
     const auto picture = io.tensor("image_u8_hwc").permute({2, 0, 1}).unsqueeze(0).to(torch::kFloat32) / 255;
     const auto off = (model->pixels(picture) - io.tensor("preprocessed")).abs() * 57;   // in steps, about
     DOCTEST_CHECK(off.max().item<double>() <= OneStep);
     DOCTEST_CHECK((off > 0.01).to(torch::kFloat32).mean().item<double>() < RoundedShare);
 }
-
-torch::Tensor reference_masks_of_box(const SafetensorsFile& io) { return io.tensor("box.masks")[0] != 0; }
 
 /// The segmenter of the search gives what the model gives.
 void check_segmenter(const std::filesystem::path& weights, const SafetensorsFile& io) {
@@ -82,7 +90,7 @@ void check_segmenter(const std::filesystem::path& weights, const SafetensorsFile
     const auto box = io.tensor("box.box");
     const auto corner = [&](int i) { return static_cast<double>(box[i].item<float>()) + 0.5 * picture.size(3) / TinyImageSize; };
     const auto mask = segmenter->segment(to_image(picture), {}, edit::BoxPrompt{corner(0), corner(1), corner(2), corner(3)}, {});
-    const auto expected = reference_masks_of_box(io).contiguous();
+    const auto expected = (io.tensor("box.masks")[0] != 0).contiguous();
     std::size_t differing = 0;
     for (std::size_t i = 0; i < mask.data.size(); ++i) differing += (mask.data[i] != 0) != expected.data_ptr<bool>()[i] ? 1u : 0u;
     DOCTEST_CHECK(static_cast<double>(differing) <= RoundedShare * static_cast<double>(mask.data.size()));
@@ -95,12 +103,8 @@ void check_sam(const std::filesystem::path& weights, const SafetensorsFile& io, 
     const auto model = load_sam(weights, torch::kCPU);
     DOCTEST_CHECK(model->shape().image_size() == TinyImageSize);
     Margins margins(name);
-    SamTrace trace;
-    margins.near("embedding", model->embed(io.tensor("preprocessed"), &trace), io.tensor("image_embeddings"), SamTolerance);
-    std::size_t compared = 0;
-    for (const auto& [layer, output] : trace)
-        if (io.contains(layer)) margins.near(layer, output, io.tensor(layer), SamTolerance), ++compared;
-    DOCTEST_CHECK(compared >= 5);   // positions and four blocks
+    const auto near = [&](const std::string& what, const torch::Tensor& actual, const torch::Tensor& expected) { margins.near(what, actual, expected, SamTolerance); };
+    DOCTEST_CHECK(compare_encoder(io, model, near) >= 5);   // positions and four blocks
     margins.near("positions", model->dense_positions(), io.tensor("dense_pe"), SamTolerance);
     check_prompts(io, model, margins, SamTolerance);
     check_pixels(io, model);
@@ -132,12 +136,10 @@ DOCTEST_TEST_CASE("mobile_sam: safetensors and torch.save") {
         const auto model = load_sam(golden.folder / file, torch::kCPU, TinyImageSize);
         DOCTEST_CHECK(model->shape().name == "MobileSAM");
         Margins margins(file);
-        SamTrace trace;
-        margins.near_relative("embedding", model->embed(io.tensor("preprocessed"), &trace), io.tensor("image_embeddings"), MobileEncoderRelative);
-        std::size_t compared = 0;
-        for (const auto& [layer, output] : trace)
-            if (io.contains(layer)) margins.near_relative(layer, output, io.tensor(layer), MobileEncoderRelative), ++compared;
-        DOCTEST_CHECK(compared == 18);
+        const auto near = [&](const std::string& what, const torch::Tensor& actual, const torch::Tensor& expected) {
+            margins.near_relative(what, actual, expected, MobileEncoderRelative);
+        };
+        DOCTEST_CHECK(compare_encoder(io, model, near) == 18);
         margins.near("positions", model->dense_positions(), io.tensor("dense_pe"), MobileDecoderTolerance);
         check_prompts(io, model, margins, MobileDecoderTolerance);
         check_pixels(io, model);
