@@ -121,7 +121,7 @@ void Application::select(const ui::ScreenRegion& region, ui::SetOperation operat
 void Application::cut_out(const ui::ScreenRegion& box, ui::SetOperation operation) {
     if (!require_scene()) return;
     if (work_.running()) return toast("Things can be cut out when the job is done.");
-    CutOutRequest request{model_.camera, screen_area(box), {}, model_.view.front_only};
+    CutOutRequest request{model_.camera, screen_area(box), {}, document_.state().info.up};
     request.settings.background = parse_colour(model_.view.background);
     request.settings.antialiased = document_.state().info.antialiased;
     auto rows = std::make_shared<std::vector<std::uint8_t>>();
@@ -129,7 +129,7 @@ void Application::cut_out(const ui::ScreenRegion& box, ui::SetOperation operatio
     job.text_segmenter.clear();   // no word is looked for
     work_.start({"Cut out", [=, set = document_.state().current, cache = cache_](const JobControl& control) {
                      control.report("cutting out what is in the box", 0, 0);
-                     *rows = pipeline::cut_out(set, request, open_segmenters(job, cache).clicks.get());
+                     *rows = pipeline::cut_out(set, request, open_segmenters(job, cache).clicks.get(), control);
                  },
                  [this, rows, operation](const Error* error) {
                      if (error != nullptr) return report_error(*error);

@@ -35,7 +35,7 @@ void draw_tools(Context& context) {
     tool_button("tool.brush", Icon::Brush, Tool::Brush, "Brush: paint the label (B)");
     tool_button("tool.rectangle", Icon::Rectangle, Tool::Rectangle, "Rectangle: label what is inside (R)");
     tool_button("tool.lasso", Icon::Lasso, Tool::Lasso, "Lasso: label what is inside (L)");
-    tool_button("tool.cut_out", Icon::CutOut, Tool::CutOut, "Cut out: label the thing in a box (C)");
+    tool_button("tool.cut_out", Icon::CutOut, Tool::CutOut, "Cut out: label the thing in a box, all its sides (C)");
     gap(context);
     const bool front = context.view.front_only;
     if (icon_button(context, {.name = "tool.front",

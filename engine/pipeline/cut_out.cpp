@@ -8,6 +8,7 @@
 
 #include "engine/edit/grabcut_segmenter.h"
 #include "engine/localize/back_projection.h"
+#include "engine/pipeline/cut_out_sides.h"
 #include "engine/pipeline/scene_tools.h"
 
 namespace gse::pipeline {
@@ -92,8 +93,25 @@ Image unexplained(const Image& picture, const edit::BoxPrompt& box) {
     return hint;
 }
 
-/// Rows that are seen mostly inside the mask, the most visible first, until they make up nearly all of it: what hides behind them is
-/// seen through them a little.
+/// Whether a row's centre lies in the mask or just beside it.
+bool centred(const GaussianSet& set, std::size_t row, const Camera& camera, const Mask& mask) {
+    constexpr double beside = 0.02;   // of the picture's longer side
+    const auto positions = set.spans().position;
+    const Vec3 at = camera.to_camera({positions[row * 3], positions[row * 3 + 1], positions[row * 3 + 2]});
+    if (!(at[2] > 0)) return false;
+    const double x = camera.fx * at[0] / at[2] + camera.cx, y = camera.fy * at[1] / at[2] + camera.cy;
+    const double reach = beside * std::max(mask.width, mask.height);
+    if (!(x > -reach && x < mask.width + reach && y > -reach && y < mask.height + reach)) return false;
+    const auto from = [&](double value) { return std::max(0, static_cast<int>(std::floor(value - reach))); };
+    const auto to = [&](double value, int size) { return std::min(size - 1, static_cast<int>(std::floor(value + reach))); };
+    for (int v = from(y); v <= to(y, mask.height); ++v)
+        for (int u = from(x); u <= to(x, mask.width); ++u)
+            if (mask.at(u, v) != 0) return true;
+    return false;
+}
+
+/// Rows in the mask that are seen mostly inside it, the most visible first, until they make up nearly all of it: what hides behind them is
+/// seen through them a little, and the far ends of what is beside it show in it.
 std::vector<std::uint8_t> seen_rows(const GaussianSet& set, const Camera& camera, const Mask& mask, const raster::Settings& settings, Painter& painter) {
     constexpr double mostly = 0.5, nearly_all = 0.98;
     localize::MaskedView view{camera, Image(mask.width, mask.height, 1)};
@@ -102,7 +120,7 @@ std::vector<std::uint8_t> seen_rows(const GaussianSet& set, const Camera& camera
     std::vector<std::uint32_t> inside;
     double all = 0;
     for (std::size_t row = 0; row < set.size(); ++row) {
-        if (!(static_cast<double>(votes.weight[row]) > mostly) || !(votes.evidence[row] > 0)) continue;
+        if (!(static_cast<double>(votes.weight[row]) > mostly) || !(votes.evidence[row] > 0) || !centred(set, row, camera, mask)) continue;
         inside.push_back(static_cast<std::uint32_t>(row));
         all += votes.evidence[row];
     }
@@ -120,7 +138,7 @@ std::vector<std::uint8_t> seen_rows(const GaussianSet& set, const Camera& camera
 
 }  // namespace
 
-std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter) {
+std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter, const JobControl& control) {
     const auto section = section_of(request);
     if (!section) return std::vector<std::uint8_t>(set.size(), 0);
     Painter painter;
@@ -131,16 +149,16 @@ std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& r
         own = edit::grabcut_available() ? edit::make_grabcut_segmenter({.box_margin = 0}) : edit::make_default_segmenter();
         segmenter = own.get();
     }
-    Mask mask = segmenter->segment(picture, {}, section->box, unexplained(picture, section->box));
+    SeenThing seen{section->camera, segmenter->segment(picture, {}, section->box, unexplained(picture, section->box)), {}, {}, request.up};
     const Mask whole = mask_of(*section);
-    for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] &= whole.data[i];
-    const bool found = mask.count() > 0;
-    if (request.front_only) return seen_rows(set, section->camera, found ? mask : whole, request.settings, painter);
+    for (std::size_t i = 0; i < seen.mask.data.size(); ++i) seen.mask.data[i] &= whole.data[i];
+    if (seen.mask.count() == 0) seen.mask = whole;
+    seen.front = seen_rows(set, section->camera, seen.mask, request.settings, painter);
     PickOptions options;
     options.pool = &painter.pool();
-    if (!found) return rows_in_area(set, request.camera, request.area, options);
-    options.mask = &mask;
-    return rows_in_area(set, section->camera, section->area, options);
+    options.mask = &seen.mask;
+    seen.cone = rows_in_area(set, section->camera, section->area, options);
+    return follow_around(set, seen, request.settings, *segmenter, painter, control);
 }
 
 }  // namespace gse::pipeline

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/progress.h"
 #include "engine/edit/interfaces.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/scene/label_ops.h"
@@ -15,13 +16,13 @@ namespace gse::pipeline {
 struct CutOutRequest {
     Camera camera;
     ScreenArea area;             // around the thing, in the camera's pixels
-    raster::Settings settings;   // of the picture, its background too
-    bool front_only = true;      // what is behind the thing does not count
+    raster::Settings settings;   // of the pictures, their background too
+    Vec3 up{0, -1, 0};           // of the world: the other sides are looked at around it
 };
 
-/// One byte per row of `set`: 1 for the thing. `segmenter` cuts it out of a picture of the view, told the box around the area; null = the
-/// one that needs no weights. Where that comes to nothing, the area itself counts. With `front_only` these are the rows that are seen mostly
-/// inside the outline (as in GSEditPro's labels, method S5) and together make up nearly all that is seen there; else all whose centres it holds.
-std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter);
+/// One byte per row of `set`: 1 for the thing, from all sides. `segmenter` cuts it out of a picture of the view, told the box around the area,
+/// and then out of views around it (cut_out_sides.h); null = the one that needs no weights. Where the first comes to nothing, the area itself
+/// is the outline. Throws Error (Cancelled).
+std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter, const JobControl& control = {});
 
 }  // namespace gse::pipeline

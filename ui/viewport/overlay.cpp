@@ -185,7 +185,9 @@ void draw_hint(Context& context, ImDrawList* list) {
     const float room = state.high.x - state.low.x - context.em * 2;
     for (const char* part :
          {"Shift add", "Ctrl remove", "Alt intersect",
-          context.view.front_only ? "N: front only" : "N: all the way through",
+          state.tool == Tool::CutOut     ? "labels all its sides"
+          : context.view.front_only ? "N: front only"
+                                    : "N: all the way through",
           state.tool == Tool::Brush ? "[ ] size" : "", "middle drag orbits", "Esc leaves"}) {
         const std::string longer = fmt::format("{}   {}", text, part);
         if (*part != 0 && ImGui::CalcTextSize(longer.c_str()).x < room) text = longer;
