@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "engine/base/error.h"
 #include "engine/localize/back_projection.h"
+#include "engine/localize/clusters.h"
 #include "engine/localize/spread.h"
 
 namespace gse::pipeline {
@@ -16,9 +18,11 @@ namespace {
 constexpr int Side = 256;             // pixels of a picture
 constexpr double Fov = 40 * Degree;
 constexpr double Behind = 2;          // how far behind its front a thing may reach, in its longer side on the screen
+constexpr double Gap = 0.1;           // of its longer side: what lies farther behind it is something else
 constexpr double Half = 0.5;          // of what a pixel shows, or of a row's votes
 constexpr double LeastSeen = 0.3;     // of the candidates' pixels: less where something stands in the way
 constexpr double LeastAgreement = 0.4;   // IoU of outline and expectation
+constexpr float Unseen = 0.6f;           // how probably a row that no view has shown yet is the thing's: above a half, its other sides are
 
 /// Where the views lie: turned from the first one about the vertical, raised; those next to what is known come first.
 struct Turn {
@@ -51,12 +55,9 @@ std::optional<Bounds> bounds_of(const GaussianSet& set, const std::vector<std::u
 }
 
 std::optional<edit::BoxPrompt> box_of(const Mask& mask) {
-    edit::BoxPrompt box{1e9, 1e9, -1e9, -1e9};
-    for (int y = 0; y < mask.height; ++y)
-        for (int x = 0; x < mask.width; ++x)
-            if (mask.at(x, y) != 0) box = {std::min<double>(box.x0, x), std::min<double>(box.y0, y), std::max<double>(box.x1, x + 1), std::max<double>(box.y1, y + 1)};
-    if (box.x1 < box.x0) return std::nullopt;
-    return box;
+    const auto box = localize::bounds_of(mask);
+    if (box.width == 0) return std::nullopt;
+    return edit::BoxPrompt{1.0 * box.left, 1.0 * box.top, 1.0 * box.left + box.width, 1.0 * box.top + box.height};
 }
 
 Mask above_half(const Image& image) {
@@ -69,6 +70,37 @@ double depth_of(const GaussianSet& set, const Camera& camera, std::size_t row) {
     const auto positions = set.spans().position;
     const Vec3 at{positions[row * 3], positions[row * 3 + 1], positions[row * 3 + 2]};
     return dot(camera.forward(), at - camera.centre());
+}
+
+/// Those of `rows` that a way of neighbouring cells joins to the front: what stands behind a gap is another thing.
+void keep_joined(const GaussianSet& set, const std::vector<std::uint8_t>& front, double cell, std::vector<std::uint8_t>& rows) {
+    using Cell = std::array<std::int64_t, 3>;
+    const auto positions = set.spans().position;
+    const auto cell_of = [&](std::size_t row) {
+        Cell at{};
+        for (std::size_t axis = 0; axis < 3; ++axis) at[axis] = static_cast<std::int64_t>(std::floor(static_cast<double>(positions[row * 3 + axis]) / cell));
+        return at;
+    };
+    std::map<Cell, bool> reached;   // of the cells that hold a row
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] != 0) reached.emplace(cell_of(row), false);
+    std::vector<Cell> open;
+    const auto reach = [&](const Cell& at) {
+        const auto found = reached.find(at);
+        if (found == reached.end() || found->second) return;
+        found->second = true;
+        open.push_back(at);
+    };
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (front[row] != 0) reach(cell_of(row));
+    while (!open.empty()) {
+        const Cell at = open.back();
+        open.pop_back();
+        for (std::int64_t z = -1; z <= 1; ++z)
+            for (std::int64_t y = -1; y <= 1; ++y)
+                for (std::int64_t x = -1; x <= 1; ++x) reach({at[0] + x, at[1] + y, at[2] + z});
+    }
+    for (std::size_t row = 0; row < rows.size(); ++row) rows[row] &= rows[row] != 0 && reached[cell_of(row)] ? 1 : 0;
 }
 
 /// The rows that can be the thing.
@@ -88,6 +120,7 @@ std::vector<std::uint8_t> candidates_of(const GaussianSet& set, const SeenThing&
         const double depth = depth_of(set, seen.camera, row);
         if (depth >= nearest && depth <= farthest) rows[row] = 1;
     }
+    if (longer > 0) keep_joined(set, seen.front, Gap * longer, rows);
     return rows;
 }
 
@@ -122,15 +155,11 @@ public:
     }
     bool known(std::size_t row) const { return total_[row] > LeastEvidence; }
     bool inside(std::size_t row) const { return candidates_[row] != 0 && known(row) && masked_[row] > Half * total_[row]; }
-    /// [N] 1 for the rows that count.
-    void counting(std::vector<float>& values) const {
-        values.resize(masked_.size());
-        for (std::size_t row = 0; row < values.size(); ++row) values[row] = inside(row) ? 1.0f : 0.0f;
-    }
-    /// [N] 1 for the candidates that no view has seen.
-    void unseen(std::vector<float>& values) const {
-        values.resize(masked_.size());
-        for (std::size_t row = 0; row < values.size(); ++row) values[row] = candidates_[row] != 0 && !known(row) ? 1.0f : 0.0f;
+    /// [N] 1 for rows that count, `unseen` for candidates that no view has shown yet, 0 for the rest.
+    void expectation(float unseen, std::vector<float>& values) const {
+        values.assign(masked_.size(), 0);
+        for (std::size_t row = 0; row < values.size(); ++row)
+            if (candidates_[row] != 0) values[row] = known(row) ? (inside(row) ? 1.0f : 0.0f) : unseen;
     }
     localize::LabelWeights weights() const {
         localize::LabelWeights result;
@@ -147,40 +176,6 @@ private:
     std::vector<double> masked_, total_;
 };
 
-/// What a view shows, clamped to [0,1].
-struct Shot {
-    Image colour, alpha;
-};
-
-/// Colours of the thing and of what is around it, as the views that voted show them.
-class Colours {
-public:
-    void add(const Shot& shot, const Mask& mask) {
-        double inside = 0, outside = 0;
-        for (std::size_t p = 0; p < mask.data.size(); ++p)
-            if (shot.alpha.data[p] > Half) ++(mask.data[p] != 0 ? inside : outside);
-        for (std::size_t p = 0; p < mask.data.size(); ++p)
-            if (shot.alpha.data[p] > Half)   // where the scene shows nothing there is no colour
-                (mask.data[p] != 0 ? inside_ : outside_)[bin_of(&shot.colour.data[p * 3])] += 1 / (mask.data[p] != 0 ? inside : outside);
-    }
-    /// How probable it is that a pixel of a side that was not seen yet is the thing's.
-    double of_thing(const float* colour) const {
-        constexpr double before = 0.6;       // other sides of a thing are what is expected behind its front
-        constexpr double strength = 0.002;   // share of a picture that counts as much
-        const auto bin = bin_of(colour);
-        return (inside_[bin] + before * strength) / (inside_[bin] + outside_[bin] + strength);
-    }
-
-private:
-    static constexpr std::size_t Levels = 12;   // of a channel
-    static std::size_t bin_of(const float* colour) {
-        std::size_t bin = 0;
-        for (int c = 0; c < 3; ++c) bin = bin * Levels + std::min(Levels - 1, static_cast<std::size_t>(std::clamp(colour[c], 0.0f, 1.0f) * Levels));
-        return bin;
-    }
-    std::vector<double> inside_ = std::vector<double>(Levels * Levels * Levels), outside_ = inside_;
-};
-
 /// Votes view by view.
 class Follower {
 public:
@@ -188,41 +183,26 @@ public:
         : set_(set), settings_(settings), segmenter_(segmenter), painter_(painter), candidates_(candidates.begin(), candidates.end()),
           alone_(set.filtered(candidates)), ones_(alone_.size(), 1), masked_(set.size()), total_(set.size()) {}
 
-    void first(const SeenThing& seen, Knowledge& knowledge) { vote(seen.camera, shot_of(seen.camera), seen.mask, knowledge); }
+    void first(const SeenThing& seen, Knowledge& knowledge) { vote(seen.camera, seen.mask, knowledge); }
 
     void look(const Camera& camera, Knowledge& knowledge) {
         const Mask possible = above_half(shown(set_, camera, candidates_));
         if (hidden(camera, possible)) return;
-        const Shot shot = shot_of(camera);
-        const Image expected = expectation(camera, shot.colour, knowledge);
+        knowledge.expectation(Unseen, values_);
+        const Image expected = shown(set_, camera, values_);
         const Mask before = above_half(expected);
         const auto box = box_of(before);
         if (!box) return;
-        Mask mask = segmenter_.segment(shot.colour, {}, *box, expected);
-        std::size_t both = 0, any = 0;
-        for (std::size_t i = 0; i < mask.data.size(); ++i) {
-            mask.data[i] &= possible.data[i];
-            both += mask.data[i] & before.data[i], any += mask.data[i] | before.data[i];
-        }
-        if (static_cast<double>(both) >= LeastAgreement * static_cast<double>(any)) vote(camera, shot, mask, knowledge);
+        Mask mask = segmenter_.segment(picture_of(camera), {}, *box, expected);
+        for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] &= possible.data[i];
+        if (localize::mask_iou(mask, before) >= LeastAgreement) vote(camera, mask, knowledge);
     }
 
 private:
-    Shot shot_of(const Camera& camera) {
-        const auto& painted = painter_.paint(set_.spans(), camera, settings_);
-        Shot shot{painted.colour, painted.alpha};
-        for (auto& value : shot.colour.data) value = std::clamp(value, 0.0f, 1.0f);
-        return shot;
-    }
-    /// [H,W,1] in [0,1]: what shows rows that count, and of rows that no view has seen what has the thing's colours.
-    Image expectation(const Camera& camera, const Image& picture, const Knowledge& knowledge) {
-        knowledge.counting(values_);
-        Image expected = shown(set_, camera, values_);
-        knowledge.unseen(values_);
-        const Image unseen = shown(set_, camera, values_);
-        for (std::size_t p = 0; p < expected.data.size(); ++p)
-            expected.data[p] += unseen.data[p] * static_cast<float>(colours_.of_thing(&picture.data[p * 3]));
-        return expected;
+    Image picture_of(const Camera& camera) {
+        Image picture = painter_.paint(set_.spans(), camera, settings_).colour;
+        for (auto& value : picture.data) value = std::clamp(value, 0.0f, 1.0f);
+        return picture;
     }
     Image shown(const GaussianSet& set, const Camera& camera, const std::vector<float>& values) {
         Image image;
@@ -236,8 +216,7 @@ private:
         for (std::size_t i = 0; i < whole.data.size(); ++i) pixels += whole.data[i], seen += whole.data[i] & possible.data[i];
         return pixels == 0 || static_cast<double>(seen) < LeastSeen * static_cast<double>(pixels);
     }
-    void vote(const Camera& camera, const Shot& shot, const Mask& mask, Knowledge& knowledge) {
-        colours_.add(shot, mask);
+    void vote(const Camera& camera, const Mask& mask, Knowledge& knowledge) {
         Image image(mask.width, mask.height, 1);
         std::copy(mask.data.begin(), mask.data.end(), image.data.begin());
         std::fill(masked_.begin(), masked_.end(), 0), std::fill(total_.begin(), total_.end(), 0);
@@ -254,7 +233,6 @@ private:
     std::vector<float> ones_;
     std::vector<double> masked_, total_;
     std::vector<float> values_;
-    Colours colours_;
 };
 
 }  // namespace
