@@ -16,6 +16,7 @@ struct SdsParameters {
     double view_guidance_scale = 3;
     double shape_guidance_scale = 2;
     bool restyle = true;
+    bool plain_ground = true;
     double restyle_guidance_scale = 1.5;
     double image_guidance_scale = 1;
     double clamp = 1.0;
@@ -41,6 +42,9 @@ struct SdsParameters {
         f("restyle", self.restyle,
           "Another colour, material or ground is drawn by the network that is shown the scene, where the model has one; where its pictures "
           "hardly show what was asked, the model itself draws them all the same.");
+        f("plain_ground", self.plain_ground,
+          "Where its pictures, or those of a thing in another's place, hardly show what was asked, that network draws them as if the thing "
+          "stood alone on a plain ground, too.");
         f("restyle_guidance_scale", self.restyle_guidance_scale,
           "The same where a model that is shown the scene gives a thing another colour or material, or another ground.", Range{0, 200});
         f("image_guidance_scale", self.image_guidance_scale,

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "engine/base/error.h"
+#include "engine/base/log.h"
 #include "engine/io/image_file.h"
 
 namespace gse::pipeline {
@@ -72,6 +73,7 @@ Gate look_through_gate(EditJob& job, const GateParameters& parameters) {
     std::vector<PicturePair> pairs;
     for (const auto& picture : gate.pictures) pairs.emplace_back(&picture.before, &picture.after);
     static_cast<Verdict&>(gate) = judge(job.model(), job.recipe().request, job.model_prompt(), pairs);
+    if (gate.warns) log::warning("{}", gate.verdict);
     job.times().end();
     return gate;
 }

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "engine/base/log.h"
 #include "engine/evaluate/direction.h"
 
 namespace gse::pipeline {
@@ -31,7 +30,6 @@ Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request
     result.verdict = result.warns ? fmt::format("The model's pictures hardly show \"{}\" (score {:.2f}): the edit may not either.",
                                                 told, *result.score)
                                   : fmt::format("The model's pictures show the edit (score {:.2f}).", *result.score);
-    if (result.warns) log::warning("{}", result.verdict);
     return result;
 }
 

@@ -1,0 +1,119 @@
+// The ground that a model is shown instead of a scene.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "engine/edit/plain_ground.h"
+
+namespace {
+
+using namespace gse;
+using namespace gse::edit;
+
+const Vec3 Up{0, -1, 0};
+
+Standing figure() { return {{0.5, 1, 2}, 1.0, 0.5, 0.4}; }
+
+PlainGround ground_of(const std::string& sentence) { return *plain_ground(sentence, figure(), Up, {0, 0, 0.25f}); }
+
+/// Where the camera sees a point of the world.
+std::pair<int, int> pixel_of(const Camera& camera, const Vec3& point) {
+    const Vec3 at = camera.to_camera(point);
+    return {static_cast<int>(std::floor(camera.fx * at.x / at.z + camera.cx)), static_cast<int>(std::floor(camera.fy * at.y / at.z + camera.cy))};
+}
+
+/// Keeps what it was shown; answers with outlines or without.
+class Recorder final : public ViewGuidance {
+public:
+    explicit Recorder(bool outlines, bool restyles = false) : outlines_(outlines), restyles_(restyles) {}
+    RoundTargets edit(const std::vector<RoundView>& views, const RoundInput&, const JobControl&) override {
+        shown.push_back(views);
+        RoundTargets targets;
+        for (const auto& view : views) {
+            targets.images.push_back(view.rendered);
+            if (outlines_) targets.outlines.emplace_back(view.rendered.width, view.rendered.height, 1);
+        }
+        return targets;
+    }
+    bool restyles() const override { return restyles_; }
+    std::vector<std::vector<RoundView>> shown;
+
+private:
+    bool outlines_, restyles_;
+};
+
+RoundView red_view() {
+    RoundView view;
+    view.view.camera = Camera::look_at({0.5, 0, -2}, {0.5, 0.7, 2}, Up, 0.8, 32, 24);
+    view.rendered = Image(32, 24, 3);
+    for (std::size_t i = 0; i < view.rendered.data.size(); i += 3) view.rendered.data[i] = 1;
+    view.original = view.backdrop.picture = view.rendered;
+    view.mask = Mask(32, 24);
+    view.mask.at(16, 12) = 1;
+    return view;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("the plain ground lies where the thing stands, three figures wide to every side, in the colour that the sentence names") {
+    const auto plain = ground_of("a red cat on the grass");
+    const auto camera = Camera::look_at({0.5, -3, -6}, {0.5, 1, 2}, Up, 0.9, 200, 160);
+    const auto picture = picture_of(plain, camera);
+    const auto green_at = [&](const Vec3& offset) {
+        const auto [x, y] = pixel_of(camera, plain.standing.foot + offset);
+        return picture.at(x, y, 1);
+    };
+    DOCTEST_CHECK(green_at({0, 0, 0}) == doctest::Approx(plain.ground[1]));
+    for (const double side : {-1.0, 1.0}) {
+        DOCTEST_CHECK(green_at({side * 2.9, 0, 0}) == doctest::Approx(plain.ground[1]));
+        DOCTEST_CHECK(green_at({side * 3.1, 0, 0}) == 0);   // the sky
+    }
+    DOCTEST_CHECK(picture.at(100, 1, 2) == doctest::Approx(0.25));
+    DOCTEST_CHECK(ground_of("a red cat").ground != plain.ground);
+    DOCTEST_CHECK(ground_of("a red cat on the snow").ground != ground_of("a red cat").ground);
+    const auto below = Camera::look_at({0.5, 3, -6}, {0.5, 1, 2}, Up, 0.9, 40, 40);   // seen from under it, there is no more than that
+    for (const float value : picture_of(plain, below).data) DOCTEST_CHECK(std::isfinite(value));
+}
+
+DOCTEST_TEST_CASE("what is as flat as a ground, or is not there, stands on none") {
+    auto flat = figure();
+    flat.height = 0.02;
+    DOCTEST_CHECK_FALSE(plain_ground("snow", flat, Up, {}).has_value());
+    DOCTEST_CHECK_FALSE(plain_ground("a cat", Standing{}, Up, {}).has_value());
+}
+
+DOCTEST_TEST_CASE("only rounds that begin a new thing, and restyles, are shown the plain ground") {
+    const auto view = red_view();
+    const JobControl job;
+    const auto asked = [&](Recorder& model, const RoundInput& input) {
+        OnPlainGround on_ground(model, ground_of("a red cat"));
+        on_ground.edit({view}, input, job);
+    };
+    RoundInput anew;
+    anew.anew = true;
+    Recorder tells(true);
+    asked(tells, anew);
+    DOCTEST_REQUIRE(tells.shown.size() == 1);
+    const auto& shown = tells.shown[0][0];
+    DOCTEST_CHECK(shown.rendered.data == picture_of(ground_of("a red cat"), view.view.camera).data);
+    DOCTEST_CHECK(shown.original.data == shown.rendered.data);
+    DOCTEST_CHECK(shown.backdrop.picture.data == shown.rendered.data);
+    Recorder silent(false);   // its pictures could not be cut out: the scene after all
+    asked(silent, anew);
+    DOCTEST_REQUIRE(silent.shown.size() == 2);
+    DOCTEST_CHECK(silent.shown[1][0].rendered.data == view.rendered.data);
+    anew.round = 1;
+    Recorder later(true);
+    asked(later, anew);
+    DOCTEST_CHECK(later.shown[0][0].rendered.data == view.rendered.data);
+    Recorder plain(false), restyles(false, true);
+    asked(plain, {});
+    DOCTEST_CHECK(plain.shown[0][0].rendered.data == view.rendered.data);
+    asked(restyles, {});
+    const auto& styled = restyles.shown[0][0];
+    DOCTEST_CHECK(styled.rendered.at(16, 12, 0) == 1);   // what may change is shown as it is
+    DOCTEST_CHECK(styled.rendered.at(15, 12, 0) != 1);
+}
