@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/base/path_text.h"
 #include "engine/base/json.h"
+#include "engine/io/camera_checks.h"
 #include "engine/scene/strength.h"
 
 namespace gse::io {
@@ -20,7 +21,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t MostEntries = 100000;  // edits, labels, views
-constexpr int LargestSide = 1 << 16;         // pixels of a view
 constexpr std::uint64_t MostEdits = std::uint64_t{1} << 32;
 constexpr std::array<const char*, 3> BaseNames{"file", "kept", "whole"};
 constexpr std::array<const char*, 13> KnownFields{"format", "version", "program",      "scene", "info",
@@ -142,13 +142,15 @@ View read_view(const Json& json, const std::string& name) {
     fields.numbers("translation", translation);
     fields.numbers("rotation", rotation);
     for (const double side : size)
-        if (side < 0 || side > LargestSide) throw_field(fields.full("size"), "is not a picture's size");
+        if (side < 0 || side > LargestImageSide) throw_field(fields.full("size"), "is not a picture's size");
     Camera& camera = view.camera;
     camera.width = static_cast<int>(size[0]);
     camera.height = static_cast<int>(size[1]);
     camera.fx = lens[0], camera.fy = lens[1], camera.cx = lens[2], camera.cy = lens[3];
     camera.rotation = Mat3::from_rows(rotation);
     camera.translation = {translation[0], translation[1], translation[2]};
+    check_intrinsics(camera, fmt::format("{} of the project", name));
+    check_pose(camera, fmt::format("{} of the project", name));
     return view;
 }
 

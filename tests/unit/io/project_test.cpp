@@ -212,6 +212,15 @@ DOCTEST_TEST_CASE("damaged descriptions and members are one sentence each") {
             json["views"][0]["size"] = {1e9, 3};
         },
         [](Json& json) { json["views"][0]["rotation"][3] = "x"; },
+        // Cameras that no camera reader takes, either.
+        [](Json& json) { json["views"][0] = Json::object(); },
+        [](Json& json) { json["views"][0].erase("size"); },
+        [](Json& json) { json["views"][0].erase("lens"); },
+        [](Json& json) { json["views"][1]["size"][0] = 0; },
+        [](Json& json) { json["views"][1]["lens"][0] = 0; },
+        [](Json& json) { json["views"][1]["lens"][1] = -500; },
+        [](Json& json) { json["views"][1]["rotation"] = std::vector<double>(9, 0.0); },
+        [](Json& json) { json["views"][1]["rotation"][0] = 7; },
         [](Json& json) { json["ui"] = Json::array(); },
         [](Json& json) {
             Json deep = 1;
