@@ -36,13 +36,12 @@ public:
                                         folder.path / "config.json")),
           preprocessing_(ClipPreprocessing::read(config_, folder.path)),
           tokenizer_(std::filesystem::exists(folder.path / "merges.txt") ? folder.path : folder.tokenizer),
-          model_(config_, WeightOptions{torch::kCPU, torch::kFloat32, false}) {
+          model_(loaded_network<ClipModel>(config_, SafetensorsFile(existing(folder.path / "model.safetensors")), clip_plan())) {
         if (tokenizer_.vocabulary_size() > config_.text.vocab_size)
             throw Error(ErrorCode::Model,
                         fmt::format("the tokenizer has {} tokens but the image-text encoder only {}",
                                     tokenizer_.vocabulary_size(), config_.text.vocab_size),
                         {}, folder.path);
-        load_weights(*model_, SafetensorsFile(existing(folder.path / "model.safetensors")), clip_plan());
         for (auto& parameter : model_->parameters()) parameter.set_requires_grad(false);
         model_->to(folder.device);
         model_->eval();

@@ -233,12 +233,6 @@ void check_tokenizer(const Tokenizer& tokenizer, const Parts& parts) {
                     {}, parts.tokenizer);
 }
 
-std::int64_t count_parameters(const torch::nn::Module& module) {
-    std::int64_t count = 0;
-    for (const auto& parameter : module.parameters()) count += parameter.numel();
-    return count;
-}
-
 template <class Holder>
 void freeze(Holder& module, const torch::Device& device) {
     for (auto& parameter : module->parameters()) parameter.set_requires_grad(false);
@@ -312,8 +306,8 @@ struct WeightFiles {
     explicit WeightFiles(const Parts& parts) : unet(parts.unet_file), vae(parts.vae_file), text(parts.text_file) {}
 };
 
-/// Compares configurations and files without memory for a single weight; returns the number of parameters.
-std::int64_t check_files(const Parts& parts, const WeightFiles& files, const Plans& plans) {
+/// Compares configurations and files without memory for a single weight; returns the bytes of the parameters.
+std::uint64_t check_files(const Parts& parts, const WeightFiles& files, const Plans& plans) {
     const WeightOptions described{torch::kMeta, torch::kFloat32, false};
     const UNet unet(parts.unet, described);
     const AutoencoderKl vae(parts.vae, described);
@@ -321,7 +315,7 @@ std::int64_t check_files(const Parts& parts, const WeightFiles& files, const Pla
     check_weights(*text, files.text.shapes(), plans.text, parts.text_file);
     check_weights(*unet, files.unet.shapes(), plans.unet, parts.unet_file);
     check_weights(*vae, files.vae.shapes(), plans.vae, parts.vae_file);
-    return count_parameters(*unet) + count_parameters(*vae) + count_parameters(*text);
+    return weight_bytes(*unet) + weight_bytes(*vae) + weight_bytes(*text);
 }
 
 }  // namespace
@@ -332,8 +326,7 @@ ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& 
     return guard_torch("loading the model", [&] {
         const WeightFiles files(parts);
         const auto plans = plans_of(parts, files.vae);
-        const auto parameters = static_cast<std::uint64_t>(check_files(parts, files, plans));
-        require_memory(parameters * sizeof(float), fmt::format("the model \"{}\"", parts.facts.name));
+        require_memory(check_files(parts, files, plans), fmt::format("the model \"{}\"", parts.facts.name));
         const WeightOptions empty{torch::kCPU, torch::kFloat32, false};
         const WeightOptions unet{torch::kCPU, choose_precision(precision, parts.unet, device), false};
         ModelBundle bundle{path,
@@ -367,7 +360,7 @@ ModelDescription describe_model(const std::filesystem::path& path) {
         return ModelDescription{parts.facts.name,
                                 parts.single_file ? "single file" : "diffusers folder",
                                 parts.facts.image_size,
-                                check_files(parts, files, plans_of(parts, files.vae)),
+                                static_cast<std::int64_t>(check_files(parts, files, plans_of(parts, files.vae)) / sizeof(float)),
                                 parts.scheduler.prediction_type,
                                 parts.facts.vocabulary,
                                 parts.kind};
