@@ -39,6 +39,8 @@ struct Parts {
     fs::path folder() const { return single_file ? root.parent_path() : root; }
 };
 
+constexpr std::int64_t LargestImageSize = 8192;   // pixels of a side
+
 constexpr const char* FolderHint =
     "a model folder has model_index.json, tokenizer, text_encoder, unet, vae and scheduler, as diffusers "
     "writes it";
@@ -208,6 +210,10 @@ Parts find_parts(const fs::path& path) {
                     fmt::format("the UNet expects text of width {} but the text encoder gives {}",
                                 parts.unet.cross_attention_dim, parts.text.hidden_size),
                     {}, path);
+    if (parts.facts.image_size > LargestImageSize)
+        throw Error(ErrorCode::Model,
+                    fmt::format("the model's pictures would be {} pixels wide, more than {}", parts.facts.image_size, LargestImageSize),
+                    "look at \"sample_size\" in the UNet's config.json", path);
     if (parts.facts.image_size % parts.vae.factor() != 0)
         throw Error(ErrorCode::Model, "the model's image size is not a multiple of the VAE's factor", {},
                     path);
@@ -273,8 +279,8 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
     get("shape_restyles", facts.shape_restyles);
     get("viewpoint", facts.viewpoint);
     get("shape_views", facts.shape_views);
-    if (facts.image_size < 0 || facts.image_size > 8192)
-        throw Error(ErrorCode::Malformed, "\"image_size\" is outside 0..8192", {}, path);
+    if (facts.image_size < 0 || facts.image_size > LargestImageSize)
+        throw Error(ErrorCode::Malformed, fmt::format("\"image_size\" is outside 0..{}", LargestImageSize), {}, path);
     if (facts.shape_views < 1 || facts.shape_views > 64)
         throw Error(ErrorCode::Malformed, "\"shape_views\" is outside 1..64", {}, path);
     return facts;

@@ -1,8 +1,9 @@
-// What files of weights claim: more memory than there is.
+// What files of weights and settings claim: more memory than there is, numbers that are none.
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "engine/base/memory.h"
+#include "engine/neural/key_map.h"
 #include "engine/neural/lora.h"
 #include "engine/neural/sam_model.h"
 #include "engine/neural/taesd.h"
@@ -73,4 +74,17 @@ DOCTEST_TEST_CASE("weights of more memory than there is are one sentence, before
     constexpr std::int64_t terabyte = std::int64_t{1} << 38;   // numbers
     write_hollow(file, {{"lora_unet_mid_block_x.lora_down.weight", {1, terabyte}}, {"lora_unet_mid_block_x.lora_up.weight", {terabyte, 1}}});
     needs_memory([&] { read_lora(file); }, "the LoRA \"model.safetensors\"");
+}
+
+DOCTEST_TEST_CASE("numbers in names of tensors and tokens may have any length, or none") {
+    const auto plan = single_file_text_plan(TextEncoderConfig{}, SingleFileText::OpenClip);
+    const std::string blocks = "cond_stage_model.model.transformer.resblocks.";
+    DOCTEST_CHECK_FALSE(plan.ignore(blocks + "11.ln_1.weight"));
+    DOCTEST_CHECK(plan.ignore(blocks + "12.ln_1.weight"));
+    DOCTEST_CHECK(plan.ignore(blocks + "99999999999999999999999999.ln_1.weight"));
+    for (const char* odd : {"", "x", "-1.ln_1.weight", "-99999999999999999999999999"}) DOCTEST_CHECK_FALSE(plan.ignore(blocks + odd));
+
+    const TinyModel model;
+    write_file(model.path() / "tokenizer/tokenizer_config.json", R"({"added_tokens_decoder": {"": {"content": "<none>"}, "99999999999": {"content": "<far>"}}})");
+    DOCTEST_CHECK(Tokenizer(model.path() / "tokenizer").vocabulary_size() == Tokenizer(TinyModel().path() / "tokenizer").vocabulary_size());
 }
