@@ -261,17 +261,20 @@ DOCTEST_TEST_CASE("header comments are honoured, the last one wins") {
     DOCTEST_CHECK(!with_comments("comment antialiased 1\ncomment splatrendermode: default\n").antialiased);
 }
 
-DOCTEST_TEST_CASE("comments are written back") {
+DOCTEST_TEST_CASE("comments are written back, compressed as well") {
     ScratchFolder scratch;
-    Scene scene = random_scene(1, 0, 2);
-    scene.info.up = {0.6, 0, 0.8};
-    scene.info.up_known = true;
-    scene.info.antialiased = true;
-    save_scene(scratch.path() / "a.ply", scene);
-    const Scene again = load_scene(scratch.path() / "a.ply");
-    DOCTEST_CHECK(again.info.up_known);
-    DOCTEST_CHECK(length(again.info.up - scene.info.up) < 1e-12);
-    DOCTEST_CHECK(again.info.antialiased);
+    for (const bool said : {true, false})
+        for (const char* name : {"a.ply", "a.compressed.ply"}) {
+            Scene scene = random_scene(1, 0, 2);
+            scene.info.up = {0.6, 0, 0.8};
+            scene.info.up_known = scene.info.antialiased = said;
+            save_scene(scratch.path() / name, scene);
+            const Scene again = load_scene(scratch.path() / name);
+            DOCTEST_CAPTURE(name);
+            DOCTEST_CHECK(again.info.up_known == said);
+            DOCTEST_CHECK(again.info.antialiased == said);
+            if (said) DOCTEST_CHECK(length(again.info.up - scene.info.up) < 1e-12);
+        }
 }
 
 DOCTEST_TEST_CASE("surfels, byte colours and degree 4 are taken in") {
