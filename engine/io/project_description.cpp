@@ -215,6 +215,7 @@ ProjectDescription::Edit read_edit(const Json& json, const std::string& name) {
 Json to_json(const ProjectDescription::LabelEntry& entry) {
     return {{"name", entry.label.name},
             {"threshold", any_number(static_cast<double>(entry.label.threshold))},
+            {"attention_threshold", any_number(entry.label.attention_threshold)},
             {"weight", entry.weight},
             {"manual", entry.manual},
             {"absent", entry.absent}};
@@ -229,6 +230,8 @@ ProjectDescription::LabelEntry read_label(const Json& json, const std::string& n
     if (std::isnan(threshold)) throw_field(fields.full("threshold"), "is not a number");
     constexpr double most = 1e30;  // fits a float
     entry.label.threshold = static_cast<float>(std::clamp(threshold, -most, most));
+    fields.number("attention_threshold", entry.label.attention_threshold, true);
+    if (!std::isfinite(entry.label.attention_threshold)) entry.label.attention_threshold = NamedLabel().attention_threshold;
     fields.text("weight", entry.weight);
     fields.text("manual", entry.manual);
     fields.text("absent", entry.absent);

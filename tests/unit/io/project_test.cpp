@@ -173,11 +173,13 @@ DOCTEST_TEST_CASE("unknown fields are kept, absent ones have defaults, newer for
         for (const char* key : {"ui", "jobs", "views", "info", "program", "thumbnail", "active_label"})
             json.erase(key);
         json["stack"][0].erase("recipe");
+        json["labels"][0].erase("attention_threshold");
     });
     const ProjectData sparse = parse_project(as_bytes(older));
     DOCTEST_CHECK(bits_equal(sparse.state.current, project.state.current));
     DOCTEST_CHECK(sparse.state.views.empty());
     DOCTEST_CHECK(sparse.state.stack[0].recipe.empty());
+    DOCTEST_CHECK(sparse.state.labels[0].attention_threshold == NamedLabel().attention_threshold);
     const auto future = with_description(packed, [](auto& json) { json["version"] = 2; });
     const auto refused = error_of([&] { parse_project(as_bytes(future)); });
     DOCTEST_REQUIRE(refused);
