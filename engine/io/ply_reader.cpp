@@ -12,6 +12,7 @@
 #include "engine/io/claims.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
+#include "engine/io/label_weights.h"
 #include "engine/io/ply_body.h"
 #include "engine/io/ply_comments.h"
 
@@ -203,6 +204,10 @@ void colours_to_sh(GaussianData& data, bool integers) {
 
 void add_label(Scene& scene, std::vector<float> bits, std::vector<float> weights, const std::string& name) {
     if (bits.empty() && weights.empty()) return;
+    if (const std::size_t odd = hold_weights(bits))
+        scene.info.warnings.push_back(fmt::format(
+            "the column \"label\" has values other than 0 and 1 for {} splats: those above 0.5 count as labelled, whatever they are", odd));
+    if (const std::size_t odd = hold_weights(weights)) scene.info.warnings.push_back(held_weights_text(odd, "the column \"label_weight\""));
     if (bits.empty()) bits = weights;
     Label label = make_label(name, std::move(bits), 0.5f);
     if (!weights.empty()) label.weight = std::make_shared<const std::vector<float>>(std::move(weights));

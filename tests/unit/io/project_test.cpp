@@ -186,6 +186,23 @@ DOCTEST_TEST_CASE("unknown fields are kept, absent ones have defaults, newer for
     DOCTEST_CHECK(refused->code() == ErrorCode::Unsupported);
 }
 
+DOCTEST_TEST_CASE("weights of a project's labels that are none are held between 0 and 1, and that is said") {
+    const Quiet quiet;
+    ProjectData project = random_project({{}, 0, 0, random_set(80, 1, 5)}, 5);
+    NamedLabel& label = project.state.labels[0];
+    auto weight = *label.weight;
+    weight[3] = 2, weight[5] = -0.5f, weight[7] = std::nanf("");
+    label.weight = std::make_shared<const std::vector<float>>(weight);
+    label.absent = std::make_shared<const AbsentRows>(AbsentRows{{1, 2}, {0.25f, 1e30f}, {0, 0}});
+    const std::string packed = ProjectWriter().pack("x.gsep", project);
+    const ProjectData loaded = parse_project(as_bytes(packed));
+    weight[3] = 1, weight[5] = 0, weight[7] = 0;
+    DOCTEST_CHECK(*loaded.state.labels[0].weight == weight);
+    DOCTEST_CHECK(loaded.state.labels[0].absent->weight == std::vector<float>{0.25f, 1});
+    DOCTEST_REQUIRE(loaded.warnings.size() == 2);
+    DOCTEST_CHECK(loaded.warnings[0].starts_with("the label \"label 5\" has weights outside of 0 to 1 for 3 splats"));
+}
+
 DOCTEST_TEST_CASE("damaged descriptions and members are one sentence each") {
     const ProjectData project = random_project({{}, 0, 0, random_set(80, 1, 6)}, 6);
     const std::string packed = ProjectWriter().pack("x.gsep", project);
