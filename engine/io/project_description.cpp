@@ -27,9 +27,10 @@ constexpr std::array<const char*, 13> KnownFields{"format", "version", "program"
                                                   "stack",  "labels",  "active_label", "views", "ui",
                                                   "jobs",   "rows",    "thumbnail"};
 
+constexpr const char* DamagedProject = "the file is damaged; open an older copy or an autosave";
+
 [[noreturn]] void throw_field(const std::string& name, const char* how) {
-    throw Error(ErrorCode::Malformed, fmt::format("the field \"{}\" of the project {}", name, how),
-                "the file is damaged; open an older copy or an autosave");
+    throw Error(ErrorCode::Malformed, fmt::format("the field \"{}\" of the project {}", name, how), DamagedProject);
 }
 
 /// A JSON object that is read field by field; absent fields keep their default.
@@ -149,8 +150,8 @@ View read_view(const Json& json, const std::string& name) {
     camera.fx = lens[0], camera.fy = lens[1], camera.cx = lens[2], camera.cy = lens[3];
     camera.rotation = Mat3::from_rows(rotation);
     camera.translation = {translation[0], translation[1], translation[2]};
-    check_intrinsics(camera, fmt::format("{} of the project", name));
-    check_pose(camera, fmt::format("{} of the project", name));
+    check_intrinsics(camera, fmt::format("\"{}\" of the project", name), DamagedProject);
+    check_pose(camera, name, DamagedProject);
     return view;
 }
 
@@ -334,7 +335,7 @@ std::string write_description(const ProjectDescription& description) {
 
 ProjectDescription parse_description(std::string_view text) {
     const Json json =
-        parse_json(text, "the project's description", "the file is damaged; open an older copy or an autosave");
+        parse_json(text, "the project's description", DamagedProject);
     if (!json.is_object())
         throw Error(ErrorCode::Malformed, "this is not a project of GSEditPro",
                     "open a .gsep file or a scene");
