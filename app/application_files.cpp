@@ -64,7 +64,7 @@ void load_scene_into(Loaded& loaded) {
     std::vector<View> views;
     if (const auto cameras = find_cameras(loaded.path)) {
         try {
-            views = load_cameras(*cameras);
+            views = load_cameras(*cameras, loaded.path);
             if (visible_share(views, scene.gaussians.position()) < LeastVisibleShare) {
                 loaded.notes.push_back("The cameras found beside the scene look elsewhere; they are left out.");
                 views.clear();

@@ -268,7 +268,7 @@ void add_synth(CLI::App& app, CommandContext&) {
         synth::SynthScene result = synth::generate(final_spec);
         std::vector<float> parts(result.parts.size());
         std::transform(result.parts.begin(), result.parts.end(), parts.begin(),
-                       [](synth::Part part) { return static_cast<float>(part); });
+                       [](synth::Part part) { return part == synth::Part::Ground ? 0.0f : 1.0f; });
         SaveOptions save;
         const auto is_ply = options->output.extension() == ".ply" && options->output.stem().extension() != ".compressed";
         if (is_ply) {

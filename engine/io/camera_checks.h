@@ -13,21 +13,23 @@ namespace gse::io {
 
 inline constexpr int LargestImageSide = 100000;  // pixels
 
-inline void check_intrinsics(const Camera& camera, const std::string& which) {
+/// `hint` says what to do about it.
+inline void check_intrinsics(const Camera& camera, const std::string& which, const char* hint = "") {
     if (camera.width < 1 || camera.height < 1 || camera.width > LargestImageSide ||
         camera.height > LargestImageSide)
         throw Error(ErrorCode::Malformed, fmt::format("the camera {} has an image size of {} x {}", which,
-                                                      camera.width, camera.height));
+                                                      camera.width, camera.height), hint);
     const bool valid = std::isfinite(camera.fx) && std::isfinite(camera.fy) && camera.fx > 0 &&
                        camera.fy > 0 && std::isfinite(camera.cx) && std::isfinite(camera.cy);
     if (!valid)
         throw Error(ErrorCode::Malformed,
                     fmt::format("the camera {} has focal lengths {} and {} and centre ({}, {})", which,
-                                camera.fx, camera.fy, camera.cx, camera.cy));
+                                camera.fx, camera.fy, camera.cx, camera.cy),
+                    hint);
 }
 
 /// Rotation orthonormal within a hundredth and everything finite.
-inline void check_pose(const Camera& camera, const std::string& which) {
+inline void check_pose(const Camera& camera, const std::string& which, const char* hint = "") {
     const Vec3& t = camera.translation;
     bool valid = std::isfinite(t.x) && std::isfinite(t.y) && std::isfinite(t.z);
     const Mat3 product = camera.rotation * camera.rotation.transposed();
@@ -36,7 +38,7 @@ inline void check_pose(const Camera& camera, const std::string& which) {
             valid = valid && std::abs(product(row, column) - (row == column ? 1 : 0)) < 0.01;
     if (!valid)
         throw Error(ErrorCode::Malformed,
-                    fmt::format("the camera \"{}\" has no valid rotation and position", which));
+                    fmt::format("the camera \"{}\" has no valid rotation and position", which), hint);
 }
 
 }  // namespace gse::io

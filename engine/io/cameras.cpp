@@ -48,27 +48,28 @@ std::vector<View> load_colmap(const fs::path& folder) {
     return parse_colmap_text(cameras.text(), images.text());
 }
 
-std::vector<View> load_json(const fs::path& path) {
+std::vector<View> load_json(const fs::path& path, const fs::path& scene) {
     const FileBytes file(path);
     const std::size_t first = file.text().find_first_not_of(" \t\r\n\xef\xbb\xbf");
     if (first != std::string_view::npos && file.text()[first] == '[') return parse_cameras_json(file.text());
-    return parse_transforms_json(file.text(), path.parent_path());
+    std::error_code ignored;
+    return parse_transforms_json(file.text(), path.parent_path(), fs::is_directory(scene, ignored) ? scene : scene.parent_path());
 }
 
-std::vector<View> load_any(const fs::path& path) {
+std::vector<View> load_any(const fs::path& path, const fs::path& scene) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) {
         const auto found = find_in_folder(path);
         if (!found)
             throw Error(ErrorCode::NotFound, "the folder holds no cameras",
                         "it needs cameras.json, transforms.json or a COLMAP sparse model", path);
-        if (!fs::is_directory(*found, ignored)) return load_json(*found);
+        if (!fs::is_directory(*found, ignored)) return load_json(*found, scene);
         return load_colmap(*found);
     }
     if (!is_there(path))
         throw Error(ErrorCode::NotFound, "the camera file does not exist", "check the name", path);
     const std::string ending = path.extension().string();
-    if (ending == ".json") return load_json(path);
+    if (ending == ".json") return load_json(path, scene);
     if (ending == ".bin" || ending == ".txt") {
         const fs::path folder = path.parent_path();
         if (is_colmap_folder(folder, ending.c_str())) return load_colmap(folder);
@@ -96,9 +97,9 @@ std::vector<fs::path> folders_of(const fs::path& scene_path) {
 
 }  // namespace
 
-std::vector<View> load_cameras(const fs::path& path) {
+std::vector<View> load_cameras(const fs::path& path, const fs::path& scene) {
     try {
-        return load_any(path);
+        return load_any(path, scene);
     } catch (const Error& error) {
         if (!error.path().empty()) throw;
         throw Error(error.code(), error.message(), error.hint(), path);

@@ -15,8 +15,8 @@ namespace gse {
 
 /// Reads the cameras of a COLMAP folder (the folder itself, its sparse/0 or sparse, or one of its files), a
 /// transforms*.json or a cameras.json. Throws Error. Cameras with lens distortion come back with `distorted`
-/// set.
-std::vector<View> load_cameras(const std::filesystem::path& path);
+/// set. `scene` = where the splats are, when that is known: nerfstudio writes beside them how it turned and scaled the world.
+std::vector<View> load_cameras(const std::filesystem::path& path, const std::filesystem::path& scene = {});
 
 /// Looks beside a scene file (and up to three folders above, as in an Inria output folder) for cameras.
 /// Returns the path that load_cameras takes, or nothing.
@@ -34,8 +34,9 @@ void save_cameras_json(const std::filesystem::path& path, const std::vector<View
 std::vector<View> parse_colmap_binary(std::span<const std::byte> cameras, std::span<const std::byte> images);
 std::vector<View> parse_colmap_text(std::string_view cameras, std::string_view images);
 /// `folder` is where image files are looked for when the file leaves the image size out (Blender); may be
-/// empty.
-std::vector<View> parse_transforms_json(std::string_view text, const std::filesystem::path& folder);
+/// empty. nerfstudio's dataparser_transforms.json is looked for in `scene_folder`, then there.
+std::vector<View> parse_transforms_json(std::string_view text, const std::filesystem::path& folder,
+                                        const std::filesystem::path& scene_folder = {});
 std::vector<View> parse_cameras_json(std::string_view text);
 
 }  // namespace gse

@@ -13,6 +13,7 @@
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 #include "engine/io/ply_body.h"
+#include "engine/io/ply_comments.h"
 
 namespace gse::io {
 namespace {
@@ -219,6 +220,7 @@ Scene parse_compressed_ply(Bytes bytes) {
     if (data.sh_degree > 0) unpack_sh(*elements.sh, rows.sh, data);
     Scene scene;
     scene.info.format = "compressed.ply";
+    read_comments(header, scene.info);
     scene.gaussians = GaussianSet(std::move(data));
     return scene;
 }

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
-#include <cstdlib>
 #include <optional>
 
 #include "engine/base/error.h"
@@ -14,7 +12,9 @@
 #include "engine/io/claims.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
+#include "engine/io/label_weights.h"
 #include "engine/io/ply_body.h"
+#include "engine/io/ply_comments.h"
 
 namespace gse::io {
 namespace {
@@ -202,60 +202,12 @@ void colours_to_sh(GaussianData& data, bool integers) {
         }
 }
 
-std::string lower(std::string_view text) {
-    std::string result(text);
-    for (char& letter : result) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-    return result;
-}
-
-/// Text after `key` when the comment begins with it, in any case; blanks around it removed.
-std::optional<std::string> comment_value(const std::string& comment, std::string_view key) {
-    if (lower(comment).substr(0, key.size()) != key) return std::nullopt;
-    std::string value = comment.substr(key.size());
-    value.erase(0, value.find_first_not_of(" \t:"));
-    return value;
-}
-
-/// Brush writes "Vertical axis" and means the negative axis by a bare letter; nerfstudio writes "Vertical
-/// Axis: z" for its world with +z up. Three numbers are taken literally.
-std::optional<Vec3> vertical_axis(const std::string& comment) {
-    const auto value = comment_value(comment, "vertical axis");
-    if (!value) return std::nullopt;
-    const double sign = comment.find("Axis") != std::string::npos ? 1 : -1;
-    const std::string axis = lower(*value);
-    if (axis == "x") return Vec3{sign, 0, 0};
-    if (axis == "y") return Vec3{0, sign, 0};
-    if (axis == "z") return Vec3{0, 0, sign};
-    Vec3 up;
-    const char* cursor = axis.c_str();
-    for (int i = 0; i < 3; ++i) {
-        char* end = nullptr;
-        up[i] = std::strtod(cursor, &end);
-        if (end == cursor || !std::isfinite(up[i])) return std::nullopt;
-        cursor = end;
-    }
-    if (length(up) == 0) return std::nullopt;
-    return normalized(up);
-}
-
-void read_comments(const PlyHeader& header, SceneInfo& info, std::string& label_name) {
-    for (const std::string& comment : header.comments) {
-        if (const auto up = vertical_axis(comment)) {
-            info.up = *up;
-            info.up_known = true;
-        }
-        if (const auto mode = comment_value(comment, "splatrendermode")) {
-            info.antialiased = lower(*mode) == "mip";
-            if (lower(*mode) == "2dgs")
-                info.warnings.push_back("the file asks for 2DGS rendering; it is drawn as 3DGS");
-        }
-        if (const auto flag = comment_value(comment, "antialiased")) info.antialiased = *flag == "1";
-        if (const auto name = comment_value(comment, "label name")) label_name = *name;
-    }
-}
-
 void add_label(Scene& scene, std::vector<float> bits, std::vector<float> weights, const std::string& name) {
     if (bits.empty() && weights.empty()) return;
+    if (const std::size_t odd = hold_weights(bits))
+        scene.info.warnings.push_back(fmt::format(
+            "the column \"label\" has values other than 0 and 1 for {} splats: those above 0.5 count as labelled, whatever they are", odd));
+    if (const std::size_t odd = hold_weights(weights)) scene.info.warnings.push_back(held_weights_text(odd, "the column \"label_weight\""));
     if (bits.empty()) bits = weights;
     Label label = make_label(name, std::move(bits), 0.5f);
     if (!weights.empty()) label.weight = std::make_shared<const std::vector<float>>(std::move(weights));
@@ -272,8 +224,7 @@ Scene parse_gaussian_ply(Bytes bytes) {
     if (vertex == nullptr) throw Error(ErrorCode::Malformed, "the PLY header has no vertex element");
     Scene scene;
     scene.info.format = "ply";
-    std::string label_name = "label";
-    read_comments(header, scene.info, label_name);
+    const std::string label_name = read_comments(header, scene.info);
     const Layout layout = find_layout(header, *vertex, scene.info.warnings);
     if (vertex->count == 0) throw Error(ErrorCode::Malformed, "the PLY file holds no splats");
     PlyBody body(bytes, header);

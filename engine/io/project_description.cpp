@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/base/path_text.h"
 #include "engine/base/json.h"
+#include "engine/io/camera_checks.h"
 #include "engine/scene/strength.h"
 
 namespace gse::io {
@@ -20,16 +21,16 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t MostEntries = 100000;  // edits, labels, views
-constexpr int LargestSide = 1 << 16;         // pixels of a view
 constexpr std::uint64_t MostEdits = std::uint64_t{1} << 32;
 constexpr std::array<const char*, 3> BaseNames{"file", "kept", "whole"};
 constexpr std::array<const char*, 13> KnownFields{"format", "version", "program",      "scene", "info",
                                                   "stack",  "labels",  "active_label", "views", "ui",
                                                   "jobs",   "rows",    "thumbnail"};
 
+constexpr const char* DamagedProject = "the file is damaged; open an older copy or an autosave";
+
 [[noreturn]] void throw_field(const std::string& name, const char* how) {
-    throw Error(ErrorCode::Malformed, fmt::format("the field \"{}\" of the project {}", name, how),
-                "the file is damaged; open an older copy or an autosave");
+    throw Error(ErrorCode::Malformed, fmt::format("the field \"{}\" of the project {}", name, how), DamagedProject);
 }
 
 /// A JSON object that is read field by field; absent fields keep their default.
@@ -142,13 +143,15 @@ View read_view(const Json& json, const std::string& name) {
     fields.numbers("translation", translation);
     fields.numbers("rotation", rotation);
     for (const double side : size)
-        if (side < 0 || side > LargestSide) throw_field(fields.full("size"), "is not a picture's size");
+        if (side < 0 || side > LargestImageSide) throw_field(fields.full("size"), "is not a picture's size");
     Camera& camera = view.camera;
     camera.width = static_cast<int>(size[0]);
     camera.height = static_cast<int>(size[1]);
     camera.fx = lens[0], camera.fy = lens[1], camera.cx = lens[2], camera.cy = lens[3];
     camera.rotation = Mat3::from_rows(rotation);
     camera.translation = {translation[0], translation[1], translation[2]};
+    check_intrinsics(camera, fmt::format("\"{}\" of the project", name), DamagedProject);
+    check_pose(camera, name, DamagedProject);
     return view;
 }
 
@@ -213,6 +216,7 @@ ProjectDescription::Edit read_edit(const Json& json, const std::string& name) {
 Json to_json(const ProjectDescription::LabelEntry& entry) {
     return {{"name", entry.label.name},
             {"threshold", any_number(static_cast<double>(entry.label.threshold))},
+            {"attention_threshold", any_number(entry.label.attention_threshold)},
             {"weight", entry.weight},
             {"manual", entry.manual},
             {"absent", entry.absent}};
@@ -227,6 +231,8 @@ ProjectDescription::LabelEntry read_label(const Json& json, const std::string& n
     if (std::isnan(threshold)) throw_field(fields.full("threshold"), "is not a number");
     constexpr double most = 1e30;  // fits a float
     entry.label.threshold = static_cast<float>(std::clamp(threshold, -most, most));
+    fields.number("attention_threshold", entry.label.attention_threshold, true);
+    if (!std::isfinite(entry.label.attention_threshold)) entry.label.attention_threshold = NamedLabel().attention_threshold;
     fields.text("weight", entry.weight);
     fields.text("manual", entry.manual);
     fields.text("absent", entry.absent);
@@ -329,7 +335,7 @@ std::string write_description(const ProjectDescription& description) {
 
 ProjectDescription parse_description(std::string_view text) {
     const Json json =
-        parse_json(text, "the project's description", "the file is damaged; open an older copy or an autosave");
+        parse_json(text, "the project's description", DamagedProject);
     if (!json.is_object())
         throw Error(ErrorCode::Malformed, "this is not a project of GSEditPro",
                     "open a .gsep file or a scene");

@@ -10,6 +10,7 @@
 #include "engine/base/log.h"
 #include "engine/io/fingerprint.h"
 #include "engine/io/image_file.h"
+#include "engine/io/label_weights.h"
 #include "engine/io/project_description.h"
 #include "engine/io/project_file.h"
 #include "engine/io/project_parts.h"
@@ -36,6 +37,8 @@ public:
           description_(read_description()) {}
 
     const io::ProjectDescription& description() const { return description_; }
+    /// What was odd about the arrays read so far.
+    const std::vector<std::string>& warnings() const { return warnings_; }
 
     std::shared_ptr<const Image> picture(const std::string& name) {
         if (name.empty() || !zip_.has(name)) return nullptr;
@@ -131,26 +134,38 @@ private:
     }
 
     template <class T>
-    std::shared_ptr<const std::vector<T>> read_array(const std::string& name, std::size_t count,
-                                                     const std::string& what) {
-        if (name.empty()) return nullptr;
+    std::vector<T> read_array(const std::string& name, std::size_t count, const std::string& what) {
         const auto bytes = member(name, std::uint64_t{count} * sizeof(T), what);
         std::vector<T> values(count);
         std::copy_n(bytes.data(), bytes.size(), reinterpret_cast<std::byte*>(values.data()));
-        return std::make_shared<const std::vector<T>>(std::move(values));
+        return values;
+    }
+
+    void hold_weights(std::vector<float>& weights, const std::string& what) {
+        if (const std::size_t held = io::hold_weights(weights)) warnings_.push_back(io::held_weights_text(held, what));
+    }
+
+    std::shared_ptr<const std::vector<float>> read_weights(const std::string& name, std::size_t count, const std::string& what) {
+        if (name.empty()) return nullptr;
+        std::vector<float> weights = read_array<float>(name, count, what);
+        hold_weights(weights, what);
+        return std::make_shared<const std::vector<float>>(std::move(weights));
     }
 
     NamedLabel read_label(const io::ProjectDescription::LabelEntry& entry, std::size_t count) {
         NamedLabel label = entry.label;
         const std::string what = fmt::format("the label \"{}\"", label.name);
-        label.weight = read_array<float>(entry.weight, count, what);
-        label.manual = read_array<std::int8_t>(entry.manual, count, what);
+        label.weight = read_weights(entry.weight, count, what);
+        if (!entry.manual.empty())
+            label.manual = std::make_shared<const std::vector<std::int8_t>>(read_array<std::int8_t>(entry.manual, count, what));
         budget_.spend_known(2 * count, what);   // its bits, and the choice by hand where the file has neither
         if (label.weight == nullptr && label.manual == nullptr)
             label.manual = std::make_shared<const std::vector<std::int8_t>>(count, std::int8_t{0});
-        if (!entry.absent.empty())
-            label.absent = std::make_shared<const AbsentRows>(
-                io::decode_absent(member(entry.absent, io::AnySize, what), what));
+        if (!entry.absent.empty()) {
+            AbsentRows absent = io::decode_absent(member(entry.absent, io::AnySize, what), what);
+            hold_weights(absent.weight, what);
+            label.absent = std::make_shared<const AbsentRows>(std::move(absent));
+        }
         return with_bits(std::move(label));
     }
 
@@ -158,6 +173,7 @@ private:
     std::uint64_t file_bytes_;
     io::UnpackBudget budget_;
     std::map<std::string, std::shared_ptr<const Image>> pictures_;   // edits may share them
+    std::vector<std::string> warnings_;
     io::ProjectDescription description_;
 };
 
@@ -230,6 +246,7 @@ ProjectData finish(OpenProject& open, ProjectData project) {
     const io::ProjectDescription& description = open.description();
     const GaussianSet base = open.base(project.source.loaded);
     project.state = open.state(base);
+    for (const std::string& warning : open.warnings()) warn(project, warning);
     if (project.source.loaded.empty()) project.source.loaded = base;
     project.thumbnail = open.picture(description.thumbnail);
     project.ui = description.ui;

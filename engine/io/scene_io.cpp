@@ -126,7 +126,9 @@ void warn_of_losses(const std::string& name, const Scene& scene, const GaussianS
     const std::string loss = io::describe_loss(rows, back.gaussians, order);
     if (!loss.empty()) log::warning("{} keeps rounded values: {}", name, loss);
     if (scene.info.antialiased && !back.info.antialiased)
-        log::warning("{} does not say that the scene was trained with antialiasing; .ply and .spz do", name);
+        log::warning("{} does not say that the scene was trained with antialiasing; .ply, .compressed.ply and .spz do", name);
+    if (scene.info.up_known && !back.info.up_known)
+        log::warning("{} does not say which way is up in the scene; .ply and .compressed.ply do", name);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/memory.h"
 #include "engine/io/claims.h"
 
 namespace gse::io {
@@ -30,6 +31,7 @@ public:
         if (file.size() > most)
             throw Error(ErrorCode::Malformed, "the file is larger than its place in a SOG scene allows", "",
                         folder_ / relative);
+        require_memory(file.size(), fmt::format("the file \"{}\" of the SOG scene", name));   // a sparse file may have any size
         std::vector<std::byte> content(static_cast<std::size_t>(file.size()));
         file.read(0, content);
         return content;
@@ -70,6 +72,7 @@ public:
         if (index < 0)
             throw Error(ErrorCode::Malformed, fmt::format("the SOG archive holds no file \"{}\"", name),
                         "the file is damaged or not a SOG scene");
+        const std::uint64_t stated = stated_size(static_cast<zip_uint64_t>(index), name, most);
         const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> file(
             zip_fopen_index(zip_.get(), static_cast<zip_uint64_t>(index), 0), zip_fclose);
         std::vector<std::byte> content;
@@ -78,8 +81,8 @@ public:
             content.resize(filled + EntryPieceBytes);
             const zip_int64_t got = zip_fread(file.get(), content.data() + filled, EntryPieceBytes);
             content.resize(filled + static_cast<std::size_t>(std::max<zip_int64_t>(got, 0)));
-            if (got == 0) return content;
-            if (got < 0 || content.size() > most) break;
+            if (got == 0 && content.size() == stated) return content;
+            if (got <= 0 || content.size() > stated) break;
         }
         throw Error(ErrorCode::Malformed,
                     fmt::format("the file \"{}\" of the SOG archive cannot be unpacked", name),
@@ -89,6 +92,19 @@ public:
     std::uint64_t stored_bytes() const override { return stored_; }
 
 private:
+    /// Bytes that the entry unpacks to, as the archive says: held against what the archive can hold and the free memory. More
+    /// than this is not unpacked.
+    std::uint64_t stated_size(zip_uint64_t index, const std::string& name, std::uint64_t most) const {
+        zip_stat_t status;
+        zip_stat_init(&status);
+        if (zip_stat_index(zip_.get(), index, 0, &status) != 0 || (status.valid & ZIP_STAT_SIZE) == 0 || status.size > most)
+            throw Error(ErrorCode::Malformed,
+                        fmt::format("the file \"{}\" of the SOG archive has no size, or more than its place allows", name),
+                        "the file is damaged or made to do harm");
+        check_claim({status.size, stored_}, fmt::format("the file \"{}\" of the SOG archive", name));
+        return status.size;
+    }
+
     std::unique_ptr<zip_t, void (*)(zip_t*)> zip_;
     std::uint64_t stored_;   // bytes of the whole archive
 };

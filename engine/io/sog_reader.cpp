@@ -29,6 +29,7 @@ constexpr std::size_t PaletteColumns = 64;  // palette entries side by side in t
 constexpr std::size_t CodebookSize = 256;
 constexpr std::uint64_t LargestDescription = std::uint64_t{4} << 20;  // bytes of a meta.json, which has a few thousand
 constexpr std::uint64_t LargestCount = std::uint64_t{16383} * 16383;  // a WebP picture has no more texels
+constexpr std::uint64_t LargestTexture = LargestCount * 4 + (std::uint64_t{1} << 20);  // bytes of its file, were nothing compressed
 
 [[noreturn]] void throw_malformed(const std::string& what) {
     throw Error(ErrorCode::Malformed, "the SOG scene " + what,
@@ -44,7 +45,7 @@ struct Source {
 
     Texture texture(const char* part, std::size_t index) const {
         const std::string name = meta.at(part).at("files").at(index).get<std::string>();
-        return decode_webp(files.read(name, std::uint64_t{1} << 32), name, files.stored_bytes());
+        return decode_webp(files.read(name, LargestTexture), name, files.stored_bytes());
     }
     Texture splat_texture(const char* part, std::size_t index) const {
         Texture result = texture(part, index);

@@ -11,9 +11,9 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "engine/base/error.h"
-#include "engine/base/log.h"
 #include "engine/io/byte_reader.h"
 #include "engine/io/claims.h"
 #include "engine/io/encoding.h"
@@ -30,10 +30,12 @@ constexpr std::size_t HeaderBytesV4 = 32;
 constexpr int HighestDegree = 4;
 constexpr std::uint8_t FlagAntialiased = 1;
 constexpr std::uint8_t FlagExtensions = 2;
+constexpr std::uint8_t FlagLevels = 0x80;   // Spark's levels of detail
 constexpr std::uint32_t CoordinateSystemExtension = 0xadbe0003;
 constexpr std::uint32_t RightUpBack = 4;
 constexpr std::uint32_t LastAxisFlip = 8;  // later values also exchange axes
 constexpr std::uint64_t LargestExtensions = 1 << 20;
+constexpr std::size_t MostNamed = 5;   // unknown extensions in the warning
 
 struct Header {
     std::uint32_t version = 0;
@@ -90,20 +92,38 @@ Arrays split_arrays(const Header& header, Bytes body) {
     return arrays;
 }
 
-/// Records of [u32 type][u32 length][payload]; returns the coordinate system when one names it.
-std::optional<std::uint32_t> parse_extensions(Bytes bytes) {
+/// What the extensions of a file say.
+struct Extensions {
     std::optional<std::uint32_t> frame;
+    std::string unknown;   // their types, with commas between them
+};
+
+/// Records of [u32 type][u32 length][payload].
+Extensions parse_extensions(Bytes bytes) {
+    Extensions extensions;
+    std::set<std::uint32_t> unknown;
     ByteReader reader(bytes, "the extension list of the SPZ file");
     while (reader.remaining() >= 8) {
         const auto type = reader.read<std::uint32_t>();
         const auto length = reader.read<std::uint32_t>();
         const Bytes payload = reader.take(length);
         if (type == CoordinateSystemExtension && payload.size() >= 4)
-            frame = load_scalar<std::uint32_t>(payload.data());
-        else
-            log::debug("the SPZ extension {:#x} is skipped", type);
+            extensions.frame = load_scalar<std::uint32_t>(payload.data());
+        else if (unknown.size() < MostNamed)
+            unknown.insert(type);
     }
-    return frame;
+    for (const std::uint32_t type : unknown)
+        extensions.unknown += fmt::format("{}{:#x}", extensions.unknown.empty() ? "" : ", ", type);
+    return extensions;
+}
+
+/// One sentence on everything in the file that is passed over; empty when that is nothing.
+std::string passed_over(const Header& header, const Extensions& extensions) {
+    const unsigned flags = header.flags & ~static_cast<unsigned>(FlagAntialiased | FlagExtensions);
+    std::string parts;
+    if (flags != 0) parts = fmt::format("flags {:#x}{}", flags, (flags & FlagLevels) != 0 ? " (levels of detail, all drawn at once)" : "");
+    if (!extensions.unknown.empty()) parts += (parts.empty() ? "extensions " : " and extensions ") + extensions.unknown;
+    return parts.empty() ? "" : "the SPZ file has parts that are not known and passed over: " + parts;
 }
 
 void unpack_positions(const Header& header, Bytes bytes, std::vector<float>& out) {
@@ -197,14 +217,15 @@ AxisSigns signs_of_frame(std::optional<std::uint32_t> frame, std::vector<std::st
     return {(bits & 1) != 0 ? 1 : -1, (bits & 2) != 0 ? -1 : 1, (bits & 4) != 0 ? 1 : -1};
 }
 
-Scene make_scene(const Header& header, const Arrays& arrays, std::optional<std::uint32_t> frame) {
+Scene make_scene(const Header& header, const Arrays& arrays, const Extensions& extensions) {
     Scene scene;
     scene.info.format = "spz";
     scene.info.antialiased = (header.flags & FlagAntialiased) != 0;
     if (header.degree > MaxShDegree)
         scene.info.warnings.push_back("spherical harmonics of degree 4 are cut to degree 3");
+    if (const std::string warning = passed_over(header, extensions); !warning.empty()) scene.info.warnings.push_back(warning);
     GaussianData data = unpack(header, arrays);
-    flip_axes(data, signs_of_frame(frame, scene.info.warnings));
+    flip_axes(data, signs_of_frame(extensions.frame, scene.info.warnings));
     scene.gaussians = GaussianSet(std::move(data));
     return scene;
 }
@@ -216,8 +237,7 @@ Scene parse_flat(Bytes bytes) {
     const Bytes body = bytes.subspan(HeaderBytes);
     const Arrays arrays = split_arrays(header, body);
     const Bytes rest = body.subspan(static_cast<std::size_t>(header.count * header.row_bytes()));
-    return make_scene(header, arrays,
-                      (header.flags & FlagExtensions) != 0 ? parse_extensions(rest) : std::nullopt);
+    return make_scene(header, arrays, (header.flags & FlagExtensions) != 0 ? parse_extensions(rest) : Extensions{});
 }
 
 /// Before anything is unpacked: the streams and the splats that follow from the header's count.

@@ -57,17 +57,20 @@ Affine operator*(const Affine& a, const Affine& b) {
 }
 
 /// From the world of the file to that of the splats: nerfstudio turns and scales the cameras before training
-/// and says how in dataparser_transforms.json, counted from the world before applied_transform.
+/// and says how in dataparser_transforms.json, which it writes beside the exported splats, counted from the world before applied_transform.
 struct WorldChange {
     Affine transform;
     double scale = 1;
 };
 
-WorldChange world_change(const Json& json, const std::filesystem::path& folder) {
+WorldChange world_change(const Json& json, std::initializer_list<std::filesystem::path> folders) {
     WorldChange change;
-    const std::filesystem::path file = folder / "dataparser_transforms.json";
+    std::filesystem::path file;
     std::error_code ignored;
-    if (folder.empty() || !std::filesystem::exists(file, ignored)) return change;
+    for (const auto& folder : folders)
+        if (const auto there = folder / "dataparser_transforms.json"; file.empty() && !folder.empty() && std::filesystem::exists(there, ignored))
+            file = there;
+    if (file.empty()) return change;
     const Json parser = parse_json(read_file(file), "dataparser_transforms.json");
     Affine applied;
     if (json.contains("applied_transform"))
@@ -167,11 +170,12 @@ void set_pose(Camera& camera, const Json& frame, const WorldChange& change) {
 
 }  // namespace
 
-std::vector<View> parse_transforms_json(std::string_view text, const std::filesystem::path& folder) {
+std::vector<View> parse_transforms_json(std::string_view text, const std::filesystem::path& folder,
+                                        const std::filesystem::path& scene_folder) {
     try {
         const Json file = parse_json(text, "the transforms file");
         if (!file.is_object() || !file.contains("frames")) throw_malformed("has no frames");
-        const WorldChange change = world_change(file, folder);
+        const WorldChange change = world_change(file, {scene_folder, folder});
         std::vector<View> views;
         for (const Json& frame : file.at("frames")) {
             View view;

@@ -35,14 +35,13 @@ public:
           config_(ClipConfig::from_json(read_json_file(existing(folder.path / "config.json")),
                                         folder.path / "config.json")),
           preprocessing_(ClipPreprocessing::read(config_, folder.path)),
-          tokenizer_(std::filesystem::exists(folder.path / "merges.txt") ? folder.path : folder.tokenizer),
-          model_(config_, WeightOptions{torch::kCPU, torch::kFloat32, false}) {
+          tokenizer_(std::filesystem::exists(folder.path / "merges.txt") ? folder.path : folder.tokenizer) {
         if (tokenizer_.vocabulary_size() > config_.text.vocab_size)
             throw Error(ErrorCode::Model,
                         fmt::format("the tokenizer has {} tokens but the image-text encoder only {}",
                                     tokenizer_.vocabulary_size(), config_.text.vocab_size),
                         {}, folder.path);
-        load_weights(*model_, SafetensorsFile(existing(folder.path / "model.safetensors")), clip_plan());
+        model_ = loaded_network<ClipModel>(config_, SafetensorsFile(existing(folder.path / "model.safetensors")), clip_plan());
         for (auto& parameter : model_->parameters()) parameter.set_requires_grad(false);
         model_->to(folder.device);
         model_->eval();
@@ -77,7 +76,7 @@ private:
     ClipConfig config_;
     ClipPreprocessing preprocessing_;
     Tokenizer tokenizer_;
-    ClipModel model_;
+    ClipModel model_{nullptr};
     std::unique_ptr<ViewpointReader> viewpoint_;
 };
 

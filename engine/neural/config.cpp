@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
@@ -24,6 +25,11 @@ public:
     template <class T>
     void get(const char* key, T& value) const {
         if (!has(key)) return;
+        if constexpr (std::is_same_v<T, std::int64_t>) {   // 1e300 is no whole number, and its conversion means nothing
+            constexpr double largest = 1e15;
+            if (json_.at(key).is_number_float() && !(std::abs(json_.at(key).template get<double>()) <= largest))
+                throw Error(ErrorCode::Malformed, fmt::format("the configuration's \"{}\" is out of range", key), {}, path_);
+        }
         try {
             json_.at(key).get_to(value);
         } catch (const nlohmann::json::exception&) {
@@ -67,6 +73,7 @@ private:
 
 constexpr std::int64_t MaxWidth = 1 << 16;
 constexpr std::int64_t MaxLevels = 8;
+constexpr std::int64_t MaxSide = 8192;   // latent cells, or pixels
 
 void check_levels(const Reader& reader, const std::vector<std::int64_t>& channels, std::int64_t groups,
                   std::int64_t layers) {
@@ -174,6 +181,7 @@ UNetConfig UNetConfig::from_json(const Json& json, const std::filesystem::path& 
     UNetConfig config;
     if (reader.has("sample_size") && json.at("sample_size").is_number())
         reader.get("sample_size", config.sample_size);
+    reader.positive("sample_size", config.sample_size, MaxSide);
     reader.get("in_channels", config.in_channels);
     reader.get("out_channels", config.out_channels);
     reader.get("flip_sin_to_cos", config.flip_sin_to_cos);
@@ -237,6 +245,7 @@ VaeConfig VaeConfig::from_json(const Json& json, const std::filesystem::path& pa
     VaeConfig config;
     if (reader.has("sample_size") && json.at("sample_size").is_number())
         reader.get("sample_size", config.sample_size);
+    reader.positive("sample_size", config.sample_size, MaxSide);
     reader.get("in_channels", config.in_channels);
     reader.get("out_channels", config.out_channels);
     reader.get("latent_channels", config.latent_channels);

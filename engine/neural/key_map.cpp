@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <charconv>
 
 #include "engine/base/check.h"
 #include "engine/base/error.h"
@@ -150,7 +151,11 @@ bool ignored_open_clip(const std::string& key, std::int64_t layers) {
     for (const char* unused : {"attn_mask", "logit_scale", "text_projection"})
         if (key == prefix + unused) return true;
     const std::string blocks = prefix + "transformer.resblocks.";
-    return key.starts_with(blocks) && std::stoll("0" + key.substr(blocks.size())) >= layers;
+    if (!key.starts_with(blocks)) return false;
+    std::int64_t layer = 0;
+    const char* digits = key.data() + blocks.size();
+    const auto read = std::from_chars(digits, key.data() + key.size(), layer);
+    return read.ec == std::errc() ? layer >= layers : read.ec == std::errc::result_out_of_range && *digits != '-';
 }
 
 const std::vector<std::int64_t>& shape_at(const SafetensorsFile& file, const std::string& key) {

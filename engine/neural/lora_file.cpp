@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/base/error.h"
+#include "engine/base/memory.h"
 #include "engine/neural/lora.h"
 #include "engine/neural/safetensors.h"
 
@@ -195,6 +196,7 @@ LoraFactor factor_of(const std::string& layer, const LoraModule& module, const s
 LoraWeights read_lora(const std::filesystem::path& path) {
     const SafetensorsFile file(path);
     refuse_other_kinds(file);
+    require_memory(file.data_bytes(), fmt::format("the LoRA \"{}\"", path.filename().string()));
     LoraWeights weights;
     weights.path = path;
     for (const auto& [place, module] : gather_modules(file))

@@ -39,6 +39,8 @@ struct Parts {
     fs::path folder() const { return single_file ? root.parent_path() : root; }
 };
 
+constexpr std::int64_t LargestImageSize = 8192;   // pixels of a side
+
 constexpr const char* FolderHint =
     "a model folder has model_index.json, tokenizer, text_encoder, unet, vae and scheduler, as diffusers "
     "writes it";
@@ -208,6 +210,10 @@ Parts find_parts(const fs::path& path) {
                     fmt::format("the UNet expects text of width {} but the text encoder gives {}",
                                 parts.unet.cross_attention_dim, parts.text.hidden_size),
                     {}, path);
+    if (parts.facts.image_size > LargestImageSize)
+        throw Error(ErrorCode::Model,
+                    fmt::format("the model's pictures would be {} pixels wide, more than {}", parts.facts.image_size, LargestImageSize),
+                    "look at \"sample_size\" in the UNet's config.json", path);
     if (parts.facts.image_size % parts.vae.factor() != 0)
         throw Error(ErrorCode::Model, "the model's image size is not a multiple of the VAE's factor", {},
                     path);
@@ -231,12 +237,6 @@ void check_tokenizer(const Tokenizer& tokenizer, const Parts& parts) {
                     fmt::format("the tokenizer has {} tokens but the text encoder only {}",
                                 tokenizer.vocabulary_size(), parts.text.vocab_size),
                     {}, parts.tokenizer);
-}
-
-std::int64_t count_parameters(const torch::nn::Module& module) {
-    std::int64_t count = 0;
-    for (const auto& parameter : module.parameters()) count += parameter.numel();
-    return count;
 }
 
 template <class Holder>
@@ -279,8 +279,8 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
     get("shape_restyles", facts.shape_restyles);
     get("viewpoint", facts.viewpoint);
     get("shape_views", facts.shape_views);
-    if (facts.image_size < 0 || facts.image_size > 8192)
-        throw Error(ErrorCode::Malformed, "\"image_size\" is outside 0..8192", {}, path);
+    if (facts.image_size < 0 || facts.image_size > LargestImageSize)
+        throw Error(ErrorCode::Malformed, fmt::format("\"image_size\" is outside 0..{}", LargestImageSize), {}, path);
     if (facts.shape_views < 1 || facts.shape_views > 64)
         throw Error(ErrorCode::Malformed, "\"shape_views\" is outside 1..64", {}, path);
     return facts;
@@ -312,8 +312,8 @@ struct WeightFiles {
     explicit WeightFiles(const Parts& parts) : unet(parts.unet_file), vae(parts.vae_file), text(parts.text_file) {}
 };
 
-/// Compares configurations and files without memory for a single weight; returns the number of parameters.
-std::int64_t check_files(const Parts& parts, const WeightFiles& files, const Plans& plans) {
+/// Compares configurations and files without memory for a single weight; returns the bytes of the parameters.
+std::uint64_t check_files(const Parts& parts, const WeightFiles& files, const Plans& plans) {
     const WeightOptions described{torch::kMeta, torch::kFloat32, false};
     const UNet unet(parts.unet, described);
     const AutoencoderKl vae(parts.vae, described);
@@ -321,7 +321,7 @@ std::int64_t check_files(const Parts& parts, const WeightFiles& files, const Pla
     check_weights(*text, files.text.shapes(), plans.text, parts.text_file);
     check_weights(*unet, files.unet.shapes(), plans.unet, parts.unet_file);
     check_weights(*vae, files.vae.shapes(), plans.vae, parts.vae_file);
-    return count_parameters(*unet) + count_parameters(*vae) + count_parameters(*text);
+    return weight_bytes(*unet) + weight_bytes(*vae) + weight_bytes(*text);
 }
 
 }  // namespace
@@ -332,8 +332,7 @@ ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& 
     return guard_torch("loading the model", [&] {
         const WeightFiles files(parts);
         const auto plans = plans_of(parts, files.vae);
-        const auto parameters = static_cast<std::uint64_t>(check_files(parts, files, plans));
-        require_memory(parameters * sizeof(float), fmt::format("the model \"{}\"", parts.facts.name));
+        require_memory(check_files(parts, files, plans), fmt::format("the model \"{}\"", parts.facts.name));
         const WeightOptions empty{torch::kCPU, torch::kFloat32, false};
         const WeightOptions unet{torch::kCPU, choose_precision(precision, parts.unet, device), false};
         ModelBundle bundle{path,
@@ -367,7 +366,7 @@ ModelDescription describe_model(const std::filesystem::path& path) {
         return ModelDescription{parts.facts.name,
                                 parts.single_file ? "single file" : "diffusers folder",
                                 parts.facts.image_size,
-                                check_files(parts, files, plans_of(parts, files.vae)),
+                                static_cast<std::int64_t>(check_files(parts, files, plans_of(parts, files.vae)) / sizeof(float)),
                                 parts.scheduler.prediction_type,
                                 parts.facts.vocabulary,
                                 parts.kind};

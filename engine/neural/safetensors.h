@@ -31,6 +31,8 @@ public:
     const std::map<std::string, Entry>& entries() const { return entries_; }
     const std::map<std::string, std::string>& metadata() const { return metadata_; }
     bool contains(const std::string& name) const { return entries_.contains(name); }
+    /// Bytes of all tensors as they are stored.
+    std::uint64_t data_bytes() const { return file_.size() - data_begin_; }
 
     torch::Tensor tensor(const std::string& name) const override;
     /// One of quantized() as the numbers that it stands for. Throws Error as the others, and (Malformed) when its scales do not fit.

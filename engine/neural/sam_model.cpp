@@ -228,9 +228,7 @@ SamModel load_sam(const std::filesystem::path& path, const torch::Device& device
     const auto shapes = file->shapes();
     const auto plan = sam_plan(shapes);
     const auto shape = infer_sam_shape(shapes, plan, file->path(), mobile_image_size);
-    check_weights(*SamModel(shape, WeightOptions{torch::kMeta, torch::kFloat32, false}), shapes, plan, file->path());   // before memory is taken
-    SamModel model(shape, WeightOptions{device, torch::kFloat32, false});
-    load_weights(*model, *file, plan);
+    auto model = loaded_network<SamModel>(shape, *file, plan, device);
     model->eval();
     for (auto& parameter : model->parameters()) parameter.set_requires_grad(false);
     return model;

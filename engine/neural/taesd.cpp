@@ -26,16 +26,24 @@ torch::Tensor laid_out(const torch::Tensor& x) {
 }
 
 /// An original file holds one half, whose decoder counts the clamp as a layer of its own.
-void load_half(TinyHalf half, const fs::path& path, std::int64_t layers_before) {
-    LoadPlan plan;
-    plan.what = "tiny autoencoder";
+LoadPlan half_plan(std::int64_t layers_before) {
+    LoadPlan plan{{}, {}, "tiny autoencoder"};
     plan.map = [layers_before](const std::string& parameter) {
         constexpr std::string_view list = "layers.";
         const auto dot = parameter.find('.', list.size());
         const auto place = std::stoll(parameter.substr(list.size(), dot - list.size())) + layers_before;
         return WeightSource{std::to_string(place) + parameter.substr(dot)};
     };
-    load_weights(*half, SafetensorsFile(path), plan);
+    return plan;
+}
+
+/// Calls use(module, file, plan) for each file and what it holds of `model`.
+template <class Use>
+void for_each_file(TinyAutoencoder model, const fs::path& folder, Use use) {
+    if (fs::exists(folder / DiffusersFile)) return use(*model, SafetensorsFile(folder / DiffusersFile), LoadPlan{{}, {}, "tiny autoencoder"});
+    TinyHalf encoder = model->encoder_half(), decoder = model->decoder_half();
+    use(*encoder, SafetensorsFile(folder / EncoderFile), half_plan(0));
+    use(*decoder, SafetensorsFile(folder / DecoderFile), half_plan(1));
 }
 
 }  // namespace
@@ -139,18 +147,17 @@ TinyAutoencoder load_tiny_autoencoder(const fs::path& folder) {
     if (!has_tiny_autoencoder(folder))
         throw Error(ErrorCode::NotFound, "there is no tiny autoencoder (TAESD) here",
                     fmt::format("its folder has {} and config.json, or {} and {}", DiffusersFile, EncoderFile, DecoderFile), folder);
-    const bool original = !fs::exists(folder / DiffusersFile);
-    const auto config = folder / "config.json";
-    TinyAutoencoder model(fs::exists(config) ? TinyAutoencoderConfig::from_json(read_json_file(config), config) : TinyAutoencoderConfig{},
-                          WeightOptions{torch::kCPU, torch::kFloat32, false});
-    if (original) {
-        load_half(model->encoder_half(), folder / EncoderFile, 0);
-        load_half(model->decoder_half(), folder / DecoderFile, 1);
-    } else {
-        LoadPlan plan;
-        plan.what = "tiny autoencoder";
-        load_weights(*model, SafetensorsFile(folder / DiffusersFile), plan);
-    }
+    const auto stated = folder / "config.json";
+    const auto config = fs::exists(stated) ? TinyAutoencoderConfig::from_json(read_json_file(stated), stated) : TinyAutoencoderConfig{};
+    const TinyAutoencoder described(config, WeightOptions{torch::kMeta, torch::kFloat32, false});
+    for_each_file(described, folder, [](const torch::nn::Module& module, const SafetensorsFile& file, const LoadPlan& plan) {
+        check_weights(module, file.shapes(), plan, file.path());
+    });
+    require_memory(weight_bytes(*described), "the tiny autoencoder");
+    TinyAutoencoder model(config, WeightOptions{torch::kCPU, torch::kFloat32, false});
+    for_each_file(model, folder, [](torch::nn::Module& module, const SafetensorsFile& file, const LoadPlan& plan) {
+        load_weights(module, file, plan);
+    });
     model->eval();
     for (auto& parameter : model->parameters()) parameter.set_requires_grad(false);
     return model;

@@ -51,12 +51,11 @@ public:
         : config_(ClipSegConfig::from_json(read_json_file(existing_part(folder / "config.json")), folder / "config.json")),
           preprocessing_(preprocessing(config_, folder)),
           tokenizer_(existing_part(folder / "merges.txt").parent_path()),
-          model_(config_, WeightOptions{torch::kCPU, torch::kFloat32, false}),
           device_(device),
           pictures_(MostPictures) {
         if (tokenizer_.vocabulary_size() > config_.clip.text.vocab_size)
             throw Error(ErrorCode::Model, fmt::format("the tokenizer has {} tokens but the text segmenter only {}", tokenizer_.vocabulary_size(), config_.clip.text.vocab_size), {}, folder);
-        load_weights(*model_, *open_tensor_file(weights_in(folder)), clipseg_plan());
+        model_ = loaded_network<ClipSegModel>(config_, *open_tensor_file(weights_in(folder)), clipseg_plan());
         for (auto& parameter : model_->parameters()) parameter.set_requires_grad(false);
         model_->to(device);
         model_->eval();
@@ -92,7 +91,7 @@ private:
     ClipSegConfig config_;
     ClipPreprocessing preprocessing_;
     Tokenizer tokenizer_;
-    ClipSegModel model_;
+    ClipSegModel model_{nullptr};
     torch::Device device_;
     PictureMemory<std::vector<torch::Tensor>> pictures_;
 };

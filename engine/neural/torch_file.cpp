@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/base/memory.h"
 #include "engine/neural/safetensors.h"
 
 namespace gse::neural {
@@ -126,6 +127,7 @@ torch::Tensor TorchFile::tensor(const std::string& name) const {
     const auto found = tensors_.find(name);
     if (found == tensors_.end()) throw Error(ErrorCode::Model, fmt::format("the weights file has no tensor \"{}\"", name), {}, path_);
     const auto& stored = found->second;
+    require_memory(static_cast<std::uint64_t>(stored.elements) * torch::elementSize(dtype_of(stored.type)), fmt::format("the tensor \"{}\"", name));
     auto storage = torch::empty({stored.elements}, torch::TensorOptions().dtype(dtype_of(stored.type)));
     read_entry("data/" + stored.storage, storage.data_ptr(), storage.nbytes());
     return storage.as_strided(stored.shape, stored.strides, stored.offset).contiguous();

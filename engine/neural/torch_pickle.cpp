@@ -17,19 +17,26 @@ namespace {
 
 constexpr std::size_t MostObjects = 10'000'000;   // a state dictionary has thousands
 constexpr std::size_t DeepestDictionary = 4;
+constexpr std::size_t LongestName = 1000;         // bytes of what is imported, of a key and of a storage's name
+constexpr std::size_t MostDimensions = 64;        // PyTorch's own limit
 
 struct Value;
 using Values = std::vector<Value>;
-using Items = std::vector<std::pair<std::string, Value>>;
+
+/// A pickle may remember a value and take it up again with two bytes, so that no copy of one may cost more than a pointer.
+struct Text {
+    std::shared_ptr<const std::string> held;
+};
+using Items = std::vector<std::pair<Text, Value>>;
 
 struct Mark {};
 struct Nothing {};   // None, and what is of no use here
 struct Name {        // something that is imported
-    std::string text;
+    Text text;
 };
 struct Storage {
     StoredType type;
-    std::string key;
+    Text key;
     std::int64_t elements;
 };
 struct Sequence {   // tuple or list
@@ -39,9 +46,15 @@ struct Dictionary {
     std::shared_ptr<Items> items;
 };
 
-struct Value {
-    std::variant<Nothing, Mark, Name, bool, std::int64_t, double, std::string, Sequence, Dictionary, Storage, StoredTensor> held;
+struct Tensor {
+    std::shared_ptr<const StoredTensor> held;
 };
+
+struct Value {
+    std::variant<Nothing, Mark, Name, bool, std::int64_t, double, Text, Sequence, Dictionary, Storage, Tensor> held;
+};
+
+Text text(std::string_view from) { return {std::make_shared<const std::string>(from)}; }
 
 struct StorageName {
     const char* name;
@@ -70,7 +83,7 @@ public:
             const auto step = static_cast<unsigned char>(take(1)[0]);
             if (step == '.') return pop();
             if (!push_constant(step) && !push_container(step) && !remember(step) && !build(step)) unknown_step(step);
-            if (stack_.size() + memory_.size() + lists_.size() + dictionaries_.size() > MostObjects) damaged("it holds too many objects");
+            if (pushed_ + memory_.size() + lists_.size() + dictionaries_.size() > MostObjects) damaged("it holds too many objects");
         }
     }
 
@@ -96,15 +109,22 @@ private:
         for (std::size_t i = 0; i < bytes; ++i) value |= std::uint64_t{static_cast<unsigned char>(taken[i])} << (8 * i);
         return value;
     }
-    std::string line() {
+    std::string_view line() {
         const auto end = bytes_.find('\n', at_);
         if (end == std::string::npos) damaged("its description ends too soon");
-        std::string text(take(end - at_));
+        const auto taken = take(end - at_);
         take(1);
-        return text;
+        return taken;
+    }
+    Name name_of(std::string_view module, std::string_view name) const {
+        if (module.size() + name.size() > LongestName) damaged("a name is too long");
+        return {text(fmt::format("{} {}", module, name))};
     }
 
-    void push(Value value) { stack_.push_back(std::move(value)); }
+    void push(Value value) {
+        stack_.push_back(std::move(value));
+        ++pushed_;
+    }
     Value pop() {
         if (stack_.empty()) damaged("its description takes more than it gave");
         Value value = std::move(stack_.back());
@@ -150,16 +170,16 @@ private:
             case 'J': push({std::int64_t{static_cast<std::int32_t>(number(4))}}); return true;
             case 0x8a: push({long_number(number(1))}); return true;
             case 'G': take(8), push({0.0}); return true;   // no floating-point number is used for anything
-            case 'X': push({std::string(take(number(4)))}); return true;
-            case 0x8c: push({std::string(take(number(1)))}); return true;
+            case 'X': push({text(take(number(4)))}); return true;
+            case 0x8c: push({text(take(number(1)))}); return true;
             case 'c': {
                 const auto module = line();
-                push({Name{module + " " + line()}});
+                push({name_of(module, line())});
                 return true;
             }
             case 0x93: {
                 const auto name = pop(), module = pop();
-                push({Name{as<std::string>(module, "a name is no text") + " " + as<std::string>(name, "a name is no text")}});
+                push({name_of(*as<Text>(module, "a name is no text").held, *as<Text>(name, "a name is no text").held)});
                 return true;
             }
             default: return false;
@@ -224,7 +244,7 @@ private:
             case 'Q': push({storage(pop())}); return true;
             case 'R': {
                 const auto arguments = pop(), name = pop();
-                push(call(as<Name>(name, "what is called has no name").text, as<Sequence>(arguments, "a call has no arguments")));
+                push(call(*as<Name>(name, "what is called has no name").text.held, as<Sequence>(arguments, "a call has no arguments")));
                 return true;
             }
             case 'b': pop(); return true;   // attributes of a dictionary (its _metadata): nothing depends on them
@@ -244,75 +264,91 @@ private:
     const Sequence& list_below() { return as<Sequence>(top(), "it adds to what is no list"); }
     void set_item(Value key, Value value) {
         const auto& dictionary = as<Dictionary>(top(), "it adds to what is no dictionary");
-        const auto* name = std::get_if<std::string>(&key.held);
-        if (name != nullptr) dictionary.items->emplace_back(*name, std::move(value));   // numbers as keys belong to optimisers
+        const auto* name = std::get_if<Text>(&key.held);
+        if (name == nullptr) return;   // numbers as keys belong to optimisers
+        if (name->held->size() > LongestName) damaged("a name is too long");
+        dictionary.items->emplace_back(*name, std::move(value));
     }
 
     /// ("storage", type, key, device, elements)
     Storage storage(const Value& described) const {
         const auto& items = *as<Sequence>(described, "a storage is not described").items;
-        if (items.size() != 5 || as<std::string>(items[0], "a storage is not described") != "storage") damaged("a storage is not described");
-        const auto& type = as<Name>(items[1], "a storage has no type").text;
+        if (items.size() != 5 || *as<Text>(items[0], "a storage is not described").held != "storage") damaged("a storage is not described");
+        const auto& type = *as<Name>(items[1], "a storage has no type").text.held;
         const auto found = std::find_if(std::begin(StorageNames), std::end(StorageNames), [&](const StorageName& t) { return type == t.name; });
         if (found == std::end(StorageNames)) refuse(fmt::format("use \"{}\"", type));
         const auto elements = as<std::int64_t>(items[4], "a storage has no size");
         if (elements < 0) damaged("a storage has no size");
-        return {found->type, as<std::string>(items[2], "a storage has no name"), elements};
+        const auto& key = as<Text>(items[2], "a storage has no name");
+        if (key.held->size() > LongestName) damaged("a name is too long");
+        return {found->type, key, elements};
     }
 
     Value call(const std::string& name, const Sequence& arguments) {
         const auto& items = *arguments.items;
         if (name == "collections OrderedDict" && items.empty()) return empty_dictionary();
-        if (name == "torch._utils _rebuild_tensor_v2" && items.size() >= 4) return {tensor(items)};
-        if (name == "torch._utils _rebuild_parameter" && !items.empty()) return {as<StoredTensor>(items[0], "a parameter is no tensor")};
+        if (name == "torch._utils _rebuild_tensor_v2" && items.size() >= 4) return {Tensor{std::make_shared<const StoredTensor>(tensor(items))}};
+        if (name == "torch._utils _rebuild_parameter" && !items.empty()) return {as<Tensor>(items[0], "a parameter is no tensor")};
         if (name == "torch Size" && items.size() == 1) return items[0];
         refuse(fmt::format("call \"{}\"", name));
     }
 
     std::vector<std::int64_t> numbers(const Value& value) const {
         std::vector<std::int64_t> result;
-        for (const auto& item : *as<Sequence>(value, "a shape is no list").items) {
+        const auto& items = *as<Sequence>(value, "a shape is no list").items;
+        if (items.size() > MostDimensions) damaged("a tensor has too many dimensions");
+        for (const auto& item : items) {
             result.push_back(as<std::int64_t>(item, "a shape is no list of numbers"));
             if (result.back() < 0) damaged("a shape is negative");
         }
         return result;
     }
 
-    /// (storage, offset, shape, strides, ...); everything lies inside the storage.
+    /// (storage, offset, shape, strides, ...); everything lies inside the storage, and no number of it is used twice: a tensor is
+    /// made with as many numbers as its shape says, which would be any number of copies.
     StoredTensor tensor(const Values& items) const {
         const auto& from = as<Storage>(items[0], "a tensor has no storage");
-        StoredTensor tensor{from.type, from.key, from.elements, as<std::int64_t>(items[1], "a tensor has no offset"), numbers(items[2]), numbers(items[3])};
+        StoredTensor tensor{from.type, *from.key.held, from.elements, as<std::int64_t>(items[1], "a tensor has no offset"), numbers(items[2]), numbers(items[3])};
         if (tensor.shape.size() != tensor.strides.size() || tensor.offset < 0) damaged("a tensor is not described");
-        std::int64_t reach = tensor.offset;
+        std::int64_t reach = tensor.offset, count = 1;
         bool empty = false, overflow = false;
         for (std::size_t i = 0; i < tensor.shape.size(); ++i) {
             std::int64_t step = 0;
             empty = empty || tensor.shape[i] == 0;
             overflow = overflow || __builtin_mul_overflow(std::max<std::int64_t>(tensor.shape[i] - 1, 0), tensor.strides[i], &step) ||
-                       __builtin_add_overflow(reach, step, &reach);
+                       __builtin_add_overflow(reach, step, &reach) ||
+                       __builtin_mul_overflow(count, std::max<std::int64_t>(tensor.shape[i], 1), &count);
         }
         if (overflow || (!empty && reach >= tensor.elements)) damaged("a tensor reaches beyond its storage");
+        if (!empty && count > tensor.elements) refuse(fmt::format("make a tensor of {} numbers from {}", count, tensor.elements));
         return tensor;
     }
 
     const std::string& bytes_;
     const std::filesystem::path& path_;
     std::size_t at_ = 0;
+    std::size_t pushed_ = 0;   // values ever made, wherever they are now
     Values stack_;
     std::map<std::uint64_t, Value> memory_;
     std::vector<std::shared_ptr<Values>> lists_;
     std::vector<std::shared_ptr<Items>> dictionaries_;
 };
 
+/// How deep a dictionary has been looked into. One may be named any number of times, by others that are, too.
+using Depths = std::map<const Items*, std::size_t>;
+
 /// The tensors of the dictionary; those of an inner one where it has none itself.
-StoredTensors collect(const Dictionary& dictionary, std::size_t depth) {
+StoredTensors collect(const Dictionary& dictionary, std::size_t depth, Depths& seen) {
     StoredTensors tensors;
+    const auto [known, first] = seen.try_emplace(dictionary.items.get(), depth);
+    if (!first && known->second <= depth) return tensors;   // it had none
+    known->second = depth;
     for (const auto& [name, value] : *dictionary.items)
-        if (const auto* tensor = std::get_if<StoredTensor>(&value.held)) tensors.insert_or_assign(name, *tensor);
+        if (const auto* tensor = std::get_if<Tensor>(&value.held)) tensors.insert_or_assign(*name.held, *tensor->held);
     if (!tensors.empty() || depth == DeepestDictionary) return tensors;
     for (const auto& [name, value] : *dictionary.items)
-        if (const auto* inner = std::get_if<Dictionary>(&value.held); inner != nullptr && (name == "state_dict" || name == "model"))
-            if (auto found = collect(*inner, depth + 1); !found.empty()) return found;
+        if (const auto* inner = std::get_if<Dictionary>(&value.held); inner != nullptr && (*name.held == "state_dict" || *name.held == "model"))
+            if (auto found = collect(*inner, depth + 1, seen); !found.empty()) return found;
     return tensors;
 }
 
@@ -322,7 +358,8 @@ StoredTensors read_tensor_pickle(const std::string& pickle, const std::filesyste
     Machine machine(pickle, path);
     const auto value = machine.run();
     const auto* dictionary = std::get_if<Dictionary>(&value.held);
-    auto tensors = dictionary != nullptr ? collect(*dictionary, 0) : StoredTensors{};
+    Depths seen;
+    auto tensors = dictionary != nullptr ? collect(*dictionary, 0, seen) : StoredTensors{};
     if (tensors.empty())
         throw Error(ErrorCode::Unsupported, "the file holds no dictionary of tensors", "use a file of the weights alone (a state_dict)", path);
     return tensors;

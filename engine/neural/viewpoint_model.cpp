@@ -74,10 +74,8 @@ torch::Tensor ViewpointModelImpl::forward(const torch::Tensor& pictures) const {
 ViewpointReader::ViewpointReader(const std::filesystem::path& folder, torch::Device device)
     : config_(ViewpointConfig::from_json(read_json_file(existing(folder / "config.json")), folder / "config.json")),
       device_(device),
-      model_(config_, WeightOptions{torch::kCPU, torch::kFloat32, false}) {
-    LoadPlan plan;
-    plan.what = "viewpoint classifier";
-    load_weights(*model_, SafetensorsFile(existing(folder / "model.safetensors")), plan);
+      model_(loaded_network<ViewpointModel>(config_, SafetensorsFile(existing(folder / "model.safetensors")),
+                                            LoadPlan{{}, {}, "viewpoint classifier"})) {
     for (auto& parameter : model_->parameters()) parameter.set_requires_grad(false);
     model_->to(device_);
     model_->eval();

@@ -76,6 +76,12 @@ std::set<std::string> check_weights(const torch::nn::Module& module, const KeySh
     return used;
 }
 
+std::uint64_t weight_bytes(const torch::nn::Module& module) {
+    std::uint64_t bytes = 0;
+    for (const auto& parameter : module.parameters()) bytes += static_cast<std::uint64_t>(parameter.numel()) * sizeof(float);
+    return bytes;
+}
+
 std::set<std::string> load_weights(torch::nn::Module& module, const TensorFile& file,
                                    const LoadPlan& plan) {
     auto used = check_weights(module, file.shapes(), plan, file.path());

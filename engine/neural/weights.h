@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "engine/base/memory.h"
 #include "engine/neural/layers.h"
 #include "engine/neural/tensor_file.h"
 
@@ -37,5 +38,20 @@ std::set<std::string> load_weights(torch::nn::Module& module, const TensorFile& 
 /// file.
 std::set<std::string> check_weights(const torch::nn::Module& module, const KeyShapes& shapes,
                                     const LoadPlan& plan, const std::filesystem::path& path);
+
+/// Bytes of all parameters in 32-bit floats; the module may be on torch::kMeta.
+std::uint64_t weight_bytes(const torch::nn::Module& module);
+
+/// A network of `config` with the weights of `file`. Both are compared, and the memory is looked for, before any of it is taken:
+/// sizes come from files. Throws Error as load_weights, and OutOfMemory.
+template <class Network, class Config>
+Network loaded_network(const Config& config, const TensorFile& file, const LoadPlan& plan, const torch::Device& device = torch::kCPU) {
+    const Network described(config, WeightOptions{torch::kMeta, torch::kFloat32, false});
+    check_weights(*described, file.shapes(), plan, file.path());
+    if (device.is_cpu()) require_memory(weight_bytes(*described), "the " + plan.what);
+    Network network(config, WeightOptions{device, torch::kFloat32, false});
+    load_weights(*network, file, plan);
+    return network;
+}
 
 }  // namespace gse::neural

@@ -38,6 +38,43 @@ Vec3 catmull_rom(const std::array<Vec3, 4>& p, double t) {
            0.5;
 }
 
+/// How far between two keys, for a share of their time.
+double eased(Easing easing, double t) {
+    switch (easing) {
+        case Easing::In: return t * t;
+        case Easing::Out: return t * (2 - t);
+        case Easing::InOut: return t < 0.5 ? 2 * t * t : 1 - 2 * (1 - t) * (1 - t);
+        case Easing::Linear: break;
+    }
+    return t;
+}
+
+[[noreturn]] void throw_bad_path(const std::string& what, const std::filesystem::path& path) {
+    throw Error(ErrorCode::Malformed, what, "export the path again", path);
+}
+
+/// A number of Easing, or the word that earlier versions wrote.
+Easing read_easing(const nlohmann::json& key, const std::filesystem::path& path) {
+    const auto found = key.find("easing");
+    if (found == key.end() || found->is_null() || *found == "linear") return Easing::Linear;
+    for (const auto easing : {Easing::Linear, Easing::In, Easing::Out, Easing::InOut})
+        if (*found == static_cast<int>(easing)) return easing;
+    throw_bad_path(fmt::format("a camera of this path has the easing {}; 0 to 3 are known", found->dump()), path);
+}
+
+/// One entry of a path file; every number of it finite.
+CameraKey read_key(const nlohmann::json& entry, int width, int height, const std::filesystem::path& path) {
+    const auto& p = entry.at("position");
+    const auto& q = entry.at("rotation");
+    const Vec3 eye{p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>()};
+    const Quat rotation{q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(), q.at(3).get<double>()};
+    const double focal = entry.at("focal_length_mm").get<double>() / SensorMm * width;
+    const double time = entry.at("time").get<double>(), size = dot(rotation, rotation);
+    if (!(focal > 0) || !(size > 1e-12) || !std::isfinite(focal + size + length(eye) + time))
+        throw_bad_path("a camera of this path is not valid", path);
+    return {time, camera_at(eye, rotation, focal, width, height), read_easing(entry, path)};
+}
+
 constexpr const char* FramesReport = "frames.json";
 
 std::string frame_name(int frame) { return fmt::format("frame_{:04}.png", frame); }
@@ -117,7 +154,7 @@ void save_camera_path(const std::filesystem::path& path, const std::vector<Camer
                                      {"position", {eye.x, eye.y, eye.z}},
                                      {"rotation", {q.w, q.x, q.y, q.z}},
                                      {"focal_length_mm", key.camera.fx / key.camera.width * SensorMm},
-                                     {"easing", "linear"}});
+                                     {"easing", static_cast<int>(key.easing)}});
     }
     write_file(path, json.dump(1) + "\n");
 }
@@ -126,28 +163,26 @@ std::vector<CameraKey> load_camera_path(const std::filesystem::path& path, int w
     std::vector<CameraKey> keys;
     try {
         const auto json = parse_json(read_file(path), "the camera path");
-        for (const auto& entry : json.at("keyframes")) {
-            const auto& p = entry.at("position");
-            const auto& q = entry.at("rotation");
-            const Vec3 eye{p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>()};
-            const Quat rotation{q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(), q.at(3).get<double>()};
-            const double focal = entry.at("focal_length_mm").get<double>() / SensorMm * width;
-            if (!(focal > 0) || !(dot(rotation, rotation) > 1e-12) || !std::isfinite(length(eye)))
-                throw Error(ErrorCode::Malformed, "a camera of this path is not valid", "export the path again", path);
-            keys.push_back({entry.at("time").get<double>(), camera_at(eye, rotation, focal, width, height)});
-        }
+        for (const auto& entry : json.at("keyframes")) keys.push_back(read_key(entry, width, height, path));
     } catch (const nlohmann::json::exception&) {
         throw Error(ErrorCode::Malformed, "this is not a camera path", "use a file that Export > Camera path wrote", path);
     }
-    if (!std::is_sorted(keys.begin(), keys.end(), [](const auto& a, const auto& b) { return a.time < b.time; }))
-        throw Error(ErrorCode::Malformed, "the cameras of this path are not in the order of time", "export the path again", path);
+    const auto not_later = [](const auto& a, const auto& b) { return a.time >= b.time; };
+    if (std::adjacent_find(keys.begin(), keys.end(), not_later) != keys.end())
+        throw_bad_path("the cameras of this path are not in the order of time", path);
     return keys;
 }
 
 std::vector<Camera> path_cameras(const std::vector<CameraKey>& keys, double fps, int width, int height) {
     std::vector<Camera> cameras;
     if (keys.empty() || fps <= 0) return cameras;
-    const auto frames = static_cast<int>(std::round((keys.back().time - keys.front().time) * fps)) + 1;
+    const double total = std::round((keys.back().time - keys.front().time) * fps) + 1;
+    if (!(total <= MostFilmFrames))
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("the camera path takes {:.0f} frames at {} frames a second, and a film has {} at most", total, fps,
+                                MostFilmFrames),
+                    "bring its cameras closer together in time, or take fewer frames a second");
+    const auto frames = static_cast<int>(total);
     std::size_t segment = 0;
     for (int frame = 0; frame < frames; ++frame) {
         const double time = keys.front().time + frame / fps;
@@ -155,7 +190,7 @@ std::vector<Camera> path_cameras(const std::vector<CameraKey>& keys, double fps,
         const auto& a = keys[segment];
         const auto& b = keys[std::min(segment + 1, keys.size() - 1)];
         const double span = b.time - a.time;
-        const double t = span > 0 ? std::clamp((time - a.time) / span, 0.0, 1.0) : 0.0;
+        const double t = eased(a.easing, span > 0 ? std::clamp((time - a.time) / span, 0.0, 1.0) : 0.0);
         const auto& before = keys[segment > 0 ? segment - 1 : segment];
         const auto& after = keys[std::min(segment + 2, keys.size() - 1)];
         const Vec3 eye = catmull_rom({before.camera.centre(), a.camera.centre(), b.camera.centre(), after.camera.centre()}, t);

@@ -33,12 +33,15 @@ std::vector<Camera> turn_cameras(const OrbitParameters& orbit, const TurntablePa
 Image transparent_picture(const raster::ForwardOutput& output);
 
 /// {"version", "clip_duration", "keyframes": [{"time", "position", "rotation" (w,x,y,z camera to world),
-/// "focal_length_mm" (of a 36 mm wide sensor), "easing"}]}, the path file other editors read (formats.md 4.4).
+/// "focal_length_mm" (of a 36 mm wide sensor), "easing" (a number of Easing)}]}, the path file other editors read (formats.md 4.4).
 void save_camera_path(const std::filesystem::path& path, const std::vector<CameraKey>& keys);
 /// Throws Error (Malformed). Sizes are not part of the format: cameras come as width x height.
 std::vector<CameraKey> load_camera_path(const std::filesystem::path& path, int width, int height);
 
-/// A smooth walk through the keys (positions Catmull-Rom, rotations slerp), `fps` frames a second.
+/// The longest film of a path: nine hours at 30 frames a second.
+constexpr int MostFilmFrames = 1'000'000;
+/// A smooth walk through the keys (positions Catmull-Rom, rotations slerp), `fps` frames a second. Throws Error
+/// (InvalidArgument) when that is more than MostFilmFrames.
 std::vector<Camera> path_cameras(const std::vector<CameraKey>& keys, double fps, int width, int height);
 
 }  // namespace gse::pipeline

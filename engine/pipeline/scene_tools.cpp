@@ -61,9 +61,9 @@ OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& paramete
 }
 
 std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const std::string& cameras) {
-    if (!cameras.empty()) return load_cameras(cameras);
+    if (!cameras.empty()) return load_cameras(cameras, scene_path);
     const auto found = find_cameras(scene_path);
-    return found ? load_cameras(*found) : std::vector<View>{};
+    return found ? load_cameras(*found, scene_path) : std::vector<View>{};
 }
 
 Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path, const RenderParameters& parameters) {

@@ -5,10 +5,14 @@
 
 namespace gse {
 
+/// How the walk from a key to the next begins and ends; the numbers are those of path files.
+enum class Easing { Linear = 0, In = 1, Out = 2, InOut = 3 };
+
 /// One camera on the artist's path.
 struct CameraKey {
     double time = 0;             // seconds
     Camera camera;
+    Easing easing = Easing::Linear;
 };
 
 }  // namespace gse

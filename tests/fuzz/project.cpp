@@ -27,8 +27,12 @@ void exercise_delta(std::span<const std::byte> bytes) {
     GSE_CHECK(after.size() >= delta.added.size());
 }
 
+/// A view that was accepted is a camera that can be drawn from.
 void exercise_description(std::string_view text) {
-    const std::string once = io::write_description(io::parse_description(text));
+    const io::ProjectDescription description = io::parse_description(text);
+    for (const View& view : description.views)
+        GSE_CHECK(view.camera.width > 0 && view.camera.height > 0 && view.camera.fx > 0 && view.camera.fy > 0);
+    const std::string once = io::write_description(description);
     const std::string twice = io::write_description(io::parse_description(once));
     GSE_CHECK(once == twice);
 }

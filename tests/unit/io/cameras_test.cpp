@@ -221,6 +221,14 @@ DOCTEST_TEST_CASE("nerfstudio: distortion, values per frame, the world its splat
     DOCTEST_CHECK(length(scaled[0].camera.centre() - Vec3{0.5, 1, 1.5}) < 1e-12);
     DOCTEST_CHECK(largest_difference({.rotation = scaled[0].camera.rotation},
                                      {.rotation = views[0].camera.rotation}) < 1e-12);
+    // The export writes it beside the splats, which may lie elsewhere; it is the one that counts for them.
+    const ScratchFolder exported;
+    write_file(exported.path() / "dataparser_transforms.json",
+               R"({"transform": [[0,1,0,0],[1,0,0,0],[0,0,-1,0]], "scale": 2})");
+    for (const auto& scene : {exported.path(), exported.path() / "splat.ply"})
+        DOCTEST_CHECK(length(load_cameras(scratch.path(), scene)[0].camera.centre() - Vec3{2, 4, 6}) < 1e-12);
+    const ScratchFolder elsewhere;
+    DOCTEST_CHECK(length(load_cameras(scratch.path(), elsewhere.path() / "splat.ply")[0].camera.centre() - Vec3{0.5, 1, 1.5}) < 1e-12);
 }
 
 DOCTEST_TEST_CASE("transforms.json that cannot be right is refused") {

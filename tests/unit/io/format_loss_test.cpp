@@ -68,6 +68,21 @@ DOCTEST_TEST_CASE("every lossy field of every format is told, and a plain PLY lo
     DOCTEST_CHECK(number_after(splat, "sizes") == -1);
 }
 
+DOCTEST_TEST_CASE("what is said of a scene beside its splats is told where the format has no place for it") {
+    Scene scene = random_scene(20, 0, 9);
+    scene.info.antialiased = scene.info.up_known = true;
+    scene.info.up = {0, 0, 1};
+    const std::string spz = said_of_saving(scene, "a.spz"), splat = said_of_saving(scene, "a.splat");
+    const std::string compressed = said_of_saving(scene, "a.compressed.ply");
+    const auto says = [](const std::string& said, const char* words) { return said.find(words) != std::string::npos; };
+    for (const char* words : {"which way is up", "antialiasing; .ply, .compressed.ply and .spz do"}) DOCTEST_CHECK(says(splat, words));
+    for (const char* words : {"which way is up", "antialiasing"}) DOCTEST_CHECK_FALSE(says(compressed, words));
+    DOCTEST_CHECK(says(spz, "which way is up in the scene; .ply and .compressed.ply do"));
+    DOCTEST_CHECK_FALSE(says(spz, "antialiasing"));
+    scene.info.antialiased = scene.info.up_known = false;
+    for (const char* words : {"which way is up", "antialiasing"}) DOCTEST_CHECK_FALSE(says(said_of_saving(scene, "a.splat"), words));
+}
+
 DOCTEST_TEST_CASE("the told errors are those of the file") {
     const Scene scene = random_scene(500, 0, 9);
     const ScratchFolder scratch;

@@ -124,8 +124,27 @@ DOCTEST_TEST_CASE("SPZ honours the coordinate system that the extension names") 
     DOCTEST_CHECK(stored.position()[1] == -usual.position()[1]);
     DOCTEST_CHECK(stored.position()[2] == -usual.position()[2]);
     const Scene strange = with_frame(12);
-    DOCTEST_CHECK(strange.info.warnings.size() == 1);
+    DOCTEST_CHECK(strange.info.warnings.size() == 2);   // and the unknown extension
     DOCTEST_CHECK(same_bits(strange.gaussians, stored));
+}
+
+DOCTEST_TEST_CASE("SPZ: flags and extensions that are not known are told in one sentence") {
+    const std::string raw = io::write_spz(random_scene(5, 1, 4));
+    const std::vector<std::byte> flat = io::inflate_gzip(as_bytes(raw), 1 << 20);
+    const auto warnings = [&](char flags, bool extension) {
+        std::string file(reinterpret_cast<const char*>(flat.data()), flat.size());
+        file[14] = flags;
+        if (extension)
+            for (const std::uint32_t word : {0x12345678u, 0u, 0x12345678u, 0u, 0xabcdu, 0u}) io::append_value(file, word);
+        return parse_scene(as_bytes(file), "x.spz").info.warnings;
+    };
+    const std::string begin = "the SPZ file has parts that are not known and passed over: ";
+    const std::string levels = "flags 0x80 (levels of detail, all drawn at once)", types = "extensions 0xabcd, 0x12345678";
+    for (const char flags : {'\0', '\1', '\2', '\3'}) DOCTEST_CHECK(warnings(flags, false).empty());
+    DOCTEST_CHECK(warnings('\x81', false) == std::vector<std::string>{begin + levels});
+    DOCTEST_CHECK(warnings('\x04', false) == std::vector<std::string>{begin + "flags 0x4"});
+    DOCTEST_CHECK(warnings('\2', true) == std::vector<std::string>{begin + types});
+    DOCTEST_CHECK(warnings('\x82', true) == std::vector<std::string>{begin + levels + " and " + types});
 }
 
 DOCTEST_TEST_CASE("SPZ version 1 has half-float positions") {

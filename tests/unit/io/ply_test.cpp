@@ -241,6 +241,26 @@ DOCTEST_TEST_CASE("labels travel in a PLY") {
     DOCTEST_CHECK(!std::filesystem::exists(scratch.path() / "c.spz"));
 }
 
+DOCTEST_TEST_CASE("label columns with other numbers than labels have are taken with a warning") {
+    const GaussianData data = random_gaussians(6, 0, 1);
+    const auto read = [&](const char* name, const std::vector<double>& values) {
+        auto columns = columns_of(data);
+        columns.push_back({name, "float", [&values](std::size_t row) { return values[row]; }});
+        return parse_scene(as_bytes(make_ply(columns, 6, {})), "x.ply");
+    };
+    const Scene weights = read("label_weight", {0, 0.25, 1, 3, -2, std::nan("")});
+    DOCTEST_CHECK(*weights.labels.labels.at(0).weight == std::vector<float>{0, 0.25f, 1, 1, 0, 0});
+    DOCTEST_REQUIRE(weights.info.warnings.size() == 1);
+    DOCTEST_CHECK(weights.info.warnings[0].find("\"label_weight\" has weights outside of 0 to 1 for 3 splats") != std::string::npos);
+    const Scene ids = read("label", {0, 1, 2, 9, 0, 1});
+    DOCTEST_CHECK(*ids.labels.labels.at(0).bits == std::vector<std::uint8_t>{0, 1, 1, 1, 0, 1});
+    DOCTEST_CHECK(*ids.labels.labels.at(0).weight == std::vector<float>{0, 1, 1, 1, 0, 1});
+    DOCTEST_REQUIRE(ids.info.warnings.size() == 1);
+    DOCTEST_CHECK(ids.info.warnings[0].find("values other than 0 and 1 for 2 splats") != std::string::npos);
+    DOCTEST_CHECK(read("label", {0, 1, 1, 0, 0, 1}).info.warnings.empty());
+    DOCTEST_CHECK(read("label_weight", {0, 0.5, 1, 0.1, 0, 1}).info.warnings.empty());
+}
+
 DOCTEST_TEST_CASE("header comments are honoured, the last one wins") {
     const GaussianData data = random_gaussians(1, 0, 1);
     const std::string plain = make_ply(columns_of(data), 1, {});
@@ -261,17 +281,20 @@ DOCTEST_TEST_CASE("header comments are honoured, the last one wins") {
     DOCTEST_CHECK(!with_comments("comment antialiased 1\ncomment splatrendermode: default\n").antialiased);
 }
 
-DOCTEST_TEST_CASE("comments are written back") {
+DOCTEST_TEST_CASE("comments are written back, compressed as well") {
     ScratchFolder scratch;
-    Scene scene = random_scene(1, 0, 2);
-    scene.info.up = {0.6, 0, 0.8};
-    scene.info.up_known = true;
-    scene.info.antialiased = true;
-    save_scene(scratch.path() / "a.ply", scene);
-    const Scene again = load_scene(scratch.path() / "a.ply");
-    DOCTEST_CHECK(again.info.up_known);
-    DOCTEST_CHECK(length(again.info.up - scene.info.up) < 1e-12);
-    DOCTEST_CHECK(again.info.antialiased);
+    for (const bool said : {true, false})
+        for (const char* name : {"a.ply", "a.compressed.ply"}) {
+            Scene scene = random_scene(1, 0, 2);
+            scene.info.up = {0.6, 0, 0.8};
+            scene.info.up_known = scene.info.antialiased = said;
+            save_scene(scratch.path() / name, scene);
+            const Scene again = load_scene(scratch.path() / name);
+            DOCTEST_CAPTURE(name);
+            DOCTEST_CHECK(again.info.up_known == said);
+            DOCTEST_CHECK(again.info.antialiased == said);
+            if (said) DOCTEST_CHECK(length(again.info.up - scene.info.up) < 1e-12);
+        }
 }
 
 DOCTEST_TEST_CASE("surfels, byte colours and degree 4 are taken in") {

@@ -173,15 +173,34 @@ DOCTEST_TEST_CASE("unknown fields are kept, absent ones have defaults, newer for
         for (const char* key : {"ui", "jobs", "views", "info", "program", "thumbnail", "active_label"})
             json.erase(key);
         json["stack"][0].erase("recipe");
+        json["labels"][0].erase("attention_threshold");
     });
     const ProjectData sparse = parse_project(as_bytes(older));
     DOCTEST_CHECK(bits_equal(sparse.state.current, project.state.current));
     DOCTEST_CHECK(sparse.state.views.empty());
     DOCTEST_CHECK(sparse.state.stack[0].recipe.empty());
+    DOCTEST_CHECK(sparse.state.labels[0].attention_threshold == NamedLabel().attention_threshold);
     const auto future = with_description(packed, [](auto& json) { json["version"] = 2; });
     const auto refused = error_of([&] { parse_project(as_bytes(future)); });
     DOCTEST_REQUIRE(refused);
     DOCTEST_CHECK(refused->code() == ErrorCode::Unsupported);
+}
+
+DOCTEST_TEST_CASE("weights of a project's labels that are none are held between 0 and 1, and that is said") {
+    const Quiet quiet;
+    ProjectData project = random_project({{}, 0, 0, random_set(80, 1, 5)}, 5);
+    NamedLabel& label = project.state.labels[0];
+    auto weight = *label.weight;
+    weight[3] = 2, weight[5] = -0.5f, weight[7] = std::nanf("");
+    label.weight = std::make_shared<const std::vector<float>>(weight);
+    label.absent = std::make_shared<const AbsentRows>(AbsentRows{{1, 2}, {0.25f, 1e30f}, {0, 0}});
+    const std::string packed = ProjectWriter().pack("x.gsep", project);
+    const ProjectData loaded = parse_project(as_bytes(packed));
+    weight[3] = 1, weight[5] = 0, weight[7] = 0;
+    DOCTEST_CHECK(*loaded.state.labels[0].weight == weight);
+    DOCTEST_CHECK(loaded.state.labels[0].absent->weight == std::vector<float>{0.25f, 1});
+    DOCTEST_REQUIRE(loaded.warnings.size() == 2);
+    DOCTEST_CHECK(loaded.warnings[0].starts_with("the label \"label 5\" has weights outside of 0 to 1 for 3 splats"));
 }
 
 DOCTEST_TEST_CASE("damaged descriptions and members are one sentence each") {
@@ -212,6 +231,15 @@ DOCTEST_TEST_CASE("damaged descriptions and members are one sentence each") {
             json["views"][0]["size"] = {1e9, 3};
         },
         [](Json& json) { json["views"][0]["rotation"][3] = "x"; },
+        // Cameras that no camera reader takes, either.
+        [](Json& json) { json["views"][0] = Json::object(); },
+        [](Json& json) { json["views"][0].erase("size"); },
+        [](Json& json) { json["views"][0].erase("lens"); },
+        [](Json& json) { json["views"][1]["size"][0] = 0; },
+        [](Json& json) { json["views"][1]["lens"][0] = 0; },
+        [](Json& json) { json["views"][1]["lens"][1] = -500; },
+        [](Json& json) { json["views"][1]["rotation"] = std::vector<double>(9, 0.0); },
+        [](Json& json) { json["views"][1]["rotation"][0] = 7; },
         [](Json& json) { json["ui"] = Json::array(); },
         [](Json& json) {
             Json deep = 1;
@@ -224,6 +252,7 @@ DOCTEST_TEST_CASE("damaged descriptions and members are one sentence each") {
         const auto error = error_of([&] { parse_project(as_bytes(with_description(packed, damages[i]))); });
         DOCTEST_REQUIRE(error);
         DOCTEST_CHECK_FALSE(error->message().empty());
+        if (error->message().starts_with("the camera \"views[")) DOCTEST_CHECK(error->hint().find("an older copy or an autosave") != std::string::npos);
     }
 }
 

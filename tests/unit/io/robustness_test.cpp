@@ -9,6 +9,7 @@
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 #include "engine/io/inflate.h"
+#include "engine/io/zip_archive.h"
 #include "tests/unit/io/io_helpers.h"
 
 using namespace gse;
@@ -134,6 +135,23 @@ DOCTEST_TEST_CASE("small files that ask for gigabytes are refused before anythin
     DOCTEST_CHECK(std::string(deep->what()).find("levels deep") != std::string::npos);
     constexpr long AllowedKilobytes = 64 * 1024;
     DOCTEST_CHECK(peak_kilobytes() - before < AllowedKilobytes);
+}
+
+DOCTEST_TEST_CASE("a SOG archive's entry is unpacked to the size that the archive states, and that must be honest") {
+    const std::string meta = R"({"version": 2, "count": 1, "sh0": {"files": ["sh0.webp"]}})", texture(5000, 'x');
+    const std::string honest = io::write_zip(std::vector<io::ZipMember>{{"meta.json", meta, true}, {"sh0.webp", texture, true}});
+    const auto stating = [&](std::uint32_t size) {
+        std::string archive = honest;
+        const std::size_t name = archive.rfind("sh0.webp");   // in the directory, whose record has the size 22 bytes before
+        std::memcpy(archive.data() + name - 22, &size, sizeof size);
+        const auto error = error_of([&] { parse_scene(as_bytes(archive), "x.sog"); });
+        return error ? error->message() : std::string();
+    };
+    DOCTEST_CHECK(stating(5000).find("is not a WebP picture") != std::string::npos);
+    DOCTEST_CHECK(stating(1000000000).find("cannot hold so much") != std::string::npos);
+    DOCTEST_CHECK(stating(0xfffffff0u).find("more than its place allows") != std::string::npos);
+    DOCTEST_CHECK(stating(10).find("cannot be unpacked") != std::string::npos);
+    DOCTEST_CHECK(stating(6000).find("cannot be unpacked") != std::string::npos);
 }
 
 DOCTEST_TEST_CASE("a tree of levels names each part once, and none outside of its folder") {

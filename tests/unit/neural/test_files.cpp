@@ -185,6 +185,10 @@ DOCTEST_TEST_CASE("configurations: survive a round trip; unsupported structures 
                                                    {"layers_per_block", "two"},
                                                    {"block_out_channels", {16, -32}},
                                                    {"down_block_types", {"Odd", "DownBlock2D"}},
+                                                   {"sample_size", 0},
+                                                   {"sample_size", -64},
+                                                   {"sample_size", 1 << 20},
+                                                   {"sample_size", 1e300},
                                                    {"in_channels", 1e9}}) {
         auto json = unet.to_json();
         json[key] = value;

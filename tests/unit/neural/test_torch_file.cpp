@@ -1,6 +1,7 @@
 // What torch.save writes: read where it is plain tensors, refused where it could be more.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 #include <zip.h>
 
 #include <numeric>
@@ -41,6 +42,12 @@ void write_archive(const std::filesystem::path& path, const std::vector<std::pai
         zip_set_file_compression(archive, static_cast<zip_uint64_t>(index), ZIP_CM_STORE, 0);
     }
     DOCTEST_REQUIRE(zip_close(archive) == 0);
+}
+
+long peak_kilobytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
 }
 
 std::string floats(std::size_t count) {
@@ -89,6 +96,45 @@ DOCTEST_TEST_CASE("a damaged pickle is refused, wherever it ends and whatever it
     DOCTEST_REQUIRE(at != std::string::npos);
     longer[at + 3] = '\x7f';
     refuses(longer, ErrorCode::Malformed, "beyond its storage");
+}
+
+DOCTEST_TEST_CASE("a text that is taken up again is not copied, and what is copied is short") {
+    const long before = peak_kilobytes();
+    std::string large("\x80\x02X\0\0\x10\0", 7);   // a megabyte of text, remembered, and in a list four thousand times
+    large += std::string(1 << 20, 'x') + std::string("q\0](", 4);
+    for (int i = 0; i < 4000; ++i) large += std::string("h\0", 2);
+    refuses(large + "e.", ErrorCode::Unsupported, "no dictionary of tensors");
+    constexpr long AllowedKilobytes = 64 * 1024;   // without sharing, four gigabytes
+    DOCTEST_CHECK(peak_kilobytes() - before < AllowedKilobytes);
+    std::string joined("\x80\x02X\0\x10\0\0", 7);
+    joined += std::string(4096, 'x') + std::string("q\0h\0\x93.", 6);
+    refuses(joined, ErrorCode::Malformed, "a name is too long");
+    std::string key("\x80\x02}X\0\x10\0\0", 8);
+    refuses(key + std::string(4096, 'x') + "Ns.", ErrorCode::Malformed, "a name is too long");
+}
+
+DOCTEST_TEST_CASE("dictionaries that name each other thousands of times are looked into once") {
+    std::string nested("\x80\x02X\5\0\0\0modelq\0}q\1", 17);
+    for (char level = 1; level < 6; ++level) {   // without that, 10^15 visits
+        nested += "}(";
+        for (int i = 0; i < 1000; ++i) nested += std::string("h\0h", 3) + level;
+        nested += std::string("uq") + static_cast<char>(level + 1);
+    }
+    refuses(nested + ".", ErrorCode::Unsupported, "no dictionary of tensors");
+}
+
+DOCTEST_TEST_CASE("a tensor of more numbers than its storage has is refused") {
+    auto spread = corpus("state_dict.pkl");
+    const auto at = spread.find("K\x03K\x01\x86");   // the strides of [2, 3]
+    DOCTEST_REQUIRE(at != std::string::npos);
+    spread.replace(at, 4, std::string("K\0K\0", 4));
+    DOCTEST_CHECK(read_tensor_pickle(spread, "x").at("weight").strides == std::vector<std::int64_t>{0, 0});   // six of six
+    const auto shape = spread.find("K\x02K\x03");
+    auto terabytes = spread;
+    terabytes.replace(shape, 4, "J\xff\xff\xff\x7fJ\xff\xff\xff\x7f");
+    refuses(terabytes, ErrorCode::Unsupported, "numbers from 6");
+    spread.replace(shape, 4, "K\x07K\x01");
+    refuses(spread, ErrorCode::Unsupported, "make a tensor of 7 numbers from 6");
 }
 
 DOCTEST_TEST_CASE("containers a million deep, or inside themselves, end well") {
