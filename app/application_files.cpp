@@ -12,39 +12,22 @@
 #include "engine/base/json.h"
 #include "engine/base/log.h"
 #include "engine/io/autosave.h"
-#include "engine/io/cameras.h"
 #include "engine/io/image_file.h"
 #include "engine/io/project_file.h"
 #include "engine/io/scene_io.h"
 #include "engine/io/user_files.h"
+#include "engine/pipeline/scene_loading.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/scene/framing.h"
 
 namespace gse::app {
 namespace {
 
-constexpr double LeastVisibleShare = 0.05;   // cameras that see less of the splats belong to another world
-
 bool contains_word(const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 std::string clock_now() { return fmt::format("{:%H:%M}", fmt::localtime(std::time(nullptr))); }
-
-/// Up as the mean of the cameras' own (they stand upright more often than not); nothing when they disagree.
-std::optional<Vec3> up_of_cameras(const std::vector<View>& views) {
-    constexpr double least_agreement = 0.5;
-    Vec3 sum;
-    for (const auto& view : views)
-        sum = sum - view.camera.rotation.row(1);
-    const double share = length(sum) / static_cast<double>(std::max<std::size_t>(views.size(), 1));
-    if (views.empty() || share < least_agreement) return std::nullopt;
-    return normalized(sum);
-}
-
-}  // namespace
-
-namespace {
 
 /// What can be opened of a folder that is no scene by itself.
 std::vector<std::filesystem::path> files_of_folder(const std::filesystem::path& folder) {
@@ -54,31 +37,6 @@ std::vector<std::filesystem::path> files_of_folder(const std::filesystem::path& 
         if (entry.is_regular_file() && entry.path().extension() == ".gsep") files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     return files;
-}
-
-/// Reads a scene with its cameras; what is odd is said in `notes`.
-template <class Loaded>
-void load_scene_into(Loaded& loaded) {
-    Scene scene = load_scene(loaded.path);
-    loaded.data.source = scene_source(loaded.path, scene.gaussians);
-    std::vector<View> views;
-    if (const auto cameras = find_cameras(loaded.path)) {
-        try {
-            views = load_cameras(*cameras);
-            if (visible_share(views, scene.gaussians.position()) < LeastVisibleShare) {
-                loaded.notes.push_back("The cameras found beside the scene look elsewhere; they are left out.");
-                views.clear();
-            }
-        } catch (const Error& error) {
-            loaded.notes.push_back(std::string("The cameras beside the scene cannot be used: ") + error.what());
-        }
-    }
-    if (!scene.info.up_known)
-        if (const auto up = up_of_cameras(views)) {
-            scene.info.up = *up;
-            loaded.notes.push_back(fmt::format("Up axis guessed from {} cameras; Scene > Up changes it.", views.size()));
-        }
-    loaded.state = initial_state(scene, std::move(views));
 }
 
 }  // namespace
@@ -120,7 +78,10 @@ void Application::open(const std::filesystem::path& path) {
             if (std::filesystem::is_directory(loaded->path)) loaded->choices = files_of_folder(loaded->path);
             if (loaded->choices.size() > 1) return;
             if (loaded->choices.size() == 1) loaded->path = loaded->choices.front();
-            load_scene_into(*loaded);
+            auto [scene, views, notes] = load_scene_with_cameras(loaded->path);
+            loaded->data.source = scene_source(loaded->path, scene.gaussians);
+            loaded->notes = std::move(notes);
+            loaded->state = initial_state(scene, std::move(views));
         }
         control.report("looking", 0, 0);
         loaded->statistics = compute_statistics(loaded->state.current);

@@ -12,10 +12,10 @@
 #include "engine/base/log.h"
 #include "engine/base/spelling.h"
 #include "engine/edit/vocabulary.h"
-#include "engine/io/scene_io.h"
 #include "engine/localize/focus.h"
 #include "engine/pipeline/neural_loader.h"
 #include "engine/pipeline/probe.h"
+#include "engine/pipeline/scene_loading.h"
 
 namespace gse::pipeline {
 namespace {
@@ -63,11 +63,12 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     recipe_.job.lora = absolute_loras(recipe_.job);
     for (auto* weights : {&recipe_.job.segmenter, &recipe_.job.text_segmenter})
         if (!weights->empty()) *weights = std::filesystem::absolute(*weights).lexically_normal().string();
-    Scene scene = load_scene(recipe_.job.scene);
+    auto [scene, cameras, notes] = load_scene_with_cameras(recipe_.job.scene, recipe_.job.cameras);
+    for (const auto& note : notes) log::warning("{}", note);
     if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene);
     times_.end();
     GivenCameras given;
-    if (recipe_.job.cameras != "none") given.cameras = scene_cameras(recipe_.job.scene, recipe_.job.cameras);
+    given.cameras = std::move(cameras);
     times_.begin("load_model");
     auto model = open_recipe_model(recipe_.job, cache);
     auto segmenters = open_segmenters(recipe_.job, cache);
