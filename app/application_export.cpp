@@ -12,6 +12,7 @@
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/film.h"
 #include "engine/pipeline/scene_tools.h"
+#include "engine/scene/viewpoints.h"
 
 namespace gse::app {
 namespace {
@@ -23,19 +24,6 @@ std::filesystem::path place_for(const std::string& name, const std::string& proj
     const auto base = std::filesystem::path(!project.empty() ? project : scene).parent_path();
     const bool bundled = base.string().rfind(assets_path().string(), 0) == 0;   // not a place for an artist's files
     return base.empty() || bundled ? std::filesystem::absolute(path) : base / path;
-}
-
-/// The same view in another shape: what was visible stays visible.
-Camera fitted(const Camera& from, int width, int height) {
-    const double scale = std::min(static_cast<double>(width) / from.width, static_cast<double>(height) / from.height);
-    Camera camera = from;
-    camera.width = width;
-    camera.height = height;
-    camera.fx *= scale;
-    camera.fy *= scale;
-    camera.cx = width / 2.0 + (from.cx - from.width / 2.0) * scale;
-    camera.cy = height / 2.0 + (from.cy - from.height / 2.0) * scale;
-    return camera;
 }
 
 raster::Settings settings_of(const ui::ViewSettings& view, bool antialiased) {

@@ -8,6 +8,7 @@
 #include "engine/base/log.h"
 #include "engine/localize/focus.h"
 #include "engine/pipeline/scene_tools.h"
+#include "engine/scene/viewpoints.h"
 
 namespace gse::app {
 namespace {
@@ -139,17 +140,7 @@ void Application::set_comparison(ui::Comparison comparison) { model_.comparison 
 void Application::look_through(std::size_t view) {
     if (document_.empty() || view >= document_.state().views.size()) return;
     // The whole view fits into the viewport, whatever their shapes are.
-    const Camera& from = document_.state().views[view].camera;
-    const int width = std::max(viewport_width_, 1), height = std::max(viewport_height_, 1);
-    const double scale = std::min(static_cast<double>(width) / from.width, static_cast<double>(height) / from.height);
-    Camera camera = from;
-    camera.width = width;
-    camera.height = height;
-    camera.fx = from.fx * scale;
-    camera.fy = from.fy * scale;
-    camera.cx = width / 2.0 + (from.cx - from.width / 2.0) * scale;
-    camera.cy = height / 2.0 + (from.cy - from.height / 2.0) * scale;
-    camera_ = camera;
+    camera_ = fitted(document_.state().views[view].camera, std::max(viewport_width_, 1), std::max(viewport_height_, 1));
     ++camera_version_;
     last_move_ = Clock::now();
 }

@@ -10,6 +10,7 @@
 #include "engine/base/thread_pool.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/scene/framing.h"
+#include "engine/scene/viewpoints.h"
 #include "engine/synth/synth.h"
 
 namespace gse::test {
@@ -408,7 +409,8 @@ void FakeApplication::set_comparison(ui::Comparison comparison) {
 
 void FakeApplication::look_through(std::size_t view) {
     calls.push_back("look_through " + std::to_string(view));
-    model_.camera = document_->state().views[view].camera;
+    const int width = std::max(model_.viewport_width, 1), height = std::max(model_.viewport_height, 1);
+    model_.camera = fitted(document_->state().views[view].camera, width, height);   // as the application does
 }
 
 void FakeApplication::set_viewport_size(int width, int height) {
