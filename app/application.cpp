@@ -171,12 +171,10 @@ void Application::refresh_document() {
     if (document_seen_ != document_.revision()) {
         document_seen_ = document_.revision();
         ++content_;
-        const auto& state = document_.state();
         refresh_words();
-        model_.labelled = state.active_label >= 0 && state.active_label < static_cast<int>(state.labels.size())
-                              ? count_labelled(state.labels[static_cast<std::size_t>(state.active_label)])
-                              : 0;
+        model_.labelled = active_label() ? count_labelled(*active_label()) : 0;
     }
+    refresh_reach();
     if (seconds_since(last_estimate_) > 0.5) {
         last_estimate_ = Clock::now();
         refresh_estimate();

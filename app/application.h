@@ -21,6 +21,7 @@
 #include "engine/neural/model_profile.h"
 #include "engine/pipeline/edit_job.h"
 #include "engine/pipeline/estimate.h"
+#include "engine/pipeline/reach.h"
 #include "engine/scene/document.h"
 #include "ui/actions.h"
 #include "ui/view_model.h"
@@ -134,6 +135,7 @@ public:
     void set_attention_threshold(double value, bool drag_ends) override;
     void set_label_threshold(float value, bool drag_ends) override;
     void set_active_label(int index) override;
+    void set_reach(bool by_label) override;
     void add_label(const std::string& name) override;
     void rename_label(int index, const std::string& name) override;
     void delete_label(int index) override;
@@ -249,7 +251,9 @@ private:
     void relabel_if_wanted();
     void travel(const std::function<void()>& move);
     void take_found();
-    bool labelled_by_hand() const;
+    const NamedLabel* active_label() const;
+    void refresh_reach();
+    void choose_label_by_hand();
     bool label_drives_edit() const;
     bool edit_running() const;
     void start_edit(std::optional<edit::EditSnapshot> start);
@@ -345,7 +349,8 @@ private:
         std::optional<neural::TunedModel> tuned = {};
     };
     Searched searched_;
-    std::string job_key_;
+    std::string job_key_, reach_key_;
+    std::optional<ReachChoice> reach_choice_;   // of the label that was active then
     EditRecipe live_recipe_;   // of the edit that runs
     GaussianSet job_set_;
     std::shared_ptr<const std::vector<float>> attention_values_;

@@ -125,9 +125,10 @@ void Application::label_located(const EditJob& job, const std::string& step, con
         if (bits[row] == 0 && weight[row] > tau) weight[row] = 0;
     DocumentState state = document_.state();
     const std::string name = adds ? job.recipe().request.source : located.word;
-    auto found = std::find_if(state.labels.begin(), state.labels.end(), [&](const auto& label) { return label.name == name; });
+    auto found = std::find_if(state.labels.begin(), state.labels.end(), [&](const auto& label) { return is_label_of(label, name); });
     if (found == state.labels.end()) found = state.labels.insert(state.labels.end(), empty_label(name, weight.size()));
-    NamedLabel label = empty_label(name, weight.size());
+    NamedLabel label = empty_label(found->name, weight.size());   // it may have been renamed since
+    label.found_for = name;
     label.threshold = static_cast<float>(tau);
     label.attention_threshold = job.recipe().request.attention_threshold;
     label.weight = std::make_shared<const std::vector<float>>(std::move(weight));

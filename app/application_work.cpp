@@ -307,6 +307,7 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     search->memory = planned_memory();
     begin_with_known(search->measured, measured_now());
     const auto& state = document_.state();
+    if (reach_choice_) reach_choice_->source = edit::as_told(recipe.request.source);   // another source is another matter
     const auto label = label_drives_edit() ? *state.labels[static_cast<std::size_t>(state.active_label)].bits : std::vector<std::uint8_t>{};
     live_ = std::make_shared<LiveEdit>();
     live_->wants_gate = model_.model_settings.gate && !start && !edit::edits_by_views(recipe.request);
@@ -463,6 +464,7 @@ void Application::apply_result() {
         if (result.adds || state.active_label < 0) {
             state.labels.push_back(empty_label(result.target, added.size()));
             state.active_label = static_cast<int>(state.labels.size()) - 1;
+            reach_choice_.reset();   // nobody has chosen this one
         }
         auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
         label = combine(std::move(label), added, LabelOperation::Add);

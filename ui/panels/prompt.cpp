@@ -281,6 +281,50 @@ void draw_estimate(Context& context) {
     if (!warning.empty()) coloured_text(palette::Bad, warning);
 }
 
+/// Which label the edit will change, or what it searches for; empty = that cannot be said yet.
+std::string reach_text(const Context& context) {
+    const auto& reach = context.model.reach;
+    const auto planned = as_planned(context);
+    const auto word = edit::as_told(planned.source.empty() ? planned.target : planned.source);
+    if (!context.scene_open() || word.empty() || context.model.job.running) return {};
+    if (!reach.by_label && !context.state.prompt.source_known) return {};
+    if (edit::planned_mode(planned) == edit::EditMode::Add)
+        return fmt::format("Adds \"{}\" where a search places it.{}", edit::as_told(planned.target),
+                           reach.corrected ? " What was set by hand in the label does not count for that." : "");
+    if (reach.by_label) return fmt::format("May change: label \"{}\", {} splats.", reach.label, count_text(reach.splats));
+    return fmt::format("Will search for \"{}\" first.", word);
+}
+
+/// The other way; empty = there is none.
+std::string other_reach(const Context& context) {
+    const auto& reach = context.model.reach;
+    if (reach_text(context).empty() || edit::planned_mode(as_planned(context)) == edit::EditMode::Add) return {};
+    if (!reach.by_label) return reach.label.empty() ? std::string() : fmt::format("Use label \"{}\"", shortened(reach.label, context.em * 7));
+    return context.state.prompt.source_known ? "Search instead" : "";
+}
+
+float reach_height(const Context& context) {
+    const std::string text = reach_text(context), other = other_reach(context);
+    if (text.empty()) return 0;
+    const float width = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.y;
+    const float lines = ImGui::CalcTextSize(text.c_str(), nullptr, false, width).y + gap;
+    return lines + (other.empty() ? 0 : ImGui::GetFrameHeight() + gap);
+}
+
+void draw_reach(Context& context) {
+    const std::string text = reach_text(context), other = other_reach(context);
+    if (text.empty()) return;
+    wrapped_text(text);
+    note(context, "prompt.reach");
+    if (other.empty()) return;
+    const bool by_label = context.model.reach.by_label;
+    if (button(context, {.name = "prompt.reach.other",
+                         .text = other,
+                         .tooltip = by_label ? "The words say what may change: they are looked for in all views"
+                                             : "What this label marks may change, whatever the words find"}))
+        context.actions.set_reach(!by_label);
+}
+
 void draw_run(Context& context) {
     const std::string why_locate = why_not_locate(context), why_edit = why_not_edit(context);
     const float spacing = ImGui::GetStyle().ItemSpacing.x;
@@ -437,7 +481,7 @@ float footer_height(Context& context) {
     add(estimate_text(context.model.estimate));
     add(memory_warning(context.model.estimate));
     add(obstacle_text(context));
-    return height + context.em * 0.2f;
+    return height + reach_height(context) + context.em * 0.2f;
 }
 
 }  // namespace
@@ -448,6 +492,7 @@ void draw_prompt_panel(Context& context) {
     if (ImGui::BeginChild("words", {0, height}, false, ImGuiWindowFlags_NavFlattened)) draw_words(context);
     ImGui::EndChild();
     draw_estimate(context);
+    draw_reach(context);
     draw_run(context);
 }
 

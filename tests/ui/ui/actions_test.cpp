@@ -161,6 +161,28 @@ DOCTEST_TEST_CASE("an unknown source is refused before work; a label by hand is 
     DOCTEST_CHECK(asks(harness, "prompt.edit", "edit"));
 }
 
+DOCTEST_TEST_CASE("above the buttons stands which label the edit changes or what it searches for, and the other way") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& model = harness.application.model();
+    model.request.prompt = "a golden bear";
+    model.request.target = "golden";
+    harness.frame(2);
+    DOCTEST_REQUIRE(harness.find("prompt.reach") != nullptr);
+    DOCTEST_CHECK(harness.find("prompt.reach.other") == nullptr);   // there is no label to use
+    model.reach = {"hat", 416, false, false};
+    harness.frame(2);
+    DOCTEST_CHECK(asks(harness, "prompt.reach.other", "set_reach label"));
+    model.reach.by_label = true;
+    harness.frame(2);
+    DOCTEST_CHECK(asks(harness, "prompt.reach.other", "set_reach search"));
+    DOCTEST_CHECK(harness.rect("prompt.reach").y < harness.rect("prompt.edit").y);
+    DOCTEST_CHECK(harness.rect("prompt.edit").visible);
+    model.request.source = "crane";   // unknown: there is nothing to search for
+    harness.frame(2);
+    DOCTEST_CHECK(harness.find("prompt.reach.other") == nullptr);
+    DOCTEST_CHECK(harness.find("prompt.reach") != nullptr);
+}
+
 DOCTEST_TEST_CASE("a search that labelled nothing shows its pictures and the ways on") {
     Harness harness({Wide, High, 1, Situation::Failed, false});
     DOCTEST_REQUIRE(harness.find("panel.Attention") != nullptr);   // it came to the front by itself
