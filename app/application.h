@@ -235,6 +235,9 @@ private:
     // application_export.cpp
     std::filesystem::path free_place(const std::string& name) const;
     void write_scene(const std::filesystem::path& path);
+    std::string said_of_export() const;
+    void start_export(const char* what, const std::filesystem::path& path, std::function<void(const JobControl&)> work,
+                      const std::string& said, bool can_pause = false);
 
     // application_work.cpp
     bool job_fits() const;
@@ -299,7 +302,11 @@ private:
     // application_view.cpp
     PictureRequest picture_request();
     void go_home();
-    std::shared_ptr<const std::vector<float>> shown_values(const GaussianSet& set, int snapshot);
+    std::shared_ptr<const std::vector<float>> shown_values(const GaussianSet& set) const;
+    std::shared_ptr<const std::vector<float>> on_screen(const std::shared_ptr<const std::vector<float>>& values, const GaussianSet& set) const;
+    bool shows_snapshot() const;
+    GaussianSet set_on_screen();
+    const GaussianSet& before_on_screen() const;
     OrbitParameters export_orbit() const;
 
     ApplicationOptions options_;

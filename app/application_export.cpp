@@ -60,6 +60,25 @@ std::filesystem::path Application::free_place(const std::string& name) const {
     return path;
 }
 
+/// What is shown is written, which need not be what the document holds.
+std::string Application::said_of_export() const {
+    const int snapshot = model_.shown_snapshot;
+    if (shows_snapshot() && (snapshot >= 0 || !pending_))
+        return fmt::format(", as the edit was at iteration {}: it is not applied",
+                           (snapshot >= 0 ? snapshots_[static_cast<std::size_t>(snapshot)] : snapshots_.back()).iteration);
+    return pending_ ? ", with the edit that is not applied yet" : "";
+}
+
+void Application::start_export(const char* what, const std::filesystem::path& path, std::function<void(const JobControl&)> work,
+                               const std::string& said, bool can_pause) {
+    auto done = [this, path, said](const Error* error) {
+        if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
+        toast(fmt::format("Wrote {}{}", path.string(), said));
+    };
+    if (!files_.start({fmt::format("{} {}", what, path.filename().string()), std::move(work), done, can_pause}))
+        toast("Another file is being read or written; wait for it.");
+}
+
 void Application::set_exports(const ui::ExportSettings& settings) { model_.exports = settings; }
 
 void Application::export_picture() {
@@ -70,7 +89,7 @@ void Application::export_picture() {
     if (exports.transparent) settings.background = {0, 0, 0};
     const Camera camera = fitted(model_.camera, exports.width, exports.height);
     const std::string recipe = json_text(recipe_to_json(current_recipe()), -1);
-    auto work = [=, set = shown_set_.empty() ? document_.state().current : shown_set_](const JobControl& control) {
+    auto work = [=, set = set_on_screen()](const JobControl& control) {
         control.report("rendering", 0, 1);
         Painter painter;
         const auto& painted = painter.paint(set.spans(), camera, settings);
@@ -78,12 +97,7 @@ void Application::export_picture() {
         write_png(path, exports.transparent ? transparent_picture(painted) : painted.colour,
                   {{"Recipe", recipe}, {"Software", "GSEditPro"}});
     };
-    auto done = [this, path](const Error* error) {
-        if (error != nullptr) return report_error(*error);
-        toast(fmt::format("Wrote {}", path.string()));
-    };
-    if (!files_.start({fmt::format("Screenshot {}", path.filename().string()), work, done}))
-        toast("Another file is being read or written; wait for it.");
+    start_export("Screenshot", path, work, said_of_export());
 }
 
 void Application::export_turntable() {
@@ -91,23 +105,17 @@ void Application::export_turntable() {
     const auto& exports = model_.exports;
     const auto path = free_place(exports.film_path);
     auto film = std::make_shared<FilmRequest>();
-    film->first = document_.state().current;
+    film->first = set_on_screen();
     if (exports.before_after) {
-        film->second = std::make_shared<const GaussianSet>(document_.state().current);
-        film->first = document_.state().base;
+        film->second = std::make_shared<const GaussianSet>(film->first);
+        film->first = before_on_screen();
     }
     film->settings = settings_of(model_.view, document_.state().info.antialiased);
     film->transparent = exports.transparent;
     film->fps = exports.fps;
     film->cameras = turn_cameras(export_orbit(), {exports.frames, exports.fps, exports.degrees, exports.ease},
                                  exports.start_degrees, exports.width, exports.height);
-    auto done = [this, path](const Error* error) {
-        if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
-        toast(fmt::format("Wrote {}", path.string()));
-    };
-    if (!files_.start({fmt::format("Turntable {}", path.filename().string()),
-                       [film, path](const JobControl& control) { write_film(path, *film, control); }, done, true}))
-        toast("Another file is being read or written; wait for it.");
+    start_export("Turntable", path, [film, path](const JobControl& control) { write_film(path, *film, control); }, said_of_export(), true);
 }
 
 void Application::export_scene() {
@@ -128,13 +136,13 @@ void Application::export_scene() {
 
 void Application::write_scene(const std::filesystem::path& path) {
     auto scene = std::make_shared<Scene>();
-    scene->gaussians = document_.state().current;
+    scene->gaussians = set_on_screen();
     scene->info = document_.state().info;
     auto label = std::make_shared<Label>();
-    const int active = document_.state().active_label;
-    if (model_.exports.with_labels && active >= 0) {
-        const auto& named = document_.state().labels[static_cast<std::size_t>(active)];
-        *label = {named.name, named.weight, named.bits};
+    if (const NamedLabel* named = active_label(); named != nullptr && model_.exports.with_labels) {
+        const auto bits = on_screen(std::make_shared<const std::vector<float>>(named->bits->begin(), named->bits->end()), scene->gaussians);
+        const auto weight = on_screen(named->weight, scene->gaussians);   // one made by hand has none
+        if (bits) *label = {named->name, weight ? weight : bits, std::make_shared<const std::vector<std::uint8_t>>(bits->begin(), bits->end())};
     }
     auto work = [=](const JobControl& control) {
         control.report("writing", 0, 0);
@@ -142,12 +150,7 @@ void Application::write_scene(const std::filesystem::path& path) {
         if (label->bits) save.from_label = label.get();
         save_scene(path, *scene, save);
     };
-    auto done = [this, path](const Error* error) {
-        if (error != nullptr) return report_error(*error);
-        toast(fmt::format("Wrote {}", path.string()));
-    };
-    if (!files_.start({fmt::format("Export {}", path.filename().string()), work, done}))
-        toast("Another file is being read or written; wait for it.");
+    start_export("Export", path, work, said_of_export());
 }
 
 void Application::add_camera_key() {
@@ -170,7 +173,7 @@ void Application::export_camera_path(bool as_film) {
     const auto path = free_place(as_film ? exports.film_path : exports.camera_path_path);
     auto film = std::make_shared<FilmRequest>();
     if (as_film) {
-        film->first = document_.state().current;
+        film->first = set_on_screen();
         film->settings = settings_of(model_.view, document_.state().info.antialiased);
         film->fps = exports.fps;
         film->cameras = path_cameras(keys, exports.fps, exports.width, exports.height);
@@ -179,12 +182,7 @@ void Application::export_camera_path(bool as_film) {
         if (as_film) write_film(path, *film, control);
         else save_camera_path(path, keys);
     };
-    auto done = [this, path](const Error* error) {
-        if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
-        toast(fmt::format("Wrote {}", path.string()));
-    };
-    if (!files_.start({fmt::format("Camera path {}", path.filename().string()), work, done, true}))
-        toast("Another file is being read or written; wait for it.");
+    start_export("Camera path", path, work, as_film ? said_of_export() : std::string(), as_film);
 }
 
 }  // namespace gse::app

@@ -57,7 +57,7 @@ Values carried(const std::vector<float>& values, const std::vector<std::int64_t>
 
 }  // namespace
 
-Values Application::shown_values(const GaussianSet& set, int snapshot) {
+Values Application::shown_values(const GaussianSet& set) const {
     const auto& state = document_.state();
     const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
     const NamedLabel* label = state.active_label >= 0 && state.active_label < static_cast<int>(state.labels.size())
@@ -74,40 +74,59 @@ Values Application::shown_values(const GaussianSet& set, int snapshot) {
     } else if (label && label->bits) {
         values = from_bits(*label->bits);
     }
-    if (!values || values->size() != state.current.size()) return nullptr;
-    if (set.shares_all_with(state.current)) return values;
+    return on_screen(values, set);
+}
+
+/// Values of the document's rows on the splats that are shown; what is new there has 1. Null where they do not fit.
+Values Application::on_screen(const Values& values, const GaussianSet& set) const {
+    const auto& current = document_.state().current;
+    if (!values || values->size() != current.size()) return nullptr;
+    if (set.shares_all_with(current)) return values;
+    const int snapshot = model_.shown_snapshot;
     std::vector<std::int64_t> rows;   // of `set`, of each row of the state before
     if (pending_ && snapshot < 0) rows = *pending_->base_to_new;
     else if (!snapshots_.empty())
         rows = (snapshot < 0 ? snapshots_.back() : snapshots_[static_cast<std::size_t>(snapshot)]).base_to_new();
-    if (rows.size() != state.current.size()) return nullptr;
+    if (rows.size() != current.size()) return nullptr;
     return carried(*values, rows, set.size(), 1.0f);
+}
+
+bool Application::shows_snapshot() const {
+    return (edit_running() || pending_) && !snapshots_.empty();   // a search has none
+}
+
+/// What is to be seen: a snapshot that is looked at, the result that waits, the newest snapshot, else the document.
+GaussianSet Application::set_on_screen() {
+    const int snapshot = model_.shown_snapshot;
+    const bool live = shows_snapshot();
+    if (live && snapshot >= 0 && snapshot < static_cast<int>(snapshots_.size()))
+        return snapshot_set(snapshots_[static_cast<std::size_t>(snapshot)]);
+    if (pending_) return pending_->set;
+    return live ? snapshot_set(snapshots_.back()) : document_.state().current;
+}
+
+/// Before and after: a waiting or running edit is compared with the state before it, else with the scene as loaded.
+const GaussianSet& Application::before_on_screen() const {
+    return shows_snapshot() || pending_ ? document_.state().current : document_.state().base;
 }
 
 PictureRequest Application::picture_request() {
     const auto& state = document_.state();
     const int snapshot = model_.shown_snapshot;
-    const bool live = (edit_running() || pending_) && !snapshots_.empty();   // a search has none
+    const bool live = shows_snapshot();
     const ShownKey key{document_.revision(), content_, model_.view.mode, snapshot, state.active_label,
                        model_.view.tint_labels && model_.comparison == ui::Comparison::None, pending_.has_value()};
     if (!(key == shown_key_)) {
         shown_key_ = key;
-        shown_set_ = state.current;
-        if (live && snapshot >= 0 && snapshot < static_cast<int>(snapshots_.size()))
-            shown_set_ = snapshot_set(snapshots_[static_cast<std::size_t>(snapshot)]);
-        else if (pending_)
-            shown_set_ = pending_->set;
-        else if (live)
-            shown_set_ = snapshot_set(snapshots_.back());
+        shown_set_ = set_on_screen();
         const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
         const bool tints = mode == ui::DisplayMode::Beauty && model_.view.tint_labels && !live && model_.comparison == ui::Comparison::None;
-        shown_values_ = tints || mode >= ui::DisplayMode::Labels ? shown_values(shown_set_, snapshot) : nullptr;
+        shown_values_ = tints || mode >= ui::DisplayMode::Labels ? shown_values(shown_set_) : nullptr;
     }
     PictureRequest request;
     request.set = shown_set_;
     request.values = shown_values_;
-    // Before and after: a waiting or running edit is compared with the state before it, else with the scene as loaded.
-    request.original = live || pending_ ? state.current : state.base;
+    request.original = before_on_screen();
     request.antialiased = state.info.antialiased;
     request.camera = camera_.resized(std::max(viewport_width_, 1), std::max(viewport_height_, 1));
     request.settings = model_.view;
