@@ -8,6 +8,7 @@
 
 #include "engine/base/random.h"
 #include "engine/scene/framing.h"
+#include "engine/scene/viewpoints.h"
 #include "ui/sentence.h"
 #include "ui/state.h"
 
@@ -133,7 +134,7 @@ std::string why_not_export(const Context& context, const std::string& path) {
 
 std::string views_text(const Context& context) {
     const auto there = static_cast<int>(context.document().views.size()), used = context.request.views;
-    if (there == 0) return fmt::format("{} automatic view{}", used, used == 1 ? "" : "s");
+    if (there < static_cast<int>(LeastViewpoints)) return fmt::format("{} automatic view{}", used, used == 1 ? "" : "s");
     if (there > used) return fmt::format("{} of {} views", used, there);
     return fmt::format("{} view{}", there, there == 1 ? "" : "s");
 }

@@ -133,6 +133,8 @@ void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Seg
     words.erase(std::unique(words.begin(), words.end()), words.end());
     warn_unknown_words(words, workplace_->model().known_words());
     views_ = std::make_shared<const Views>(choose_views(workplace_->scene(), recipe_, given));
+    if (views_->automatic && !given.cameras.empty())
+        log::info("{} stored views are too few to search from: an orbit around the scene is used", given.cameras.size());
     located_ = std::make_shared<const Located>();
     edited_ = std::make_shared<const Edited>();
 }

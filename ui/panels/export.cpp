@@ -216,9 +216,10 @@ void draw_scene_file(Context& context) {
                  "A float per splat; plain PLY only"))
         context.exports_changed = true;
     const std::string why = why_not_write(context, context.exports.scene_path, {".ply", ".splat", ".spz"});
-    std::string what = "Writes the edited scene";
+    std::string what = context.model.result_waiting ? "Writes the scene" : "Writes the edited scene";
     if (context.scene_open())
-        what += fmt::format(", {} splats", count_text(context.document().current.size()));
+        what += fmt::format("{}, {} splats", context.model.result_waiting ? " with the result that waits" : "",
+                            count_text(context.model.result_waiting ? context.model.result_splats : context.document().current.size()));
     if (!ply) what += ". This format rounds values; PLY keeps every bit";
     if (context.exports.with_labels && !ply) what += "; labels are left out";
     say(why, what + ".");
