@@ -213,6 +213,7 @@ private:
 
     // application_files.cpp
     void open_recipe(const std::filesystem::path& picture);
+    void take_recipe(const EditRecipe& recipe);
     void take_loaded(Loaded loaded);
     void ask_which(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files);
     std::filesystem::path default_project_path() const;
@@ -235,6 +236,7 @@ private:
     // application_export.cpp
     std::filesystem::path free_place(const std::string& name) const;
     void write_scene(const std::filesystem::path& path);
+    void note_keys();
     std::string said_of_export() const;
     void start_export(const char* what, const std::filesystem::path& path, std::function<void(const JobControl&)> work,
                       const std::string& said, bool can_pause = false);
@@ -330,6 +332,7 @@ private:
     bool keep_ = false;                      // the autosave stays when this document goes
     bool autosaved_ = false;                 // there is an autosave of this document
     bool start_page_seen_ = false;
+    bool keys_unsaved_ = false;              // of the camera path
     std::shared_ptr<const Image> thumbnail_; // of the last autosave
     Clock::time_point thumbnail_made_{};
     std::string scene_path_, project_path_;

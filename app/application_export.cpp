@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/path_text.h"
+#include "engine/io/camera_json.h"
 #include "engine/io/image_file.h"
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/film.h"
@@ -88,7 +89,9 @@ void Application::export_picture() {
     auto settings = settings_of(model_.view, document_.state().info.antialiased);
     if (exports.transparent) settings.background = {0, 0, 0};
     const Camera camera = fitted(model_.camera, exports.width, exports.height);
-    const std::string recipe = json_text(recipe_to_json(current_recipe()), -1);
+    auto recipe_json = recipe_to_json(current_recipe());
+    recipe_json["camera"] = camera_to_json(model_.camera);
+    const std::string recipe = json_text(recipe_json, -1);
     auto work = [=, set = set_on_screen()](const JobControl& control) {
         control.report("rendering", 0, 1);
         Painter painter;
@@ -158,11 +161,19 @@ void Application::add_camera_key() {
     constexpr double seconds_between = 2;
     const double time = model_.camera_keys.empty() ? 0 : model_.camera_keys.back().time + seconds_between;
     model_.camera_keys.push_back({time, model_.camera});
+    note_keys();
 }
 
 void Application::delete_camera_key(std::size_t index) {
-    if (index < model_.camera_keys.size())
-        model_.camera_keys.erase(model_.camera_keys.begin() + static_cast<std::ptrdiff_t>(index));
+    if (index >= model_.camera_keys.size()) return;
+    model_.camera_keys.erase(model_.camera_keys.begin() + static_cast<std::ptrdiff_t>(index));
+    note_keys();
+}
+
+/// The path is part of the project: work to be saved.
+void Application::note_keys() {
+    keys_unsaved_ = true;
+    autosaved_revision_ = ~std::uint64_t{0};
 }
 
 void Application::export_camera_path(bool as_film) {

@@ -12,6 +12,7 @@
 #include "engine/base/json.h"
 #include "engine/base/log.h"
 #include "engine/io/autosave.h"
+#include "engine/io/camera_json.h"
 #include "engine/io/image_file.h"
 #include "engine/io/project_file.h"
 #include "engine/io/scene_io.h"
@@ -19,6 +20,7 @@
 #include "engine/pipeline/scene_loading.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/scene/framing.h"
+#include "engine/scene/viewpoints.h"
 
 namespace gse::app {
 namespace {
@@ -47,15 +49,31 @@ void Application::open_recipe(const std::filesystem::path& picture) {
         const auto found = text.find("Recipe");
         if (found == text.end())
             throw Error(ErrorCode::InvalidArgument, "this picture carries no recipe", "drop a picture this program made", picture);
-        edit::EditRequest request;
-        fields_from_json(request, parse_json<nlohmann::ordered_json>(found->second, "the recipe in this picture").at("request"));
-        set_request(request);
-        toast("The prompt and its settings come from the picture.");
+        const auto json = parse_json<nlohmann::ordered_json>(found->second, "the recipe in this picture");
+        const EditRecipe recipe = recipe_from_json(json, picture.parent_path());
+        const bool here = !document_.empty() && std::filesystem::path(recipe.job.scene) == scene_path_;
+        take_recipe(recipe);
+        if (here && json.contains("camera")) set_camera(fitted(camera_from_json(json["camera"]), viewport_width_, viewport_height_));
+        toast(here ? "The prompt, its settings and the camera come from the picture."
+                   : "The prompt and its settings come from the picture; it shows another scene, so the camera stays.");
     } catch (const Error& error) {
         report_error(error);
     } catch (const nlohmann::json::exception&) {
         report_error(Error(ErrorCode::Malformed, "the recipe in this picture cannot be read", "", picture));
     }
+}
+
+/// What the command line takes of --recipe, but for the files that are open already.
+void Application::take_recipe(const EditRecipe& recipe) {
+    set_request(recipe.request);
+    auto& settings = model_.model_settings;
+    settings.learn_scene = recipe.use_dreambooth;
+    if (recipe.use_dreambooth) settings.learning = recipe.dreambooth;
+    settings.guidance = recipe.guidance;
+    settings.attention = recipe.attention;
+    settings.device = recipe.job.device, settings.precision = recipe.job.precision;
+    settings.threads = recipe.job.threads, settings.front = recipe.job.front;
+    if (recipe.job.model != model_path_ || recipe.job.lora != loras_) try_model(recipe.job.model, recipe.job.lora, false);
 }
 
 void Application::open(const std::filesystem::path& path) {
@@ -143,6 +161,8 @@ void Application::take_loaded(Loaded loaded) {
     model_.orbit = scene_orbit(Scene{document_.state().base, info, {}}, home);
     model_.framing = framing_bounds(document_.state().current);
     camera_ = {};
+    model_.camera_keys.clear();
+    keys_unsaved_ = false;
     if (loaded.project) ui_from_json(loaded.data.ui);
     if (camera_.width == 0) go_home();
     ++camera_version_;
@@ -168,11 +188,8 @@ nlohmann::json Application::ui_json() const {
     json["model"] = model_path_;
     json["loras"] = loras_;
     if (!layout_.empty()) json["layout"] = layout_;
-    const auto rotation = camera_.rotation;
-    json["camera"] = {{"fx", camera_.fx}, {"fy", camera_.fy}, {"width", camera_.width}, {"height", camera_.height}};
-    for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) json["camera"]["rotation"].push_back(rotation(r, c));
-    json["camera"]["translation"] = {camera_.translation.x, camera_.translation.y, camera_.translation.z};
+    json["camera"] = camera_to_json(camera_);
+    json["camera_keys"] = camera_keys_to_json(model_.camera_keys);
     return json;
 }
 
@@ -194,21 +211,8 @@ void Application::ui_from_json(const nlohmann::json& json) {
             layout_ = json["layout"].get<std::string>();
             layout_loaded_ = true;
         }
-        if (!json.contains("camera")) return;
-        const auto& from = json["camera"];
-        Camera camera;
-        camera.width = from.at("width").get<int>();
-        camera.height = from.at("height").get<int>();
-        camera.fx = from.at("fx").get<double>();
-        camera.fy = from.at("fy").get<double>();
-        camera.cx = camera.width / 2.0;
-        camera.cy = camera.height / 2.0;
-        for (int i = 0; i < 9; ++i) camera.rotation(i / 3, i % 3) = from.at("rotation").at(static_cast<std::size_t>(i)).get<double>();
-        camera.translation = {from.at("translation").at(0).get<double>(), from.at("translation").at(1).get<double>(),
-                              from.at("translation").at(2).get<double>()};
-        const bool sane = camera.width > 0 && camera.height > 0 && camera.width < 65536 && camera.height < 65536 &&
-                          camera.fx > 0 && camera.fy > 0 && std::isfinite(length(camera.centre()));
-        if (sane) camera_ = camera;
+        if (json.contains("camera_keys")) model_.camera_keys = camera_keys_from_json(json["camera_keys"]);
+        if (json.contains("camera")) camera_ = camera_from_json(json["camera"]);
     } catch (const std::exception& error) {
         log::warning("some of the window's settings in the project cannot be used ({})", error.what());
     }
@@ -236,6 +240,7 @@ void Application::save_project(const std::filesystem::path& path, std::function<
         if (error != nullptr) return report_error(*error);
         project_path_ = target.string();
         saved_revision_ = revision;
+        keys_unsaved_ = false;
         model_.saved_at = fmt::format("saved {}{}", clock_now(), options_.autosave ? " (autosave on)" : "");
         autosaved_revision_ = ~std::uint64_t{0};   // what is still unsaved is written anew: the last one is older than this
         if (!unsaved() && recovered_) gse::discard(*recovered_), recovered_.reset();

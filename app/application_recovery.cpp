@@ -114,7 +114,7 @@ std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann
 }  // namespace
 
 bool Application::unsaved() const {
-    return !document_.empty() && (document_.revision() != saved_revision_ || content_live() != 0);
+    return !document_.empty() && (document_.revision() != saved_revision_ || keys_unsaved_ || content_live() != 0);
 }
 
 std::uint64_t Application::content_live() const {

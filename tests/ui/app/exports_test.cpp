@@ -79,3 +79,81 @@ DOCTEST_TEST_CASE("a label that was made by hand is exported, too") {
     DOCTEST_CHECK(*written.labels.labels[0].bits == *app.document().state().labels[0].bits);
     app.shut_down();
 }
+
+DOCTEST_TEST_CASE("a screenshot that is dropped back brings its settings and its camera") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    app.update(session.preview);
+    Camera camera = app.model().camera;
+    camera.translation.z += 0.7;
+    camera.fx *= 1.5, camera.fy *= 1.5;
+    app.set_camera(camera);
+    auto settings = app.model().model_settings;
+    settings.front = "45";
+    settings.guidance.guidance_scale = 6;
+    settings.attention.strength = 0.5;
+    settings.learn_scene = true;
+    settings.learning.steps = 77;
+    app.set_model_settings(settings);
+    app.update(session.preview);
+    auto exports = app.model().exports;
+    exports.picture_path = (place.folder / "shot.png").string();
+    exports.width = 80, exports.height = 80;
+    app.set_exports(exports);
+    const auto shown = app.model().camera;
+    app.export_picture();
+    DOCTEST_REQUIRE(session.idle());
+    const auto seed = app.model().request.seed;
+    app.set_model_settings({});
+    auto request = app.model().request;
+    request.prompt = "a red bear", request.seed = seed + 5;
+    app.set_request(request);
+    app.look_through(0);
+    app.update(session.preview);
+    DOCTEST_REQUIRE_FALSE(app.model().camera.rotation == shown.rotation);
+    app.open(place.folder / "shot.png");
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().request.prompt == "a blue bear on the grass");
+    DOCTEST_CHECK(app.model().request.seed == seed);
+    DOCTEST_CHECK(app.model().model_settings.front == "45");
+    DOCTEST_CHECK(app.model().model_settings.guidance.guidance_scale == 6);
+    DOCTEST_CHECK(app.model().model_settings.attention.strength == 0.5);
+    DOCTEST_CHECK(app.model().model_settings.learn_scene);
+    DOCTEST_CHECK(app.model().model_settings.learning.steps == 77);
+    DOCTEST_CHECK(app.model().camera.rotation == shown.rotation);
+    DOCTEST_CHECK(app.model().camera.translation == shown.translation);
+    DOCTEST_CHECK(app.model().camera.fx == doctest::Approx(shown.fx));
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("the camera path is work of the project: saved, loaded, and not taken into another scene") {
+    const Place place;
+    {
+        Session session(false);
+        session.open_bear();
+        auto& app = session.app;
+        app.update(session.preview);
+        app.add_camera_key();
+        app.look_through(1);
+        app.update(session.preview);
+        app.add_camera_key();
+        app.update(session.preview);
+        DOCTEST_CHECK(app.model().unsaved);
+        app.save_project(place.folder / "path.gsep");
+        DOCTEST_REQUIRE(session.until([&] { return !app.model().unsaved; }, 30));
+        app.shut_down();
+    }
+    Session again(false);
+    auto& app = again.app;
+    app.open(place.folder / "path.gsep");
+    DOCTEST_REQUIRE(again.until([&] { return app.model().document != nullptr; }));
+    DOCTEST_REQUIRE(app.model().camera_keys.size() == 2);
+    DOCTEST_CHECK(app.model().camera_keys[1].time == 2);
+    DOCTEST_CHECK_FALSE(app.model().camera_keys[0].camera.translation == app.model().camera_keys[1].camera.translation);
+    app.open_sample();
+    DOCTEST_REQUIRE(again.until([&] { return app.model().project_path.empty(); }));
+    DOCTEST_CHECK(app.model().camera_keys.empty());
+    app.shut_down();
+}
