@@ -214,6 +214,7 @@ private:
     // application_files.cpp
     void open_recipe(const std::filesystem::path& picture);
     void take_recipe(const EditRecipe& recipe);
+    void open_cameras(const std::filesystem::path& path);
     void take_loaded(Loaded loaded);
     void ask_which(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files);
     std::filesystem::path default_project_path() const;

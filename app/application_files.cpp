@@ -13,6 +13,7 @@
 #include "engine/base/log.h"
 #include "engine/io/autosave.h"
 #include "engine/io/camera_json.h"
+#include "engine/io/cameras.h"
 #include "engine/io/image_file.h"
 #include "engine/io/project_file.h"
 #include "engine/io/scene_io.h"
@@ -80,6 +81,7 @@ void Application::open(const std::filesystem::path& path) {
     if (work_.running()) return toast("Cancel the running job first.");
     const auto absolute = std::filesystem::absolute(path).lexically_normal();
     if (absolute.extension() == ".png") return open_recipe(absolute);
+    if (only_cameras(absolute)) return open_cameras(absolute);
     auto loaded = std::make_shared<Loaded>();
     loaded->path = absolute;
     auto work = [loaded](const JobControl& control) {
@@ -113,6 +115,27 @@ void Application::open(const std::filesystem::path& path) {
     if (files_.start({fmt::format("Open {}", absolute.filename().string()), work, done})) return;
     keep_ = false;
     toast("Another file is being read or written; wait for it.");
+}
+
+/// Cameras without a scene are those of the scene that is open.
+void Application::open_cameras(const std::filesystem::path& path) {
+    if (document_.empty()) return toast("These are cameras: open their scene first, then drop them on it.", true);
+    auto found = std::make_shared<SceneCameras>();
+    auto work = [found, path, set = document_.state().current, scene = scene_path_](const JobControl&) {
+        *found = cameras_of_scene(set, scene, path.string());
+    };
+    auto done = [this, found, opened = opened_, name = path.filename().string()](const Error* error) {
+        if (error != nullptr) return report_error(*error);
+        if (opened != opened_) return;   // another scene meanwhile
+        if (found->views.empty()) return toast(found->notes.empty() ? "There are no cameras in " + name + "." : found->notes.front(), true);
+        DocumentState state = document_.state();
+        const std::string note = guess_up(state.info, found->views);
+        state.views = std::move(found->views);
+        toast(fmt::format("The scene has the {} cameras of {} now.{}{}", state.views.size(), name, note.empty() ? "" : " ", note));
+        document_.apply("Load cameras", std::move(state));
+    };
+    if (!files_.start({fmt::format("Open {}", path.filename().string()), work, done}))
+        toast("Another file is being read or written; wait for it.");
 }
 
 void Application::ask_which(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files) {

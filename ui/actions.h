@@ -22,7 +22,7 @@ class Actions {
 public:
     virtual ~Actions() = default;
     // Files
-    virtual void open(const std::filesystem::path& path) = 0;      // scene, folder, project, or a PNG with a recipe in it
+    virtual void open(const std::filesystem::path& path) = 0;      // scene, folder, project, cameras of the open scene, PNG with a recipe
     virtual void open_sample() = 0;
     /// An empty path = where it was saved last. `then` (may be empty) is called once it is saved.
     virtual void save_project(const std::filesystem::path& path, std::function<void()> then = {}) = 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/base/random.h"
+#include "engine/io/cameras.h"
 #include "engine/scene/framing.h"
 #include "engine/scene/viewpoints.h"
 #include "ui/sentence.h"
@@ -183,6 +184,7 @@ void cancel_job(Context& context) {
 void open_path(Context& context, const std::string& path) {
     auto& actions = context.actions;
     if (has_extension(path, std::vector<std::string>{".png"})) return actions.open(path_of(path));   // a prompt, no scene
+    if (context.scene_open() && only_cameras(path_of(path))) return actions.open(path_of(path));   // for this scene
     with_unsaved_work(context, "Another scene is to be opened.",
                       [&actions, path] { actions.open(path_of(path)); });
 }

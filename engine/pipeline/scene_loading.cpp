@@ -45,17 +45,19 @@ SceneCameras cameras_of_scene(const GaussianSet& set, const std::filesystem::pat
     return cameras;
 }
 
+std::string guess_up(SceneInfo& info, const std::vector<View>& views) {
+    const auto up = info.up_known ? std::nullopt : up_of_cameras(views);
+    if (!up) return {};
+    info.up = *up;
+    return fmt::format("The file does not say which way is up: guessed from {} cameras.", views.size());
+}
+
 LoadedScene load_scene_with_cameras(const std::filesystem::path& path, const std::string& cameras) {
     LoadedScene loaded{load_scene(path), {}, {}};
     SceneCameras found = cameras_of_scene(loaded.scene.gaussians, path, cameras);
     loaded.views = std::move(found.views);
     loaded.notes = std::move(found.notes);
-    auto& info = loaded.scene.info;
-    if (info.up_known) return loaded;
-    if (const auto up = up_of_cameras(loaded.views)) {
-        info.up = *up;
-        loaded.notes.push_back(fmt::format("The file does not say which way is up: guessed from {} cameras.", loaded.views.size()));
-    }
+    if (auto note = guess_up(loaded.scene.info, loaded.views); !note.empty()) loaded.notes.push_back(std::move(note));
     return loaded;
 }
 

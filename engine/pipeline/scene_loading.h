@@ -19,6 +19,9 @@ struct SceneCameras {
 /// where named ones cannot be read; of those found a note says so.
 SceneCameras cameras_of_scene(const GaussianSet& set, const std::filesystem::path& scene_path, const std::string& named = {});
 
+/// Takes up from the cameras where the file does not state it. Returns the sentence that says so; empty = nothing was guessed.
+std::string guess_up(SceneInfo& info, const std::vector<View>& views);
+
 /// A scene, its cameras, and which way is up where the file does not say and the cameras do.
 struct LoadedScene {
     Scene scene;

@@ -207,6 +207,35 @@ DOCTEST_TEST_CASE("a folder with a scene and its cameras opens; several scenes a
     DOCTEST_CHECK(session.app.model().toasts.empty());
 }
 
+DOCTEST_TEST_CASE("cameras that are opened are those of the open scene; without one it is said what to do") {
+    const Place place;
+    Session session;
+    auto& app = session.app;
+    OrbitParameters around;
+    save_cameras_json(place.folder / "cameras.json", orbit_views(around, 7, 64, 64));
+    app.open(place.folder / "cameras.json");
+    DOCTEST_REQUIRE(session.until([&] { return !app.model().toasts.empty(); }, 10));
+    DOCTEST_CHECK(app.model().toasts[0].text.find("open their scene first") != std::string::npos);
+    DOCTEST_CHECK(app.model().document == nullptr);
+    app.open_sample();
+    DOCTEST_REQUIRE(session.until([&] { return app.model().document != nullptr; }));
+    save_cameras_json(place.folder / "cameras.json", orbit_views(app.model().orbit, 7, 64, 64));
+    const auto before = app.document().state().views.size();
+    DOCTEST_REQUIRE(before != 7);
+    app.open(place.folder / "cameras.json");
+    DOCTEST_REQUIRE(session.until([&] { return app.document().state().views.size() == 7; }, 30));
+    app.undo();
+    DOCTEST_CHECK(app.document().state().views.size() == before);
+    auto elsewhere = orbit_views(app.model().orbit, 7, 64, 64);
+    for (auto& view : elsewhere) view.camera.translation.x += 1000;
+    save_cameras_json(place.folder / "cameras.json", elsewhere);
+    app.open(place.folder);   // the folder is as good
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(app.document().state().views.size() == before);
+    DOCTEST_CHECK(app.model().toasts.back().is_error);
+    app.shut_down();
+}
+
 DOCTEST_TEST_CASE("every export numbers its files, a scene is replaced only when that is said") {
     const Place place;
     Session session;
