@@ -9,6 +9,7 @@
 #include "engine/base/log.h"
 #include "engine/base/path_text.h"
 #include "engine/io/camera_json.h"
+#include "engine/io/free_path.h"
 #include "engine/io/image_file.h"
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/film.h"
@@ -39,26 +40,7 @@ raster::Settings settings_of(const ui::ViewSettings& view, bool antialiased) {
 
 /// The first name of "shot.png", "shot-2.png", ... that is free: an export never writes over what is there.
 std::filesystem::path Application::free_place(const std::string& name) const {
-    const auto wanted = place_for(name, project_path_, scene_path_);
-    std::error_code ignored;
-    const auto taken = [&](const std::filesystem::path& path) {
-        if (!std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) return false;
-        return !std::filesystem::is_directory(path, ignored) || !std::filesystem::is_empty(path, ignored);
-    };
-    const std::string file = wanted.filename().string();
-    const std::string ending = file.ends_with(".compressed.ply") ? ".compressed.ply" : wanted.extension().string();
-    std::string stem = file.substr(0, file.size() - ending.size());
-    int number = 2;
-    const auto dash = stem.find_last_not_of("0123456789");
-    const bool numbered = dash != std::string::npos && dash > 0 && stem[dash] == '-' && dash + 1 < stem.size() &&
-                          stem.size() - dash < 8;
-    if (numbered) {
-        number = std::stoi(stem.substr(dash + 1)) + 1;
-        stem.resize(dash);
-    }
-    auto path = wanted;
-    for (; taken(path); ++number) path = wanted.parent_path() / fmt::format("{}-{}{}", stem, number, ending);
-    return path;
+    return first_free(place_for(name, project_path_, scene_path_));
 }
 
 /// What is shown is written, which need not be what the document holds.

@@ -8,6 +8,7 @@
 #include "engine/base/log.h"
 #include "engine/localize/focus.h"
 #include "engine/pipeline/scene_tools.h"
+#include "engine/scene/row_values.h"
 #include "engine/scene/viewpoints.h"
 
 namespace gse::app {
@@ -15,44 +16,8 @@ namespace {
 
 using Values = std::shared_ptr<const std::vector<float>>;
 
-
 Values from_bits(const std::vector<std::uint8_t>& bits) {
     return std::make_shared<const std::vector<float>>(bits.begin(), bits.end());
-}
-
-/// How far each row is from the base: 1 = a clear change of colour, place, size or opacity, or a new row.
-Values changed_values(const DocumentState& state) {
-    const auto& now = state.current;
-    const auto& base = state.base;
-    std::vector<float> values(now.size(), 0.0f);
-    const std::size_t stride_now = now.empty() ? 0 : now.sh().size() / now.size();
-    const std::size_t stride_base = base.empty() ? 0 : base.sh().size() / base.size();
-    for (std::size_t row = 0; row < now.size(); ++row) {
-        const RowId id = (*state.row_ids)[row];
-        if (id >= base.size()) {
-            values[row] = 1;
-            continue;
-        }
-        const auto old = static_cast<std::size_t>(id);
-        double change = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            change += 0.5 * std::abs(now.sh()[row * stride_now + c] - base.sh()[old * stride_base + c]);
-            const double size = std::exp(std::clamp<double>(base.log_scale()[old * 3 + c], -20, 20));
-            change += 0.2 * std::min(1.0, std::abs(now.position()[row * 3 + c] - base.position()[old * 3 + c]) / (size + 1e-12));
-            change += 0.2 * std::abs(now.log_scale()[row * 3 + c] - base.log_scale()[old * 3 + c]);
-        }
-        change += 0.1 * std::abs(now.opacity_logit()[row] - base.opacity_logit()[old]);
-        values[row] = std::isfinite(change) ? static_cast<float>(std::min(change, 1.0)) : 1.0f;
-    }
-    return std::make_shared<const std::vector<float>>(std::move(values));
-}
-
-/// Values of rows of `before` carried to another set; rows that are new get `fresh`.
-Values carried(const std::vector<float>& values, const std::vector<std::int64_t>& base_to_new, std::size_t rows, float fresh) {
-    std::vector<float> result(rows, fresh);
-    for (std::size_t row = 0; row < base_to_new.size() && row < values.size(); ++row)
-        if (base_to_new[row] >= 0) result[static_cast<std::size_t>(base_to_new[row])] = values[row];
-    return std::make_shared<const std::vector<float>>(std::move(result));
 }
 
 }  // namespace
@@ -65,8 +30,7 @@ Values Application::shown_values(const GaussianSet& set) const {
                                   : nullptr;
     Values values;
     if (mode == ui::DisplayMode::Changed) {
-        if (set.shares_all_with(state.current)) return changed_values(state);
-        values = changed_values(state);
+        values = std::make_shared<const std::vector<float>>(changed_values(state));
     } else if (mode == ui::DisplayMode::Attention) {
         if (attention_values_ && attention_set_.shares_all_with(state.current)) values = attention_values_;
     } else if (mode == ui::DisplayMode::LabelWeight) {
@@ -88,7 +52,7 @@ Values Application::on_screen(const Values& values, const GaussianSet& set) cons
     else if (!snapshots_.empty())
         rows = (snapshot < 0 ? snapshots_.back() : snapshots_[static_cast<std::size_t>(snapshot)]).base_to_new();
     if (rows.size() != current.size()) return nullptr;
-    return carried(*values, rows, set.size(), 1.0f);
+    return std::make_shared<const std::vector<float>>(carried(*values, rows, set.size(), 1.0f));
 }
 
 bool Application::shows_snapshot() const {
