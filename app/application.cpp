@@ -171,6 +171,7 @@ void Application::refresh_document() {
     if (document_seen_ != document_.revision()) {
         document_seen_ = document_.revision();
         ++content_;
+        if (!(up_shown_ == document_.state().info.up)) stand_up();
         refresh_words();
         model_.labelled = active_label() ? count_labelled(*active_label()) : 0;
     }

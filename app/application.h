@@ -305,6 +305,7 @@ private:
     // application_view.cpp
     PictureRequest picture_request();
     void go_home();
+    void stand_up();
     std::shared_ptr<const std::vector<float>> shown_values(const GaussianSet& set) const;
     std::shared_ptr<const std::vector<float>> on_screen(const std::shared_ptr<const std::vector<float>>& values, const GaussianSet& set) const;
     bool shows_snapshot() const;
@@ -387,6 +388,7 @@ private:
 
     // View
     Camera camera_;
+    Vec3 up_shown_{};   // that the orbit stands on
     int viewport_width_ = 1, viewport_height_ = 1;
     Clock::time_point last_move_ = Clock::now() - std::chrono::seconds(10), last_frame_ = Clock::now(), last_estimate_{};
     std::uint64_t content_ = 1, stroke_ = 0, camera_version_ = 0, document_seen_ = 0;

@@ -180,8 +180,8 @@ void Application::take_loaded(Loaded loaded) {
     for (const auto& node : document_.state().stack) next_edit_id_ = std::max(next_edit_id_, node.id + 1);
     model_.statistics = loaded.statistics;
     const auto& info = document_.state().info;
-    RenderParameters home;
-    model_.orbit = scene_orbit(Scene{document_.state().base, info, {}}, home);
+    up_shown_ = info.up;
+    model_.orbit = scene_orbit(Scene{document_.state().base, info, {}}, RenderParameters{});
     model_.framing = framing_bounds(document_.state().current);
     camera_ = {};
     model_.camera_keys.clear();
@@ -286,9 +286,15 @@ void Application::set_up_axis(const std::string& up) {
     if (!require_scene()) return;
     DocumentState state = document_.state();
     state.info.up = parse_up(up, state.info);
+    state.info.up_known = true;   // the artist says so: no guess any more, and written with the scene
     document_.apply("Up axis", std::move(state));
-    RenderParameters home;
-    model_.orbit = scene_orbit(Scene{document_.state().base, document_.state().info, {}}, home);
+    stand_up();
+}
+
+/// Orbit and camera follow the up axis, which undo changes too.
+void Application::stand_up() {
+    up_shown_ = document_.state().info.up;
+    model_.orbit = scene_orbit(Scene{document_.state().base, document_.state().info, {}}, RenderParameters{});
     go_home();
     ++camera_version_;
 }

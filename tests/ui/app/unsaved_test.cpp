@@ -236,6 +236,36 @@ DOCTEST_TEST_CASE("cameras that are opened are those of the open scene; without 
     app.shut_down();
 }
 
+DOCTEST_TEST_CASE("an up axis that was chosen is known, written, and undone with orbit and camera") {
+    const Place place;
+    const auto scene = own_scene(place);
+    Session session;
+    auto& app = session.app;
+    app.open(scene);
+    DOCTEST_REQUIRE(session.until([&] { return app.model().document != nullptr; }));
+    app.update(session.preview);
+    const auto orbit = app.model().orbit;
+    const auto camera = app.model().camera;
+    app.set_up_axis("z");
+    app.update(session.preview);
+    DOCTEST_CHECK(app.document().state().info.up_known);
+    DOCTEST_CHECK(app.model().orbit.up.z > 0.99);
+    DOCTEST_CHECK_FALSE(app.model().camera.rotation == camera.rotation);
+    auto exports = app.model().exports;
+    exports.scene_path = (place.folder / "upright.ply").string();
+    app.set_exports(exports);
+    app.export_scene();
+    DOCTEST_REQUIRE(session.idle());
+    const auto written = load_scene(place.folder / "upright.ply").info;
+    DOCTEST_CHECK(written.up_known);
+    DOCTEST_CHECK(written.up.z > 0.99);
+    app.undo();
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().orbit.up == orbit.up);
+    DOCTEST_CHECK(app.model().camera.rotation == camera.rotation);
+    app.shut_down();
+}
+
 DOCTEST_TEST_CASE("every export numbers its files, a scene is replaced only when that is said") {
     const Place place;
     Session session;

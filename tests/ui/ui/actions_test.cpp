@@ -398,6 +398,13 @@ DOCTEST_TEST_CASE("views, export, scene, models, settings") {
     harness.shell.show(ui::PanelId::Scene);
     harness.frame(3);
     DOCTEST_CHECK(asks(harness, "scene.up.z", "set_up_axis z"));
+    auto& document = harness.application.document();
+    auto upright = document.state();
+    upright.info.up = {0, 0, 1}, upright.info.up_known = true;
+    document.apply("Up axis", upright);
+    harness.frame(3);
+    DOCTEST_CHECK(!asks(harness, "scene.up.z", "set_up_axis"));   // it is chosen, and shown to be
+    DOCTEST_CHECK(asks(harness, "scene.up.-z", "set_up_axis -z"));
     harness.shell.show(ui::PanelId::Models);
     harness.frame(3);
     DOCTEST_CHECK(asks(harness, "models.use.1", "choose_model /home/mira/ComfyUI"));
