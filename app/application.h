@@ -371,6 +371,7 @@ private:
     std::uint64_t live_seen_ = 0;
     std::deque<edit::EditSnapshot> snapshots_;
     SnapshotSet newest_set_, looked_at_;
+    std::optional<bool> tint_before_;            // of the edit whose snapshots are shown
     GaussianSet snapshot_base_;                  // what the snapshots are states of
     std::optional<edit::EditSnapshot> branch_;   // to go on from when the running edit has ended
     std::optional<PendingResult> pending_;

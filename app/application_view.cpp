@@ -77,14 +77,13 @@ const GaussianSet& Application::before_on_screen() const {
 PictureRequest Application::picture_request() {
     const auto& state = document_.state();
     const int snapshot = model_.shown_snapshot;
-    const bool live = shows_snapshot();
     const ShownKey key{document_.revision(), content_, model_.view.mode, snapshot, state.active_label,
                        model_.view.tint_labels && model_.comparison == ui::Comparison::None, pending_.has_value()};
     if (!(key == shown_key_)) {
         shown_key_ = key;
         shown_set_ = set_on_screen();
         const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
-        const bool tints = mode == ui::DisplayMode::Beauty && model_.view.tint_labels && !live && model_.comparison == ui::Comparison::None;
+        const bool tints = mode == ui::DisplayMode::Beauty && key.tint;
         shown_values_ = tints || mode >= ui::DisplayMode::Labels ? shown_values(shown_set_) : nullptr;
     }
     PictureRequest request;

@@ -317,6 +317,7 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     live_->losses = model_.losses;
     live_->start = std::move(start);
     live_seen_ = 0;
+    tint_before_.reset();
     if (!live_->start) model_.gate = {};
     model_.target_rounds.clear();
     list_snapshots();
@@ -476,6 +477,7 @@ void Application::apply_result() {
 
 void Application::discard_result() {
     pending_.reset();
+    model_.view.tint_labels |= std::exchange(tint_before_, std::nullopt).value_or(false);   // what is labelled can be seen again
     ++content_;
 }
 

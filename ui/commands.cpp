@@ -282,6 +282,7 @@ void label_by_hand(Context& context, const std::string& name) {
         context.actions.add_label(name);
     else
         context.actions.set_active_label(static_cast<int>(found - labels.begin()));
+    show_labelled(context);
     context.state.viewport.tool = Tool::CutOut;   // a box is the quickest way to a thing; the other tools correct it
     context.state.viewport.stroke = false;
     show_panel(context.state, PanelId::Labels);
@@ -291,6 +292,13 @@ void set_tool(Context& context, Tool tool) {
     auto& viewport = context.state.viewport;
     viewport.tool = viewport.tool == tool ? Tool::Orbit : tool;
     viewport.stroke = false;
+    if (viewport.tool != Tool::Orbit) show_labelled(context);
+}
+
+void show_labelled(Context& context) {
+    if (context.view.tint_labels) return;
+    context.view.tint_labels = true;
+    context.view_changed = true;
 }
 
 void toggle_wipe(Context& context) {

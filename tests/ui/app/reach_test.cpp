@@ -85,6 +85,12 @@ DOCTEST_TEST_CASE("a label that was found and renamed is still the one that the 
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.document().state().labels.size() == 1);
     DOCTEST_CHECK(*active(app).bits == corrected);
+    DOCTEST_CHECK_FALSE(app.model().view.tint_labels);   // what was made is to be seen
+    auto view = app.model().view;
+    view.tint_labels = true;   // by T, a tool or a stroke
+    app.set_view_settings(view);
+    app.update(session.preview);
+    DOCTEST_CHECK(session.preview.last.values != nullptr);
     app.discard_result();
     app.locate();   // another search corrects the same label
     DOCTEST_REQUIRE(session.idle());

@@ -206,6 +206,27 @@ DOCTEST_TEST_CASE("a box of the tool that cuts out asks for what is in it, once"
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
 }
 
+DOCTEST_TEST_CASE("who picks a tool that labels, or paints, sees what is labelled") {
+    Harness harness(with_depth());
+    auto& view = harness.application.model().view;
+    view.tint_labels = false;   // as after Apply
+    harness.frame(2);
+    const auto at = in_viewport(harness, 0.5f, 0.5f);
+    harness.move(at.x, at.y);
+    harness.key('B');
+    harness.frame();
+    DOCTEST_CHECK(view.tint_labels);
+    harness.key('T');   // it can be switched off again
+    harness.frame();
+    DOCTEST_CHECK_FALSE(view.tint_labels);
+    harness.drag(at, {at.x + 40, at.y});
+    DOCTEST_CHECK(view.tint_labels);
+    view.tint_labels = false;
+    harness.key('B');   // back to the camera
+    harness.frame();
+    DOCTEST_CHECK_FALSE(view.tint_labels);
+}
+
 DOCTEST_TEST_CASE("rectangle and lasso send one polygon in texture pixels") {
     Harness harness({1280, 720, 1, Situation::Located, false});
     const auto rect = harness.rect("viewport");
