@@ -29,6 +29,7 @@
 namespace gse::app {
 
 constexpr std::size_t MostSnapshots = 24, MostSnapshotBytes = std::size_t{512} << 20;   // kept for the scrubber; thinned out beyond
+constexpr const char* AddsElsewhere = "What is added goes where the search placed it: corrections of the label by hand do not move that.";
 constexpr double MovingSeconds = 0.25;   // after the last movement of the camera the picture is refined
 
 struct ApplicationOptions {

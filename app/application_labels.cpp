@@ -52,7 +52,8 @@ void Application::change_label(const std::string& name, const std::function<Name
     label = change(std::move(label));
     if (edit_running()) {   // the loop takes it over before its next step
         const std::lock_guard lock(live_->mutex);
-        live_->label = *label.bits;
+        if (live_->adds) toast(AddsElsewhere);
+        else live_->label = *label.bits;
     }
     document_.apply(name, std::move(state), merge_key);
     choose_label_by_hand();

@@ -358,6 +358,7 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
               const std::vector<float>& attention, LiveEdit& live) {
     const bool adds = job->located().mode == edit::EditMode::Add;
     if (!adds && !label.empty() && label != *job->located().label.bits) job->correct_label(label);
+    if (adds && !label.empty() && label != *job->located().source_label.bits) log::warning("{}", AddsElsewhere);   // a toast, too
     {
         const std::lock_guard lock(live.mutex);
         live.adds = adds;

@@ -43,6 +43,14 @@ DOCTEST_TEST_CASE("what an addition left behind is not what the next edit of ano
     app.edit();
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_REQUIRE(app.model().result_waiting);
+    app.discard_result();
+    app.select(stroke_over_bear(5), ui::SetOperation::Remove, true);   // says nothing of where the hat goes, and that is said
+    app.edit();
+    DOCTEST_REQUIRE(session.idle());
+    app.update(session.preview);
+    bool said = false;
+    for (const auto& toast : app.model().toasts) said |= toast.text == app::AddsElsewhere;
+    DOCTEST_CHECK(said);
     app.apply_result();
     DOCTEST_REQUIRE(active(app).name == "hat");
     request = app.model().request;
