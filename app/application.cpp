@@ -118,6 +118,8 @@ void Application::refresh_jobs(const JobStatus& work, const JobStatus& files) {
     model_.read_target = read_target();
     model_.result_waiting = pending_.has_value() && !work_.running();
     model_.result_splats = pending_ ? pending_->set.size() : 0;
+    model_.result_changed_outside = pending_ ? pending_->changed_outside_label : 0;
+    model_.result_seconds = pending_ ? pending_->seconds : 0;
     relabel_if_wanted();
 }
 

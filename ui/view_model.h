@@ -339,6 +339,8 @@ struct ViewModel {
     int shown_snapshot = -1;                     // index into snapshots, -1 = the result that waits, else the newest
     bool result_waiting = false;                 // an edit is done and asks: apply or discard
     std::size_t result_splats = 0;               // of the result that waits
+    std::size_t result_changed_outside = 0;      // splats outside the label that are not as they were
+    double result_seconds = 0;                   // that it took
     // Rest
     std::vector<ModelView> models;
     bool edits_by_instruction = false;           // the model in use is told what to do, too

@@ -260,6 +260,7 @@ void FakeApplication::make_work(bool running) {
     model_.job.outcome = "done in 61 s";
     model_.result_waiting = true;
     model_.result_splats = 8550;
+    model_.result_seconds = 41;
 }
 
 /// Two rounds of eight views in blue; one of the last is dropped, one redrawn.

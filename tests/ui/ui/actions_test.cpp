@@ -354,6 +354,15 @@ DOCTEST_TEST_CASE("a result that waits is applied or discarded") {
     DOCTEST_CHECK(!harness.rect("prompt.edit").enabled);
 }
 
+DOCTEST_TEST_CASE("where Apply is decided stands what it took and what it left alone") {
+    Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
+    for (const char* name : {"result.time", "result.proof"}) {
+        DOCTEST_REQUIRE(harness.find(name) != nullptr);
+        DOCTEST_CHECK(harness.rect(name).visible);
+        DOCTEST_CHECK(harness.rect(name).y < harness.rect("result.apply").y);
+    }
+}
+
 DOCTEST_TEST_CASE("history: stack and steps") {
     Harness harness({Wide, High, 1, Situation::Located, false});
     DOCTEST_CHECK(asks(harness, "history.enabled.7", "set_edit_enabled 7 off"));
