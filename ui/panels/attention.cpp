@@ -188,7 +188,7 @@ void draw_problem(Context& context) {
     if (button(context, {.name = "attention.by_hand",
                          .text = "Label it by hand",
                          .why_off = why,
-                         .tooltip = "Makes a label and gives you the brush"}))
+                         .tooltip = "Makes a label and gives you Cut out: drag a box around the thing"}))
         label_by_hand(context, context.model.attention_word);
     if (search.problem != edit::SearchProblem::Unsure) return;
     constexpr const char* anyway = "Label this all the same";

@@ -177,7 +177,7 @@ void draw_camera_path(Context& context) {
     if (button(context, {.name = "export.key.add",
                          .text = "Add key",
                          .why_off = context.scene_open() ? "" : "Open a scene first",
-                         .tooltip = "The present camera, one second after the last key"}))
+                         .tooltip = "The present camera, two seconds after the last key"}))
         context.actions.add_camera_key();
     if (keys.empty()) dim_text("Keys are cameras the path goes through.");
     for (std::size_t at = 0; at < keys.size(); ++at) {

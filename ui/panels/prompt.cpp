@@ -69,7 +69,7 @@ void draw_unknown_source(Context& context) {
     if (button(context, {.name = "prompt.source.by_hand",
                          .text = by_hand,
                          .why_off = context.scene_open() ? "" : "Open a scene first",
-                         .tooltip = "Makes a label and gives you the brush: what you paint may change"}))
+                         .tooltip = "Makes a label and gives you Cut out: drag a box around the thing that may change"}))
         label_by_hand(context, context.request.source);
     if (prompt.source_suggestions.empty()) dim_text(fmt::format("Or use {}.", prompt.source_help));
 }
