@@ -43,6 +43,16 @@ ui::JobView job_view(const JobStatus& status) {
     return view;
 }
 
+/// Of the window's settings, those that are not of one scene or one moment.
+nlohmann::ordered_json lasting(nlohmann::ordered_json fields) {
+    for (auto field = fields.begin(); field != fields.end();) {
+        const std::string& name = field.key();
+        const bool passing = name == "mode" || name == "tint_labels" || name == "wipe" || name.ends_with("_path");
+        field = passing ? fields.erase(field) : std::next(field);
+    }
+    return fields;
+}
+
 }  // namespace
 
 Application::Application(ApplicationOptions options)
@@ -278,6 +288,8 @@ void Application::save_settings() {
     json["text_segmenter"] = text_segmenter_path_;
     for (const auto& [key, measured] : measured_) json["measured"][key] = fields_to_json(measured);
     if (!layout_.empty()) json["layout"] = layout_;
+    json["view"] = lasting(fields_to_json(model_.view));
+    json["exports"] = lasting(fields_to_json(model_.exports));
     gse::save_settings(json);
 }
 
@@ -299,6 +311,12 @@ void Application::load_settings() {
                 measured_.erase(key);
             }
         }
+    try {
+        if (json.contains("view")) fields_from_json(model_.view, lasting(json["view"]));
+        if (json.contains("exports")) fields_from_json(model_.exports, lasting(json["exports"]));
+    } catch (const std::exception& error) {   // of another version, or edited by hand
+        log::warning("some settings of view and export cannot be used ({})", error.what());
+    }
     model_.cache_mb = static_cast<int>(cache_->most_bytes() >> 20);
     model_.cache_bytes = cached_bytes(cache_->folder());
     model_path_ = text("model");
