@@ -56,7 +56,8 @@ nlohmann::ordered_json lasting(nlohmann::ordered_json fields) {
 }  // namespace
 
 Application::Application(ApplicationOptions options)
-    : options_(std::move(options)), work_(queue_, JobThread::Priority::Patient), files_(queue_), saver_(queue_, JobThread::Priority::Patient) {
+    : options_(std::move(options)), work_(queue_, JobThread::Priority::Patient), files_(queue_), saver_(queue_, JobThread::Priority::Patient),
+      counter_(queue_, JobThread::Priority::Patient) {
     queue_.set_wake(options_.wake);
     auto box = std::make_shared<LogBox>();
     log_source_ = box;
@@ -190,10 +191,23 @@ void Application::refresh_document() {
         model_.labelled = active_label() ? count_labelled(*active_label()) : 0;
     }
     refresh_reach();
+    count_anew();
     if (seconds_since(last_estimate_) > 0.5) {
         last_estimate_ = Clock::now();
         refresh_estimate();
     }
+}
+
+/// What the Scene panel tells is counted beside the frames: large scenes take a while.
+void Application::count_anew() {
+    const auto& current = document_.state().current;
+    if (counted_.shares_all_with(current)) return;
+    auto statistics = std::make_shared<SceneStatistics>();
+    auto done = [this, statistics, opened = opened_](const Error*) {
+        if (opened == opened_) model_.statistics = *statistics;
+    };
+    if (counter_.start({"Count", [statistics, set = current](const JobControl&) { *statistics = compute_statistics(set); }, done}))
+        counted_ = current;   // else once the last count has ended, whose news wake the window
 }
 
 void Application::refresh_log() {

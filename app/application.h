@@ -204,6 +204,7 @@ private:
     void refresh_document();
     void refresh_words();
     void refresh_reading();
+    void count_anew();
     void refresh_log();
     void toast(std::string text, bool is_error = false, std::string button = {}, std::function<void()> action = {});
     void report_error(const Error& error);
@@ -406,7 +407,8 @@ private:
     std::vector<ui::LogLine> log_;
     std::shared_ptr<void> log_source_;
     bool quit_ = false;
-    JobThread work_, files_, saver_;   // last: their threads end before what they use
+    GaussianSet counted_;              // what the statistics are of
+    JobThread work_, files_, saver_, counter_;   // last: their threads end before what they use
 };
 
 ui::NetworkCost cost_of(const neural::NetworkUse& use);

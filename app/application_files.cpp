@@ -179,6 +179,7 @@ void Application::take_loaded(Loaded loaded) {
     thumbnail_.reset();
     for (const auto& node : document_.state().stack) next_edit_id_ = std::max(next_edit_id_, node.id + 1);
     model_.statistics = loaded.statistics;
+    counted_ = document_.state().current;
     const auto& info = document_.state().info;
     up_shown_ = info.up;
     model_.orbit = scene_orbit(Scene{document_.state().base, info, {}}, RenderParameters{});
@@ -314,7 +315,6 @@ void Application::repair_scene() {
     node.name = fmt::format("Repair: {} splats that cannot be drawn removed", delta.removed.size());
     node.delta = std::make_shared<const SceneDelta>(std::move(delta));
     change_stack("Repair scene", [&](std::vector<EditNode>& stack) { stack.push_back(node); });
-    model_.statistics = compute_statistics(document_.state().current);
 }
 
 }  // namespace gse::app

@@ -266,6 +266,26 @@ DOCTEST_TEST_CASE("an up axis that was chosen is known, written, and undone with
     app.shut_down();
 }
 
+DOCTEST_TEST_CASE("the statistics are those of the scene as it is, after a deletion and its undo too") {
+    const Place place;
+    Session session;
+    auto& app = session.app;
+    app.open_sample();
+    DOCTEST_REQUIRE(session.until([&] { return app.model().document != nullptr; }));
+    const auto count = app.model().statistics.count;
+    ui::ScreenRegion stroke;
+    stroke.circles = {{160, 120}};
+    stroke.radius_px = 20;
+    app.select(stroke, ui::SetOperation::Add, true);
+    app.delete_labelled_splats();
+    const auto left = app.document().state().current.size();
+    DOCTEST_REQUIRE(left < count);
+    DOCTEST_CHECK(session.until([&] { return app.model().statistics.count == left; }, 10));
+    app.undo();
+    DOCTEST_CHECK(session.until([&] { return app.model().statistics.count == count; }, 10));
+    app.shut_down();
+}
+
 DOCTEST_TEST_CASE("every export numbers its files, a scene is replaced only when that is said") {
     const Place place;
     Session session;
