@@ -1,6 +1,8 @@
 // Words: which of the sentence the model reads, what applied edits have said already, and what a label says of the edit.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/application.h"
 #include "app/engine_names.h"
 #include "engine/base/error.h"
@@ -48,9 +50,15 @@ const NamedLabel* Application::active_label() const {
 void Application::refresh_reach() {
     const auto& request = model_.request;
     const auto choice = reach_choice_ ? fmt::format("{} {} {}", reach_choice_->by_label, reach_choice_->label, reach_choice_->source) : "";
-    auto key = fmt::format("{}\n{}\n{}\n{}\n{}", document_.revision(), request.source, request.target, model_path_, choice);
+    auto key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", document_.revision(), model_.search.number, request.source, request.target, model_path_, choice);
     if (key == reach_key_) return;
     reach_key_ = std::move(key);
+    const auto& labels = document_.state().labels;
+    const auto& words = searched_.words;
+    model_.attention_corrected = !model_.attention.empty() && std::any_of(labels.begin(), labels.end(), [&](const NamedLabel& label) {
+        return (label.found_for == model_.attention_word || label.found_for == edit::as_told(words.source)) && !label.found_for.empty() &&
+               corrected_by_hand(label);
+    });
     model_.reach = {};
     model_.labelled_by_hand = false;
     const NamedLabel* label = active_label();

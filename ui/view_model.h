@@ -325,6 +325,7 @@ struct ViewModel {
     std::vector<AttentionView> attention;
     std::string attention_word, attention_mode;  // "bear", "modify: ..."
     double attention_threshold = 0.5;
+    bool attention_corrected = false;            // the label was set by hand since: the masks are older than it
     SearchView search;
     // Work
     JobView job;                                 // locate, edit

@@ -82,7 +82,10 @@ DOCTEST_TEST_CASE("a label that was found and renamed is still the one that the 
     app.set_request(request);
     app.locate();
     DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK_FALSE(app.model().attention_corrected);
     app.select(stroke_over_bear(5), ui::SetOperation::Remove, true);
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().attention_corrected);   // the masks are from before
     const auto corrected = *active(app).bits;
     app.rename_label(app.document().state().active_label, "Bruno");
     app.update(session.preview);

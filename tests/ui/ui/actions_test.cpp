@@ -286,6 +286,18 @@ DOCTEST_TEST_CASE("labels: threshold, names, operations") {
     DOCTEST_CHECK(!harness.rect("labels.grow").enabled);
 }
 
+DOCTEST_TEST_CASE("attention: masks that are older than the label say so") {
+    Harness harness({Wide, High, 1, Situation::Located, false});
+    harness.shell.show(ui::PanelId::Attention);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("attention.corrected") == nullptr);
+    DOCTEST_CHECK(harness.find("attention.picture.Voted mask") != nullptr);
+    harness.application.model().attention_corrected = true;
+    harness.frame(2);
+    DOCTEST_CHECK(harness.find("attention.corrected") != nullptr);
+    DOCTEST_CHECK(harness.find("attention.picture.Voted mask") == nullptr);
+}
+
 DOCTEST_TEST_CASE("attention: choosing a view and the threshold") {
     Harness harness({Wide, High, 1, Situation::Located, false});
     harness.click("attention.view.3");
