@@ -287,7 +287,9 @@ void Application::edit() {
     if (!require_scene() || work_.running()) return;
     if (pending_) return toast("Apply or discard the last edit first.");
     forget_snapshots();
+    tint_before_.reset();
     model_.losses.clear();
+    if (reach_choice_) reach_choice_->source = edit::as_told(model_.request.source);   // another source is another matter
     start_edit(std::nullopt);
 }
 
@@ -307,7 +309,6 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     search->memory = planned_memory();
     begin_with_known(search->measured, measured_now());
     const auto& state = document_.state();
-    if (reach_choice_) reach_choice_->source = edit::as_told(recipe.request.source);   // another source is another matter
     const auto label = label_drives_edit() ? *state.labels[static_cast<std::size_t>(state.active_label)].bits : std::vector<std::uint8_t>{};
     live_ = std::make_shared<LiveEdit>();
     live_->wants_gate = model_.model_settings.gate && !start && !edit::edits_by_views(recipe.request);
@@ -317,7 +318,6 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     live_->losses = model_.losses;
     live_->start = std::move(start);
     live_seen_ = 0;
-    tint_before_.reset();
     if (!live_->start) model_.gate = {};
     model_.target_rounds.clear();
     list_snapshots();

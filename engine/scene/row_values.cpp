@@ -39,4 +39,15 @@ std::vector<float> carried(const std::vector<float>& values, const std::vector<s
     return result;
 }
 
+std::vector<std::int64_t> row_map(const std::vector<RowId>& before, const std::vector<RowId>& after) {
+    std::vector<std::size_t> order(before.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return before[a] < before[b]; });
+    std::vector<RowId> wanted;
+    for (const auto row : order) wanted.push_back(before[row]);
+    std::vector<std::int64_t> rows(before.size(), -1);
+    locate_rows(after, wanted, [&](std::size_t row, std::size_t k) { rows[order[k]] = static_cast<std::int64_t>(row); });
+    return rows;
+}
+
 }  // namespace gse
