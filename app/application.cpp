@@ -166,8 +166,7 @@ void Application::refresh_live() {
     const bool more = live_->snapshots.size() != snapshots_.size() ||
                       (!snapshots_.empty() && live_->snapshots.back().iteration != snapshots_.back().iteration);
     if (!more) return;
-    // What is made is to be seen, not where; from here on the tint is the artist's.
-    if (!tint_before_) tint_before_ = std::exchange(model_.view.tint_labels, false);
+    untint();
     newest_set_ = live_->newest;
     take_snapshots(live_->snapshots);
 }

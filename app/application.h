@@ -266,6 +266,7 @@ private:
     bool edit_running() const;
     void start_edit(std::optional<edit::EditSnapshot> start);
     void finish_edit(const Error* error);
+    void untint();
 
     // application_estimate.cpp
     std::string measured_key() const;

@@ -434,6 +434,7 @@ void Application::finish_edit(const Error* error) {
     const bool said = job_ && !job_->found();   // with its evidence
     if (error != nullptr && error->code() != ErrorCode::Cancelled && !said) report_error(*error);
     if (!pending_) return;
+    untint();
     toast(fmt::format("Outside the label {} splats changed, PSNR {:.1f} dB. Apply keeps the edit.",
                       pending_->changed_outside_label, pending_->psnr_outside_db));
 }
@@ -474,6 +475,11 @@ void Application::apply_result() {
     document_.apply(fmt::format("Edit: {}", result.name), std::move(state));
     model_.request.target.clear();   // it is done: the next sentence has news of its own
     model_.view.tint_labels = false;   // what was made is to be seen, not where
+}
+
+/// What is made is to be seen, not where; from here on the tint is the artist's, until the next edit.
+void Application::untint() {
+    if (!tint_before_) tint_before_ = std::exchange(model_.view.tint_labels, false);
 }
 
 void Application::discard_result() {

@@ -17,7 +17,7 @@ using test::ScratchFolder;
 
 /// A scene whose file does not say which way is up.
 std::filesystem::path some_scene(const ScratchFolder& scratch) {
-    Scene scene = generate({}).scene;
+    Scene scene = synth::generate({}).scene;
     scene.info.up_known = false;
     const auto path = scratch.path() / "scene.ply";
     save_scene(path, scene);

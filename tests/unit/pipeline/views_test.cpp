@@ -9,7 +9,7 @@
 
 DOCTEST_TEST_CASE("one or two bookmarks do not take the place of the automatic views, three cameras do") {
     using namespace gse;
-    Scene scene = generate({}).scene;
+    Scene scene = synth::generate({}).scene;
     pipeline::EditRecipe recipe;
     recipe.request.views = 8;
     const auto around = orbit_views(fit_orbit(compute_statistics(scene.gaussians), scene.info.up), 3, 64, 64);
