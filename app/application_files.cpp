@@ -185,6 +185,9 @@ void Application::take_loaded(Loaded loaded) {
     model_.orbit = scene_orbit(Scene{document_.state().base, info, {}}, RenderParameters{});
     model_.framing = framing_bounds(document_.state().current);
     camera_ = {};
+    document_seen_ = ~std::uint64_t{0};   // another document may be at the same revision
+    reach_key_.clear();
+    reach_choice_.reset();
     model_.camera_keys.clear();
     keys_unsaved_ = false;
     if (loaded.project) ui_from_json(loaded.data.ui);

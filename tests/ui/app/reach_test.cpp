@@ -136,5 +136,9 @@ DOCTEST_TEST_CASE("who paints a label means it, until another source is edited; 
     app.set_request(request);
     app.update(session.preview);
     DOCTEST_CHECK_FALSE(app.model().reach.by_label);
+    app.open_sample();   // another document: nothing is labelled there
+    DOCTEST_REQUIRE(session.until([&] { return app.document().state().labels.empty(); }));
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().reach.label.empty());
     app.shut_down();
 }
