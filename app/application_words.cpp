@@ -63,7 +63,7 @@ void Application::refresh_reach() {
     model_.labelled_by_hand = false;
     const NamedLabel* label = active_label();
     if (label == nullptr || count_labelled(*label) == 0) return;
-    model_.reach = {label->name, count_labelled(*label), label_drives_edit(), corrected_by_hand(*label)};
+    model_.reach = {label->name, count_labelled(*label), label_drives_edit(), !label->found_for.empty() && corrected_by_hand(*label)};
     model_.labelled_by_hand = model_.reach.by_label && made_by_hand(*label);
 }
 

@@ -470,7 +470,7 @@ void Application::apply_result() {
             reach_choice_.reset();   // nobody has chosen this one
         }
         auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
-        label = combine(std::move(label), added, LabelOperation::Add);
+        label = with_added(std::move(label), added);
     }
     document_.apply(fmt::format("Edit: {}", result.name), std::move(state));
     model_.request.target.clear();   // it is done: the next sentence has news of its own

@@ -257,7 +257,7 @@ void draw_pictures(Context& context, const AttentionView& view, ImVec2 space, in
         {{&view.render, view.drawn ? "As drawn" : "Render"},
          {&view.map_coloured, "Attention"},
          {&context.state.attention.picture, "Above threshold"},
-         {&view.mask_picture, context.model.attention_corrected ? "Mask before your corrections" : "Voted mask"}}};
+         {&view.mask_picture, context.model.attention_corrected ? "Older mask" : "Voted mask"}}};
     const float gap = ImGui::GetStyle().ItemSpacing.x, line = ImGui::GetTextLineHeightWithSpacing();
     const auto side_of = [&](int count) {
         return (space.x - gap * static_cast<float>(count - 1)) / static_cast<float>(count);

@@ -300,23 +300,31 @@ std::string other_reach(const Context& context) {
     const auto& reach = context.model.reach;
     if (reach_text(context).empty() || edit::planned_mode(as_planned(context)) == edit::EditMode::Add) return {};
     if (!reach.by_label) return reach.label.empty() ? std::string() : fmt::format("Use label \"{}\"", shortened(reach.label, context.em * 7));
-    return context.state.prompt.source_known ? "Search instead" : "";
+    return context.state.prompt.source_known ? "Search" : "";
+}
+
+/// Whether text and button have room beside each other.
+bool reach_in_line(const std::string& text, const std::string& other) {
+    return ImGui::CalcTextSize(text.c_str()).x + ImGui::GetStyle().ItemSpacing.x + button_width(other) <= ImGui::GetContentRegionAvail().x;
 }
 
 float reach_height(const Context& context) {
     const std::string text = reach_text(context), other = other_reach(context);
     if (text.empty()) return 0;
-    const float width = ImGui::GetContentRegionAvail().x, gap = ImGui::GetStyle().ItemSpacing.y;
-    const float lines = ImGui::CalcTextSize(text.c_str(), nullptr, false, width).y + gap;
-    return lines + (other.empty() ? 0 : ImGui::GetFrameHeight() + gap);
+    const float gap = ImGui::GetStyle().ItemSpacing.y, button_row = other.empty() ? 0 : ImGui::GetFrameHeight() + gap;
+    if (!other.empty() && reach_in_line(text, other)) return button_row;
+    return ImGui::CalcTextSize(text.c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y + gap + button_row;
 }
 
 void draw_reach(Context& context) {
     const std::string text = reach_text(context), other = other_reach(context);
     if (text.empty()) return;
+    const bool in_line = !other.empty() && reach_in_line(text, other);
+    if (in_line) ImGui::AlignTextToFramePadding();
     wrapped_text(text);
     note(context, "prompt.reach");
     if (other.empty()) return;
+    if (in_line) ImGui::SameLine();
     const bool by_label = context.model.reach.by_label;
     if (button(context, {.name = "prompt.reach.other",
                          .text = other,
