@@ -43,10 +43,21 @@ ui::JobView job_view(const JobStatus& status) {
     return view;
 }
 
+/// Of the window's settings, those that are not of one scene or one moment.
+nlohmann::ordered_json lasting(nlohmann::ordered_json fields) {
+    for (auto field = fields.begin(); field != fields.end();) {
+        const std::string& name = field.key();
+        const bool passing = name == "mode" || name == "tint_labels" || name == "wipe" || name.ends_with("_path");
+        field = passing ? fields.erase(field) : std::next(field);
+    }
+    return fields;
+}
+
 }  // namespace
 
 Application::Application(ApplicationOptions options)
-    : options_(std::move(options)), work_(queue_, JobThread::Priority::Patient), files_(queue_), saver_(queue_, JobThread::Priority::Patient) {
+    : options_(std::move(options)), work_(queue_, JobThread::Priority::Patient), files_(queue_), saver_(queue_, JobThread::Priority::Patient),
+      counter_(queue_, JobThread::Priority::Patient) {
     queue_.set_wake(options_.wake);
     auto box = std::make_shared<LogBox>();
     log_source_ = box;
@@ -118,6 +129,8 @@ void Application::refresh_jobs(const JobStatus& work, const JobStatus& files) {
     model_.read_target = read_target();
     model_.result_waiting = pending_.has_value() && !work_.running();
     model_.result_splats = pending_ ? pending_->set.size() : 0;
+    model_.result_changed_outside = pending_ ? pending_->changed_outside_label : 0;
+    model_.result_seconds = pending_ ? pending_->seconds : 0;
     relabel_if_wanted();
 }
 
@@ -153,6 +166,7 @@ void Application::refresh_live() {
     const bool more = live_->snapshots.size() != snapshots_.size() ||
                       (!snapshots_.empty() && live_->snapshots.back().iteration != snapshots_.back().iteration);
     if (!more) return;
+    untint();
     newest_set_ = live_->newest;
     take_snapshots(live_->snapshots);
 }
@@ -171,16 +185,28 @@ void Application::refresh_document() {
     if (document_seen_ != document_.revision()) {
         document_seen_ = document_.revision();
         ++content_;
-        const auto& state = document_.state();
+        if (!(up_shown_ == document_.state().info.up)) stand_up();
         refresh_words();
-        model_.labelled = state.active_label >= 0 && state.active_label < static_cast<int>(state.labels.size())
-                              ? count_labelled(state.labels[static_cast<std::size_t>(state.active_label)])
-                              : 0;
+        model_.labelled = active_label() ? count_labelled(*active_label()) : 0;
     }
+    refresh_reach();
+    count_anew();
     if (seconds_since(last_estimate_) > 0.5) {
         last_estimate_ = Clock::now();
         refresh_estimate();
     }
+}
+
+/// What the Scene panel tells is counted beside the frames: large scenes take a while.
+void Application::count_anew() {
+    const auto& current = document_.state().current;
+    if (counted_.shares_all_with(current)) return;
+    auto statistics = std::make_shared<SceneStatistics>();
+    auto done = [this, statistics, opened = opened_](const Error*) {
+        if (opened == opened_) model_.statistics = *statistics;
+    };
+    if (counter_.start({"Count", [statistics, set = current](const JobControl&) { *statistics = compute_statistics(set); }, done}))
+        counted_ = current;   // else once the last count has ended, whose news wake the window
 }
 
 void Application::refresh_log() {
@@ -275,6 +301,8 @@ void Application::save_settings() {
     json["text_segmenter"] = text_segmenter_path_;
     for (const auto& [key, measured] : measured_) json["measured"][key] = fields_to_json(measured);
     if (!layout_.empty()) json["layout"] = layout_;
+    json["view"] = lasting(fields_to_json(model_.view));
+    json["exports"] = lasting(fields_to_json(model_.exports));
     gse::save_settings(json);
 }
 
@@ -296,6 +324,12 @@ void Application::load_settings() {
                 measured_.erase(key);
             }
         }
+    try {
+        if (json.contains("view")) fields_from_json(model_.view, lasting(json["view"]));
+        if (json.contains("exports")) fields_from_json(model_.exports, lasting(json["exports"]));
+    } catch (const std::exception& error) {   // of another version, or edited by hand
+        log::warning("some settings of view and export cannot be used ({})", error.what());
+    }
     model_.cache_mb = static_cast<int>(cache_->most_bytes() >> 20);
     model_.cache_bytes = cached_bytes(cache_->folder());
     model_path_ = text("model");

@@ -21,6 +21,7 @@
 #include "engine/neural/model_profile.h"
 #include "engine/pipeline/edit_job.h"
 #include "engine/pipeline/estimate.h"
+#include "engine/pipeline/reach.h"
 #include "engine/scene/document.h"
 #include "ui/actions.h"
 #include "ui/view_model.h"
@@ -28,6 +29,7 @@
 namespace gse::app {
 
 constexpr std::size_t MostSnapshots = 24, MostSnapshotBytes = std::size_t{512} << 20;   // kept for the scrubber; thinned out beyond
+constexpr const char* AddsElsewhere = "What is added goes where the search placed it: corrections of the label by hand do not move that.";
 constexpr double MovingSeconds = 0.25;   // after the last movement of the camera the picture is refined
 
 struct ApplicationOptions {
@@ -134,6 +136,7 @@ public:
     void set_attention_threshold(double value, bool drag_ends) override;
     void set_label_threshold(float value, bool drag_ends) override;
     void set_active_label(int index) override;
+    void set_reach(bool by_label) override;
     void add_label(const std::string& name) override;
     void rename_label(int index, const std::string& name) override;
     void delete_label(int index) override;
@@ -201,6 +204,7 @@ private:
     void refresh_document();
     void refresh_words();
     void refresh_reading();
+    void count_anew();
     void refresh_log();
     void toast(std::string text, bool is_error = false, std::string button = {}, std::function<void()> action = {});
     void report_error(const Error& error);
@@ -211,6 +215,8 @@ private:
 
     // application_files.cpp
     void open_recipe(const std::filesystem::path& picture);
+    void take_recipe(const EditRecipe& recipe);
+    void open_cameras(const std::filesystem::path& path);
     void take_loaded(Loaded loaded);
     void ask_which(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files);
     std::filesystem::path default_project_path() const;
@@ -233,6 +239,10 @@ private:
     // application_export.cpp
     std::filesystem::path free_place(const std::string& name) const;
     void write_scene(const std::filesystem::path& path);
+    void note_keys();
+    std::string said_of_export() const;
+    void start_export(const char* what, const std::filesystem::path& path, std::function<void(const JobControl&)> work,
+                      const std::string& said, bool can_pause = false);
 
     // application_work.cpp
     bool job_fits() const;
@@ -249,11 +259,14 @@ private:
     void relabel_if_wanted();
     void travel(const std::function<void()>& move);
     void take_found();
-    bool labelled_by_hand() const;
+    const NamedLabel* active_label() const;
+    void refresh_reach();
+    void choose_label_by_hand();
     bool label_drives_edit() const;
     bool edit_running() const;
     void start_edit(std::optional<edit::EditSnapshot> start);
     void finish_edit(const Error* error);
+    void untint();
 
     // application_estimate.cpp
     std::string measured_key() const;
@@ -295,7 +308,12 @@ private:
     // application_view.cpp
     PictureRequest picture_request();
     void go_home();
-    std::shared_ptr<const std::vector<float>> shown_values(const GaussianSet& set, int snapshot);
+    void stand_up();
+    std::shared_ptr<const std::vector<float>> shown_values(const GaussianSet& set) const;
+    std::shared_ptr<const std::vector<float>> on_screen(const std::shared_ptr<const std::vector<float>>& values, const GaussianSet& set) const;
+    bool shows_snapshot() const;
+    GaussianSet set_on_screen();
+    const GaussianSet& before_on_screen() const;
     OrbitParameters export_orbit() const;
 
     ApplicationOptions options_;
@@ -319,6 +337,7 @@ private:
     bool keep_ = false;                      // the autosave stays when this document goes
     bool autosaved_ = false;                 // there is an autosave of this document
     bool start_page_seen_ = false;
+    bool keys_unsaved_ = false;              // of the camera path
     std::shared_ptr<const Image> thumbnail_; // of the last autosave
     Clock::time_point thumbnail_made_{};
     std::string scene_path_, project_path_;
@@ -345,7 +364,8 @@ private:
         std::optional<neural::TunedModel> tuned = {};
     };
     Searched searched_;
-    std::string job_key_;
+    std::string job_key_, reach_key_;
+    std::optional<ReachChoice> reach_choice_;   // of the label that was active then
     EditRecipe live_recipe_;   // of the edit that runs
     GaussianSet job_set_;
     std::shared_ptr<const std::vector<float>> attention_values_;
@@ -354,6 +374,7 @@ private:
     std::uint64_t live_seen_ = 0;
     std::deque<edit::EditSnapshot> snapshots_;
     SnapshotSet newest_set_, looked_at_;
+    std::optional<bool> tint_before_;            // of the edit whose snapshots are shown
     GaussianSet snapshot_base_;                  // what the snapshots are states of
     std::optional<edit::EditSnapshot> branch_;   // to go on from when the running edit has ended
     std::optional<PendingResult> pending_;
@@ -371,6 +392,7 @@ private:
 
     // View
     Camera camera_;
+    Vec3 up_shown_{};   // that the orbit stands on
     int viewport_width_ = 1, viewport_height_ = 1;
     Clock::time_point last_move_ = Clock::now() - std::chrono::seconds(10), last_frame_ = Clock::now(), last_estimate_{};
     std::uint64_t content_ = 1, stroke_ = 0, camera_version_ = 0, document_seen_ = 0;
@@ -386,7 +408,8 @@ private:
     std::vector<ui::LogLine> log_;
     std::shared_ptr<void> log_source_;
     bool quit_ = false;
-    JobThread work_, files_, saver_;   // last: their threads end before what they use
+    GaussianSet counted_;              // what the statistics are of
+    JobThread work_, files_, saver_, counter_;   // last: their threads end before what they use
 };
 
 ui::NetworkCost cost_of(const neural::NetworkUse& use);

@@ -8,10 +8,13 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/path_text.h"
+#include "engine/io/camera_json.h"
+#include "engine/io/free_path.h"
 #include "engine/io/image_file.h"
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/film.h"
 #include "engine/pipeline/scene_tools.h"
+#include "engine/scene/viewpoints.h"
 
 namespace gse::app {
 namespace {
@@ -23,19 +26,6 @@ std::filesystem::path place_for(const std::string& name, const std::string& proj
     const auto base = std::filesystem::path(!project.empty() ? project : scene).parent_path();
     const bool bundled = base.string().rfind(assets_path().string(), 0) == 0;   // not a place for an artist's files
     return base.empty() || bundled ? std::filesystem::absolute(path) : base / path;
-}
-
-/// The same view in another shape: what was visible stays visible.
-Camera fitted(const Camera& from, int width, int height) {
-    const double scale = std::min(static_cast<double>(width) / from.width, static_cast<double>(height) / from.height);
-    Camera camera = from;
-    camera.width = width;
-    camera.height = height;
-    camera.fx *= scale;
-    camera.fy *= scale;
-    camera.cx = width / 2.0 + (from.cx - from.width / 2.0) * scale;
-    camera.cy = height / 2.0 + (from.cy - from.height / 2.0) * scale;
-    return camera;
 }
 
 raster::Settings settings_of(const ui::ViewSettings& view, bool antialiased) {
@@ -50,26 +40,26 @@ raster::Settings settings_of(const ui::ViewSettings& view, bool antialiased) {
 
 /// The first name of "shot.png", "shot-2.png", ... that is free: an export never writes over what is there.
 std::filesystem::path Application::free_place(const std::string& name) const {
-    const auto wanted = place_for(name, project_path_, scene_path_);
-    std::error_code ignored;
-    const auto taken = [&](const std::filesystem::path& path) {
-        if (!std::filesystem::exists(std::filesystem::symlink_status(path, ignored))) return false;
-        return !std::filesystem::is_directory(path, ignored) || !std::filesystem::is_empty(path, ignored);
+    return first_free(place_for(name, project_path_, scene_path_));
+}
+
+/// What is shown is written, which need not be what the document holds.
+std::string Application::said_of_export() const {
+    const int snapshot = model_.shown_snapshot;
+    if (shows_snapshot() && (snapshot >= 0 || !pending_))
+        return fmt::format(", as the edit was at iteration {}: it is not applied",
+                           (snapshot >= 0 ? snapshots_[static_cast<std::size_t>(snapshot)] : snapshots_.back()).iteration);
+    return pending_ ? ", with the edit that is not applied yet" : "";
+}
+
+void Application::start_export(const char* what, const std::filesystem::path& path, std::function<void(const JobControl&)> work,
+                               const std::string& said, bool can_pause) {
+    auto done = [this, path, said](const Error* error) {
+        if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
+        toast(fmt::format("Wrote {}{}", path.string(), said));
     };
-    const std::string file = wanted.filename().string();
-    const std::string ending = file.ends_with(".compressed.ply") ? ".compressed.ply" : wanted.extension().string();
-    std::string stem = file.substr(0, file.size() - ending.size());
-    int number = 2;
-    const auto dash = stem.find_last_not_of("0123456789");
-    const bool numbered = dash != std::string::npos && dash > 0 && stem[dash] == '-' && dash + 1 < stem.size() &&
-                          stem.size() - dash < 8;
-    if (numbered) {
-        number = std::stoi(stem.substr(dash + 1)) + 1;
-        stem.resize(dash);
-    }
-    auto path = wanted;
-    for (; taken(path); ++number) path = wanted.parent_path() / fmt::format("{}-{}{}", stem, number, ending);
-    return path;
+    if (!files_.start({fmt::format("{} {}", what, path.filename().string()), std::move(work), done, can_pause}))
+        toast("Another file is being read or written; wait for it.");
 }
 
 void Application::set_exports(const ui::ExportSettings& settings) { model_.exports = settings; }
@@ -81,8 +71,10 @@ void Application::export_picture() {
     auto settings = settings_of(model_.view, document_.state().info.antialiased);
     if (exports.transparent) settings.background = {0, 0, 0};
     const Camera camera = fitted(model_.camera, exports.width, exports.height);
-    const std::string recipe = json_text(recipe_to_json(current_recipe()), -1);
-    auto work = [=, set = shown_set_.empty() ? document_.state().current : shown_set_](const JobControl& control) {
+    auto recipe_json = recipe_to_json(current_recipe());
+    recipe_json["camera"] = camera_to_json(model_.camera);
+    const std::string recipe = json_text(recipe_json, -1);
+    auto work = [=, set = set_on_screen()](const JobControl& control) {
         control.report("rendering", 0, 1);
         Painter painter;
         const auto& painted = painter.paint(set.spans(), camera, settings);
@@ -90,12 +82,7 @@ void Application::export_picture() {
         write_png(path, exports.transparent ? transparent_picture(painted) : painted.colour,
                   {{"Recipe", recipe}, {"Software", "GSEditPro"}});
     };
-    auto done = [this, path](const Error* error) {
-        if (error != nullptr) return report_error(*error);
-        toast(fmt::format("Wrote {}", path.string()));
-    };
-    if (!files_.start({fmt::format("Screenshot {}", path.filename().string()), work, done}))
-        toast("Another file is being read or written; wait for it.");
+    start_export("Screenshot", path, work, said_of_export());
 }
 
 void Application::export_turntable() {
@@ -103,23 +90,17 @@ void Application::export_turntable() {
     const auto& exports = model_.exports;
     const auto path = free_place(exports.film_path);
     auto film = std::make_shared<FilmRequest>();
-    film->first = document_.state().current;
+    film->first = set_on_screen();
     if (exports.before_after) {
-        film->second = std::make_shared<const GaussianSet>(document_.state().current);
-        film->first = document_.state().base;
+        film->second = std::make_shared<const GaussianSet>(film->first);
+        film->first = before_on_screen();
     }
     film->settings = settings_of(model_.view, document_.state().info.antialiased);
     film->transparent = exports.transparent;
     film->fps = exports.fps;
     film->cameras = turn_cameras(export_orbit(), {exports.frames, exports.fps, exports.degrees, exports.ease},
                                  exports.start_degrees, exports.width, exports.height);
-    auto done = [this, path](const Error* error) {
-        if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
-        toast(fmt::format("Wrote {}", path.string()));
-    };
-    if (!files_.start({fmt::format("Turntable {}", path.filename().string()),
-                       [film, path](const JobControl& control) { write_film(path, *film, control); }, done, true}))
-        toast("Another file is being read or written; wait for it.");
+    start_export("Turntable", path, [film, path](const JobControl& control) { write_film(path, *film, control); }, said_of_export(), true);
 }
 
 void Application::export_scene() {
@@ -140,13 +121,13 @@ void Application::export_scene() {
 
 void Application::write_scene(const std::filesystem::path& path) {
     auto scene = std::make_shared<Scene>();
-    scene->gaussians = document_.state().current;
+    scene->gaussians = set_on_screen();
     scene->info = document_.state().info;
     auto label = std::make_shared<Label>();
-    const int active = document_.state().active_label;
-    if (model_.exports.with_labels && active >= 0) {
-        const auto& named = document_.state().labels[static_cast<std::size_t>(active)];
-        *label = {named.name, named.weight, named.bits};
+    if (const NamedLabel* named = active_label(); named != nullptr && model_.exports.with_labels) {
+        const auto bits = on_screen(std::make_shared<const std::vector<float>>(named->bits->begin(), named->bits->end()), scene->gaussians);
+        const auto weight = on_screen(named->weight, scene->gaussians);   // one made by hand has none
+        if (bits) *label = {named->name, weight ? weight : bits, std::make_shared<const std::vector<std::uint8_t>>(bits->begin(), bits->end())};
     }
     auto work = [=](const JobControl& control) {
         control.report("writing", 0, 0);
@@ -154,12 +135,7 @@ void Application::write_scene(const std::filesystem::path& path) {
         if (label->bits) save.from_label = label.get();
         save_scene(path, *scene, save);
     };
-    auto done = [this, path](const Error* error) {
-        if (error != nullptr) return report_error(*error);
-        toast(fmt::format("Wrote {}", path.string()));
-    };
-    if (!files_.start({fmt::format("Export {}", path.filename().string()), work, done}))
-        toast("Another file is being read or written; wait for it.");
+    start_export("Export", path, work, said_of_export());
 }
 
 void Application::add_camera_key() {
@@ -167,11 +143,19 @@ void Application::add_camera_key() {
     constexpr double seconds_between = 2;
     const double time = model_.camera_keys.empty() ? 0 : model_.camera_keys.back().time + seconds_between;
     model_.camera_keys.push_back({time, model_.camera});
+    note_keys();
 }
 
 void Application::delete_camera_key(std::size_t index) {
-    if (index < model_.camera_keys.size())
-        model_.camera_keys.erase(model_.camera_keys.begin() + static_cast<std::ptrdiff_t>(index));
+    if (index >= model_.camera_keys.size()) return;
+    model_.camera_keys.erase(model_.camera_keys.begin() + static_cast<std::ptrdiff_t>(index));
+    note_keys();
+}
+
+/// The path is part of the project: work to be saved.
+void Application::note_keys() {
+    keys_unsaved_ = true;
+    autosaved_revision_ = ~std::uint64_t{0};
 }
 
 void Application::export_camera_path(bool as_film) {
@@ -182,7 +166,7 @@ void Application::export_camera_path(bool as_film) {
     const auto path = free_place(as_film ? exports.film_path : exports.camera_path_path);
     auto film = std::make_shared<FilmRequest>();
     if (as_film) {
-        film->first = document_.state().current;
+        film->first = set_on_screen();
         film->settings = settings_of(model_.view, document_.state().info.antialiased);
         film->fps = exports.fps;
         film->cameras = path_cameras(keys, exports.fps, exports.width, exports.height);
@@ -191,12 +175,7 @@ void Application::export_camera_path(bool as_film) {
         if (as_film) write_film(path, *film, control);
         else save_camera_path(path, keys);
     };
-    auto done = [this, path](const Error* error) {
-        if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
-        toast(fmt::format("Wrote {}", path.string()));
-    };
-    if (!files_.start({fmt::format("Camera path {}", path.filename().string()), work, done, true}))
-        toast("Another file is being read or written; wait for it.");
+    start_export("Camera path", path, work, as_film ? said_of_export() : std::string(), as_film);
 }
 
 }  // namespace gse::app

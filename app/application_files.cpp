@@ -12,39 +12,25 @@
 #include "engine/base/json.h"
 #include "engine/base/log.h"
 #include "engine/io/autosave.h"
+#include "engine/io/camera_json.h"
 #include "engine/io/cameras.h"
 #include "engine/io/image_file.h"
 #include "engine/io/project_file.h"
 #include "engine/io/scene_io.h"
 #include "engine/io/user_files.h"
+#include "engine/pipeline/scene_loading.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/scene/framing.h"
+#include "engine/scene/viewpoints.h"
 
 namespace gse::app {
 namespace {
-
-constexpr double LeastVisibleShare = 0.05;   // cameras that see less of the splats belong to another world
 
 bool contains_word(const std::vector<std::string>& words, const std::string& word) {
     return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 std::string clock_now() { return fmt::format("{:%H:%M}", fmt::localtime(std::time(nullptr))); }
-
-/// Up as the mean of the cameras' own (they stand upright more often than not); nothing when they disagree.
-std::optional<Vec3> up_of_cameras(const std::vector<View>& views) {
-    constexpr double least_agreement = 0.5;
-    Vec3 sum;
-    for (const auto& view : views)
-        sum = sum - view.camera.rotation.row(1);
-    const double share = length(sum) / static_cast<double>(std::max<std::size_t>(views.size(), 1));
-    if (views.empty() || share < least_agreement) return std::nullopt;
-    return normalized(sum);
-}
-
-}  // namespace
-
-namespace {
 
 /// What can be opened of a folder that is no scene by itself.
 std::vector<std::filesystem::path> files_of_folder(const std::filesystem::path& folder) {
@@ -56,31 +42,6 @@ std::vector<std::filesystem::path> files_of_folder(const std::filesystem::path& 
     return files;
 }
 
-/// Reads a scene with its cameras; what is odd is said in `notes`.
-template <class Loaded>
-void load_scene_into(Loaded& loaded) {
-    Scene scene = load_scene(loaded.path);
-    loaded.data.source = scene_source(loaded.path, scene.gaussians);
-    std::vector<View> views;
-    if (const auto cameras = find_cameras(loaded.path)) {
-        try {
-            views = load_cameras(*cameras, loaded.path);
-            if (visible_share(views, scene.gaussians.position()) < LeastVisibleShare) {
-                loaded.notes.push_back("The cameras found beside the scene look elsewhere; they are left out.");
-                views.clear();
-            }
-        } catch (const Error& error) {
-            loaded.notes.push_back(std::string("The cameras beside the scene cannot be used: ") + error.what());
-        }
-    }
-    if (!scene.info.up_known)
-        if (const auto up = up_of_cameras(views)) {
-            scene.info.up = *up;
-            loaded.notes.push_back(fmt::format("Up axis guessed from {} cameras; Scene > Up changes it.", views.size()));
-        }
-    loaded.state = initial_state(scene, std::move(views));
-}
-
 }  // namespace
 
 void Application::open_recipe(const std::filesystem::path& picture) {
@@ -89,10 +50,13 @@ void Application::open_recipe(const std::filesystem::path& picture) {
         const auto found = text.find("Recipe");
         if (found == text.end())
             throw Error(ErrorCode::InvalidArgument, "this picture carries no recipe", "drop a picture this program made", picture);
-        edit::EditRequest request;
-        fields_from_json(request, parse_json<nlohmann::ordered_json>(found->second, "the recipe in this picture").at("request"));
-        set_request(request);
-        toast("The prompt and its settings come from the picture.");
+        const auto json = parse_json<nlohmann::ordered_json>(found->second, "the recipe in this picture");
+        const EditRecipe recipe = recipe_from_json(json, picture.parent_path());
+        const bool here = !document_.empty() && std::filesystem::path(recipe.job.scene) == scene_path_;
+        take_recipe(recipe);
+        if (here && json.contains("camera")) set_camera(fitted(camera_from_json(json["camera"]), viewport_width_, viewport_height_));
+        toast(here ? "The prompt, its settings and the camera come from the picture."
+                   : "The prompt and its settings come from the picture; it shows another scene, so the camera stays.");
     } catch (const Error& error) {
         report_error(error);
     } catch (const nlohmann::json::exception&) {
@@ -100,10 +64,24 @@ void Application::open_recipe(const std::filesystem::path& picture) {
     }
 }
 
+/// What the command line takes of --recipe, but for the files that are open already.
+void Application::take_recipe(const EditRecipe& recipe) {
+    set_request(recipe.request);
+    auto& settings = model_.model_settings;
+    settings.learn_scene = recipe.use_dreambooth;
+    if (recipe.use_dreambooth) settings.learning = recipe.dreambooth;
+    settings.guidance = recipe.guidance;
+    settings.attention = recipe.attention;
+    settings.device = recipe.job.device, settings.precision = recipe.job.precision;
+    settings.threads = recipe.job.threads, settings.front = recipe.job.front;
+    if (recipe.job.model != model_path_ || recipe.job.lora != loras_) try_model(recipe.job.model, recipe.job.lora, false);
+}
+
 void Application::open(const std::filesystem::path& path) {
     if (work_.running()) return toast("Cancel the running job first.");
     const auto absolute = std::filesystem::absolute(path).lexically_normal();
     if (absolute.extension() == ".png") return open_recipe(absolute);
+    if (only_cameras(absolute)) return open_cameras(absolute);
     auto loaded = std::make_shared<Loaded>();
     loaded->path = absolute;
     auto work = [loaded](const JobControl& control) {
@@ -120,7 +98,10 @@ void Application::open(const std::filesystem::path& path) {
             if (std::filesystem::is_directory(loaded->path)) loaded->choices = files_of_folder(loaded->path);
             if (loaded->choices.size() > 1) return;
             if (loaded->choices.size() == 1) loaded->path = loaded->choices.front();
-            load_scene_into(*loaded);
+            auto [scene, views, notes] = load_scene_with_cameras(loaded->path);
+            loaded->data.source = scene_source(loaded->path, scene.gaussians);
+            loaded->notes = std::move(notes);
+            loaded->state = initial_state(scene, std::move(views));
         }
         control.report("looking", 0, 0);
         loaded->statistics = compute_statistics(loaded->state.current);
@@ -134,6 +115,27 @@ void Application::open(const std::filesystem::path& path) {
     if (files_.start({fmt::format("Open {}", absolute.filename().string()), work, done})) return;
     keep_ = false;
     toast("Another file is being read or written; wait for it.");
+}
+
+/// Cameras without a scene are those of the scene that is open.
+void Application::open_cameras(const std::filesystem::path& path) {
+    if (document_.empty()) return toast("These are cameras: open their scene first, then drop them on it.", true);
+    auto found = std::make_shared<SceneCameras>();
+    auto work = [found, path, set = document_.state().current, scene = scene_path_](const JobControl&) {
+        *found = cameras_of_scene(set, scene, path.string());
+    };
+    auto done = [this, found, opened = opened_, name = path.filename().string()](const Error* error) {
+        if (error != nullptr) return report_error(*error);
+        if (opened != opened_) return;   // another scene meanwhile
+        if (found->views.empty()) return toast(found->notes.empty() ? "There are no cameras in " + name + "." : found->notes.front(), true);
+        DocumentState state = document_.state();
+        const std::string note = guess_up(state.info, found->views);
+        state.views = std::move(found->views);
+        toast(fmt::format("The scene has the {} cameras of {} now.{}{}", state.views.size(), name, note.empty() ? "" : " ", note));
+        document_.apply("Load cameras", std::move(state));
+    };
+    if (!files_.start({fmt::format("Open {}", path.filename().string()), work, done}))
+        toast("Another file is being read or written; wait for it.");
 }
 
 void Application::ask_which(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files) {
@@ -177,11 +179,17 @@ void Application::take_loaded(Loaded loaded) {
     thumbnail_.reset();
     for (const auto& node : document_.state().stack) next_edit_id_ = std::max(next_edit_id_, node.id + 1);
     model_.statistics = loaded.statistics;
+    counted_ = document_.state().current;
     const auto& info = document_.state().info;
-    RenderParameters home;
-    model_.orbit = scene_orbit(Scene{document_.state().base, info, {}}, home);
+    up_shown_ = info.up;
+    model_.orbit = scene_orbit(Scene{document_.state().base, info, {}}, RenderParameters{});
     model_.framing = framing_bounds(document_.state().current);
     camera_ = {};
+    document_seen_ = ~std::uint64_t{0};   // another document may be at the same revision
+    reach_key_.clear();
+    reach_choice_.reset();
+    model_.camera_keys.clear();
+    keys_unsaved_ = false;
     if (loaded.project) ui_from_json(loaded.data.ui);
     if (camera_.width == 0) go_home();
     ++camera_version_;
@@ -207,11 +215,8 @@ nlohmann::json Application::ui_json() const {
     json["model"] = model_path_;
     json["loras"] = loras_;
     if (!layout_.empty()) json["layout"] = layout_;
-    const auto rotation = camera_.rotation;
-    json["camera"] = {{"fx", camera_.fx}, {"fy", camera_.fy}, {"width", camera_.width}, {"height", camera_.height}};
-    for (int r = 0; r < 3; ++r)
-        for (int c = 0; c < 3; ++c) json["camera"]["rotation"].push_back(rotation(r, c));
-    json["camera"]["translation"] = {camera_.translation.x, camera_.translation.y, camera_.translation.z};
+    json["camera"] = camera_to_json(camera_);
+    json["camera_keys"] = camera_keys_to_json(model_.camera_keys);
     return json;
 }
 
@@ -233,21 +238,8 @@ void Application::ui_from_json(const nlohmann::json& json) {
             layout_ = json["layout"].get<std::string>();
             layout_loaded_ = true;
         }
-        if (!json.contains("camera")) return;
-        const auto& from = json["camera"];
-        Camera camera;
-        camera.width = from.at("width").get<int>();
-        camera.height = from.at("height").get<int>();
-        camera.fx = from.at("fx").get<double>();
-        camera.fy = from.at("fy").get<double>();
-        camera.cx = camera.width / 2.0;
-        camera.cy = camera.height / 2.0;
-        for (int i = 0; i < 9; ++i) camera.rotation(i / 3, i % 3) = from.at("rotation").at(static_cast<std::size_t>(i)).get<double>();
-        camera.translation = {from.at("translation").at(0).get<double>(), from.at("translation").at(1).get<double>(),
-                              from.at("translation").at(2).get<double>()};
-        const bool sane = camera.width > 0 && camera.height > 0 && camera.width < 65536 && camera.height < 65536 &&
-                          camera.fx > 0 && camera.fy > 0 && std::isfinite(length(camera.centre()));
-        if (sane) camera_ = camera;
+        if (json.contains("camera_keys")) model_.camera_keys = camera_keys_from_json(json["camera_keys"]);
+        if (json.contains("camera")) camera_ = camera_from_json(json["camera"]);
     } catch (const std::exception& error) {
         log::warning("some of the window's settings in the project cannot be used ({})", error.what());
     }
@@ -275,6 +267,7 @@ void Application::save_project(const std::filesystem::path& path, std::function<
         if (error != nullptr) return report_error(*error);
         project_path_ = target.string();
         saved_revision_ = revision;
+        keys_unsaved_ = false;
         model_.saved_at = fmt::format("saved {}{}", clock_now(), options_.autosave ? " (autosave on)" : "");
         autosaved_revision_ = ~std::uint64_t{0};   // what is still unsaved is written anew: the last one is older than this
         if (!unsaved() && recovered_) gse::discard(*recovered_), recovered_.reset();
@@ -297,9 +290,15 @@ void Application::set_up_axis(const std::string& up) {
     if (!require_scene()) return;
     DocumentState state = document_.state();
     state.info.up = parse_up(up, state.info);
+    state.info.up_known = true;   // the artist says so: no guess any more, and written with the scene
     document_.apply("Up axis", std::move(state));
-    RenderParameters home;
-    model_.orbit = scene_orbit(Scene{document_.state().base, document_.state().info, {}}, home);
+    stand_up();
+}
+
+/// Orbit and camera follow the up axis, which undo changes too.
+void Application::stand_up() {
+    up_shown_ = document_.state().info.up;
+    model_.orbit = scene_orbit(Scene{document_.state().base, document_.state().info, {}}, RenderParameters{});
     go_home();
     ++camera_version_;
 }
@@ -319,7 +318,6 @@ void Application::repair_scene() {
     node.name = fmt::format("Repair: {} splats that cannot be drawn removed", delta.removed.size());
     node.delta = std::make_shared<const SceneDelta>(std::move(delta));
     change_stack("Repair scene", [&](std::vector<EditNode>& stack) { stack.push_back(node); });
-    model_.statistics = compute_statistics(document_.state().current);
 }
 
 }  // namespace gse::app

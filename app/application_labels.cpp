@@ -52,9 +52,11 @@ void Application::change_label(const std::string& name, const std::function<Name
     label = change(std::move(label));
     if (edit_running()) {   // the loop takes it over before its next step
         const std::lock_guard lock(live_->mutex);
-        live_->label = *label.bits;
+        if (live_->adds) toast(AddsElsewhere);
+        else live_->label = *label.bits;
     }
     document_.apply(name, std::move(state), merge_key);
+    choose_label_by_hand();
 }
 
 void Application::set_label_threshold(float value, bool drag_ends) {
@@ -73,6 +75,7 @@ void Application::set_active_label(int index) {
     if (index < -1 || index >= static_cast<int>(state.labels.size()) || index == state.active_label) return;
     state.active_label = index;
     document_.apply("Choose label", std::move(state), "choose-label");
+    choose_label_by_hand();
 }
 
 void Application::add_label(const std::string& name) {
@@ -82,13 +85,16 @@ void Application::add_label(const std::string& name) {
                                        state.current.size()));
     state.active_label = static_cast<int>(state.labels.size()) - 1;
     document_.apply("New label", std::move(state));
+    choose_label_by_hand();
 }
 
 void Application::rename_label(int index, const std::string& name) {
     if (!require_scene()) return;
     DocumentState state = document_.state();
     if (index < 0 || index >= static_cast<int>(state.labels.size()) || name.empty()) return;
-    state.labels[static_cast<std::size_t>(index)].name = name;
+    auto& called = state.labels[static_cast<std::size_t>(index)].name;
+    if (reach_choice_ && reach_choice_->label == called) reach_choice_->label = name;
+    called = name;
     document_.apply("Rename label", std::move(state), fmt::format("rename{}", index));
 }
 

@@ -6,34 +6,11 @@
 
 #include "app/application.h"
 #include "engine/base/error.h"
+#include "engine/pipeline/evidence_pictures.h"
 #include "engine/scene/label_ops.h"
 
 namespace gse::app {
 namespace {
-
-/// Attention in false colour (dark blue to yellow) over a dimmed render.
-std::shared_ptr<const Image> coloured_map(const Image& render, const Image& map) {
-    auto picture = std::make_shared<Image>(render.width, render.height, 3);
-    for (std::size_t i = 0; i < picture->pixel_count(); ++i) {
-        const float m = std::clamp(map.data[i], 0.0f, 1.0f);
-        const float colour[3] = {std::min(1.0f, 1.7f * m), m * m, 0.35f + 0.4f * m * (1 - m) - 0.35f * m};
-        for (std::size_t c = 0; c < 3; ++c)
-            picture->data[i * 3 + c] = 0.35f * (1 - m) * render.data[i * 3 + c] + (0.25f + 0.75f * m) * colour[c];
-    }
-    return picture;
-}
-
-std::shared_ptr<const Image> masked_picture(const Image& render, const Mask& mask) {
-    auto picture = std::make_shared<Image>(render);
-    constexpr float tint[3] = {1.0f, 0.55f, 0.1f};
-    const bool any = mask.data.size() == picture->pixel_count();
-    for (std::size_t i = 0; i < picture->pixel_count(); ++i)
-        for (std::size_t c = 0; c < 3; ++c) {
-            float& value = picture->data[i * 3 + c];
-            value = any && mask.data[i] != 0 ? 0.45f * value + 0.55f * tint[c] : 0.6f * value;
-        }
-    return picture;
-}
 
 /// What another threshold changes in a view.
 ui::AttentionView refreshed_view(ui::AttentionView shown, const edit::ViewEvidence& evidence) {
@@ -125,9 +102,10 @@ void Application::label_located(const EditJob& job, const std::string& step, con
         if (bits[row] == 0 && weight[row] > tau) weight[row] = 0;
     DocumentState state = document_.state();
     const std::string name = adds ? job.recipe().request.source : located.word;
-    auto found = std::find_if(state.labels.begin(), state.labels.end(), [&](const auto& label) { return label.name == name; });
+    auto found = std::find_if(state.labels.begin(), state.labels.end(), [&](const auto& label) { return is_label_of(label, name); });
     if (found == state.labels.end()) found = state.labels.insert(state.labels.end(), empty_label(name, weight.size()));
-    NamedLabel label = empty_label(name, weight.size());
+    NamedLabel label = empty_label(found->name, weight.size());   // it may have been renamed since
+    label.found_for = name;
     label.threshold = static_cast<float>(tau);
     label.attention_threshold = job.recipe().request.attention_threshold;
     label.weight = std::make_shared<const std::vector<float>>(std::move(weight));

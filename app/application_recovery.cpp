@@ -14,6 +14,7 @@
 #include "engine/io/autosave.h"
 #include "engine/io/project_file.h"
 #include "engine/pipeline/scene_tools.h"
+#include "engine/scene/row_values.h"
 
 namespace gse::app {
 namespace {
@@ -69,18 +70,6 @@ ui::RecoveryView view_of(const Recoverable& found) {
     return view;
 }
 
-/// Where each row of `before` is in `after`, by identity; -1 = nowhere.
-std::vector<std::int64_t> row_map(const std::vector<RowId>& before, const std::vector<RowId>& after) {
-    std::vector<std::size_t> order(before.size());
-    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return before[a] < before[b]; });
-    std::vector<RowId> wanted;
-    for (const auto row : order) wanted.push_back(before[row]);
-    std::vector<std::int64_t> rows(before.size(), -1);
-    locate_rows(after, wanted, [&](std::size_t row, std::size_t k) { rows[order[k]] = static_cast<std::int64_t>(row); });
-    return rows;
-}
-
 /// The edit that was running or waiting comes off the stack again and waits to be applied.
 std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann::json& jobs) {
     try {
@@ -114,7 +103,7 @@ std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann
 }  // namespace
 
 bool Application::unsaved() const {
-    return !document_.empty() && (document_.revision() != saved_revision_ || content_live() != 0);
+    return !document_.empty() && (document_.revision() != saved_revision_ || keys_unsaved_ || content_live() != 0);
 }
 
 std::uint64_t Application::content_live() const {

@@ -8,55 +8,21 @@
 #include "engine/base/log.h"
 #include "engine/localize/focus.h"
 #include "engine/pipeline/scene_tools.h"
+#include "engine/scene/row_values.h"
+#include "engine/scene/viewpoints.h"
 
 namespace gse::app {
 namespace {
 
 using Values = std::shared_ptr<const std::vector<float>>;
 
-
 Values from_bits(const std::vector<std::uint8_t>& bits) {
     return std::make_shared<const std::vector<float>>(bits.begin(), bits.end());
 }
 
-/// How far each row is from the base: 1 = a clear change of colour, place, size or opacity, or a new row.
-Values changed_values(const DocumentState& state) {
-    const auto& now = state.current;
-    const auto& base = state.base;
-    std::vector<float> values(now.size(), 0.0f);
-    const std::size_t stride_now = now.empty() ? 0 : now.sh().size() / now.size();
-    const std::size_t stride_base = base.empty() ? 0 : base.sh().size() / base.size();
-    for (std::size_t row = 0; row < now.size(); ++row) {
-        const RowId id = (*state.row_ids)[row];
-        if (id >= base.size()) {
-            values[row] = 1;
-            continue;
-        }
-        const auto old = static_cast<std::size_t>(id);
-        double change = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            change += 0.5 * std::abs(now.sh()[row * stride_now + c] - base.sh()[old * stride_base + c]);
-            const double size = std::exp(std::clamp<double>(base.log_scale()[old * 3 + c], -20, 20));
-            change += 0.2 * std::min(1.0, std::abs(now.position()[row * 3 + c] - base.position()[old * 3 + c]) / (size + 1e-12));
-            change += 0.2 * std::abs(now.log_scale()[row * 3 + c] - base.log_scale()[old * 3 + c]);
-        }
-        change += 0.1 * std::abs(now.opacity_logit()[row] - base.opacity_logit()[old]);
-        values[row] = std::isfinite(change) ? static_cast<float>(std::min(change, 1.0)) : 1.0f;
-    }
-    return std::make_shared<const std::vector<float>>(std::move(values));
-}
-
-/// Values of rows of `before` carried to another set; rows that are new get `fresh`.
-Values carried(const std::vector<float>& values, const std::vector<std::int64_t>& base_to_new, std::size_t rows, float fresh) {
-    std::vector<float> result(rows, fresh);
-    for (std::size_t row = 0; row < base_to_new.size() && row < values.size(); ++row)
-        if (base_to_new[row] >= 0) result[static_cast<std::size_t>(base_to_new[row])] = values[row];
-    return std::make_shared<const std::vector<float>>(std::move(result));
-}
-
 }  // namespace
 
-Values Application::shown_values(const GaussianSet& set, int snapshot) {
+Values Application::shown_values(const GaussianSet& set) const {
     const auto& state = document_.state();
     const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
     const NamedLabel* label = state.active_label >= 0 && state.active_label < static_cast<int>(state.labels.size())
@@ -64,8 +30,7 @@ Values Application::shown_values(const GaussianSet& set, int snapshot) {
                                   : nullptr;
     Values values;
     if (mode == ui::DisplayMode::Changed) {
-        if (set.shares_all_with(state.current)) return changed_values(state);
-        values = changed_values(state);
+        values = std::make_shared<const std::vector<float>>(changed_values(state));
     } else if (mode == ui::DisplayMode::Attention) {
         if (attention_values_ && attention_set_.shares_all_with(state.current)) values = attention_values_;
     } else if (mode == ui::DisplayMode::LabelWeight) {
@@ -73,40 +38,58 @@ Values Application::shown_values(const GaussianSet& set, int snapshot) {
     } else if (label && label->bits) {
         values = from_bits(*label->bits);
     }
-    if (!values || values->size() != state.current.size()) return nullptr;
-    if (set.shares_all_with(state.current)) return values;
+    return on_screen(values, set);
+}
+
+/// Values of the document's rows on the splats that are shown; what is new there has 1. Null where they do not fit.
+Values Application::on_screen(const Values& values, const GaussianSet& set) const {
+    const auto& current = document_.state().current;
+    if (!values || values->size() != current.size()) return nullptr;
+    if (set.shares_all_with(current)) return values;
+    const int snapshot = model_.shown_snapshot;
     std::vector<std::int64_t> rows;   // of `set`, of each row of the state before
     if (pending_ && snapshot < 0) rows = *pending_->base_to_new;
     else if (!snapshots_.empty())
         rows = (snapshot < 0 ? snapshots_.back() : snapshots_[static_cast<std::size_t>(snapshot)]).base_to_new();
-    if (rows.size() != state.current.size()) return nullptr;
-    return carried(*values, rows, set.size(), 1.0f);
+    if (rows.size() != current.size()) return nullptr;
+    return std::make_shared<const std::vector<float>>(carried(*values, rows, set.size(), 1.0f));
+}
+
+bool Application::shows_snapshot() const {
+    return (edit_running() || pending_) && !snapshots_.empty();   // a search has none
+}
+
+/// What is to be seen: a snapshot that is looked at, the result that waits, the newest snapshot, else the document.
+GaussianSet Application::set_on_screen() {
+    const int snapshot = model_.shown_snapshot;
+    const bool live = shows_snapshot();
+    if (live && snapshot >= 0 && snapshot < static_cast<int>(snapshots_.size()))
+        return snapshot_set(snapshots_[static_cast<std::size_t>(snapshot)]);
+    if (pending_) return pending_->set;
+    return live ? snapshot_set(snapshots_.back()) : document_.state().current;
+}
+
+/// Before and after: a waiting or running edit is compared with the state before it, else with the scene as loaded.
+const GaussianSet& Application::before_on_screen() const {
+    return shows_snapshot() || pending_ ? document_.state().current : document_.state().base;
 }
 
 PictureRequest Application::picture_request() {
     const auto& state = document_.state();
     const int snapshot = model_.shown_snapshot;
-    const bool live = (edit_running() || pending_) && !snapshots_.empty();   // a search has none
     const ShownKey key{document_.revision(), content_, model_.view.mode, snapshot, state.active_label,
                        model_.view.tint_labels && model_.comparison == ui::Comparison::None, pending_.has_value()};
     if (!(key == shown_key_)) {
         shown_key_ = key;
-        shown_set_ = state.current;
-        if (live && snapshot >= 0 && snapshot < static_cast<int>(snapshots_.size()))
-            shown_set_ = snapshot_set(snapshots_[static_cast<std::size_t>(snapshot)]);
-        else if (pending_)
-            shown_set_ = pending_->set;
-        else if (live)
-            shown_set_ = snapshot_set(snapshots_.back());
+        shown_set_ = set_on_screen();
         const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
-        const bool tints = mode == ui::DisplayMode::Beauty && model_.view.tint_labels && !live && model_.comparison == ui::Comparison::None;
-        shown_values_ = tints || mode >= ui::DisplayMode::Labels ? shown_values(shown_set_, snapshot) : nullptr;
+        const bool tints = mode == ui::DisplayMode::Beauty && key.tint;
+        shown_values_ = tints || mode >= ui::DisplayMode::Labels ? shown_values(shown_set_) : nullptr;
     }
     PictureRequest request;
     request.set = shown_set_;
     request.values = shown_values_;
-    // Before and after: a waiting or running edit is compared with the state before it, else with the scene as loaded.
-    request.original = live || pending_ ? state.current : state.base;
+    request.original = before_on_screen();
     request.antialiased = state.info.antialiased;
     request.camera = camera_.resized(std::max(viewport_width_, 1), std::max(viewport_height_, 1));
     request.settings = model_.view;
@@ -139,17 +122,7 @@ void Application::set_comparison(ui::Comparison comparison) { model_.comparison 
 void Application::look_through(std::size_t view) {
     if (document_.empty() || view >= document_.state().views.size()) return;
     // The whole view fits into the viewport, whatever their shapes are.
-    const Camera& from = document_.state().views[view].camera;
-    const int width = std::max(viewport_width_, 1), height = std::max(viewport_height_, 1);
-    const double scale = std::min(static_cast<double>(width) / from.width, static_cast<double>(height) / from.height);
-    Camera camera = from;
-    camera.width = width;
-    camera.height = height;
-    camera.fx = from.fx * scale;
-    camera.fy = from.fy * scale;
-    camera.cx = width / 2.0 + (from.cx - from.width / 2.0) * scale;
-    camera.cy = height / 2.0 + (from.cy - from.height / 2.0) * scale;
-    camera_ = camera;
+    camera_ = fitted(document_.state().views[view].camera, std::max(viewport_width_, 1), std::max(viewport_height_, 1));
     ++camera_version_;
     last_move_ = Clock::now();
 }

@@ -287,7 +287,9 @@ void Application::edit() {
     if (!require_scene() || work_.running()) return;
     if (pending_) return toast("Apply or discard the last edit first.");
     forget_snapshots();
+    tint_before_.reset();
     model_.losses.clear();
+    if (reach_choice_) reach_choice_->source = edit::as_told(model_.request.source);   // another source is another matter
     start_edit(std::nullopt);
 }
 
@@ -356,6 +358,7 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
               const std::vector<float>& attention, LiveEdit& live) {
     const bool adds = job->located().mode == edit::EditMode::Add;
     if (!adds && !label.empty() && label != *job->located().label.bits) job->correct_label(label);
+    if (adds && !label.empty() && label != *job->located().source_label.bits) log::warning("{}", AddsElsewhere);   // a toast, too
     {
         const std::lock_guard lock(live.mutex);
         live.adds = adds;
@@ -431,6 +434,7 @@ void Application::finish_edit(const Error* error) {
     const bool said = job_ && !job_->found();   // with its evidence
     if (error != nullptr && error->code() != ErrorCode::Cancelled && !said) report_error(*error);
     if (!pending_) return;
+    untint();
     toast(fmt::format("Outside the label {} splats changed, PSNR {:.1f} dB. Apply keeps the edit.",
                       pending_->changed_outside_label, pending_->psnr_outside_db));
 }
@@ -463,17 +467,24 @@ void Application::apply_result() {
         if (result.adds || state.active_label < 0) {
             state.labels.push_back(empty_label(result.target, added.size()));
             state.active_label = static_cast<int>(state.labels.size()) - 1;
+            reach_choice_.reset();   // nobody has chosen this one
         }
         auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
-        label = combine(std::move(label), added, LabelOperation::Add);
+        label = with_added(std::move(label), added);
     }
     document_.apply(fmt::format("Edit: {}", result.name), std::move(state));
     model_.request.target.clear();   // it is done: the next sentence has news of its own
     model_.view.tint_labels = false;   // what was made is to be seen, not where
 }
 
+/// What is made is to be seen, not where; from here on the tint is the artist's, until the next edit.
+void Application::untint() {
+    if (!tint_before_) tint_before_ = std::exchange(model_.view.tint_labels, false);
+}
+
 void Application::discard_result() {
     pending_.reset();
+    model_.view.tint_labels |= std::exchange(tint_before_, std::nullopt).value_or(false);   // what is labelled can be seen again
     ++content_;
 }
 

@@ -22,7 +22,7 @@ class Actions {
 public:
     virtual ~Actions() = default;
     // Files
-    virtual void open(const std::filesystem::path& path) = 0;      // scene, folder, project, or a PNG with a recipe in it
+    virtual void open(const std::filesystem::path& path) = 0;      // scene, folder, project, cameras of the open scene, PNG with a recipe
     virtual void open_sample() = 0;
     /// An empty path = where it was saved last. `then` (may be empty) is called once it is saved.
     virtual void save_project(const std::filesystem::path& path, std::function<void()> then = {}) = 0;
@@ -54,6 +54,7 @@ public:
     virtual void set_attention_threshold(double value, bool drag_ends) = 0;   // one step of undo per drag
     virtual void set_label_threshold(float value, bool drag_ends) = 0;
     virtual void set_active_label(int index) = 0;
+    virtual void set_reach(bool by_label) = 0;                     // the active label, or a search, says what may change
     virtual void add_label(const std::string& name) = 0;
     virtual void rename_label(int index, const std::string& name) = 0;
     virtual void delete_label(int index) = 0;

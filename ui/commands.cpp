@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "engine/base/random.h"
+#include "engine/io/cameras.h"
 #include "engine/scene/framing.h"
+#include "engine/scene/viewpoints.h"
 #include "ui/sentence.h"
 #include "ui/state.h"
 
@@ -133,7 +135,7 @@ std::string why_not_export(const Context& context, const std::string& path) {
 
 std::string views_text(const Context& context) {
     const auto there = static_cast<int>(context.document().views.size()), used = context.request.views;
-    if (there == 0) return fmt::format("{} automatic view{}", used, used == 1 ? "" : "s");
+    if (there < static_cast<int>(LeastViewpoints)) return fmt::format("{} automatic view{}", used, used == 1 ? "" : "s");
     if (there > used) return fmt::format("{} of {} views", used, there);
     return fmt::format("{} view{}", there, there == 1 ? "" : "s");
 }
@@ -182,6 +184,7 @@ void cancel_job(Context& context) {
 void open_path(Context& context, const std::string& path) {
     auto& actions = context.actions;
     if (has_extension(path, std::vector<std::string>{".png"})) return actions.open(path_of(path));   // a prompt, no scene
+    if (context.scene_open() && only_cameras(path_of(path))) return actions.open(path_of(path));   // for this scene
     with_unsaved_work(context, "Another scene is to be opened.",
                       [&actions, path] { actions.open(path_of(path)); });
 }
@@ -279,6 +282,7 @@ void label_by_hand(Context& context, const std::string& name) {
         context.actions.add_label(name);
     else
         context.actions.set_active_label(static_cast<int>(found - labels.begin()));
+    show_labelled(context);
     context.state.viewport.tool = Tool::CutOut;   // a box is the quickest way to a thing; the other tools correct it
     context.state.viewport.stroke = false;
     show_panel(context.state, PanelId::Labels);
@@ -288,6 +292,13 @@ void set_tool(Context& context, Tool tool) {
     auto& viewport = context.state.viewport;
     viewport.tool = viewport.tool == tool ? Tool::Orbit : tool;
     viewport.stroke = false;
+    if (viewport.tool != Tool::Orbit) show_labelled(context);
+}
+
+void show_labelled(Context& context) {
+    if (context.view.tint_labels) return;
+    context.view.tint_labels = true;
+    context.view_changed = true;
 }
 
 void toggle_wipe(Context& context) {

@@ -41,9 +41,11 @@ void recover(Context& context, const std::string& file);
 void discard_recovery(Context& context, const RecoveryView& found);
 void quit(Context& context);
 void add_label(Context& context);
-/// A label of that name to paint with the brush, where no words find the thing.
+/// A label of that name, and the tool that cuts out a thing, where no words find it.
 void label_by_hand(Context& context, const std::string& name);
 void set_tool(Context& context, Tool tool);
+/// Switches the tint on: who labels has to see what.
+void show_labelled(Context& context);
 void toggle_wipe(Context& context);
 /// Sees what is labelled, else the scene.
 void frame_selection(Context& context);

@@ -98,6 +98,9 @@ public:
     void set_active_label(int index) override {
         later([this, index] { target_->set_active_label(index); });
     }
+    void set_reach(bool by_label) override {
+        later([this, by_label] { target_->set_reach(by_label); });
+    }
     void add_label(const std::string& name) override {
         later([this, name] { target_->add_label(name); });
     }

@@ -271,6 +271,14 @@ struct TargetRound {
     std::vector<std::string> warnings = {};
 };
 
+/// What the next edit may change: what the active label marks, or what a search finds.
+struct EditReach {
+    std::string label;        // active, with splats in it; empty = there is none
+    std::size_t splats = 0;   // of it
+    bool by_label = false;    // it says what may change; else the words are looked for
+    bool corrected = false;   // something of it was set by hand
+};
+
 /// What the networks were asked for by the running or last job.
 struct NetworkCost {
     std::uint64_t unet = 0, encoder = 0, decoder = 0;   // passes over one picture
@@ -307,6 +315,7 @@ struct ViewModel {
     bool words_known = false;                    // known_words has been read
     std::vector<std::string> said_words;         // what the applied edits say of the scene: no news any more
     std::string read_target;                     // what a search of this very sentence saw to be new; empty = none has looked
+    EditReach reach;
     bool labelled_by_hand = false;               // the active label says what may change, whatever the words find
     std::size_t words_read = 0;                  // of the sentence, by the text encoder; 0 = all, or not known
     ModelSettings model_settings, model_settings_defaults;
@@ -316,6 +325,7 @@ struct ViewModel {
     std::vector<AttentionView> attention;
     std::string attention_word, attention_mode;  // "bear", "modify: ..."
     double attention_threshold = 0.5;
+    bool attention_corrected = false;            // the label was set by hand since: the masks are older than it
     SearchView search;
     // Work
     JobView job;                                 // locate, edit
@@ -330,6 +340,8 @@ struct ViewModel {
     int shown_snapshot = -1;                     // index into snapshots, -1 = the result that waits, else the newest
     bool result_waiting = false;                 // an edit is done and asks: apply or discard
     std::size_t result_splats = 0;               // of the result that waits
+    std::size_t result_changed_outside = 0;      // splats outside the label that are not as they were
+    double result_seconds = 0;                   // that it took
     // Rest
     std::vector<ModelView> models;
     bool edits_by_instruction = false;           // the model in use is told what to do, too

@@ -8,13 +8,14 @@
 #include <sstream>
 
 #include "engine/base/error.h"
+#include "engine/base/log.h"
 #include "engine/base/process_memory.h"
 #include "engine/bench/eval_figures.h"
 #include "engine/evaluate/consistency.h"
 #include "engine/evaluate/metrics.h"
-#include "engine/io/scene_io.h"
 #include "engine/localize/clusters.h"
 #include "engine/pipeline/edit_output.h"
+#include "engine/pipeline/scene_loading.h"
 
 namespace gse::bench {
 namespace {
@@ -138,7 +139,9 @@ Json run_real_edit(const RealEdit& edit, pipeline::EditRecipe recipe, const std:
     recipe.request.target = edit.target;
     recipe.request.mode = "auto";
     try {
-        pipeline::EditJobInput input{load_scene(edit.path), pipeline::scene_cameras(edit.path, recipe.job.cameras), model};
+        auto [scene, cameras, notes] = pipeline::load_scene_with_cameras(edit.path, recipe.job.cameras);
+        for (const auto& note : notes) log::warning("{}: {}", edit.path, note);
+        pipeline::EditJobInput input{std::move(scene), std::move(cameras), model};
         pipeline::EditJob job(recipe, std::move(input), job_control);
         job.locate();
         edit::require_found(job.located());

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/file.h"
+#include "engine/io/scene_io.h"
 
 namespace gse {
 namespace {
@@ -103,6 +104,21 @@ std::vector<View> load_cameras(const fs::path& path, const fs::path& scene) {
     } catch (const Error& error) {
         if (!error.path().empty()) throw;
         throw Error(error.code(), error.message(), error.hint(), path);
+    }
+}
+
+bool only_cameras(const fs::path& path) {
+    std::error_code ignored;
+    const std::string name = path.filename().string(), ending = path.extension().string();
+    if (!fs::is_directory(path, ignored)) {
+        if (ending == ".json") return name.ends_with("cameras.json") || name.starts_with("transforms");
+        const bool colmap = (ending == ".bin" || ending == ".txt") && (path.stem() == "cameras" || path.stem() == "images");
+        return colmap && is_colmap_folder(path.parent_path(), ending.c_str());
+    }
+    try {
+        return find_in_folder(path) && !holds_scene(path);
+    } catch (const Error&) {   // it cannot be read: whoever opens it says so
+        return false;
     }
 }
 

@@ -22,6 +22,9 @@ std::vector<View> load_cameras(const std::filesystem::path& path, const std::fil
 /// Returns the path that load_cameras takes, or nothing.
 std::optional<std::filesystem::path> find_cameras(const std::filesystem::path& scene_path);
 
+/// True for a file or folder that holds cameras and no scene: to be loaded for a scene that is open.
+bool only_cameras(const std::filesystem::path& path);
+
 /// How well cameras and splats belong together: the share of splat centres [N,3] inside the picture, averaged
 /// over some of the views. Cameras in another world (another tool's axes or scale) give close to zero.
 double visible_share(const std::vector<View>& views, std::span<const float> position);

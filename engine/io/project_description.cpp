@@ -217,6 +217,7 @@ Json to_json(const ProjectDescription::LabelEntry& entry) {
     return {{"name", entry.label.name},
             {"threshold", any_number(static_cast<double>(entry.label.threshold))},
             {"attention_threshold", any_number(entry.label.attention_threshold)},
+            {"found_for", entry.label.found_for},
             {"weight", entry.weight},
             {"manual", entry.manual},
             {"absent", entry.absent}};
@@ -226,6 +227,7 @@ ProjectDescription::LabelEntry read_label(const Json& json, const std::string& n
     const Fields fields(json, name);
     ProjectDescription::LabelEntry entry;
     fields.text("name", entry.label.name);
+    fields.text("found_for", entry.label.found_for);
     double threshold = static_cast<double>(entry.label.threshold);
     fields.number("threshold", threshold, true);
     if (std::isnan(threshold)) throw_field(fields.full("threshold"), "is not a number");

@@ -104,6 +104,7 @@ private:
         entry.label.name = label.name;
         entry.label.threshold = label.threshold;
         entry.label.attention_threshold = label.attention_threshold;
+        entry.label.found_for = label.found_for;
         entry.weight = array(fmt::format("labels/{}.weight", index), label.weight);
         entry.manual = array(fmt::format("labels/{}.manual", index), label.manual);
         if (label.absent != nullptr)

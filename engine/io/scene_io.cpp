@@ -189,6 +189,8 @@ std::vector<std::filesystem::path> scenes_in_folder(const std::filesystem::path&
     return files;
 }
 
+bool holds_scene(const std::filesystem::path& folder) { return scene_of_layout(folder) || !scenes_in_folder(folder).empty(); }
+
 std::vector<std::string> writable_formats() { return {"ply", "compressed.ply", "splat", "spz"}; }
 
 SavedRows save_scene(const std::filesystem::path& path, const Scene& scene, const SaveOptions& options) {

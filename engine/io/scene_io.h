@@ -22,6 +22,8 @@ Scene load_scene(const std::filesystem::path& path);
 /// The scene files of a folder by name, for asking which one is meant; empty for a folder that is a scene by
 /// itself (SOG, Inria output). Throws Error when it cannot be read.
 std::vector<std::filesystem::path> scenes_in_folder(const std::filesystem::path& folder);
+/// Whether there is anything in the folder that load_scene() would read. Throws Error when it cannot be read.
+bool holds_scene(const std::filesystem::path& folder);
 
 /// Same for a file already in memory; `name` only helps to tell formats without a magic number (.splat).
 /// Formats that are folders are not readable this way.

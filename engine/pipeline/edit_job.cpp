@@ -12,10 +12,10 @@
 #include "engine/base/log.h"
 #include "engine/base/spelling.h"
 #include "engine/edit/vocabulary.h"
-#include "engine/io/scene_io.h"
 #include "engine/localize/focus.h"
 #include "engine/pipeline/neural_loader.h"
 #include "engine/pipeline/probe.h"
+#include "engine/pipeline/scene_loading.h"
 
 namespace gse::pipeline {
 namespace {
@@ -63,11 +63,12 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     recipe_.job.lora = absolute_loras(recipe_.job);
     for (auto* weights : {&recipe_.job.segmenter, &recipe_.job.text_segmenter})
         if (!weights->empty()) *weights = std::filesystem::absolute(*weights).lexically_normal().string();
-    Scene scene = load_scene(recipe_.job.scene);
+    auto [scene, cameras, notes] = load_scene_with_cameras(recipe_.job.scene, recipe_.job.cameras);
+    for (const auto& note : notes) log::warning("{}", note);
     if (recipe_.job.use_label) hints_.label = label_of(scene, recipe_.job.scene);
     times_.end();
     GivenCameras given;
-    if (recipe_.job.cameras != "none") given.cameras = scene_cameras(recipe_.job.scene, recipe_.job.cameras);
+    given.cameras = std::move(cameras);
     times_.begin("load_model");
     auto model = open_recipe_model(recipe_.job, cache);
     auto segmenters = open_segmenters(recipe_.job, cache);
@@ -132,6 +133,8 @@ void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Seg
     words.erase(std::unique(words.begin(), words.end()), words.end());
     warn_unknown_words(words, workplace_->model().known_words());
     views_ = std::make_shared<const Views>(choose_views(workplace_->scene(), recipe_, given));
+    if (views_->automatic && !given.cameras.empty())
+        log::info("{} stored views are too few to search from: an orbit around the scene is used", given.cameras.size());
     located_ = std::make_shared<const Located>();
     edited_ = std::make_shared<const Edited>();
 }

@@ -22,7 +22,7 @@ namespace gse::pipeline {
 /// What a job works on when it is in memory already.
 struct EditJobInput {
     Scene scene;
-    std::vector<View> cameras;                     // empty = an orbit is fitted
+    std::vector<View> cameras;                     // fewer than LeastViewpoints = an orbit is fitted
     std::shared_ptr<neural::TextToImage> model;
     std::vector<std::uint8_t> label = {};          // [N] made by hand: says where when the words do not; empty = none
     std::vector<std::string> view_words = {};      // one for each of `cameras` where it is known; else from the recipe's front

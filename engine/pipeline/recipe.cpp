@@ -47,41 +47,44 @@ nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe) {
     return json;
 }
 
+EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& folder) {
+    EditRecipe recipe;
+    int version = 0;
+    read_field("version", version, json.at("version"));
+    if (version != RecipeVersion)
+        throw Error(ErrorCode::InvalidArgument, fmt::format("\"version\" is {}, and this program reads {}", version, RecipeVersion));
+    const auto read = [&](const char* part, auto& parameters) {
+        if (!json.contains(part)) return false;
+        if (!json[part].is_object())
+            throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" must be an object of settings", part));
+        fields_from_json(parameters, json[part]);
+        for (const auto& field : json[part].items()) recipe.given.insert(part + ("." + field.key()));
+        return true;
+    };
+    read("job", recipe.job);
+    read("request", recipe.request);
+    read("guidance", recipe.guidance);
+    read("attention", recipe.attention);
+    recipe.use_dreambooth = read("dreambooth", recipe.dreambooth);
+    for (auto& lora : recipe.job.lora) lora = lora_beside(path_of_text(lora), folder);
+    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd, &recipe.job.segmenter, &recipe.job.text_segmenter}) {
+        *name = path_of_text(*name);
+        if (name->empty() || *name == "none" || std::filesystem::path(*name).is_absolute()) continue;
+        *name = std::filesystem::weakly_canonical(folder / *name).string();
+    }
+    return recipe;
+}
+
 EditRecipe read_recipe(const std::filesystem::path& path) {
     const char* hint = "use the recipe.json of an edit";
     const auto json = try_parse_json<nlohmann::ordered_json>(read_file(path));
     if (!json.is_object() || !json.contains("version"))
         throw Error(ErrorCode::Malformed, "this is not a recipe", hint, path);
-    EditRecipe recipe;
     try {
-        int version = 0;
-        read_field("version", version, json["version"]);
-        if (version != RecipeVersion)
-            throw Error(ErrorCode::InvalidArgument,
-                        fmt::format("\"version\" is {}, and this program reads {}", version, RecipeVersion));
-        const auto read = [&](const char* part, auto& parameters) {
-            if (!json.contains(part)) return false;
-            if (!json[part].is_object())
-                throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" must be an object of settings", part));
-            fields_from_json(parameters, json[part]);
-            for (const auto& field : json[part].items()) recipe.given.insert(part + ("." + field.key()));
-            return true;
-        };
-        read("job", recipe.job);
-        read("request", recipe.request);
-        read("guidance", recipe.guidance);
-        read("attention", recipe.attention);
-        recipe.use_dreambooth = read("dreambooth", recipe.dreambooth);
+        return recipe_from_json(json, path.parent_path());
     } catch (const Error& error) {
         throw Error(ErrorCode::InvalidArgument, "in the recipe, " + error.message(), hint, path);
     }
-    for (auto& lora : recipe.job.lora) lora = lora_beside(path_of_text(lora), path.parent_path());
-    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd, &recipe.job.segmenter, &recipe.job.text_segmenter}) {
-        *name = path_of_text(*name);
-        if (name->empty() || *name == "none" || std::filesystem::path(*name).is_absolute()) continue;
-        *name = std::filesystem::weakly_canonical(path.parent_path() / *name).string();
-    }
-    return recipe;
 }
 
 std::string search_key(const EditRecipe& recipe) {

@@ -82,6 +82,8 @@ struct EditRecipe {
 /// throws Error for unknown or wrong entries. A relative scene path is taken relative to the recipe's folder.
 nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe);
 EditRecipe read_recipe(const std::filesystem::path& path);
+/// The same of what was read already; relative files are those of `folder`.
+EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& folder);
 
 /// What the networks are asked before the loop begins follows from this and the scene: recipes with the same key find the same.
 /// Of a recipe whose request is validated.

@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/base/hash.h"
 #include "engine/edit/front_reading.h"
+#include "engine/scene/viewpoints.h"
 
 namespace gse::pipeline {
 namespace {
@@ -157,7 +158,7 @@ Views choose_views(const Scene& scene, const EditRecipe& recipe, const GivenCame
     render.up = recipe.job.up;
     render.elevation = recipe.request.elevation;
     const OrbitParameters orbit = scene_orbit(scene, render);
-    if (given.cameras.empty()) return views_on(orbit, recipe);
+    if (given.cameras.size() < LeastViewpoints) return views_on(orbit, recipe);   // bookmarks, not a capture
     Views views;
     views.orbit = orbit;
     views.views = farthest_views(given.cameras, static_cast<std::size_t>(recipe.request.views));

@@ -26,7 +26,7 @@ struct Views {
 
 /// Cameras that the artist or the scene brings along.
 struct GivenCameras {
-    std::vector<View> cameras;                    // empty = an orbit is fitted
+    std::vector<View> cameras;                    // fewer than LeastViewpoints = an orbit is fitted
     std::map<std::string, std::string> words;     // what they see, by the camera's name; empty = from the recipe's front
 };
 

@@ -26,6 +26,7 @@ struct AbsentRows {
 struct NamedLabel {
     std::string name;
     float threshold = 0.5f;
+    std::string found_for;            // word that a search found it for, whatever it is called now; empty = not by a search
     double attention_threshold = -1;  // it was found with; 0 = what the model states, negative = not by a search
     std::shared_ptr<const std::vector<float>> weight;  // [N] in [0,1], from the views; never changed by hand
     std::shared_ptr<const std::vector<std::int8_t>>

@@ -300,6 +300,16 @@ NamedLabel combine(NamedLabel label, std::span<const std::uint8_t> rows, LabelOp
     return with_manual(std::move(label), std::move(manual));
 }
 
+NamedLabel with_added(NamedLabel label, std::span<const std::uint8_t> added) {
+    if (!label.weight) return combine(std::move(label), added, LabelOperation::Add);
+    std::vector<float> weight(*label.weight);
+    GSE_CHECK_EQ(weight.size(), added.size());
+    for (std::size_t row = 0; row < added.size(); ++row)
+        if (added[row] != 0) weight[row] = 1;
+    label.weight = std::make_shared<const std::vector<float>>(std::move(weight));
+    return with_bits(std::move(label));
+}
+
 NamedLabel invert(NamedLabel label) {
     std::vector<std::int8_t> manual(label.bits->size());
     for (std::size_t row = 0; row < manual.size(); ++row)

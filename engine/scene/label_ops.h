@@ -45,6 +45,9 @@ NamedLabel empty_label(std::string name, std::size_t count);
 
 /// These change `manual` and `bits` only; `weight` stays. `rows` holds a byte per row.
 NamedLabel combine(NamedLabel label, std::span<const std::uint8_t> rows, LabelOperation operation);
+/// Rows that an edit of what is labelled has added: they belong to it as those do that the views are sure of, and nobody set them by
+/// hand. A label without weights has no other way than that.
+NamedLabel with_added(NamedLabel label, std::span<const std::uint8_t> added);
 NamedLabel invert(NamedLabel label);
 /// Nothing is labelled any more, whatever the weights say.
 NamedLabel clear(NamedLabel label);

@@ -15,6 +15,7 @@
 #include "engine/base/log.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/resources.h"
+#include "engine/window/key_names.h"
 #include "engine/window/window_fonts.h"
 #include "engine/window/window_imgui.h"
 #include "engine/window/input_queue.h"
@@ -121,7 +122,8 @@ Window::State::State(const WindowOptions& wanted) : options(wanted), wanted_scal
     io.IniFilename = options.layout_file.empty() ? nullptr : options.layout_file.c_str();
     ImGui_ImplGlfw_InitForVulkan(window, true);
     glfwSetKeyCallback(window, [](GLFWwindow* target, int key, int code, int action, int modifiers) {
-        of(target).push({false, key, code, action, modifiers, 0});
+        const bool named = key >= GLFW_KEY_SPACE && key < GLFW_KEY_ESCAPE;   // the others say nothing that could move
+        of(target).push({false, named ? written_key(key, glfwGetKeyName(key, code)) : key, code, action, modifiers, 0});
     });
     glfwSetCharCallback(window, [](GLFWwindow* target, unsigned character) {
         of(target).push({true, 0, 0, 0, 0, character});

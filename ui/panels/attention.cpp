@@ -64,8 +64,8 @@ void draw_thumbnail(Context& context, int index, float side) {
     if (index == state.chosen)
         list->AddRect(low, high, palette::Accent, round, 0, std::max(2.0f, context.em * 0.14f));
     const auto captured = captured_words(view);
-    tooltip(fmt::format("{}\n{}\n{}{}Double click: look through it.",
-                        view.name, branch_words(view), captured, captured.empty() ? "" : "\n"));
+    tooltip(fmt::format("{}\n{}\n{}{}{}Double click: look through it.", view.name, branch_words(view), captured,
+                        captured.empty() ? "" : "\n", context.model.attention_corrected ? "It voted before your corrections.\n" : ""));
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) context.actions.set_camera(view.camera);
     ImGui::PopID();
 }
@@ -188,7 +188,7 @@ void draw_problem(Context& context) {
     if (button(context, {.name = "attention.by_hand",
                          .text = "Label it by hand",
                          .why_off = why,
-                         .tooltip = "Makes a label and gives you the brush"}))
+                         .tooltip = "Makes a label and gives you Cut out: drag a box around the thing"}))
         label_by_hand(context, context.model.attention_word);
     if (search.problem != edit::SearchProblem::Unsure) return;
     constexpr const char* anyway = "Label this all the same";
@@ -244,6 +244,10 @@ void draw_summary(Context& context) {
     draw_confidence(context);
     draw_front(context);
     draw_problem(context);
+    if (!context.model.attention_corrected) return;
+    bullet_dot(palette::Warning);
+    wrapped_text("The masks are from before your corrections: the label on the splats counts.");
+    note(context, "attention.corrected");
 }
 
 /// The chosen view's pictures, `columns` beside each other; the first is left out where they would get too
@@ -253,7 +257,7 @@ void draw_pictures(Context& context, const AttentionView& view, ImVec2 space, in
         {{&view.render, view.drawn ? "As drawn" : "Render"},
          {&view.map_coloured, "Attention"},
          {&context.state.attention.picture, "Above threshold"},
-         {&view.mask_picture, "Voted mask"}}};
+         {&view.mask_picture, context.model.attention_corrected ? "Older mask" : "Voted mask"}}};
     const float gap = ImGui::GetStyle().ItemSpacing.x, line = ImGui::GetTextLineHeightWithSpacing();
     const auto side_of = [&](int count) {
         return (space.x - gap * static_cast<float>(count - 1)) / static_cast<float>(count);

@@ -177,7 +177,7 @@ void draw_camera_path(Context& context) {
     if (button(context, {.name = "export.key.add",
                          .text = "Add key",
                          .why_off = context.scene_open() ? "" : "Open a scene first",
-                         .tooltip = "The present camera, one second after the last key"}))
+                         .tooltip = "The present camera, two seconds after the last key"}))
         context.actions.add_camera_key();
     if (keys.empty()) dim_text("Keys are cameras the path goes through.");
     for (std::size_t at = 0; at < keys.size(); ++at) {
@@ -216,9 +216,10 @@ void draw_scene_file(Context& context) {
                  "A float per splat; plain PLY only"))
         context.exports_changed = true;
     const std::string why = why_not_write(context, context.exports.scene_path, {".ply", ".splat", ".spz"});
-    std::string what = "Writes the edited scene";
+    std::string what = context.model.result_waiting ? "Writes the scene" : "Writes the edited scene";
     if (context.scene_open())
-        what += fmt::format(", {} splats", count_text(context.document().current.size()));
+        what += fmt::format("{}, {} splats", context.model.result_waiting ? " with the result that waits" : "",
+                            count_text(context.model.result_waiting ? context.model.result_splats : context.document().current.size()));
     if (!ply) what += ". This format rounds values; PLY keeps every bit";
     if (context.exports.with_labels && !ply) what += "; labels are left out";
     say(why, what + ".");

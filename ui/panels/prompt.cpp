@@ -69,7 +69,7 @@ void draw_unknown_source(Context& context) {
     if (button(context, {.name = "prompt.source.by_hand",
                          .text = by_hand,
                          .why_off = context.scene_open() ? "" : "Open a scene first",
-                         .tooltip = "Makes a label and gives you the brush: what you paint may change"}))
+                         .tooltip = "Makes a label and gives you Cut out: drag a box around the thing that may change"}))
         label_by_hand(context, context.request.source);
     if (prompt.source_suggestions.empty()) dim_text(fmt::format("Or use {}.", prompt.source_help));
 }
@@ -281,6 +281,58 @@ void draw_estimate(Context& context) {
     if (!warning.empty()) coloured_text(palette::Bad, warning);
 }
 
+/// Which label the edit will change, or what it searches for; empty = that cannot be said yet.
+std::string reach_text(const Context& context) {
+    const auto& reach = context.model.reach;
+    const auto planned = as_planned(context);
+    const auto word = edit::as_told(planned.source.empty() ? planned.target : planned.source);
+    if (!context.scene_open() || word.empty() || context.model.job.running) return {};
+    if (!reach.by_label && !context.state.prompt.source_known) return {};
+    if (edit::planned_mode(planned) == edit::EditMode::Add)
+        return fmt::format("Adds \"{}\" where a search places it.{}", edit::as_told(planned.target),
+                           reach.corrected ? " What was set by hand in the label does not count for that." : "");
+    if (reach.by_label) return fmt::format("May change: label \"{}\", {} splats.", reach.label, count_text(reach.splats));
+    return fmt::format("Will search for \"{}\" first.", word);
+}
+
+/// The other way; empty = there is none.
+std::string other_reach(const Context& context) {
+    const auto& reach = context.model.reach;
+    if (reach_text(context).empty() || edit::planned_mode(as_planned(context)) == edit::EditMode::Add) return {};
+    if (!reach.by_label) return reach.label.empty() ? std::string() : fmt::format("Use label \"{}\"", shortened(reach.label, context.em * 7));
+    return context.state.prompt.source_known ? "Search" : "";
+}
+
+/// Whether text and button have room beside each other.
+bool reach_in_line(const std::string& text, const std::string& other) {
+    return ImGui::CalcTextSize(text.c_str()).x + ImGui::GetStyle().ItemSpacing.x + button_width(other) <= ImGui::GetContentRegionAvail().x;
+}
+
+float reach_height(const Context& context) {
+    const std::string text = reach_text(context), other = other_reach(context);
+    if (text.empty()) return 0;
+    const float gap = ImGui::GetStyle().ItemSpacing.y, button_row = other.empty() ? 0 : ImGui::GetFrameHeight() + gap;
+    if (!other.empty() && reach_in_line(text, other)) return button_row;
+    return ImGui::CalcTextSize(text.c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y + gap + button_row;
+}
+
+void draw_reach(Context& context) {
+    const std::string text = reach_text(context), other = other_reach(context);
+    if (text.empty()) return;
+    const bool in_line = !other.empty() && reach_in_line(text, other);
+    if (in_line) ImGui::AlignTextToFramePadding();
+    wrapped_text(text);
+    note(context, "prompt.reach");
+    if (other.empty()) return;
+    if (in_line) ImGui::SameLine();
+    const bool by_label = context.model.reach.by_label;
+    if (button(context, {.name = "prompt.reach.other",
+                         .text = other,
+                         .tooltip = by_label ? "The words say what may change: they are looked for in all views"
+                                             : "What this label marks may change, whatever the words find"}))
+        context.actions.set_reach(!by_label);
+}
+
 void draw_run(Context& context) {
     const std::string why_locate = why_not_locate(context), why_edit = why_not_edit(context);
     const float spacing = ImGui::GetStyle().ItemSpacing.x;
@@ -437,7 +489,7 @@ float footer_height(Context& context) {
     add(estimate_text(context.model.estimate));
     add(memory_warning(context.model.estimate));
     add(obstacle_text(context));
-    return height + context.em * 0.2f;
+    return height + reach_height(context) + context.em * 0.2f;
 }
 
 }  // namespace
@@ -448,6 +500,7 @@ void draw_prompt_panel(Context& context) {
     if (ImGui::BeginChild("words", {0, height}, false, ImGuiWindowFlags_NavFlattened)) draw_words(context);
     ImGui::EndChild();
     draw_estimate(context);
+    draw_reach(context);
     draw_run(context);
 }
 

@@ -12,7 +12,7 @@
 namespace gse::ui {
 namespace {
 
-constexpr std::array<const char*, 7> UpNames{"auto", "y", "-y", "z", "-z", "x", "-x"};
+constexpr std::array<const char*, 6> UpNames{"y", "-y", "z", "-z", "x", "-x"};
 
 std::string vector_text(const Vec3& v) { return fmt::format("{:.3g}, {:.3g}, {:.3g}", v.x, v.y, v.z); }
 
@@ -65,7 +65,8 @@ void draw_up(Context& context) {
     if (!info.up_known)
         coloured_text(palette::Warning,
                       "The file does not say; this is a guess. If the scene lies on its side, choose:");
-    int chosen = -1;
+    const auto at = std::find(UpNames.begin(), UpNames.end(), up_text(info.up));
+    int chosen = info.up_known && at != UpNames.end() ? static_cast<int>(at - UpNames.begin()) : -1;   // a guess can be confirmed
     if (segmented(context, "scene.up", UpNames, chosen))
         context.actions.set_up_axis(UpNames[static_cast<std::size_t>(chosen)]);
 }

@@ -1,6 +1,7 @@
 // Views: the cameras of the scene, looked through by a click.
 #include <fmt/format.h>
 
+#include "engine/scene/viewpoints.h"
 #include "ui/commands.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
@@ -57,7 +58,10 @@ void draw_views_panel(Context& context) {
     const auto& views = context.document().views;
     if (views.empty())
         return dim_text(fmt::format("The scene came without cameras. An edit looks from {} around it.", views_text(context)));
-    if (static_cast<int>(views.size()) > context.request.views)
+    if (views.size() < LeastViewpoints)
+        dim_text(fmt::format("Bookmarks so far: an edit looks from {} around the scene. From {} stored views on, it looks from those instead.",
+                             views_text(context), LeastViewpoints));
+    else if (static_cast<int>(views.size()) > context.request.views)
         dim_text(fmt::format("An edit looks from {}, spread over all of them.", views_text(context)));
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(views.size()), context.em * 1.5f + ImGui::GetStyle().ItemSpacing.y);

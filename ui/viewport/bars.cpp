@@ -31,9 +31,14 @@ void end_floating(Context& context) {
 
 void draw_result_bar(Context& context, ImVec2 at) {
     begin_floating("result bar", at);
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted("Edit done");
-    ImGui::SameLine();
+    const auto& model = context.model;
+    ImGui::TextUnformatted(fmt::format("Edit done in {}", duration_text(model.result_seconds)).c_str());
+    note(context, "result.time");
+    // What Apply is decided by stands beside it.
+    const std::size_t changed = model.result_changed_outside;
+    bullet_dot(changed == 0 ? palette::Good : palette::Bad);
+    ImGui::TextUnformatted(fmt::format("{} splat{} outside the label changed", count_text(changed), changed == 1 ? "" : "s").c_str());
+    note(context, "result.proof");
     const bool wipes = context.model.comparison == Comparison::Wipe;
     if (button(context, {.name = "result.compare",
                          .text = wipes ? "Stop comparing" : "Compare",

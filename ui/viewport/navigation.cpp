@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/scene/viewpoints.h"
 #include "ui/commands.h"
 #include "ui/keys.h"
 #include "ui/state.h"
@@ -25,6 +26,20 @@ Pixels framebuffer_size(const ViewportState& state) {
             std::max(1, static_cast<int>(std::lround((state.high.y - state.low.y) * scale.y)))};
 }
 
+/// The stored view that this camera looks through, -1 = none. A view that is looked through is fitted into the picture.
+int view_of(const Context& context, const Camera& shown) {
+    const auto& views = context.document().views;
+    const auto sees = [&](std::size_t index) {
+        const Camera& stored = views[index].camera;
+        return stored.width > 0 && stored.height > 0 && same_view(fitted(stored, shown.width, shown.height), shown);
+    };
+    const int chosen = context.state.viewport.selected_view;   // of several at one place, it is the one that was asked for
+    if (chosen >= 0 && chosen < static_cast<int>(views.size()) && sees(static_cast<std::size_t>(chosen))) return chosen;
+    for (std::size_t index = 0; index < views.size(); ++index)
+        if (sees(index)) return static_cast<int>(index);
+    return -1;
+}
+
 void take_over(Context& context) {
     auto& state = context.state.viewport;
     const Camera& shown = context.model.camera;
@@ -34,10 +49,7 @@ void take_over(Context& context) {
     state.camera_known = true;
     state.sent.clear();
     state.sent.sent(shown);
-    state.selected_view = -1;
-    const auto& views = context.document().views;
-    for (std::size_t index = 0; index < views.size(); ++index)
-        if (same_view(views[index].camera, shown)) state.selected_view = static_cast<int>(index);
+    state.selected_view = view_of(context, shown);
 }
 
 void send(Context& context) {

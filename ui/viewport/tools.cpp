@@ -58,6 +58,7 @@ void extend_brush(Context& context, ImVec2 mouse) {
 void begin_stroke(Context& context, ImVec2 mouse) {
     auto& state = context.state.viewport;
     if (context.active_label() == nullptr) context.actions.add_label("label");
+    show_labelled(context);
     state.stroke = true;
     state.stroke_operation = operation_now(state);
     state.stroke_start = mouse;

@@ -421,6 +421,34 @@ DOCTEST_TEST_CASE("a search is known after a restart, unless the cache was clear
     setenv("GSE_CACHE_DIR", "/dev/null", 1);
 }
 
+DOCTEST_TEST_CASE("settings of view and export are there again after a restart, what belongs to one scene is not") {
+    const Place place;
+    {
+        Session session;
+        auto& app = session.app;
+        auto view = app.model().view;
+        view.background = "#ffffff", view.fov_degrees = 70, view.move_speed = 3, view.show_hud = false;
+        view.mode = 4;
+        app.set_view_settings(view);
+        auto exports = app.model().exports;
+        exports.width = 640, exports.height = 360, exports.frames = 48;
+        exports.picture_path = "/somewhere/else.png";
+        app.set_exports(exports);
+        app.shut_down();
+    }
+    const ui::ViewModel untouched;
+    Session again;
+    const auto& model = again.app.model();
+    DOCTEST_CHECK(model.view.background == "#ffffff");
+    DOCTEST_CHECK(model.view.fov_degrees == 70);
+    DOCTEST_CHECK(model.view.move_speed == 3);
+    DOCTEST_CHECK_FALSE(model.view.show_hud);
+    DOCTEST_CHECK(model.view.mode == 0);
+    DOCTEST_CHECK(model.exports.width == 640);
+    DOCTEST_CHECK(model.exports.frames == 48);
+    DOCTEST_CHECK(model.exports.picture_path == untouched.exports.picture_path);
+}
+
 DOCTEST_TEST_CASE("a scale for one start is not kept, a chosen one is") {
     const Place place;
     const auto scale_of = [](float for_this_start) {

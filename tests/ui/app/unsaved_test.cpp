@@ -207,6 +207,85 @@ DOCTEST_TEST_CASE("a folder with a scene and its cameras opens; several scenes a
     DOCTEST_CHECK(session.app.model().toasts.empty());
 }
 
+DOCTEST_TEST_CASE("cameras that are opened are those of the open scene; without one it is said what to do") {
+    const Place place;
+    Session session;
+    auto& app = session.app;
+    OrbitParameters around;
+    save_cameras_json(place.folder / "cameras.json", orbit_views(around, 7, 64, 64));
+    app.open(place.folder / "cameras.json");
+    DOCTEST_REQUIRE(session.until([&] { return !app.model().toasts.empty(); }, 10));
+    DOCTEST_CHECK(app.model().toasts[0].text.find("open their scene first") != std::string::npos);
+    DOCTEST_CHECK(app.model().document == nullptr);
+    app.open_sample();
+    DOCTEST_REQUIRE(session.until([&] { return app.model().document != nullptr; }));
+    save_cameras_json(place.folder / "cameras.json", orbit_views(app.model().orbit, 7, 64, 64));
+    const auto before = app.document().state().views.size();
+    DOCTEST_REQUIRE(before != 7);
+    app.open(place.folder / "cameras.json");
+    DOCTEST_REQUIRE(session.until([&] { return app.document().state().views.size() == 7; }, 30));
+    app.undo();
+    DOCTEST_CHECK(app.document().state().views.size() == before);
+    auto elsewhere = orbit_views(app.model().orbit, 7, 64, 64);
+    for (auto& view : elsewhere) view.camera.translation.x += 1000;
+    save_cameras_json(place.folder / "cameras.json", elsewhere);
+    app.open(place.folder);   // the folder is as good
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(app.document().state().views.size() == before);
+    DOCTEST_CHECK(app.model().toasts.back().is_error);
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("an up axis that was chosen is known, written, and undone with orbit and camera") {
+    const Place place;
+    const auto scene = own_scene(place);
+    Session session;
+    auto& app = session.app;
+    app.open(scene);
+    DOCTEST_REQUIRE(session.until([&] { return app.model().document != nullptr; }));
+    app.update(session.preview);
+    const auto orbit = app.model().orbit;
+    const auto camera = app.model().camera;
+    app.set_up_axis("z");
+    app.update(session.preview);
+    DOCTEST_CHECK(app.document().state().info.up_known);
+    DOCTEST_CHECK(app.model().orbit.up.z > 0.99);
+    DOCTEST_CHECK_FALSE(app.model().camera.rotation == camera.rotation);
+    auto exports = app.model().exports;
+    exports.scene_path = (place.folder / "upright.ply").string();
+    app.set_exports(exports);
+    app.export_scene();
+    DOCTEST_REQUIRE(session.idle());
+    const auto written = load_scene(place.folder / "upright.ply").info;
+    DOCTEST_CHECK(written.up_known);
+    DOCTEST_CHECK(written.up.z > 0.99);
+    app.undo();
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().orbit.up == orbit.up);
+    DOCTEST_CHECK(app.model().camera.rotation == camera.rotation);
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("the statistics are those of the scene as it is, after a deletion and its undo too") {
+    const Place place;
+    Session session;
+    auto& app = session.app;
+    app.open_sample();
+    DOCTEST_REQUIRE(session.until([&] { return app.model().document != nullptr; }));
+    const auto count = app.model().statistics.count;
+    ui::ScreenRegion stroke;
+    stroke.circles = {{160, 120}};
+    stroke.radius_px = 20;
+    app.select(stroke, ui::SetOperation::Add, true);
+    app.delete_labelled_splats();
+    const auto left = app.document().state().current.size();
+    DOCTEST_REQUIRE(left < count);
+    DOCTEST_CHECK(session.until([&] { return app.model().statistics.count == left; }, 10));
+    app.undo();
+    DOCTEST_CHECK(session.until([&] { return app.model().statistics.count == count; }, 10));
+    app.shut_down();
+}
+
 DOCTEST_TEST_CASE("every export numbers its files, a scene is replaced only when that is said") {
     const Place place;
     Session session;

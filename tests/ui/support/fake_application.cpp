@@ -10,6 +10,7 @@
 #include "engine/base/thread_pool.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/scene/framing.h"
+#include "engine/scene/viewpoints.h"
 #include "engine/synth/synth.h"
 
 namespace gse::test {
@@ -259,6 +260,7 @@ void FakeApplication::make_work(bool running) {
     model_.job.outcome = "done in 61 s";
     model_.result_waiting = true;
     model_.result_splats = 8550;
+    model_.result_seconds = 41;
 }
 
 /// Two rounds of eight views in blue; one of the last is dropped, one redrawn.
@@ -408,7 +410,8 @@ void FakeApplication::set_comparison(ui::Comparison comparison) {
 
 void FakeApplication::look_through(std::size_t view) {
     calls.push_back("look_through " + std::to_string(view));
-    model_.camera = document_->state().views[view].camera;
+    const int width = std::max(model_.viewport_width, 1), height = std::max(model_.viewport_height, 1);
+    model_.camera = fitted(document_->state().views[view].camera, width, height);   // as the application does
 }
 
 void FakeApplication::set_viewport_size(int width, int height) {

@@ -80,6 +80,7 @@ public:
     void set_active_label(int index) override {
         calls.push_back("set_active_label " + std::to_string(index));
     }
+    void set_reach(bool by_label) override { calls.push_back(by_label ? "set_reach label" : "set_reach search"); }
     void add_label(const std::string& name) override { calls.push_back("add_label " + name); }
     void rename_label(int index, const std::string& name) override {
         calls.push_back("rename_label " + std::to_string(index) + " " + name);

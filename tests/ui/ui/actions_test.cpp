@@ -161,6 +161,28 @@ DOCTEST_TEST_CASE("an unknown source is refused before work; a label by hand is 
     DOCTEST_CHECK(asks(harness, "prompt.edit", "edit"));
 }
 
+DOCTEST_TEST_CASE("above the buttons stands which label the edit changes or what it searches for, and the other way") {
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    auto& model = harness.application.model();
+    model.request.prompt = "a golden bear";
+    model.request.target = "golden";
+    harness.frame(2);
+    DOCTEST_REQUIRE(harness.find("prompt.reach") != nullptr);
+    DOCTEST_CHECK(harness.find("prompt.reach.other") == nullptr);   // there is no label to use
+    model.reach = {"hat", 416, false, false};
+    harness.frame(2);
+    DOCTEST_CHECK(asks(harness, "prompt.reach.other", "set_reach label"));
+    model.reach.by_label = true;
+    harness.frame(2);
+    DOCTEST_CHECK(asks(harness, "prompt.reach.other", "set_reach search"));
+    DOCTEST_CHECK(harness.rect("prompt.reach").y < harness.rect("prompt.edit").y);
+    DOCTEST_CHECK(harness.rect("prompt.edit").visible);
+    model.request.source = "crane";   // unknown: there is nothing to search for
+    harness.frame(2);
+    DOCTEST_CHECK(harness.find("prompt.reach.other") == nullptr);
+    DOCTEST_CHECK(harness.find("prompt.reach") != nullptr);
+}
+
 DOCTEST_TEST_CASE("a search that labelled nothing shows its pictures and the ways on") {
     Harness harness({Wide, High, 1, Situation::Failed, false});
     DOCTEST_REQUIRE(harness.find("panel.Attention") != nullptr);   // it came to the front by itself
@@ -264,6 +286,18 @@ DOCTEST_TEST_CASE("labels: threshold, names, operations") {
     DOCTEST_CHECK(!harness.rect("labels.grow").enabled);
 }
 
+DOCTEST_TEST_CASE("attention: masks that are older than the label say so") {
+    Harness harness({Wide, High, 1, Situation::Located, false});
+    harness.shell.show(ui::PanelId::Attention);
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("attention.corrected") == nullptr);
+    DOCTEST_CHECK(harness.find("attention.picture.Voted mask") != nullptr);
+    harness.application.model().attention_corrected = true;
+    harness.frame(2);
+    DOCTEST_CHECK(harness.find("attention.corrected") != nullptr);
+    DOCTEST_CHECK(harness.find("attention.picture.Voted mask") == nullptr);
+}
+
 DOCTEST_TEST_CASE("attention: choosing a view and the threshold") {
     Harness harness({Wide, High, 1, Situation::Located, false});
     harness.click("attention.view.3");
@@ -332,6 +366,15 @@ DOCTEST_TEST_CASE("a result that waits is applied or discarded") {
     DOCTEST_CHECK(!harness.rect("prompt.edit").enabled);
 }
 
+DOCTEST_TEST_CASE("where Apply is decided stands what it took and what it left alone") {
+    Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
+    for (const char* name : {"result.time", "result.proof"}) {
+        DOCTEST_REQUIRE(harness.find(name) != nullptr);
+        DOCTEST_CHECK(harness.rect(name).visible);
+        DOCTEST_CHECK(harness.rect(name).y < harness.rect("result.apply").y);
+    }
+}
+
 DOCTEST_TEST_CASE("history: stack and steps") {
     Harness harness({Wide, High, 1, Situation::Located, false});
     DOCTEST_CHECK(asks(harness, "history.enabled.7", "set_edit_enabled 7 off"));
@@ -376,6 +419,13 @@ DOCTEST_TEST_CASE("views, export, scene, models, settings") {
     harness.shell.show(ui::PanelId::Scene);
     harness.frame(3);
     DOCTEST_CHECK(asks(harness, "scene.up.z", "set_up_axis z"));
+    auto& document = harness.application.document();
+    auto upright = document.state();
+    upright.info.up = {0, 0, 1}, upright.info.up_known = true;
+    document.apply("Up axis", upright);
+    harness.frame(3);
+    DOCTEST_CHECK(!asks(harness, "scene.up.z", "set_up_axis"));   // it is chosen, and shown to be
+    DOCTEST_CHECK(asks(harness, "scene.up.-z", "set_up_axis -z"));
     harness.shell.show(ui::PanelId::Models);
     harness.frame(3);
     DOCTEST_CHECK(asks(harness, "models.use.1", "choose_model /home/mira/ComfyUI"));

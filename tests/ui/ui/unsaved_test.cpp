@@ -2,6 +2,8 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include "engine/base/file.h"
+#include "tests/test_paths.h"
 #include "tests/ui/support/harness.h"
 #include "ui/keys.h"
 #include "ui/state.h"
@@ -107,6 +109,20 @@ DOCTEST_TEST_CASE("opening another scene in the middle of an edit asks, a pictur
     harness.frame(3);
     DOCTEST_CHECK(harness.application.asked("leave_edit keep"));
     DOCTEST_CHECK(harness.application.asked("open /tmp/other.ply"));
+}
+
+DOCTEST_TEST_CASE("cameras are no other scene: they are opened without a question") {
+    const ScratchFolder scratch;
+    const auto cameras = scratch.path() / "cameras.json";
+    write_file(cameras, "[]");
+    Harness harness({Wide, High, 1, Situation::Scene, false});
+    harness.application.model().unsaved = true;
+    for (const auto& path : {cameras, scratch.path()}) {
+        harness.application.calls.clear();
+        harness.shell.request_open(path);
+        harness.frame(3);
+        DOCTEST_CHECK(harness.application.asked("open " + path.string()));
+    }
 }
 
 DOCTEST_TEST_CASE("a film that is still written is waited for or stopped, on purpose") {

@@ -206,6 +206,27 @@ DOCTEST_TEST_CASE("a box of the tool that cuts out asks for what is in it, once"
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
 }
 
+DOCTEST_TEST_CASE("who picks a tool that labels, or paints, sees what is labelled") {
+    Harness harness(with_depth());
+    auto& view = harness.application.model().view;
+    view.tint_labels = false;   // as after Apply
+    harness.frame(2);
+    const auto at = in_viewport(harness, 0.5f, 0.5f);
+    harness.move(at.x, at.y);
+    harness.key('B');
+    harness.frame();
+    DOCTEST_CHECK(view.tint_labels);
+    harness.key('T');   // it can be switched off again
+    harness.frame();
+    DOCTEST_CHECK_FALSE(view.tint_labels);
+    harness.drag(at, {at.x + 40, at.y});
+    DOCTEST_CHECK(view.tint_labels);
+    view.tint_labels = false;
+    harness.key('B');   // back to the camera
+    harness.frame();
+    DOCTEST_CHECK_FALSE(view.tint_labels);
+}
+
 DOCTEST_TEST_CASE("rectangle and lasso send one polygon in texture pixels") {
     Harness harness({1280, 720, 1, Situation::Located, false});
     const auto rect = harness.rect("viewport");
@@ -328,6 +349,30 @@ DOCTEST_TEST_CASE("cameras are chosen by a click and looked through by two") {
         return;
     }
     DOCTEST_CHECK_MESSAGE(false, "no view was in the picture");
+}
+
+DOCTEST_TEST_CASE("Left and Right step through the views in a picture that is no square") {
+    Harness harness({1280, 720, 1, Situation::Scene, false});
+    const auto& views = harness.application.document().state().views;
+    DOCTEST_REQUIRE(views.size() > 3);
+    const auto rect = harness.rect("viewport");
+    DOCTEST_REQUIRE(rect.width / rect.height > 1.1 * views[0].camera.width / views[0].camera.height);
+    for (const char* wanted : {"look_through 0", "look_through 1", "look_through 2"}) {
+        harness.application.calls.clear();
+        harness.key(key::Right);
+        DOCTEST_CHECK(harness.application.asked(wanted));
+        harness.frame(3);   // the camera comes back
+    }
+    DOCTEST_CHECK(harness.shell.state().viewport.selected_view == 2);
+    harness.application.calls.clear();
+    harness.key(key::Left);
+    DOCTEST_CHECK(harness.application.asked("look_through 1"));
+    harness.frame(3);
+    const auto at = in_viewport(harness, 0.4f, 0.7f);   // a camera that was moved looks through none of them
+    harness.drag(at, {at.x + 90, at.y}, 1);
+    harness.application.model().camera.translation.x += 0.3;
+    harness.frame(3);
+    DOCTEST_CHECK(harness.shell.state().viewport.selected_view == -1);
 }
 
 DOCTEST_TEST_CASE("a click on an axis looks along it, a second one from the other side") {

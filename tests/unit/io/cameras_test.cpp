@@ -277,6 +277,26 @@ DOCTEST_TEST_CASE("the shared camera folders open and look at their own points")
     DOCTEST_CHECK(visible_share({}, points) == 0);
 }
 
+DOCTEST_TEST_CASE("a camera file, and a folder with cameras and no scene, are cameras for another scene") {
+    ScratchFolder scratch;
+    const auto folder = scratch.path() / "capture";
+    const std::vector<View> views{{"a", some_camera(1), false}};
+    std::filesystem::create_directories(folder / "sparse/0");
+    DOCTEST_CHECK_FALSE(only_cameras(folder));
+    for (const char* part : {"cameras.txt", "images.txt"}) write_file(folder / "sparse/0" / part, "# COLMAP\n");
+    DOCTEST_CHECK(only_cameras(folder));
+    DOCTEST_CHECK(only_cameras(folder / "sparse/0"));
+    DOCTEST_CHECK(only_cameras(folder / "sparse/0/images.txt"));
+    save_cameras_json(scratch.path() / "cameras.json", views);
+    DOCTEST_CHECK(only_cameras(scratch.path() / "cameras.json"));
+    DOCTEST_CHECK(only_cameras(scratch.path() / "bear.cameras.json"));
+    DOCTEST_CHECK_FALSE(only_cameras(scratch.path() / "meta.json"));
+    DOCTEST_CHECK_FALSE(only_cameras(scratch.path() / "cameras.txt"));   // without its images
+    save_scene(folder / "scene.ply", random_scene(2, 0, 1));
+    DOCTEST_CHECK_FALSE(only_cameras(folder));   // a scene and its cameras
+    DOCTEST_CHECK_FALSE(only_cameras(folder / "scene.ply"));
+}
+
 DOCTEST_TEST_CASE("cameras are found beside a scene and above an Inria output folder, and nowhere else") {
     ScratchFolder scratch;
     const auto root = scratch.path() / "model";

@@ -165,6 +165,17 @@ DOCTEST_TEST_CASE("operations are those of sets, and weights stay as they are") 
     }
 }
 
+DOCTEST_TEST_CASE("rows that an edit added belong to its label, and are nobody's correction") {
+    NamedLabel found = empty_label("bear", 4);
+    found.weight = std::make_shared<const std::vector<float>>(std::vector<float>{0.9f, 0.2f, 0, 0});
+    found = with_added(with_bits(found), std::vector<std::uint8_t>{0, 0, 0, 1});
+    DOCTEST_CHECK(*found.bits == std::vector<std::uint8_t>{1, 0, 0, 1});
+    DOCTEST_CHECK((found.manual == nullptr || std::all_of(found.manual->begin(), found.manual->end(), [](auto by_hand) { return by_hand == 0; })));
+    DOCTEST_CHECK(count_labelled(with_threshold(found, 0.95f)) == 1);
+    const NamedLabel painted = with_added(empty_label("hat", 4), std::vector<std::uint8_t>{0, 0, 0, 1});
+    DOCTEST_CHECK(count_labelled(painted) == 1);
+}
+
 DOCTEST_TEST_CASE("growing and shrinking go along neighbours") {
     const GaussianSet set = line_set(50);
     const NamedLabel label = line_label(50, 20, 30);

@@ -1,0 +1,35 @@
+// Scenes with the cameras that belong to them: read alike for the window and for the command line.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/scene/scene.h"
+
+namespace gse::pipeline {
+
+/// Cameras that look at a scene, and what was odd about those that were found, one sentence each.
+struct SceneCameras {
+    std::vector<View> views;
+    std::vector<std::string> notes;
+};
+
+/// The cameras named, or those found beside the scene; none for "none". Those that look elsewhere are left out. Throws Error
+/// where named ones cannot be read; of those found a note says so.
+SceneCameras cameras_of_scene(const GaussianSet& set, const std::filesystem::path& scene_path, const std::string& named = {});
+
+/// Takes up from the cameras where the file does not state it. Returns the sentence that says so; empty = nothing was guessed.
+std::string guess_up(SceneInfo& info, const std::vector<View>& views);
+
+/// A scene, its cameras, and which way is up where the file does not say and the cameras do.
+struct LoadedScene {
+    Scene scene;
+    std::vector<View> views;
+    std::vector<std::string> notes;   // one sentence each
+};
+
+/// `cameras` as `named` above. Throws Error.
+LoadedScene load_scene_with_cameras(const std::filesystem::path& path, const std::string& cameras = {});
+
+}  // namespace gse::pipeline

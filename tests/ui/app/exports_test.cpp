@@ -1,0 +1,159 @@
+// Files that the window writes: what is on the screen goes into them, and comes back out of them.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "app/application.h"
+#include "engine/io/image_file.h"
+#include "engine/io/scene_io.h"
+#include "engine/scene/label_ops.h"
+#include "tests/ui/app/session.h"
+
+using namespace gse;
+using namespace gse::test;
+
+namespace {
+
+bool toasted(const app::Application& app, const std::string& text) {
+    for (const auto& toast : app.model().toasts)
+        if (toast.text.find(text) != std::string::npos) return true;
+    return false;
+}
+
+bool same_colours(const GaussianSet& a, const GaussianSet& b) {
+    return a.size() == b.size() && std::equal(a.sh().begin(), a.sh().end(), b.sh().begin(), b.sh().end());
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a result that waits is what is exported, and the toast says that it is not applied") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.iterations = 2;
+    app.set_request(request);
+    auto exports = app.model().exports;
+    exports.scene_path = (place.folder / "scene.ply").string();
+    exports.with_labels = true;
+    app.set_exports(exports);
+    app.edit();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_REQUIRE(app.model().result_waiting);
+    app.export_scene();
+    DOCTEST_REQUIRE(session.idle());
+    app.update(session.preview);
+    const Scene written = load_scene(place.folder / "scene.ply");
+    DOCTEST_CHECK(same_colours(written.gaussians, session.preview.last.set));
+    DOCTEST_CHECK_FALSE(same_colours(written.gaussians, app.document().state().current));
+    DOCTEST_CHECK(written.labels.labels.size() == 1);
+    DOCTEST_CHECK(toasted(app, "not applied"));
+    app.apply_result();
+    app.export_scene();
+    app.answer(0);   // another name
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(same_colours(load_scene(place.folder / "scene-2.ply").gaussians, app.document().state().current));
+    DOCTEST_CHECK(same_colours(load_scene(place.folder / "scene-2.ply").gaussians, written.gaussians));
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("a label that was made by hand is exported, too") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    ui::ScreenRegion stroke;
+    stroke.circles = {{160, 120}};
+    stroke.radius_px = 20;
+    app.add_label("mine");
+    app.select(stroke, ui::SetOperation::Add, true);
+    auto exports = app.model().exports;
+    exports.scene_path = (place.folder / "scene.ply").string();
+    exports.with_labels = true;
+    app.set_exports(exports);
+    app.export_scene();
+    DOCTEST_REQUIRE(session.idle());
+    const Scene written = load_scene(place.folder / "scene.ply");
+    DOCTEST_REQUIRE(written.labels.labels.size() == 1);
+    DOCTEST_CHECK(*written.labels.labels[0].bits == *app.document().state().labels[0].bits);
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("a screenshot that is dropped back brings its settings and its camera") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    app.update(session.preview);
+    Camera camera = app.model().camera;
+    camera.translation.z += 0.7;
+    camera.fx *= 1.5, camera.fy *= 1.5;
+    app.set_camera(camera);
+    auto settings = app.model().model_settings;
+    settings.front = "45";
+    settings.guidance.guidance_scale = 6;
+    settings.attention.strength = 0.5;
+    settings.learn_scene = true;
+    settings.learning.steps = 77;
+    app.set_model_settings(settings);
+    app.update(session.preview);
+    auto exports = app.model().exports;
+    exports.picture_path = (place.folder / "shot.png").string();
+    exports.width = 80, exports.height = 80;
+    app.set_exports(exports);
+    const auto shown = app.model().camera;
+    app.export_picture();
+    DOCTEST_REQUIRE(session.idle());
+    const auto seed = app.model().request.seed;
+    app.set_model_settings({});
+    auto request = app.model().request;
+    request.prompt = "a red bear", request.seed = seed + 5;
+    app.set_request(request);
+    app.look_through(0);
+    app.update(session.preview);
+    DOCTEST_REQUIRE_FALSE(app.model().camera.rotation == shown.rotation);
+    app.open(place.folder / "shot.png");
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().request.prompt == "a blue bear on the grass");
+    DOCTEST_CHECK(app.model().request.seed == seed);
+    DOCTEST_CHECK(app.model().model_settings.front == "45");
+    DOCTEST_CHECK(app.model().model_settings.guidance.guidance_scale == 6);
+    DOCTEST_CHECK(app.model().model_settings.attention.strength == 0.5);
+    DOCTEST_CHECK(app.model().model_settings.learn_scene);
+    DOCTEST_CHECK(app.model().model_settings.learning.steps == 77);
+    DOCTEST_CHECK(app.model().camera.rotation == shown.rotation);
+    DOCTEST_CHECK(app.model().camera.translation == shown.translation);
+    DOCTEST_CHECK(app.model().camera.fx == doctest::Approx(shown.fx));
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("the camera path is work of the project: saved, loaded, and not taken into another scene") {
+    const Place place;
+    {
+        Session session(false);
+        session.open_bear();
+        auto& app = session.app;
+        app.update(session.preview);
+        app.add_camera_key();
+        app.look_through(1);
+        app.update(session.preview);
+        app.add_camera_key();
+        app.update(session.preview);
+        DOCTEST_CHECK(app.model().unsaved);
+        app.save_project(place.folder / "path.gsep");
+        DOCTEST_REQUIRE(session.until([&] { return !app.model().unsaved; }, 30));
+        app.shut_down();
+    }
+    Session again(false);
+    auto& app = again.app;
+    app.open(place.folder / "path.gsep");
+    DOCTEST_REQUIRE(again.until([&] { return app.model().document != nullptr; }));
+    DOCTEST_REQUIRE(app.model().camera_keys.size() == 2);
+    DOCTEST_CHECK(app.model().camera_keys[1].time == 2);
+    DOCTEST_CHECK_FALSE(app.model().camera_keys[0].camera.translation == app.model().camera_keys[1].camera.translation);
+    app.open_sample();
+    DOCTEST_REQUIRE(again.until([&] { return app.model().project_path.empty(); }));
+    DOCTEST_CHECK(app.model().camera_keys.empty());
+    app.shut_down();
+}

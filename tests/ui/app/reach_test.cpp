@@ -1,0 +1,144 @@
+// What an edit may change: the label on the screen where it is about the words, else what a search finds.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "app/application.h"
+#include "engine/scene/label_ops.h"
+#include "tests/ui/app/session.h"
+
+using namespace gse;
+using namespace gse::test;
+
+namespace {
+
+/// A stroke over the bear, which is small in the home view.
+ui::ScreenRegion stroke_over_bear(float radius) {
+    ui::ScreenRegion stroke;
+    stroke.circles = {{160, 120}};
+    stroke.radius_px = radius;
+    return stroke;
+}
+
+const NamedLabel& active(const app::Application& app) {
+    const auto& state = app.document().state();
+    DOCTEST_REQUIRE(state.active_label >= 0);
+    return state.labels[static_cast<std::size_t>(state.active_label)];
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("what an addition left behind is not what the next edit of another thing changes") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.prompt = "a bear wearing a blue hat on the grass";
+    request.target = "hat";
+    request.mode = "add";
+    request.iterations = 2;
+    request.place_views = 4;
+    app.set_request(request);
+    app.edit();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_REQUIRE(app.model().result_waiting);
+    app.discard_result();
+    app.select(stroke_over_bear(5), ui::SetOperation::Remove, true);   // says nothing of where the hat goes, and that is said
+    app.edit();
+    DOCTEST_REQUIRE(session.idle());
+    app.update(session.preview);
+    bool said = false;
+    for (const auto& toast : app.model().toasts) said |= toast.text == app::AddsElsewhere;
+    DOCTEST_CHECK(said);
+    app.apply_result();
+    DOCTEST_REQUIRE(active(app).name == "hat");
+    request = app.model().request;
+    request.mode = "auto";
+    request.prompt = "a golden bear";
+    app.set_request(request);
+    app.update(session.preview);
+    DOCTEST_CHECK_FALSE(app.model().reach.by_label);
+    DOCTEST_CHECK(app.model().reach.label == "hat");   // offered
+    const auto hat = *active(app).bits;
+    app.edit();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_REQUIRE(active(app).name == "bear");
+    std::size_t in_hat = 0;
+    for (std::size_t row = 0; row < hat.size(); ++row) in_hat += hat[row] != 0 && (*active(app).bits)[row] != 0 ? 1 : 0;
+    DOCTEST_CHECK(count_labelled(active(app)) > 100);
+    DOCTEST_CHECK(in_hat < count_labelled(active(app)) / 2);
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("a label that was found and renamed is still the one that the edit changes, with its corrections") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.iterations = 2;
+    app.set_request(request);
+    app.locate();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK_FALSE(app.model().attention_corrected);
+    app.select(stroke_over_bear(5), ui::SetOperation::Remove, true);
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().attention_corrected);   // the masks are from before
+    const auto corrected = *active(app).bits;
+    app.rename_label(app.document().state().active_label, "Bruno");
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().reach.by_label);
+    DOCTEST_CHECK(app.model().reach.label == "Bruno");
+    DOCTEST_CHECK(app.model().reach.splats == count_labelled(active(app)));
+    app.edit();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(app.document().state().labels.size() == 1);
+    DOCTEST_CHECK(*active(app).bits == corrected);
+    DOCTEST_CHECK_FALSE(app.model().view.tint_labels);   // what was made is to be seen
+    auto view = app.model().view;
+    view.tint_labels = true;   // by T, a tool or a stroke
+    app.set_view_settings(view);
+    app.update(session.preview);
+    DOCTEST_CHECK(session.preview.last.values != nullptr);
+    app.discard_result();
+    app.locate();   // another search corrects the same label
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(app.document().state().labels.size() == 1);
+    DOCTEST_CHECK(active(app).name == "Bruno");
+    app.save_project(place.folder / "bruno.gsep");
+    DOCTEST_REQUIRE(session.idle());
+    app.open(place.folder / "bruno.gsep");
+    DOCTEST_REQUIRE(session.idle());
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().reach.by_label);   // the project keeps the connection
+    app.shut_down();
+}
+
+DOCTEST_TEST_CASE("who paints a label means it, until another source is edited; the panel can say otherwise") {
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    app.add_label("label");
+    app.select(stroke_over_bear(20), ui::SetOperation::Add, true);
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().reach.by_label);
+    app.set_reach(false);
+    app.update(session.preview);
+    DOCTEST_CHECK_FALSE(app.model().reach.by_label);
+    app.set_reach(true);
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().reach.by_label);
+    auto request = app.model().request;
+    request.source = "grass";
+    app.set_request(request);
+    app.update(session.preview);
+    DOCTEST_CHECK_FALSE(app.model().reach.by_label);
+    app.open_sample();   // another document: nothing is labelled there
+    DOCTEST_REQUIRE(session.until([&] { return app.document().state().labels.empty(); }));
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().reach.label.empty());
+    app.shut_down();
+}

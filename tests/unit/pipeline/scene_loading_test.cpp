@@ -1,0 +1,71 @@
+// A scene's cameras: which count, what is said of those that do not, and what they tell about up.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "engine/base/error.h"
+#include "engine/base/file.h"
+#include "engine/io/cameras.h"
+#include "engine/io/scene_io.h"
+#include "engine/pipeline/scene_loading.h"
+#include "engine/synth/synth.h"
+#include "tests/test_paths.h"
+
+namespace {
+
+using namespace gse;
+using test::ScratchFolder;
+
+/// A scene whose file does not say which way is up.
+std::filesystem::path some_scene(const ScratchFolder& scratch) {
+    Scene scene = synth::generate({}).scene;
+    scene.info.up_known = false;
+    const auto path = scratch.path() / "scene.ply";
+    save_scene(path, scene);
+    return path;
+}
+
+std::vector<View> around(const std::filesystem::path& scene, const Vec3& up) {
+    return orbit_views(fit_orbit(compute_statistics(load_scene(scene).gaussians), up), 6, 64, 64);
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("cameras beside a scene are taken, and tell which way is up where the file does not") {
+    const ScratchFolder scratch;
+    const auto scene = some_scene(scratch);
+    DOCTEST_CHECK(pipeline::load_scene_with_cameras(scene).views.empty());
+    save_cameras_json(scratch.path() / "cameras.json", around(scene, {0, 0, 1}));
+    const auto loaded = pipeline::load_scene_with_cameras(scene);
+    DOCTEST_CHECK(loaded.views.size() == 6);
+    DOCTEST_CHECK(loaded.scene.info.up.z > 0.99);
+    DOCTEST_CHECK(loaded.notes.size() == 1);
+    const auto without = pipeline::load_scene_with_cameras(scene, "none");
+    DOCTEST_CHECK(without.views.empty());
+    DOCTEST_CHECK(without.scene.info.up.y < -0.99);
+    DOCTEST_CHECK(without.notes.empty());
+}
+
+DOCTEST_TEST_CASE("a broken camera file is noted, one that was named is an error") {
+    const ScratchFolder scratch;
+    const auto scene = some_scene(scratch);
+    const auto cameras = scratch.path() / "cameras.json";
+    write_file(cameras, "[{\"id\": 0");
+    const auto loaded = pipeline::load_scene_with_cameras(scene);
+    DOCTEST_CHECK(loaded.views.empty());
+    DOCTEST_REQUIRE(loaded.notes.size() == 1);
+    DOCTEST_CHECK(loaded.notes[0].find("cannot be used") != std::string::npos);
+    DOCTEST_CHECK_THROWS_AS(pipeline::load_scene_with_cameras(scene, cameras.string()), Error);
+}
+
+DOCTEST_TEST_CASE("cameras that look elsewhere are left out, with a word, and say nothing about up") {
+    const ScratchFolder scratch;
+    const auto scene = some_scene(scratch);
+    auto views = around(scene, {0, 0, 1});
+    for (auto& view : views) view.camera.translation = view.camera.translation + Vec3{1000, 0, 0};
+    save_cameras_json(scratch.path() / "cameras.json", views);
+    const auto loaded = pipeline::load_scene_with_cameras(scene);
+    DOCTEST_CHECK(loaded.views.empty());
+    DOCTEST_REQUIRE(loaded.notes.size() == 1);
+    DOCTEST_CHECK(loaded.notes[0].find("elsewhere") != std::string::npos);
+    DOCTEST_CHECK(loaded.scene.info.up.y < -0.99);
+}
