@@ -103,7 +103,10 @@ void complete(EditOptions& options) {
     if (options.output.empty())
         options.output = std::filesystem::path("out") / (options.demo ? "demo" : std::filesystem::path(options.recipe.job.scene).stem());
     apply_model(options);
-    options.recipe.request = edit::validated(options.recipe.request);
+    auto& request = options.recipe.request;
+    const bool open = request.target.empty() && !request.source.empty();   // the pictures say which word is new
+    request = edit::validated(request);
+    if (open) request.target.clear();
 }
 
 /// Results beside their own scene would replace it, or be taken for it the next time.

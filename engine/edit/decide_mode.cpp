@@ -78,7 +78,8 @@ std::string thing_in_place(const EditRequest& request) {
     const auto at = static_cast<std::size_t>(target);
     if (source >= 0) {   // "turn the bear into a wooden dog"
         static const Words turned{"into"};
-        return source < target && any_of_between(terms, source, target, turned) ? thing_of(terms, at) : std::string();
+        const auto thing = source < target && any_of_between(terms, source, target, turned) ? thing_of(terms, at) : std::string();
+        return thing == request.source ? std::string() : thing;   // "turn the bear into a golden bear"
     }
     static const Words made{"of"};
     if (at > 0 && is_among(made, terms[at - 1])) return {};   // "made of gold"

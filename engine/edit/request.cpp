@@ -95,6 +95,26 @@ std::string description_of(const EditRequest& edit) {
     return contains(Articles, word) || ends_phrase(word) ? std::string() : word;
 }
 
+/// Whatever describes the source that stands at `at`, the nearest first.
+void add_descriptions(const Words& words, std::size_t at, std::vector<Candidate>& list) {
+    for (std::size_t i = at; i > 0; --i) {
+        const auto& word = words[i - 1];
+        if (word == Identifier) continue;
+        if (contains(Articles, word) || ends_phrase(word)) break;
+        list.push_back({word, {word}});
+    }
+}
+
+/// "The bear is golden", "make the bear golden".
+void add_predicates(const Words& words, std::size_t at, std::vector<Candidate>& list) {
+    static const Words verbs{"make", "turn", "paint", "colour", "color", "dye"}, copulas{"is", "are", "becomes", "looks", "turns"};
+    std::size_t next = at + 1;
+    const bool copula = next < words.size() && contains(copulas, words[next]);
+    if (copula) ++next;
+    else if (!contains(verbs, words.front())) return;
+    if (next < words.size() && !ends_phrase(words[next]) && !contains(Articles, words[next])) list.push_back({words[next], {words[next]}});
+}
+
 /// Everything a sentence says of the source, in the order in which it is taken for the news.
 std::vector<Candidate> candidates_of(const Words& words, const std::string& source) {
     std::vector<Candidate> list;
@@ -114,12 +134,10 @@ std::vector<Candidate> candidates_of(const Words& words, const std::string& sour
     const auto at = static_cast<std::size_t>(found - words.begin());
     for (std::size_t i = at + 1; i < words.size(); ++i)
         if (contains(Joiners, words[i]) || says_worn(words, i)) add_phrase(i + 1);
-    for (std::size_t i = at; i > 0; --i) {   // nearest description first
-        const auto& word = words[i - 1];
-        if (word == Identifier) continue;
-        if (contains(Articles, word) || ends_phrase(word)) break;
-        list.push_back({word, {word}});
-    }
+    std::erase_if(list, [&](const Candidate& candidate) { return candidate.head == source; });   // "into a golden bear": what describes it is new
+    add_predicates(words, at, list);
+    for (std::size_t place = at; place < words.size(); ++place)
+        if (words[place] == source) add_descriptions(words, place, list);
     return list;
 }
 

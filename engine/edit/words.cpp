@@ -2,20 +2,45 @@
 #include "engine/edit/words.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <string_view>
+#include <utility>
 
 namespace gse::edit {
+
+namespace {
+
+/// Typographic marks of a text processor, in UTF-8, and what they count as: its apostrophes as the plain one, blanks, dashes, dots and
+/// quotation marks as gaps.
+std::string plain_marks(std::string text) {
+    constexpr std::array<std::pair<std::string_view, char>, 11> marks{{{"\u2019", '\''}, {"\u2018", ' '}, {"\u201c", ' '}, {"\u201d", ' '}, {"\u201e", ' '}, {"\u00ab", ' '},
+                                                                     {"\u00bb", ' '}, {"\u2026", ' '}, {"\u2013", ' '}, {"\u2014", ' '}, {"\u00a0", ' '}}};
+    for (const auto& [mark, letter] : marks)
+        for (auto at = text.find(mark); at != std::string::npos; at = text.find(mark, at)) text.replace(at, mark.size(), 1, letter);
+    return text;
+}
+
+/// "The bear's hat" is about the bear.
+void drop_possessive(std::string& word) {
+    if (word.size() > 2 && word.ends_with("'s")) word.resize(word.size() - 2);
+    while (!word.empty() && word.back() == '\'') word.pop_back();
+    word.erase(0, std::min(word.find_first_not_of('\''), word.size()));
+}
+
+}  // namespace
 
 std::vector<std::string> words_of(const std::string& sentence) {
     std::vector<std::string> words;
     std::string word;
-    for (const char letter : sentence + " ") {
+    for (const char letter : plain_marks(sentence) + " ") {
         const auto byte = static_cast<unsigned char>(letter);
         const bool part_of_word = std::isalnum(byte) != 0 || byte >= 0x80 || letter == '-' || letter == '\'';
         if (part_of_word) {
             word += static_cast<char>(byte < 0x80 ? std::tolower(byte) : byte);
             continue;
         }
+        drop_possessive(word);
         if (!word.empty()) words.push_back(std::move(word));
         word.clear();
         if (Identifier.front() == letter) words.push_back(Identifier);

@@ -91,10 +91,13 @@ std::vector<View> farthest_views(const std::vector<View>& views, std::size_t cou
     if (views.size() <= count) return views;
     std::vector<double> distance(views.size(), std::numeric_limits<double>::infinity());
     std::vector<std::size_t> chosen{0};
+    // From one place, as on a tripod, they differ by where they look.
+    const bool turns = std::all_of(views.begin(), views.end(), [&](const View& view) { return view.camera.centre() == views.front().camera.centre(); });
+    const auto place_of = [turns](const View& view) { return turns ? view.camera.forward() : view.camera.centre(); };
     while (chosen.size() < count) {
-        const Vec3 last = views[chosen.back()].camera.centre();
-        for (std::size_t i = 0; i < views.size(); ++i)
-            distance[i] = std::min(distance[i], length(views[i].camera.centre() - last));
+        const Vec3 last = place_of(views[chosen.back()]);
+        for (std::size_t i = 0; i < views.size(); ++i) distance[i] = std::min(distance[i], length(place_of(views[i]) - last));
+        distance[chosen.back()] = -1;   // not once more
         chosen.push_back(
             static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin()));
     }

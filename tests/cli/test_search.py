@@ -42,6 +42,17 @@ class Searches(ProgramTest):
         process = self.edit("--source", "bear", "--prompt", "a bear wearing a sombrero")
         self.assert_one_sentence(process, '"sombrero"', "cannot make it")
 
+    def test_the_pictures_say_which_word_is_new(self):
+        scene = self.folder / "hat.ply"
+        process = run("-q", "synth", scene, "--object", "bear", "--material", "red", "--accessory", "hat", "--ground", "snow")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        # By the words alone the hat would be it; the scene shows one.
+        process = run("locate", scene, "--out", self.folder / "out", *LOOK, "--source", "bear", "--prompt",
+                      "a golden bear wearing a hat on the snow")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn('new in the sentence: "golden"', process.stderr)
+        self.assertIn("mode modify", process.stderr)
+
     def test_another_unknown_word_only_warns(self):
         process = run("locate", BEAR, "--out", self.folder / "out", *LOOK, "--source", "bear", "--prompt",
                       "a blue bear beside a lantern")

@@ -260,6 +260,15 @@ DOCTEST_TEST_CASE("the target is guessed from the sentence") {
     DOCTEST_CHECK(guessed_target("a golden statue", "statue") == "golden");
     DOCTEST_CHECK(guessed_target("a chair made of stone", "chair") == "stone");
     DOCTEST_CHECK(guessed_target("turn the bear into a panda", "bear") == "panda");
+    for (const char* sentence : {"turn the bear into a golden bear", "the bear is golden", "make the bear golden", "paint the bear golden on the grass"}) {
+        edit::EditRequest golden;
+        golden.source = "bear";
+        golden.prompt = sentence;
+        golden = edit::validated(golden);
+        DOCTEST_CHECK_MESSAGE(golden.target == "golden", sentence);
+        DOCTEST_CHECK_MESSAGE(!edit::has_word(edit::sentence_before(golden), "golden"), sentence);
+        DOCTEST_CHECK_MESSAGE(edit::planned_mode(golden) == edit::EditMode::Modify, sentence);
+    }
     DOCTEST_CHECK(guessed_target("a panda on the grass", "bear") == "panda");
     DOCTEST_CHECK(guessed_target("a photo of a bear", "bear") == "bear");
     DOCTEST_CHECK(guessed_target("bear", "bear") == "bear");

@@ -61,6 +61,15 @@ DOCTEST_TEST_CASE("a phrase is in a sentence when its words follow each other") 
     DOCTEST_CHECK(edit::phrases_of("top hat, grass,") == Words{"top hat", "grass"});
 }
 
+DOCTEST_TEST_CASE("what a text processor makes of a sentence is the same sentence, and what belongs to a thing names it") {
+    DOCTEST_CHECK(edit::words_of("\u201ca golden\u00a0bear\u201d\u2026") == Words{"a", "golden", "bear"});
+    DOCTEST_CHECK(edit::words_of("the bear\u2019s hat \u2014 red") == Words{"the", "bear", "hat", "red"});
+    DOCTEST_CHECK(edit::words_of("the dogs' 'ball' isn't red") == Words{"the", "dogs", "ball", "isn't", "red"});
+    DOCTEST_CHECK(edit::words_of("' 's ''") == Words{"s"});
+    DOCTEST_CHECK(edit::words_of("\u00e9t\u00e9") == Words{"\u00e9t\u00e9"});
+    DOCTEST_CHECK(valid("bear", "the bear's hat is red", "hat").source == "bear");
+}
+
 DOCTEST_TEST_CASE("source and target may be phrases; they must have a word, and the target must be in the sentence") {
     const auto request = valid("Teddy  Bear", "a teddy bear wearing a Top Hat", "top hat");
     DOCTEST_CHECK(request.source == "teddy bear");

@@ -20,6 +20,26 @@ DOCTEST_TEST_CASE("one or two bookmarks do not take the place of the automatic v
     }
 }
 
+DOCTEST_TEST_CASE("of many cameras those farthest apart are chosen, each once, also where all stand in one place") {
+    using namespace gse;
+    std::vector<View> views;
+    for (int i = 0; i < 12; ++i) {
+        View view;
+        view.name = std::to_string(i);
+        const double turn = i * 0.5236;
+        view.camera = Camera::look_at({0, 0, 0}, {std::cos(turn), 0, std::sin(turn)}, {0, -1, 0}, 0.9, 64, 64);
+        views.push_back(view);
+    }
+    const auto names = [](const std::vector<View>& chosen) {
+        std::vector<std::string> list;
+        for (const auto& view : chosen) list.push_back(view.name);
+        return list;
+    };
+    DOCTEST_CHECK(names(pipeline::farthest_views(views, 4)) == std::vector<std::string>{"0", "3", "6", "9"});
+    for (auto& view : views) view.camera = views.front().camera;   // all the same
+    DOCTEST_CHECK(names(pipeline::farthest_views(views, 3)) == std::vector<std::string>{"0", "1", "2"});
+}
+
 DOCTEST_TEST_CASE("azimuths and elevations of views are those of the orbit that they lie on") {
     using namespace gse;
     pipeline::Views views;
