@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "engine/base/progress.h"
 #include "engine/edit/interfaces.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/scene/label_ops.h"
+#include "engine/scene/scene.h"
 
 namespace gse::pipeline {
 
@@ -19,6 +21,10 @@ struct CutOutRequest {
     raster::Settings settings;   // of the pictures, their background too
     Vec3 up{0, -1, 0};           // of the world: the other sides are looked at around it
 };
+
+/// A box as --cut-out says it: "LEFT,TOP,RIGHT,BOTTOM", shares of the picture that `render` makes of the scene by default, or with
+/// ",AZIMUTH,ELEVATION,ZOOM" behind it, as `render` takes them. Throws Error (InvalidArgument).
+CutOutRequest cut_out_request(const std::string& text, const Scene& scene, const std::string& up);
 
 /// One byte per row of `set`: 1 for the thing, from all sides. `segmenter` cuts it out of a picture of the view, told the box around the area,
 /// and then out of views around it (cut_out_sides.h); null = the one that needs no weights. Where the first comes to nothing, the area itself

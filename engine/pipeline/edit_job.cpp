@@ -33,6 +33,14 @@ std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::pa
                 "use a PLY whose float column \"label\" is 1 where the edit may change something", path);
 }
 
+/// What the box of --cut-out holds.
+std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const JobParameters& job, edit::Segmenter* segmenter, const JobControl& control) {
+    auto bits = cut_out(drawable(scene.gaussians), cut_out_request(job.cut_out, scene, job.up), segmenter, control);
+    if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) != bits.end()) return bits;
+    throw Error(ErrorCode::InvalidArgument, fmt::format("nothing is seen in the box \"{}\" of --cut-out", job.cut_out),
+                "look at what gseditpro render shows with the same azimuth, elevation and zoom");
+}
+
 /// So that a recipe that was written elsewhere names the same files. Throws Error for one that is not there.
 std::vector<std::string> absolute_loras(const JobParameters& job) {
     std::vector<std::string> texts;
@@ -58,6 +66,8 @@ void warn_unknown_words(const std::vector<std::string>& words, const std::vector
 EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCache> cache)
     : recipe_(std::move(recipe)), control_(std::move(control)) {
     check_recipe(nullptr);
+    if (recipe_.job.use_label && !recipe_.job.cut_out.empty())
+        throw Error(ErrorCode::InvalidArgument, "--use-label and --cut-out both say what may change", "leave one of them out");
     times_.begin("load_scene");
     recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
     recipe_.job.lora = absolute_loras(recipe_.job);
@@ -73,6 +83,11 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     auto model = open_recipe_model(recipe_.job, cache);
     auto segmenters = open_segmenters(recipe_.job, cache);
     times_.end();
+    if (!recipe_.job.cut_out.empty()) {
+        times_.begin("cut_out");
+        hints_.label = labelled_by_box(scene, recipe_.job, segmenters.clicks.get(), control_);
+        times_.end();
+    }
     begin(std::move(scene), std::move(model), std::move(segmenters), given);
 }
 
@@ -103,7 +118,7 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
     check_fields(recipe_.attention);
     check_fields(recipe_.dreambooth);
     const auto known = model != nullptr ? model->known_words() : model_words(model_path(recipe_.job));
-    edit::require_known_words(recipe_.request, known, recipe_.job.use_label || !hints_.label.empty());
+    edit::require_known_words(recipe_.request, known, recipe_.job.brings_label() || !hints_.label.empty());
     check_length();
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});

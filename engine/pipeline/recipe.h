@@ -31,6 +31,7 @@ struct JobParameters {
     std::string up = "auto";
     std::string front;
     bool use_label = false;
+    std::string cut_out;
     int turntable_size = 480;
     int turntable_frames = 60;
 
@@ -59,10 +60,16 @@ struct JobParameters {
           "scene where the model's encoder can tell; \"none\" = not told.");
         f("use_label", self.use_label,
           "What the scene's label column marks may change; nothing is looked for, and the source may be any word.");
+        f("cut_out", self.cut_out,
+          "Box around the thing that may change, LEFT,TOP,RIGHT,BOTTOM as shares of the picture that \"render\" makes, and where that is not "
+          "the one of its defaults ,AZIMUTH,ELEVATION,ZOOM behind it: the thing is cut out of it, all its sides, and nothing is looked for.");
         f("turntable_size", self.turntable_size, "Side of each half of the before/after film in pixels.",
           Range{16, 4096});
         f("turntable_frames", self.turntable_frames, "Frames of the before/after film.", Range{1, 10000});
     }
+
+    /// The source may be any word: what may change is known without it.
+    bool brings_label() const { return use_label || !cut_out.empty(); }
 };
 
 /// Everything that decides the result.

@@ -113,7 +113,7 @@ public:
         : workplace_(workplace), recipe_(std::move(recipe)), views_(views), hints_(hints), control_(control) {}
 
     Located run() {
-        const bool by_label = !hints_.label.empty() && (recipe_.job.use_label || !edit::knows(workplace_.model().known_words(),
+        const bool by_label = !hints_.label.empty() && (recipe_.job.brings_label() || !edit::knows(workplace_.model().known_words(),
                                                                                                 recipe_.request.source));
         read_scene(moves() && !by_label);
         if (by_label) return from_label();

@@ -42,6 +42,22 @@ class Searches(ProgramTest):
         process = self.edit("--source", "bear", "--prompt", "a bear wearing a sombrero")
         self.assert_one_sentence(process, '"sombrero"', "cannot make it")
 
+    def test_a_box_says_what_may_change(self):
+        box = ["--cut-out", "0.42,0.35,0.575,0.645,0,15,1"]
+        process = self.edit("--source", "thingummy", "--prompt", "a golden thingummy on the grass", *box)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        report = json.loads((self.folder / "out/report.json").read_text())
+        self.assertEqual(report["changed_outside_label"], 0)
+        self.assertGreater(report["labelled"], 2500)   # the bear's 2994 of 4914 splats
+        self.assertLess(report["labelled"], 3200)
+        process = run("edit", "--recipe", self.folder / "out/recipe.json", "--out", self.folder / "again")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual((self.folder / "again/scene.ply").read_bytes(), (self.folder / "out/scene.ply").read_bytes())
+        process = self.edit("--source", "thingummy", "--prompt", "a golden thingummy", "--cut-out", "0.5,0.1,0.4,0.9")
+        self.assert_one_sentence(process, "--cut-out", "left before right")
+        process = self.edit("--source", "thingummy", "--prompt", "a golden thingummy", *box, "--use-label")
+        self.assert_one_sentence(process, "--use-label and --cut-out", "leave one of them out")
+
     def test_the_pictures_say_which_word_is_new(self):
         scene = self.folder / "hat.ply"
         process = run("-q", "synth", scene, "--object", "bear", "--material", "red", "--accessory", "hat", "--ground", "snow")

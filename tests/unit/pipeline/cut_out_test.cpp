@@ -180,3 +180,22 @@ DOCTEST_TEST_CASE("cutting out stops when it is told to") {
     control.stop = source.get_token();
     DOCTEST_CHECK_THROWS_WITH_AS(cut_out(ball_and_wall(), around_ball(), nullptr, control), doctest::Contains("stopped"), Error);
 }
+
+DOCTEST_TEST_CASE("a box in words is the one in the picture that the render command makes, and anything else is said to be none") {
+    Scene scene;
+    scene.gaussians = ball_and_wall();
+    const auto plain = cut_out_request("0.25,0.1,0.75,0.9", scene, "auto");
+    const auto looked = choose_camera(scene, {}, RenderParameters{});
+    DOCTEST_CHECK(plain.camera.width == looked.width);
+    DOCTEST_CHECK(length(plain.camera.centre() - looked.centre()) == 0);
+    DOCTEST_REQUIRE(plain.area.polygon.size() == 4);
+    DOCTEST_CHECK(plain.area.polygon[2][0] == doctest::Approx(0.75 * looked.width));
+    DOCTEST_CHECK(plain.area.polygon[2][1] == doctest::Approx(0.9 * looked.height));
+    RenderParameters other;
+    other.azimuth = 180, other.elevation = 20, other.zoom = 2;
+    const auto turned = cut_out_request("0.25,0.1,0.75,0.9,180,20,2", scene, "auto");
+    DOCTEST_CHECK(length(turned.camera.centre() - choose_camera(scene, {}, other).centre()) == 0);
+    for (const char* wrong : {"", "1", "a,b,c,d", "0.1,0.2,0.3", "0.1,0.2,0.3,0.4,", "0.1,0.2,0.3,0.4,5", "nan,0,1,1", "0,0,1,inf", "0.5,0,0.4,1", "-0.1,0,1,1", "0,0,1,1.1",
+                              "0,0,1,1,0,95,1", "0,0,1,1,0,0,0", "0 0 1 1"})
+        DOCTEST_CHECK_THROWS_AS(cut_out_request(wrong, scene, "auto"), Error);
+}
