@@ -138,7 +138,7 @@ void Application::cut_out(const ui::ScreenRegion& box, ui::SetOperation operatio
                      *rows = pipeline::cut_out(set, request, open_segmenters(job, cache).clicks.get(), control);
                  },
                  [this, rows, operation](const Error* error) {
-                     if (error != nullptr) return report_error(*error);
+                     if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
                      if (rows->size() != document_.state().current.size()) return;   // another scene meanwhile
                      change_label("Cut out", [&](NamedLabel label) { return combine(std::move(label), *rows, operation_of(operation)); });
                  }});

@@ -67,5 +67,10 @@ DOCTEST_TEST_CASE("a thing in a box is cut out in the background, one step of un
     DOCTEST_CHECK(cut < state.current.size() * 65 / 100);
     app.undo();
     DOCTEST_CHECK(app.document().state().labels.empty());
+    app.cut_out(box, ui::SetOperation::Replace);
+    app.cancel();
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK(app.document().state().labels.empty());
+    for (const auto& toast : app.model().toasts) DOCTEST_CHECK_FALSE(toast.is_error);   // it was the artist's wish
     app.shut_down();
 }
