@@ -55,11 +55,41 @@ std::optional<edit::PlainGround> ground_under(const GaussianSet& scene, const Lo
     return edit::plain_ground(request.prompt, edit::standing_of(scene, plan.label, up, located.views.front), up, parse_colour(request.background));
 }
 
+/// What a way has drawn.
+struct Answer {
+    edit::RoundInput input;
+    std::size_t views = 0;
+    edit::RoundTargets targets;
+    bool answers(const edit::RoundInput& asked, std::size_t count) const {
+        return views == count && input.round == asked.round && input.seed == asked.seed && input.strength == asked.strength && input.sentence == asked.sentence;
+    }
+};
+
+/// Keeps what a way draws before anything is fitted: where it is the best after all, the same is not drawn again.
+class Kept final : public edit::ViewGuidance {
+public:
+    Kept(edit::ViewGuidance& guidance, std::vector<Answer>& answers) : guidance_(guidance), answers_(answers) {}
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) override {
+        for (const auto& answer : answers_)
+            if (answer.answers(input, views.size())) return answer.targets;
+        auto targets = guidance_.edit(views, input, job);
+        if (input.round == 0) answers_.push_back({input, views.size(), targets});
+        return targets;
+    }
+    bool restyles() const override { return guidance_.restyles(); }
+
+private:
+    edit::ViewGuidance& guidance_;
+    std::vector<Answer>& answers_;
+};
+
 /// The ways in turn, and then the best of them.
 class Attempts {
 public:
-    explicit Attempts(std::vector<Way> ways) : ways_(std::move(ways)) {}
+    explicit Attempts(std::vector<Way> ways) : ways_(std::move(ways)), answers_(ways_.size()) {}
     const Way& way() const { return ways_[at_]; }
+    std::vector<Answer>& answers() { return answers_[at_]; }
+    bool several() const { return ways_.size() > 1; }
     /// Whether these pictures are not to be used, or not yet. `score`: none when nothing can tell.
     bool goes_on(const Verdict& verdict) {
         if (ways_.size() == 1 || !verdict.score || (!verdict.warns && *verdict.score >= best_score_)) decided_ = true;
@@ -93,6 +123,7 @@ private:
     }
 
     std::vector<Way> ways_;
+    std::vector<std::vector<Answer>> answers_;   // of each way
     std::size_t at_ = 0, best_ = 0;
     double best_score_ = 2 * LeastCosine;   // of the ways that were tried
     bool decided_ = false;
@@ -160,6 +191,8 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     std::optional<edit::OnPlainGround> on_ground;
     if (way.plain_ground && ground && views) on_ground.emplace(*views, *ground);
     tools.views = on_ground ? &*on_ground : views.get();
+    std::optional<Kept> kept;
+    if (attempts.several() && views) tools.views = &kept.emplace(*tools.views, attempts.answers());
     tools.known = model.known_words();
     tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings).dump() + (on_ground ? "plain ground" : "");
     Edited edited;

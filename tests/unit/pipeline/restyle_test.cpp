@@ -26,11 +26,13 @@ class Idle final : public edit::ViewGuidance {
 public:
     explicit Idle(bool restyles) : restyles_(restyles) {}
     edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput&, const JobControl&) override {
+        ++rounds;
         edit::RoundTargets targets;
         for (const auto& view : views) targets.images.push_back(view.rendered);
         return targets;
     }
     bool restyles() const override { return restyles_; }
+    static inline int rounds = 0;   // of all that were asked
 
 private:
     bool restyles_;
@@ -165,7 +167,11 @@ DOCTEST_TEST_CASE("what restyles and hardly shows what was asked gives way to th
 
 DOCTEST_TEST_CASE("where the model itself does no better the first pictures are used, with their warning") {
     if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
+    Idle::rounds = 0;
     const auto found = edited(blue_bear(), true);
+    // One each in the scene and on a plain ground, for the model itself another with more strength; none for what was drawn already.
+    DOCTEST_CHECK(Idle::rounds <= 4);
+    DOCTEST_CHECK(Idle::rounds >= 3);
     DOCTEST_CHECK(found.asked.size() <= 4);
     DOCTEST_CHECK(found.asked.front());
     DOCTEST_REQUIRE(found.judged.size() == 1);
