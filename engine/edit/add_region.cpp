@@ -261,7 +261,10 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
     if (points.empty() || voters == 0) return {};
     const bool related = !place_name(search.relation).empty();
     const RelatedPlace place(search.relation, points, related ? visible_points(search, frame, false) : std::vector<Vec3>{});
-    const auto worn = [&] { return worn_box(points, standing_of(search.gaussians, search.source_bits, search.up, search.front), frame); };
+    const auto worn = [&] {
+        const bool known = search.standing.found();
+        return worn_box(points, known ? search.standing : standing_of(search.gaussians, search.source_bits, search.up, search.front), frame);
+    };
     const Grid grid = make_grid(related ? place.box() : worn(), parameters.cells);
     const auto agreement = agreement_of(search, parameters, frame, grid, related ? &place : nullptr, voters);
     const double best = *std::max_element(agreement.begin(), agreement.end());

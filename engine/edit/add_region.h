@@ -9,6 +9,7 @@
 #include "engine/base/image.h"
 #include "engine/base/thread_pool.h"
 #include "engine/edit/relation.h"
+#include "engine/edit/standing.h"
 #include "engine/scene/scene.h"
 
 namespace gse::edit {
@@ -34,6 +35,7 @@ struct RegionSearch {
     Vec3 front{0, 0, -1};  // where the thing looks
     Relation relation = Relation::None;   // what the sentence says of the new thing's place: cells elsewhere do not count
     ThreadPool* threads = nullptr;        // may be null
+    Standing standing{};                  // of the thing; not found = read off its rows
 };
 
 struct RegionParameters {

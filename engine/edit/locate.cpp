@@ -15,6 +15,7 @@
 #include "engine/base/random.h"
 #include "engine/edit/confidence.h"
 #include "engine/edit/ground_rows.h"
+#include "engine/edit/head.h"
 #include "engine/edit/shape_room.h"
 #include "engine/edit/view_vote.h"
 #include "engine/edit/vocabulary.h"
@@ -512,15 +513,15 @@ private:
         return std::count_if(views.begin(), views.end(), [](const auto& view) { return !view.failed; }) >= LeastViews;
     }
 
-    /// What a model that is shown the scene draws around the thing of `source_bits`; nothing where there is no such model.
-    std::vector<ViewEvidence> draw(const Search& search, const std::vector<std::uint8_t>& source_bits) {
+    /// What a model that is shown the scene draws around what wears it; nothing where there is no such model.
+    std::vector<ViewEvidence> draw(const Search& search, const Wearer& wearer) {
         if (tools_.drawing == nullptr || !draws_place(request(), EditMode::Add)) return {};
-        const auto room = room_above(input_.gaussians, source_bits, input_.up, input_.front, request().add_room);
+        const auto room = room_above(wearer.standing, input_.up, input_.front, request().add_room);
         if (room.empty()) return {};
         const PlaceDrawing drawing{input_.views, input_.view_words, input_.azimuths, input_.elevations, renders_, depths_, room, request(),
                                    search.word, Random::stream(SearchSeed, Drawing).next()};
         DrawnViews drawn;
-        DrawnViews& kept = tools_.memory != nullptr ? tools_.memory->drawn[drawing_key(drawing, source_bits)] : drawn;
+        DrawnViews& kept = tools_.memory != nullptr ? tools_.memory->drawn[drawing_key(drawing, wearer.bits)] : drawn;
         if (kept.views.empty()) kept = draw_thing(drawing, *tools_.drawing, tools_.job);
         std::vector<ViewEvidence> views(input_.views.size());
         for (std::size_t v = 0; v < views.size(); ++v) {
@@ -548,14 +549,15 @@ private:
         result.word = search.word;
         const bool of_source = request().source != request().target;
         const auto relation = of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None;
-        auto views = draw(search, *result.source_label.bits);
+        const auto wearer = wearer_of(request(), input_.gaussians, *result.source_label.bits, input_.up, input_.front, tools_.drawing != nullptr);
+        auto views = draw(search, wearer);
         const bool drawn = votes(views);
         result.views = drawn ? std::move(views) : look(search);
         std::vector<Mask> masks;
         for (const auto& view : result.views) masks.push_back(view.failed ? Mask() : view.mask);
         const RegionSearch space{
-            input_.gaussians, *result.source_label.bits, input_.views, masks, depths_, input_.up, input_.front,
-            relation, tools_.threads};
+            input_.gaussians, wearer.bits, input_.views, masks, depths_, input_.up, input_.front,
+            relation, tools_.threads, wearer.standing};
         result.region = vote_region(space, drawn ? of_drawn_views() : RegionParameters{});
         const bool attended = !result.region.empty();
         if (!attended) {

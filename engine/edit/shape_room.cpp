@@ -42,9 +42,8 @@ AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& b
     return cells_of({(1 + share) * half_width, (1 + share) * figure_height(old)}, old, up, front);
 }
 
-AddRegion room_above(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share) {
+AddRegion room_above(const Standing& thing, const Vec3& up, const Vec3& front, double share) {
     constexpr double LeastWidth = 0.4;   // what is worn is about as wide as the thing
-    const auto thing = standing_of(set, bits, up, front);
     if (!thing.found()) return {};
     const double half_width = std::max(0.5 * thing.width(), LeastWidth * thing.height);
     return cells_of({(1 + share) * half_width, thing.height + share * std::max(thing.width(), thing.height)}, thing, up, front);

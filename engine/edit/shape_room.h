@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/edit/add_region.h"
+#include "engine/edit/standing.h"
 #include "engine/edit/visual_hull.h"
 
 namespace gse::edit {
@@ -14,8 +15,8 @@ namespace gse::edit {
 /// may be followed by something higher (figure_height()), what was thin by something wider. Empty when nothing is left.
 AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share);
 
-/// The same for what is added to it: higher by a share of its longest side, as a crown on a low thing is.
-AddRegion room_above(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share);
+/// The same for what is added to a thing: higher by a share of its longest side, as a crown on a low thing is.
+AddRegion room_above(const Standing& thing, const Vec3& up, const Vec3& front, double share);
 
 /// Bounds of a room with a cell more on every side; without a room, of the rows of `place`, grown.
 HullBox bounds_of(const AddRegion& room, const GaussianData& place);

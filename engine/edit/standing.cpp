@@ -68,9 +68,10 @@ double ground_at(const std::vector<Vec3>& others, const Standing& thing, double 
 
 }  // namespace
 
-Standing standing_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front) {
+namespace {
+
+Standing stands(const GaussianSet& set, std::span<const std::uint8_t> bits, const Frame& frame, bool on_ground) {
     GSE_CHECK_EQ(bits.size(), set.size());
-    const Frame frame = make_frame(up, front);
     const auto points = shown_rows(set, bits, frame, true);
     if (points.empty()) return {};
     auto parts = parts_of(points);
@@ -91,8 +92,18 @@ Standing standing_of(const GaussianSet& set, std::span<const std::uint8_t> bits,
         }
     }
     const Vec3 size = thing.size();
-    foot.y = ground_at(shown_rows(set, bits, frame, false), {foot, height, size.x, size.z}, foot_radius);
+    if (on_ground) foot.y = ground_at(shown_rows(set, bits, frame, false), {foot, height, size.x, size.z}, foot_radius);
     return {frame.to_world(foot), parts.high - foot.y, size.x, size.z};
+}
+
+}  // namespace
+
+Standing standing_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front) {
+    return stands(set, bits, make_frame(up, front), true);
+}
+
+Standing standing_alone(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front) {
+    return stands(set, bits, make_frame(up, front), false);
 }
 
 double figure_height(const Standing& standing) { return std::max(standing.height, FigureWidth * standing.width()); }

@@ -22,6 +22,8 @@ struct Standing {
 /// nothing), at the height of the rows around, not labelled, that reach out from under it, where there are such near its lowest ones or
 /// below them (a label may lack a stem, or hold some ground). The outermost rows and those too faint to be seen do not count.
 Standing standing_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front);
+/// The same of a part cut out of a thing: nothing around it is the ground that it stands on.
+Standing standing_alone(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front);
 
 /// How high a figure would be that stands there: what is wider than high counts as high as others of its width are, as a car does
 /// beside a bear. World units.

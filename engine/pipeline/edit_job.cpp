@@ -270,8 +270,12 @@ OrbitParameters EditJob::film_orbit() const {
         for (std::size_t row = 0; row < source->size(); ++row)
             if ((*source)[row] != 0 && result().base_to_new[row] >= 0)
                 bits[static_cast<std::size_t>(result().base_to_new[row])] = 1;
+    constexpr double Around = 1.3, FromViews = 1.25;   // of the radius
     OrbitParameters orbit = localize::focus_orbit(drawn_result(), bits, views_->orbit);
-    orbit.radius = std::min(orbit.radius * 1.3, views_->orbit.radius * 1.25);
+    double most = FromViews * views_->orbit.radius;   // a stray row is not worth stepping back for
+    if (source && located().mode == edit::EditMode::Add)   // the views may have been about its head only
+        most = std::max(most, Around * localize::focus_orbit(drawn(), *source, views_->orbit).radius);
+    orbit.radius = std::min(Around * orbit.radius, most);
     return orbit;
 }
 

@@ -12,6 +12,7 @@
 #include "engine/base/hash.h"
 #include "engine/base/log.h"
 #include "engine/edit/front_reading.h"
+#include "engine/edit/head.h"
 #include "engine/edit/place_drawing.h"
 #include "engine/edit/relation.h"
 #include "engine/edit/scene_reading.h"
@@ -213,7 +214,7 @@ private:
     /// The orbit that frames a label, with room where something is put beside it; `front`: of the scene.
     OrbitParameters focused_on(const Label& label, edit::EditMode mode, const OrbitParameters& orbit, const Vec3& front) const {
         if (framed_as_figure(mode)) {
-            const auto standing = edit::standing_of(workplace_.drawn(), *label.bits, orbit.up, front);
+            const auto standing = edit::wearer_of(recipe_.request, workplace_.drawn(), *label.bits, orbit.up, front, mode == edit::EditMode::Add).standing;
             if (standing.found()) return framed_figure(standing, orbit);
         }
         localize::FocusParameters framing;

@@ -82,7 +82,7 @@ DOCTEST_TEST_CASE("what was low may be followed by something as high as others o
     };
     const GaussianSet set{GaussianData(car.data)};
     DOCTEST_CHECK(highest(edit::room_around(set, car.bits, Up, Front, 0.2)) == doctest::Approx(1.2 * 0.75 * 1.3).epsilon(0.06));
-    DOCTEST_CHECK(highest(edit::room_above(set, car.bits, Up, Front, 0)) == doctest::Approx(0.6).epsilon(0.06));   // what is worn sits on it
+    DOCTEST_CHECK(highest(edit::room_above(edit::standing_of(set, car.bits, Up, Front), Up, Front, 0)) == doctest::Approx(0.6).epsilon(0.06));   // what is worn sits on it
     Rows post;
     post.box(-0.1, 0.1, 0, 1, -0.1, 0.1, 500, true);
     DOCTEST_CHECK(edit::figure_height(post.standing()) == post.standing().height);

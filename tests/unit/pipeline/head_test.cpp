@@ -1,0 +1,97 @@
+// What of a thing wears something new: the head, where it is smaller than those of the figures that the model learned from.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/edit/head.h"
+#include "engine/synth/synth.h"
+#include "tests/unit/edit/box_rows.h"
+
+namespace {
+
+using namespace gse;
+
+const Vec3 Up{0, -1, 0}, Front{0, 0, -1};
+
+std::vector<std::uint8_t> thing_bits(const synth::SynthScene& made) {
+    std::vector<std::uint8_t> bits;
+    for (const auto part : made.parts) bits.push_back(part == synth::Part::Object ? 1 : 0);
+    return bits;
+}
+
+/// A person 1.8 high on a ground, arms out, with some haze above and around that is too faint to be one.
+test::BoxRows person() {
+    test::BoxRows rows;
+    rows.box(-0.09, 0.09, 1.55, 1.8, -0.1, 0.1, 400, true).box(-0.05, 0.05, 1.45, 1.55, -0.05, 0.05, 100, true);
+    rows.box(-0.5, 0.5, 1.2, 1.45, -0.12, 0.12, 900, true).box(-0.2, 0.2, 0, 1.2, -0.12, 0.12, 1500, true);
+    rows.box(-3, 3, -0.01, 0.01, -3, 3, 3000, false);
+    return rows;
+}
+
+edit::EditRequest wearing(const std::string& thing) {
+    edit::EditRequest request;
+    request.source = "person";
+    request.target = thing;
+    request.prompt = "a person wearing " + thing;
+    return request;
+}
+
+double lowest(const GaussianSet& set, const std::vector<std::uint8_t>& bits) {
+    double low = 1e300;
+    for (std::size_t row = 0; row < bits.size(); ++row)
+        if (bits[row] != 0) low = std::min(low, -static_cast<double>(set.position()[row * 3 + 1]));
+    return low;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("the heads of all figures that the bundled model learned from are large") {
+    for (const auto& object : synth::object_words())
+        for (std::uint64_t seed = 700; seed < 703; ++seed) {
+            DOCTEST_CAPTURE(object);
+            synth::SceneSpec spec;
+            spec.object = object;
+            spec.seed = seed;
+            const auto made = synth::generate(spec);
+            const auto& set = made.scene.gaussians;
+            const auto bits = thing_bits(made);
+            DOCTEST_CHECK_FALSE(edit::bust_of(set, bits, Up, Front).has_small_head());
+            DOCTEST_CHECK(edit::wearer_of(wearing("hat"), set, bits, Up, Front, true).bits == bits);
+        }
+}
+
+DOCTEST_TEST_CASE("a person's hat goes to the head, a scarf to head and neck, wings to all of it") {
+    const auto rows = person();
+    const auto set = rows.set();
+    const auto bust = edit::bust_of(set, rows.bits, Up, Front);
+    DOCTEST_CHECK(bust.head * 1.8 < 0.3);   // the head is 0.25 high
+    const auto whole = edit::wearer_of(wearing("wings"), set, rows.bits, Up, Front, true);
+    DOCTEST_CHECK(whole.bits == rows.bits);
+    DOCTEST_CHECK(whole.standing.height == doctest::Approx(1.8).epsilon(0.05));
+    DOCTEST_CHECK(edit::wearer_of(wearing("hat"), set, rows.bits, Up, Front, false).bits == rows.bits);   // nothing is drawn into the views
+    const auto hat = edit::wearer_of(wearing("red hat"), set, rows.bits, Up, Front, true);
+    DOCTEST_CHECK(hat.bits == bust.bits);
+    DOCTEST_CHECK(lowest(set, hat.bits) > 1.45);
+    DOCTEST_CHECK(hat.standing.height < 0.3);   // the shoulders below are no ground that it stands on
+    const auto scarf = edit::wearer_of(wearing("scarf"), set, rows.bits, Up, Front, true);
+    DOCTEST_CHECK(lowest(set, scarf.bits) < 1.45);
+    DOCTEST_CHECK(lowest(set, scarf.bits) > 1.2);
+}
+
+DOCTEST_TEST_CASE("rows of a label that are too faint to be seen are no part of the head, nor is the head made of them") {
+    auto rows = person();
+    const auto before = edit::bust_of(rows.set(), rows.bits, Up, Front);
+    const auto seen = rows.bits.size();
+    rows.box(-0.8, 0.8, 0, 2.4, -0.8, 0.8, 500, true);
+    GaussianData data = rows.data;
+    for (std::size_t row = seen; row < rows.bits.size(); ++row) data.opacity_logit[row] = -4;   // opacity 0.018
+    const GaussianSet hazy(std::move(data));
+    const auto after = edit::bust_of(hazy, rows.bits, Up, Front);
+    DOCTEST_CHECK(after.head == before.head);
+    DOCTEST_CHECK(std::vector<std::uint8_t>(after.bits.begin(), after.bits.begin() + static_cast<std::ptrdiff_t>(seen)) == before.bits);
+    DOCTEST_CHECK(std::count(after.bits.begin() + static_cast<std::ptrdiff_t>(seen), after.bits.end(), 1) == 0);
+}
