@@ -115,6 +115,22 @@ double property_value(RowProperty property, double amount) {
     return amount;
 }
 
+std::array<float, 3> mean_colour(const GaussianSet& set, std::span<const std::uint8_t> rows) {
+    GSE_CHECK_EQ(rows.size(), set.size());
+    const std::size_t stride = set.empty() ? 0 : set.sh().size() / set.size();
+    std::array<double, 3> sum{};
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        const float* base = &set.sh()[row * stride];
+        if (rows[row] == 0 || !std::isfinite(base[0] + base[1] + base[2])) continue;
+        for (std::size_t c = 0; c < 3; ++c) sum[c] += std::clamp(colour_from_sh(static_cast<double>(base[c])), 0.0, 1.0);
+        ++count;
+    }
+    std::array<float, 3> mean{0.5f, 0.5f, 0.5f};
+    for (std::size_t c = 0; count > 0 && c < 3; ++c) mean[c] = static_cast<float>(sum[c] / static_cast<double>(count));
+    return mean;
+}
+
 std::vector<float> row_values(const GaussianSet& set, RowProperty property, const std::array<float, 3>& colour, ThreadPool* threads) {
     switch (property) {
         case RowProperty::Opacity: return opacities(set);

@@ -28,6 +28,9 @@ constexpr double LeastSize = 1e-4, MostSize = 1, MostDifference = 100, LeastIsol
 /// Isolation takes time (a k-d tree over all rows); `threads` may be null.
 std::vector<float> row_values(const GaussianSet& set, RowProperty property, const std::array<float, 3>& colour, ThreadPool* threads);
 
+/// Mean base colour of the rows whose byte is set, sRGB in [0,1]; mid grey where there is none.
+std::array<float, 3> mean_colour(const GaussianSet& set, std::span<const std::uint8_t> rows);
+
 /// What a value in [0,1] stands for: opacity, share of the extent, colour difference, times the usual distance.
 double property_amount(RowProperty property, double value);
 /// The value of an amount, clamped to [0,1].

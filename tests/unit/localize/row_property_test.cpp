@@ -88,6 +88,10 @@ DOCTEST_TEST_CASE("colour difference: that of CIE L*a*b*") {
     DOCTEST_CHECK(values[0] == doctest::Approx(0).epsilon(1e-3));
     DOCTEST_CHECK(values[1] == doctest::Approx(0.53389).epsilon(1e-3));   // L* of sRGB 0.5 is 53.389
     DOCTEST_CHECK(values[2] == doctest::Approx(1.0).epsilon(1e-3));
+    const GaussianSet set{GaussianData(data)};
+    DOCTEST_CHECK(localize::mean_colour(set, std::vector<std::uint8_t>{1, 0, 1})[1] == doctest::Approx(0.5));
+    DOCTEST_CHECK(localize::mean_colour(set, std::vector<std::uint8_t>{0, 0, 1})[2] == doctest::Approx(1.0));
+    DOCTEST_CHECK(localize::mean_colour(set, std::vector<std::uint8_t>{0, 0, 0})[0] == 0.5f);
 }
 
 DOCTEST_TEST_CASE("isolation: the tree agrees with all distances, and finds what is far from the rest") {
