@@ -19,6 +19,7 @@ constexpr std::array<const char*, 4> PropertyHelp{
     "By the difference of the base colour to the one picked (CIE L*a*b*: 2 can just be seen, 100 is black to white).",
     "By the mean distance to the 8 nearest splats, compared with the usual one: what floats alone in the air."};
 
+constexpr float HistogramEm = 3.5f;
 constexpr int FramesToBring = 3;   // until the panel knows how long it has become
 
 localize::RowChoice& choice_of(PickState& pick) { return pick.choices[static_cast<std::size_t>(pick.property)]; }
@@ -41,12 +42,14 @@ void draw_colour(Context& context, localize::RowChoice& choice, bool& changed) {
 void draw_values(Context& context, PickState& pick, localize::RowChoice& choice, bool& changed) {
     const auto& picked = context.model.picked;
     if (picked.working || picked.values == nullptr) {
+        const float top = ImGui::GetCursorPosY();
         dim_text("Measuring the splats...");
+        ImGui::SetCursorPosY(top + context.em * HistogramEm + ImGui::GetStyle().ItemSpacing.y);   // what is below stays where it is
         context.state.animating = true;
         return;
     }
     pick.histogram.update(picked.values);
-    changed |= histogram(context, "pick.threshold", pick.histogram, context.em * 3.5f, choice.threshold, !choice.above).changed;
+    changed |= histogram(context, "pick.threshold", pick.histogram, context.em * HistogramEm, choice.threshold, !choice.above).changed;
     tooltip(fmt::format("{}\nDrag the line: splats on the blue side are chosen.", PropertyHelp[static_cast<std::size_t>(pick.property)]));
 }
 
@@ -80,7 +83,10 @@ void draw_pick(Context& context) {
         return;
     }
     bool changed = !context.model.picked.shown;
-    changed |= segmented(context, "pick.property", PropertyNames, pick.property);
+    if (segmented(context, "pick.property", PropertyNames, pick.property)) {
+        changed = true;
+        pick.frames_to_bring = FramesToBring;
+    }
     auto& choice = choice_of(pick);
     draw_colour(context, choice, changed);
     draw_values(context, pick, choice, changed);
