@@ -18,7 +18,7 @@
 namespace gse::app {
 namespace {
 
-constexpr double ToastSeconds = 7, ErrorToastSeconds = 20;
+constexpr double ToastSeconds = 7, ButtonToastSeconds = 12, ErrorToastSeconds = 20;
 constexpr std::size_t MostToasts = 4, MostLogLines = 2000;
 
 /// Lines of the log from any thread, until the application takes them.
@@ -47,7 +47,7 @@ ui::JobView job_view(const JobStatus& status) {
 nlohmann::ordered_json lasting(nlohmann::ordered_json fields) {
     for (auto field = fields.begin(); field != fields.end();) {
         const std::string& name = field.key();
-        const bool passing = name == "mode" || name == "tint_labels" || name == "wipe" || name.ends_with("_path");
+        const bool passing = name == "mode" || name == "tint_labels" || name == "wipe" || name == "visible_only" || name.ends_with("_path");
         field = passing ? fields.erase(field) : std::next(field);
     }
     return fields;
@@ -126,12 +126,13 @@ void Application::refresh_jobs(const JobStatus& work, const JobStatus& files) {
     model_.file_job = job_view(files);
     model_.edit_running = edit_running();
     if (!model_.edit_running) model_.targets_wait = false;
+    model_.voting = work.running && work.title == VoteTitle;
     model_.read_target = read_target();
     model_.result_waiting = pending_.has_value() && !work_.running();
     model_.result_splats = pending_ ? pending_->set.size() : 0;
     model_.result_changed_outside = pending_ ? pending_->changed_outside_label : 0;
     model_.result_seconds = pending_ ? pending_->seconds : 0;
-    relabel_if_wanted();
+    vote_if_wanted();
 }
 
 void Application::take_found() {
@@ -153,6 +154,7 @@ void Application::take_found() {
 
 void Application::refresh_live() {
     take_found();
+    show_arriving();
     const std::lock_guard lock(live_->mutex);
     if (live_->version == live_seen_) return;
     live_seen_ = live_->version;
@@ -188,9 +190,11 @@ void Application::refresh_document() {
         if (!(up_shown_ == document_.state().info.up)) stand_up();
         refresh_words();
         model_.labelled = active_label() ? count_labelled(*active_label()) : 0;
+        if (!hidden_.empty()) hidden_changed();
     }
     refresh_reach();
     count_anew();
+    refresh_picked();
     if (seconds_since(last_estimate_) > 0.5) {
         last_estimate_ = Clock::now();
         refresh_estimate();
@@ -230,6 +234,14 @@ void Application::toast(std::string text, bool is_error, std::string button, std
     toasts_.push_back({{std::move(text), is_error, 0, std::move(button)}, Clock::now(), std::move(action)});
 }
 
+/// Says what the last step did, with a button that takes it back as long as nothing came after it.
+void Application::toast_step(std::string text) {
+    toast(std::move(text), false, "Undo", [this, revision = document_.revision()] {
+        if (document_.revision() == revision) return undo();
+        toast("More was done since: History leads back to any step.");
+    });
+}
+
 void Application::report_error(const Error& error) {
     toast(error.what(), true);
     model_.log.push_back({log::Level::Error, fmt::format("{:%H:%M:%S}", fmt::localtime(std::time(nullptr))), error.what()});
@@ -237,7 +249,8 @@ void Application::report_error(const Error& error) {
 
 void Application::refresh_toasts() {
     std::erase_if(toasts_, [](const ToastState& state) {
-        return seconds_since(state.born) > (state.toast.is_error ? ErrorToastSeconds : ToastSeconds);
+        const auto& toast = state.toast;
+        return seconds_since(state.born) > (toast.is_error ? ErrorToastSeconds : toast.button.empty() ? ToastSeconds : ButtonToastSeconds);
     });
     model_.toasts.clear();
     for (auto& state : toasts_) {
@@ -274,7 +287,9 @@ void Application::answer(std::size_t index) {
 void Application::cancel_file_job() { files_.cancel(); }
 
 void Application::set_request(const edit::EditRequest& request) {
+    const bool told_else = request.source != model_.request.source || request.prompt != model_.request.prompt;
     model_.request = request;
+    if (told_else) model_.request.left_out.clear();   // they were views of another search
     // A word that was clicked in another sentence is no target of this one.
     auto& target = model_.request.target;
     if (!target.empty() && !edit::has_word(request.prompt, target)) target.clear();

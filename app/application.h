@@ -18,11 +18,15 @@
 #include "engine/base/job_thread.h"
 #include "engine/io/autosave.h"
 #include "engine/io/project_file.h"
+#include "engine/localize/row_picking.h"
 #include "engine/neural/model_profile.h"
 #include "engine/pipeline/edit_job.h"
 #include "engine/pipeline/estimate.h"
+#include "engine/pipeline/evidence_pictures.h"
+#include "engine/pipeline/pending_result.h"
 #include "engine/pipeline/reach.h"
 #include "engine/scene/document.h"
+#include "engine/scene/hidden_rows.h"
 #include "ui/actions.h"
 #include "ui/view_model.h"
 
@@ -30,6 +34,7 @@ namespace gse::app {
 
 constexpr std::size_t MostSnapshots = 24, MostSnapshotBytes = std::size_t{512} << 20;   // kept for the scrubber; thinned out beyond
 constexpr const char* AddsElsewhere = "What is added goes where the search placed it: corrections of the label by hand do not move that.";
+constexpr const char* VoteTitle = "New vote";   // of the job
 constexpr double MovingSeconds = 0.25;   // after the last movement of the camera the picture is refined
 
 struct ApplicationOptions {
@@ -40,17 +45,6 @@ struct ApplicationOptions {
     float ui_scale = 0;                       // for this start only; 0 = as the artist chose last
     float desktop_scale = 1;                  // until the artist chooses
     std::function<void()> on_fullscreen = {};
-};
-
-/// What came of an edit that has not been applied yet.
-struct PendingResult {
-    GaussianSet before, set;
-    std::shared_ptr<const std::vector<std::int64_t>> base_to_new;   // [before rows]
-    std::string name, recipe, target;
-    bool adds = false;
-    double seconds = 0, psnr_outside_db = 0;
-    std::size_t changed_outside_label = 0;
-    std::shared_ptr<const Image> thumbnail;
 };
 
 /// The edited set of one snapshot.
@@ -134,6 +128,7 @@ public:
     void take_snapshot(int iteration) override;
     void branch_from_snapshot(int iteration) override;
     void set_attention_threshold(double value, bool drag_ends) override;
+    void leave_out_view(std::size_t view, bool out) override;
     void set_label_threshold(float value, bool drag_ends) override;
     void set_active_label(int index) override;
     void set_reach(bool by_label) override;
@@ -146,6 +141,12 @@ public:
     void invert_label() override;
     void clear_label() override;
     void delete_labelled_splats() override;
+    void pick_rows(const localize::RowChoice& choice) override;
+    void drop_picked() override;
+    void use_picked(ui::PickedUse use) override;
+    void hide_label() override;
+    void isolate_label() override;
+    void show_hidden() override;
     void undo() override;
     void redo() override;
     void go_to(std::size_t position) override;
@@ -158,6 +159,7 @@ public:
     void set_view_settings(const ui::ViewSettings& settings) override;
     void set_model_settings(const ui::ModelSettings& settings) override { model_.model_settings = settings; }
     void set_comparison(ui::Comparison comparison) override;
+    void compare_with(std::size_t position) override;
     void look_through(std::size_t view) override;
     void add_view() override;
     void delete_view(std::size_t view) override;
@@ -197,6 +199,12 @@ private:
         std::function<void()> action;
     };
 
+    /// What the views of the search are to vote with, that it has not been told yet.
+    struct Vote {
+        edit::LabelThresholds with;
+        std::string step, merge_key;   // of the undo step it makes; empty = none: undo brought it back
+    };
+
     // application.cpp: frame
     void refresh_jobs(const JobStatus& work, const JobStatus& files);
     void refresh_live();
@@ -207,6 +215,7 @@ private:
     void count_anew();
     void refresh_log();
     void toast(std::string text, bool is_error = false, std::string button = {}, std::function<void()> action = {});
+    void toast_step(std::string text);
     void report_error(const Error& error);
     void ask(std::string title, std::string text, std::vector<AskedAnswer> answers);
     void save_settings();
@@ -256,7 +265,8 @@ private:
     void take_located(std::shared_ptr<EditJob> job, std::vector<float> attention);
     void show_located(const EditJob& job);
     void label_located(const EditJob& job, const std::string& step, const std::string& merge_key);
-    void relabel_if_wanted();
+    void vote_if_wanted();
+    void show_arriving();
     void travel(const std::function<void()>& move);
     void take_found();
     const NamedLabel* active_label() const;
@@ -305,6 +315,18 @@ private:
     void change_stack(const std::string& name, const std::function<void(std::vector<EditNode>&)>& change,
                       const std::string& merge_key = {});
 
+    void delete_rows(const std::vector<std::uint8_t>& rows);
+
+    // application_picked.cpp
+    void refresh_picked();
+
+    // application_hidden.cpp
+    std::vector<std::uint8_t> hidden_rows(const GaussianSet& set) const;
+    GaussianSet seen(const GaussianSet& set);
+    GaussianSet exported(const GaussianSet& set) const;
+    bool something_to_export();
+    void hidden_changed();
+
     // application_view.cpp
     PictureRequest picture_request();
     void go_home();
@@ -314,6 +336,7 @@ private:
     bool shows_snapshot() const;
     GaussianSet set_on_screen();
     const GaussianSet& before_on_screen() const;
+    void compare_as_usual();
     OrbitParameters export_orbit() const;
 
     ApplicationOptions options_;
@@ -382,19 +405,25 @@ private:
     std::map<std::string, Measured> measured_;   // by model and size of pictures
     ModelLoad model_load_;                       // of the model in memory
     std::shared_ptr<DiskCache> cache_ = open_answer_cache(load_cache_settings());   // of what models answered
-    /// An attention threshold that the search has not been told yet.
-    struct Threshold {
-        double value = 0;
-        std::string merge_key;   // of the undo step it makes; empty = none: undo brought it back
-    };
-    std::optional<Threshold> wanted_threshold_;
-    double relabelled_threshold_ = -1;   // what job_ was last told
+    std::optional<Vote> wanted_vote_;
+    edit::LabelThresholds voted_with_;   // what job_ was last told
+    std::shared_ptr<ArrivingViews> arriving_ = std::make_shared<ArrivingViews>();   // of the search under way
 
     // View
     Camera camera_;
     Vec3 up_shown_{};   // that the orbit stands on
     int viewport_width_ = 1, viewport_height_ = 1;
     Clock::time_point last_move_ = Clock::now() - std::chrono::seconds(10), last_frame_ = Clock::now(), last_estimate_{};
+    struct {
+        GaussianSet set;
+        std::shared_ptr<const std::vector<RowId>> ids;
+    } compared_;   // that comparisons show as before, where the artist chose a step
+    std::optional<localize::RowPicking> picking_;   // splats chosen by a property
+    HiddenRows hidden_;
+    struct SeenSet {
+        GaussianSet of, set;
+    };
+    std::deque<SeenSet> seen_;   // the last ones, made for hidden_ and the document's rows as they are
     std::uint64_t content_ = 1, stroke_ = 0, camera_version_ = 0, document_seen_ = 0;
     struct ShownKey {
         std::uint64_t revision = 0, live = 0;
@@ -414,16 +443,11 @@ private:
 
 ui::NetworkCost cost_of(const neural::NetworkUse& use);
 
-/// The attention itself on the splats: sum(alpha T map) / sum(alpha T) over the views.
-std::vector<float> splat_attention(EditJob& job);
-
 /// On the work thread: runs a located job with the artist's label (empty = as located), feeding `live`.
 void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_t>& label,
               const std::vector<float>& attention, LiveEdit& live);
 /// On the work thread: shows redrawn views in `live` and takes what the artist says about them.
 void watch_targets(const EditJob& job, LiveEdit& live, EditObserver& observer);
-/// Takes what a finished run leaves. Throws Error (Cancelled) when it was stopped before its first step.
-void fill_pending(EditJob& job, PendingResult& pending);
 
 /// The texts of a list in settings or projects; what is no text is passed over.
 std::vector<std::string> texts_of(const nlohmann::json& json, const char* key);

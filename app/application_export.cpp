@@ -5,6 +5,7 @@
 
 #include "app/application.h"
 #include "app/engine_names.h"
+#include "engine/base/desktop.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/path_text.h"
@@ -49,14 +50,22 @@ std::string Application::said_of_export() const {
     if (shows_snapshot() && (snapshot >= 0 || !pending_))
         return fmt::format(", as the edit was at iteration {}: it is not applied",
                            (snapshot >= 0 ? snapshots_[static_cast<std::size_t>(snapshot)] : snapshots_.back()).iteration);
-    return pending_ ? ", with the edit that is not applied yet" : "";
+    if (pending_) return ", with the edit that is not applied yet";
+    if (model_.hidden == 0) return {};
+    return model_.exports.visible_only ? ", without what is hidden" : fmt::format(", with the {} splats that are hidden in the window", model_.hidden);
 }
 
 void Application::start_export(const char* what, const std::filesystem::path& path, std::function<void(const JobControl&)> work,
                                const std::string& said, bool can_pause) {
     auto done = [this, path, said](const Error* error) {
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
-        toast(fmt::format("Wrote {}{}", path.string(), said));
+        toast(fmt::format("Wrote {}{}", path.string(), said), false, "Show", [this, path] {
+            try {
+                show_folder_of(path);
+            } catch (const Error& failure) {
+                report_error(failure);
+            }
+        });
     };
     if (!files_.start({fmt::format("{} {}", what, path.filename().string()), std::move(work), done, can_pause}))
         toast("Another file is being read or written; wait for it.");
@@ -65,7 +74,7 @@ void Application::start_export(const char* what, const std::filesystem::path& pa
 void Application::set_exports(const ui::ExportSettings& settings) { model_.exports = settings; }
 
 void Application::export_picture() {
-    if (!require_scene()) return;
+    if (!something_to_export()) return;
     const auto exports = model_.exports;
     const auto path = free_place(exports.picture_path);
     auto settings = settings_of(model_.view, document_.state().info.antialiased);
@@ -74,7 +83,7 @@ void Application::export_picture() {
     auto recipe_json = recipe_to_json(current_recipe());
     recipe_json["camera"] = camera_to_json(model_.camera);
     const std::string recipe = json_text(recipe_json, -1);
-    auto work = [=, set = set_on_screen()](const JobControl& control) {
+    auto work = [=, set = exported(set_on_screen())](const JobControl& control) {
         control.report("rendering", 0, 1);
         Painter painter;
         const auto& painted = painter.paint(set.spans(), camera, settings);
@@ -86,14 +95,14 @@ void Application::export_picture() {
 }
 
 void Application::export_turntable() {
-    if (!require_scene()) return;
+    if (!something_to_export()) return;
     const auto& exports = model_.exports;
     const auto path = free_place(exports.film_path);
     auto film = std::make_shared<FilmRequest>();
-    film->first = set_on_screen();
+    film->first = exported(set_on_screen());
     if (exports.before_after) {
         film->second = std::make_shared<const GaussianSet>(film->first);
-        film->first = before_on_screen();
+        film->first = exported(before_on_screen());
     }
     film->settings = settings_of(model_.view, document_.state().info.antialiased);
     film->transparent = exports.transparent;
@@ -104,7 +113,7 @@ void Application::export_turntable() {
 }
 
 void Application::export_scene() {
-    if (!require_scene()) return;
+    if (!something_to_export()) return;
     const auto path = place_for(model_.exports.scene_path, project_path_, scene_path_), other = free_place(model_.exports.scene_path);
     if (path == other) return write_scene(path);
     std::error_code ignored;
@@ -121,12 +130,18 @@ void Application::export_scene() {
 
 void Application::write_scene(const std::filesystem::path& path) {
     auto scene = std::make_shared<Scene>();
-    scene->gaussians = set_on_screen();
+    const GaussianSet shown = set_on_screen();
+    scene->gaussians = exported(shown);
     scene->info = document_.state().info;
     auto label = std::make_shared<Label>();
     if (const NamedLabel* named = active_label(); named != nullptr && model_.exports.with_labels) {
-        const auto bits = on_screen(std::make_shared<const std::vector<float>>(named->bits->begin(), named->bits->end()), scene->gaussians);
-        const auto weight = on_screen(named->weight, scene->gaussians);   // one made by hand has none
+        const bool all = scene->gaussians.shares_all_with(shown);
+        const auto rest = [&](const auto& values) {
+            const auto there = on_screen(values, shown);
+            return there && !all ? std::make_shared<const std::vector<float>>(seen_values(*there, hidden_rows(shown))) : there;
+        };
+        const auto bits = rest(std::make_shared<const std::vector<float>>(named->bits->begin(), named->bits->end()));
+        const auto weight = rest(named->weight);   // one made by hand has none
         if (bits) *label = {named->name, weight ? weight : bits, std::make_shared<const std::vector<std::uint8_t>>(bits->begin(), bits->end())};
     }
     auto work = [=](const JobControl& control) {
@@ -159,14 +174,14 @@ void Application::note_keys() {
 }
 
 void Application::export_camera_path(bool as_film) {
-    if (!require_scene()) return;
+    if (!something_to_export()) return;
     if (model_.camera_keys.empty()) return toast("Add cameras to the path first.");
     const auto& exports = model_.exports;
     const auto keys = model_.camera_keys;
     const auto path = free_place(as_film ? exports.film_path : exports.camera_path_path);
     auto film = std::make_shared<FilmRequest>();
     if (as_film) {
-        film->first = set_on_screen();
+        film->first = exported(set_on_screen());
         film->settings = settings_of(model_.view, document_.state().info.antialiased);
         film->fps = exports.fps;
         film->cameras = path_cameras(keys, exports.fps, exports.width, exports.height);

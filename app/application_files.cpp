@@ -173,6 +173,9 @@ void Application::take_loaded(Loaded loaded) {
     scene_path_ = source_.path.string();
     project_path_ = loaded.project_path.string();
     document_ = Document(std::move(loaded.state));
+    show_hidden();
+    compare_as_usual();
+    drop_picked();
     if (pending_) pending_->before = document_.state().current;
     saved_revision_ = recovered ? ~std::uint64_t{0} : document_.revision();
     autosaved_revision_ = recovered ? ~std::uint64_t{0} : document_.revision();

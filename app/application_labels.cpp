@@ -11,7 +11,9 @@
 #include "engine/pipeline/cut_out.h"
 #include "engine/pipeline/segmenters.h"
 #include "engine/scene/label_ops.h"
+#include "engine/scene/stack_edits.h"
 #include "engine/scene/strength.h"
+#include "ui/widgets/controls.h"
 
 namespace gse::app {
 namespace {
@@ -107,6 +109,7 @@ void Application::delete_label(int index) {
     if (state.active_label >= index) --state.active_label;
     if (state.active_label < 0 && !state.labels.empty()) state.active_label = 0;
     document_.apply(fmt::format("Delete label \"{}\"", name), std::move(state));
+    toast_step(fmt::format("The label \"{}\" is deleted; its splats stay.", name));
 }
 
 void Application::select(const ui::ScreenRegion& region, ui::SetOperation operation, bool stroke_ends) {
@@ -114,7 +117,7 @@ void Application::select(const ui::ScreenRegion& region, ui::SetOperation operat
     PickOptions options;
     const auto depth = model_.viewport_depth;   // stays alive for the call
     if (model_.view.front_only && depth) options.depth = depth.get();
-    const auto rows = rows_in_area(document_.state().current, model_.camera, screen_area(region), options);
+    const auto rows = rows_in_area(seen(document_.state().current), model_.camera, screen_area(region), options);
     const auto count = std::count(rows.begin(), rows.end(), std::uint8_t{1});
     const char* names[] = {"Add to label", "Remove from label", "Intersect label", "Select"};
     if (count > 0 || operation == ui::SetOperation::Replace || operation == ui::SetOperation::Intersect)
@@ -133,7 +136,7 @@ void Application::cut_out(const ui::ScreenRegion& box, ui::SetOperation operatio
     auto rows = std::make_shared<std::vector<std::uint8_t>>();
     auto job = current_recipe().job;
     job.text_segmenter.clear();   // no word is looked for
-    work_.start({"Cut out", [=, set = document_.state().current, cache = cache_](const JobControl& control) {
+    work_.start({"Cut out", [=, set = seen(document_.state().current), cache = cache_](const JobControl& control) {
                      control.report("cutting out what is in the box", 0, 0);
                      *rows = pipeline::cut_out(set, request, open_segmenters(job, cache).clicks.get(), control);
                  },
@@ -154,7 +157,9 @@ void Application::invert_label() {
 }
 
 void Application::clear_label() {
+    const auto before = document_.revision();
     change_label("Clear label", [](NamedLabel label) { return clear(std::move(label)); });
+    if (document_.revision() != before) toast_step("The label is cleared.");
 }
 
 void Application::change_stack(const std::string& name, const std::function<void(std::vector<EditNode>&)>& change,
@@ -169,30 +174,18 @@ void Application::change_stack(const std::string& name, const std::function<void
     document_.apply(name, with_stack(document_.state(), std::move(stack)), merge_key);
 }
 
-void Application::delete_labelled_splats() {
-    if (!require_scene()) return;
-    const auto& state = document_.state();
-    if (state.active_label < 0) return;
-    const auto& bits = state.labels[static_cast<std::size_t>(state.active_label)].bits;
-    if (!bits) return;
-    SceneDelta delta;
-    for (std::size_t row = 0; row < bits->size(); ++row)
-        if ((*bits)[row] != 0) delta.removed.push_back((*state.row_ids)[row]);
-    if (delta.removed.empty()) {
-        toast("Nothing is labelled.");
-        return;
-    }
-    if (delta.removed.size() == bits->size()) {
-        toast("Every splat is labelled; an empty scene cannot be kept.");
-        return;
-    }
-    std::sort(delta.removed.begin(), delta.removed.end());
-    delta.changed_rows.sh_degree = delta.added_rows.sh_degree = state.current.sh_degree();
-    EditNode node;
-    node.id = next_edit_id_++;
-    node.name = fmt::format("Delete {} splats", delta.removed.size());
-    node.delta = std::make_shared<const SceneDelta>(std::move(delta));
+void Application::delete_rows(const std::vector<std::uint8_t>& rows) {
+    const EditNode node = removal_of(document_.state(), rows, next_edit_id_++);
+    if (node.delta->removed.empty()) return toast("There is nothing to delete.");
+    if (node.delta->removed.size() == rows.size()) return toast("That is every splat; an empty scene cannot be kept.");
+    const auto before = document_.revision();
     change_stack(node.name, [&](std::vector<EditNode>& stack) { stack.push_back(node); });
+    if (document_.revision() != before) toast_step(fmt::format("{} splats are deleted.", ui::count_text(node.delta->removed.size())));
+}
+
+void Application::delete_labelled_splats() {
+    const NamedLabel* label = require_scene() ? active_label() : nullptr;
+    if (label != nullptr && label->bits) delete_rows(*label->bits);
 }
 
 void Application::undo() {

@@ -14,7 +14,6 @@
 #include "engine/io/autosave.h"
 #include "engine/io/project_file.h"
 #include "engine/pipeline/scene_tools.h"
-#include "engine/scene/row_values.h"
 
 namespace gse::app {
 namespace {
@@ -70,36 +69,6 @@ ui::RecoveryView view_of(const Recoverable& found) {
     return view;
 }
 
-/// The edit that was running or waiting comes off the stack again and waits to be applied.
-std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann::json& jobs) {
-    try {
-        const auto edit = jobs.find("edit");
-        if (edit == jobs.end() || state.stack.empty() || edit->value("id", std::uint64_t{0}) != state.stack.back().id)
-            return std::nullopt;
-        const EditNode node = state.stack.back();
-        auto stack = state.stack;
-        stack.pop_back();
-        DocumentState before = with_stack(state, std::move(stack));
-        PendingResult pending;
-        pending.set = state.current;
-        pending.base_to_new =
-            std::make_shared<const std::vector<std::int64_t>>(row_map(*before.row_ids, *state.row_ids));
-        pending.name = node.name;
-        pending.recipe = node.recipe;
-        pending.target = edit->value("target", "");
-        pending.adds = edit->value("adds", false);
-        pending.seconds = node.seconds;
-        pending.psnr_outside_db = node.psnr_outside_db;
-        pending.changed_outside_label = node.changed_outside_label;
-        pending.thumbnail = node.thumbnail;
-        state = std::move(before);
-        return pending;
-    } catch (const nlohmann::json::exception& error) {
-        log::warning("the edit stays on the stack, its description is damaged ({})", error.what());
-        return std::nullopt;
-    }
-}
-
 }  // namespace
 
 bool Application::unsaved() const {
@@ -136,16 +105,9 @@ std::function<DocumentState()> Application::state_with_live_edit() const {
     if (pending_) after = pending_->set, rows = pending_->base_to_new;
     else snapshot = snapshots_.back();
     if (snapshot && newest_set_.of == snapshot->rows) after = newest_set_.set;
-    EditNode node;
+    EditNode node = pending_ ? node_of(*pending_) : EditNode{};
     node.id = next_edit_id_;
-    if (pending_) {
-        node.name = pending_->name;
-        node.recipe = pending_->recipe;
-        node.seconds = pending_->seconds;
-        node.psnr_outside_db = pending_->psnr_outside_db;
-        node.changed_outside_label = pending_->changed_outside_label;
-        node.thumbnail = pending_->thumbnail;
-    } else {
+    if (!pending_) {
         node.name = fmt::format("{} (interrupted at iteration {})", live_->name, snapshots_.back().iteration);
         node.recipe = live_->recipe;
     }

@@ -29,7 +29,9 @@ Values Application::shown_values(const GaussianSet& set) const {
                                   ? &state.labels[static_cast<std::size_t>(state.active_label)]
                                   : nullptr;
     Values values;
-    if (mode == ui::DisplayMode::Changed) {
+    if (picking_ && picking_->rows()) {
+        values = from_bits(*picking_->rows());
+    } else if (mode == ui::DisplayMode::Changed) {
         values = std::make_shared<const std::vector<float>>(changed_values(state));
     } else if (mode == ui::DisplayMode::Attention) {
         if (attention_values_ && attention_set_.shares_all_with(state.current)) values = attention_values_;
@@ -69,8 +71,9 @@ GaussianSet Application::set_on_screen() {
     return live ? snapshot_set(snapshots_.back()) : document_.state().current;
 }
 
-/// Before and after: a waiting or running edit is compared with the state before it, else with the scene as loaded.
+/// Before and after: a step that the artist chose; else a waiting or running edit is compared with the state before it, else with the scene as loaded.
 const GaussianSet& Application::before_on_screen() const {
+    if (model_.compared_revision != 0) return compared_.set;
     return shows_snapshot() || pending_ ? document_.state().current : document_.state().base;
 }
 
@@ -78,21 +81,24 @@ PictureRequest Application::picture_request() {
     const auto& state = document_.state();
     const int snapshot = model_.shown_snapshot;
     const ShownKey key{document_.revision(), content_, model_.view.mode, snapshot, state.active_label,
-                       model_.view.tint_labels && model_.comparison == ui::Comparison::None, pending_.has_value()};
+                       (model_.view.tint_labels || picking_) && model_.comparison == ui::Comparison::None, pending_.has_value()};
     if (!(key == shown_key_)) {
         shown_key_ = key;
         shown_set_ = set_on_screen();
+        const GaussianSet seen_set = seen(shown_set_);
         const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
         const bool tints = mode == ui::DisplayMode::Beauty && key.tint;
         shown_values_ = tints || mode >= ui::DisplayMode::Labels ? shown_values(shown_set_) : nullptr;
+        shown_set_ = seen_set;
     }
     PictureRequest request;
     request.set = shown_set_;
     request.values = shown_values_;
-    request.original = before_on_screen();
+    request.original = seen(before_on_screen());
     request.antialiased = state.info.antialiased;
     request.camera = camera_.resized(std::max(viewport_width_, 1), std::max(viewport_height_, 1));
     request.settings = model_.view;
+    request.settings.tint_labels |= picking_.has_value();
     request.comparison = model_.comparison;
     request.moving = std::chrono::duration<double>(Clock::now() - last_move_).count() < MovingSeconds;
     request.content = content_ * 1000003 + static_cast<std::uint64_t>(model_.view.mode) * 31 +
@@ -118,6 +124,26 @@ void Application::set_viewport_size(int width, int height) {
 void Application::set_view_settings(const ui::ViewSettings& settings) { model_.view = settings; }
 
 void Application::set_comparison(ui::Comparison comparison) { model_.comparison = comparison; }
+
+void Application::compare_with(std::size_t position) {
+    if (document_.empty() || position >= document_.names().size()) return;
+    const auto revision = document_.revision_at(position);
+    const bool again = revision == model_.compared_revision;
+    model_.compared_revision = again ? 0 : revision;
+    model_.compared_name = again ? std::string() : document_.names()[position];
+    const DocumentState state = document_.state_at(position);
+    compared_ = {again ? GaussianSet() : state.current, state.row_ids};
+    model_.comparison = again ? ui::Comparison::None : ui::Comparison::Wipe;
+    ++content_;
+}
+
+/// Comparisons are with what an edit begins with again, or with the original.
+void Application::compare_as_usual() {
+    compared_ = {};
+    model_.compared_revision = 0;
+    model_.compared_name.clear();
+    ++content_;
+}
 
 void Application::look_through(std::size_t view) {
     if (document_.empty() || view >= document_.state().views.size()) return;

@@ -17,11 +17,13 @@
 #include "engine/localize/clusters.h"
 #include "engine/pipeline/edit_output.h"
 #include "engine/pipeline/gate.h"
+#include "engine/pipeline/measured_run.h"
 #include "engine/pipeline/model_settings.h"
 #include "engine/pipeline/neural_loader.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/pipeline/segmenters.h"
 #include "engine/scene/label_ops.h"
+#include "engine/scene/stack_edits.h"
 #include "ui/sentence.h"
 
 namespace gse::app {
@@ -92,20 +94,6 @@ Scene Application::working_scene() const {
     return scene;
 }
 
-namespace {
-
-/// The key of what the recipe means once its words are completed; empty where they cannot be.
-std::string valid_search_key(EditRecipe recipe) {
-    try {
-        recipe.request = edit::validated(recipe.request);
-    } catch (const Error&) {
-        return {};
-    }
-    return search_key(recipe);
-}
-
-}  // namespace
-
 bool Application::job_fits() const {
     return job_ != nullptr && job_set_.shares_all_with(document_.state().current) && job_key_ == valid_search_key(current_recipe());
 }
@@ -117,65 +105,11 @@ std::optional<neural::TunedModel> Application::known_tuning(const EditRecipe& re
     return same ? searched_.tuned : std::nullopt;
 }
 
-namespace {
-
-/// What a search leaves for the main thread.
-struct Search {
-    std::shared_ptr<EditJob> job;
-    std::shared_ptr<neural::TextToImage> model;
-    std::vector<float> attention;
-    Measured measured;
-    ModelLoad loaded;
-    bool first_load = false;   // in this process: the libraries come with it
-    PlannedMemory memory;
-    neural::NetworkUse use;
-    Segmenters segmenters;
-};
-
-void load(Search& search, const JobParameters& job, const std::shared_ptr<DiskCache>& cache, const JobControl& control) {
-    control.report("loading the model", 0, 0);
-    if (search.model) use_threads(job);
-    else search.model = open_recipe_model(job, cache);
-    search.segmenters = open_segmenters(job, cache);   // after the model: its failure is not the model's
-}
-
-/// Of a model that was needed for more than the cache holds.
-void measure_load(Search& search) {
-    const auto load = search.model ? load_of(*search.model) : std::nullopt;
-    if (!load) return;
-    search.loaded = *load;
-    search.measured.load = load->seconds;
-    if (search.first_load) search.measured.load_mb = load->after_mb - load->before_mb;
-}
-
-/// The most memory that the job has taken beside model and scene.
-void measure_peak(Search& search, const PeakMemory& peak) {
-    measure_load(search);
-    if (search.loaded.after_mb >= 0) measure_memory(search.measured, search.memory, search.loaded.after_mb, peak.mb());
-}
-
-void look(Search& search) {
-    search.job->locate();
-    measure_search(search.measured, *search.job, search.job->times().seconds("locate"));
-    const double tuning = search.job->times().seconds("dreambooth");
-    if (tuning > 0 && search.job->times().networks("dreambooth").flop > 0) {
-        const double steps = std::max(1, search.job->recipe().dreambooth.steps);
-        search.measured.tune_step = tuning / steps;
-        search.measured.tune_step_tflop = search.job->times().networks("dreambooth").flop * 1e-12 / steps;
-    }
-    search.attention = splat_attention(*search.job);
-}
-
-}  // namespace
-
 void Application::locate() {
     if (!require_scene() || work_.running()) return;
     if (pending_) return toast("Apply or discard the edit first.");
-    auto search = std::make_shared<Search>();
-    search->model = text_model_key_ == model_key() ? text_model_ : nullptr;
-    if (search->model) search->loaded = model_load_;
-    search->first_load = text_model_ == nullptr;
-    search->memory = planned_memory();
+    const auto search = begin_run(text_model_, text_model_key_ == model_key(), model_load_, planned_memory(), arriving_);
+    model_.request.left_out.clear();   // of the search before
     EditRecipe recipe = current_recipe();
     if (recipe.request.prompt.empty() && !recipe.request.source.empty()) recipe.request.prompt = "a " + recipe.request.source;
     try {
@@ -187,7 +121,7 @@ void Application::locate() {
     auto work = [search, recipe = open_recipe(recipe), said = model_.said_words, measured, tuned = known_tuning(recipe), scene = working_scene(), cache = cache_,
                  views = document_.state().views](const JobControl& control) {
         const auto before = network_use();
-        load(*search, recipe.job, cache, control);
+        load_model(*search, recipe.job, cache, control);
         const PeakMemory peak;
         search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned, said, search->segmenters}, control);
         look(*search);
@@ -247,25 +181,8 @@ void describe(LiveEdit& live, const EditRecipe& recipe) {
 
 namespace {
 
-/// Why an edit ended before its last step, if something went wrong.
-void throw_what_ended(const edit::EditResult& result) {
-    const char* kept = "; what the edit had reached can be applied";
-    if (const auto& shortage = result.shortage) throw Error(ErrorCode::Foreign, shortage->message() + kept, shortage->hint());
-    if (const auto& failure = result.failure) throw Error(failure->code(), failure->message() + kept, failure->hint());
-}
-
-}  // namespace
-
-namespace {
-
-/// Parts of what a run can only tell the sum of.
-void begin_with_known(Measured& measured, const Measured& known) {
-    measured.redraw = known.redraw, measured.redraw_view = known.redraw_view, measured.redraw_early = known.redraw_early;
-    measured.question_tflop = known.question_tflop;
-}
-
 /// Gate, loop and what the window makes of the result, each measured.
-void run_measured(Search& search, const std::vector<std::uint8_t>& label, LiveEdit& live, PendingResult& pending,
+void run_measured(MeasuredRun& search, const std::vector<std::uint8_t>& label, LiveEdit& live, PendingResult& pending,
                   const PeakMemory& peak) {
     const double idea = search.job->times().seconds("gate");
     const auto idea_use = search.job->times().networks("gate");
@@ -294,20 +211,18 @@ void Application::edit() {
 }
 
 void Application::start_edit(std::optional<edit::EditSnapshot> start) {
+    if (job_ && !job_fits()) model_.request.left_out.clear();   // they were views of another search
+    compare_as_usual();
     EditRecipe recipe = current_recipe();
     try {
         recipe.request = edit::validated(recipe.request);
     } catch (const Error& error) {
         return report_error(error);
     }
-    auto search = std::make_shared<Search>();
+    const auto search = begin_run(text_model_, text_model_key_ == model_key(), model_load_, planned_memory(), arriving_);
     if (job_fits()) search->job = job_;
     live_recipe_ = recipe;
-    search->model = text_model_key_ == model_key() ? text_model_ : nullptr;
-    if (search->model) search->loaded = model_load_;
-    search->first_load = text_model_ == nullptr;
-    search->memory = planned_memory();
-    begin_with_known(search->measured, measured_now());
+    take_known_parts(search->measured, measured_now());
     const auto& state = document_.state();
     const auto label = label_drives_edit() ? *state.labels[static_cast<std::size_t>(state.active_label)].bits : std::vector<std::uint8_t>{};
     live_ = std::make_shared<LiveEdit>();
@@ -327,7 +242,7 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     auto work = [search, recipe, label, pending, live = live_, open = open_recipe(recipe), said = model_.said_words,
                  tuned = known_tuning(recipe), scene = working_scene(), views = state.views, cache = cache_](const JobControl& control) {
         live->use_before = live->use = network_use();
-        load(*search, recipe.job, cache, control);
+        load_model(*search, recipe.job, cache, control);
         const PeakMemory peak;
         if (search->job) {
             search->job->set_control(control);
@@ -410,25 +325,6 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
     ++live.version;
 }
 
-void fill_pending(EditJob& job, PendingResult& pending) {
-    const auto& result = job.result();
-    if (result.iterations == 0) throw Error(ErrorCode::Cancelled, "the edit was stopped before its first step");
-    const auto report = make_report(job);
-    pending.before = job.scene().gaussians;
-    pending.set = result.set;
-    pending.base_to_new = std::make_shared<const std::vector<std::int64_t>>(result.base_to_new);
-    pending.name = job.recipe().request.prompt;
-    pending.target = job.recipe().request.target;
-    pending.adds = job.located().mode == edit::EditMode::Add;
-    pending.recipe = json_text(recipe_to_json(job.recipe()), -1);
-    for (const auto& [stage, seconds] : result.seconds) pending.seconds += seconds;
-    pending.psnr_outside_db = report["psnr_outside_db"].get<double>();
-    pending.changed_outside_label = result.changed_outside_label;
-    constexpr int thumbnail_px = 96;
-    const Camera camera = orbit_camera(job.film_orbit(), 0.35, thumbnail_px, thumbnail_px);
-    pending.thumbnail = std::make_shared<const Image>(job.painter().paint(job.drawn_result().spans(), camera, job.plan().settings).colour);
-}
-
 void Application::finish_edit(const Error* error) {
     ++content_;
     const bool said = job_ && !job_->found();   // with its evidence
@@ -447,32 +343,14 @@ void Application::apply_result() {
     const PendingResult result = std::move(*pending_);
     pending_.reset();
     ++content_;
-    EditNode node;
+    EditNode node = node_of(result);
     node.id = next_edit_id_++;
-    node.name = result.name;
-    node.recipe = result.recipe;
-    node.seconds = result.seconds;
-    node.psnr_outside_db = result.psnr_outside_db;
-    node.changed_outside_label = result.changed_outside_label;
-    node.thumbnail = result.thumbnail;
     node.delta = std::make_shared<const SceneDelta>(
         make_delta(result.before, *before.row_ids, result.set, *result.base_to_new, node.id));
-    auto stack = before.stack;
-    stack.push_back(node);
-    DocumentState state = with_stack(before, std::move(stack));
-    // What is new belongs to a label, so that it can be edited further.
-    std::vector<std::uint8_t> added(state.current.size(), 0);
-    for (std::size_t row = 0; row < added.size(); ++row) added[row] = ((*state.row_ids)[row] >> 32) == node.id ? 1 : 0;
-    if (std::any_of(added.begin(), added.end(), [](auto bit) { return bit != 0; })) {
-        if (result.adds || state.active_label < 0) {
-            state.labels.push_back(empty_label(result.target, added.size()));
-            state.active_label = static_cast<int>(state.labels.size()) - 1;
-            reach_choice_.reset();   // nobody has chosen this one
-        }
-        auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
-        label = with_added(std::move(label), added);
-    }
+    DocumentState state = with_edit(before, std::move(node), result.target, result.adds);
+    if (state.labels.size() > before.labels.size()) reach_choice_.reset();   // nobody has chosen the new label
     document_.apply(fmt::format("Edit: {}", result.name), std::move(state));
+    toast_step(fmt::format("The edit \"{}\" is kept.", result.name));
     model_.request.target.clear();   // it is done: the next sentence has news of its own
     model_.view.tint_labels = false;   // what was made is to be seen, not where
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/localize/row_property.h"
 #include "ui/view_model.h"
 
 namespace gse::ui {
@@ -17,6 +18,9 @@ struct ScreenRegion {
     std::vector<std::array<float, 2>> circles;   // centres of a brush stroke
     float radius_px = 0;
 };
+
+/// What to do with splats that were chosen by a property.
+enum class PickedUse { NewLabel, Add, Remove, Delete };
 
 class Actions {
 public:
@@ -52,6 +56,7 @@ public:
     virtual void branch_from_snapshot(int iteration) = 0;          // goes on from there with the settings as they are now
     // Labels (all undoable)
     virtual void set_attention_threshold(double value, bool drag_ends) = 0;   // one step of undo per drag
+    virtual void leave_out_view(std::size_t view, bool out) = 0;   // of the search; the label is voted again without it, or with it
     virtual void set_label_threshold(float value, bool drag_ends) = 0;
     virtual void set_active_label(int index) = 0;
     virtual void set_reach(bool by_label) = 0;                     // the active label, or a search, says what may change
@@ -64,6 +69,14 @@ public:
     virtual void invert_label() = 0;
     virtual void clear_label() = 0;
     virtual void delete_labelled_splats() = 0;
+    /// Shows which splats a choice means, until they are dropped. Only use_picked() changes anything.
+    virtual void pick_rows(const localize::RowChoice& choice) = 0;
+    virtual void drop_picked() = 0;
+    virtual void use_picked(PickedUse use) = 0;
+    // What is seen; the scene stays as it is, and undo does not know of it
+    virtual void hide_label() = 0;
+    virtual void isolate_label() = 0;                              // hides all else
+    virtual void show_hidden() = 0;
     // History
     virtual void undo() = 0;
     virtual void redo() = 0;
@@ -77,6 +90,8 @@ public:
     virtual void set_camera(const Camera& camera) = 0;             // in viewport pixels; moving = resolution may drop
     virtual void set_view_settings(const ViewSettings& settings) = 0;
     virtual void set_comparison(Comparison comparison) = 0;
+    /// What comparisons show as before: a step of undo; one that is shown so already = the original again.
+    virtual void compare_with(std::size_t position) = 0;
     virtual void look_through(std::size_t view) = 0;
     virtual void add_view() = 0;                                   // the present camera becomes a view
     virtual void delete_view(std::size_t view) = 0;

@@ -153,7 +153,7 @@ void draw_tool_bar(Context& context) {
                               .why_off = why}))
         frame_selection(context);
     if (icon_button(context,
-                    {.name = "tool.home", .icon = Icon::Home, .tooltip = "Home (H)", .why_off = why}))
+                    {.name = "tool.home", .icon = Icon::Home, .tooltip = "Home (Home key)", .why_off = why}))
         go_home(context);
     gap(context);
     const bool undo = open && context.model.document->can_undo(),

@@ -115,6 +115,31 @@ std::string why_not_label(const Context& context) {
     return {};
 }
 
+std::string why_not_hide(Context& context) {
+    const std::string why = why_not_label(context);
+    return why.empty() && label_count(context) == 0 ? "Nothing is labelled" : why;
+}
+
+void hide_label(Context& context) {
+    if (why_not_hide(context).empty()) context.actions.hide_label();
+}
+
+void isolate_label(Context& context) {
+    if (why_not_hide(context).empty()) context.actions.isolate_label();
+}
+
+std::string why_not_vote(const Context& context) {
+    if (context.model.attention_arriving) return "The search is still looking";
+    return context.model.voting ? std::string() : why_not_work(context);
+}
+
+void toggle_vote(Context& context, int index) {
+    const auto& views = context.model.attention;
+    if (index < 0 || index >= static_cast<int>(views.size()) || !why_not_vote(context).empty()) return;
+    const auto view = static_cast<std::size_t>(index);
+    context.actions.leave_out_view(view, views[view].step != edit::ViewStep::LeftOut);
+}
+
 std::string why_not_save(const Context& context) {
     return context.scene_open() ? std::string() : std::string("Nothing is open");
 }
@@ -148,6 +173,7 @@ void roll_seed(Context& context) {
 
 void run_locate(Context& context) {
     if (!why_not_locate(context).empty()) return;
+    context.request.left_out.clear();   // views of the search before
     // Only this run sees the sentence that was made up for it.
     context.actions.set_request(locate_request(context.request, context.state.prompt.problem));
     context.actions.locate();

@@ -16,6 +16,14 @@ std::string why_not_label(const Context& context);  // there is no label, or a j
 std::string why_not_save(const Context& context);
 /// The request with the word that is taken to be new where none is chosen: what an edit will be.
 edit::EditRequest as_planned(const Context& context);
+/// Why what is labelled cannot be hidden or isolated; empty = it can. Both change what is seen, never the scene.
+std::string why_not_hide(Context& context);
+void hide_label(Context& context);
+void isolate_label(Context& context);
+/// Why views of the search cannot be left out or put back; empty = they can.
+std::string why_not_vote(const Context& context);
+/// Leaves the view of the search out, or puts it back: the label is voted again.
+void toggle_vote(Context& context, int index);
 std::string why_not_export(const Context& context, const std::string& path);
 
 /// How many views an edit will look from, of those there are: "24 of 63 views", "24 automatic views".

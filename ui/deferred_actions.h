@@ -92,6 +92,9 @@ public:
     void set_attention_threshold(double value, bool drag_ends) override {
         later([this, value, drag_ends] { target_->set_attention_threshold(value, drag_ends); });
     }
+    void leave_out_view(std::size_t view, bool out) override {
+        later([this, view, out] { target_->leave_out_view(view, out); });
+    }
     void set_label_threshold(float value, bool drag_ends) override {
         later([this, value, drag_ends] { target_->set_label_threshold(value, drag_ends); });
     }
@@ -124,6 +127,24 @@ public:
     }
     void clear_label() override {
         later([this] { target_->clear_label(); });
+    }
+    void pick_rows(const localize::RowChoice& choice) override {
+        later([this, choice] { target_->pick_rows(choice); });
+    }
+    void drop_picked() override {
+        later([this] { target_->drop_picked(); });
+    }
+    void use_picked(PickedUse use) override {
+        later([this, use] { target_->use_picked(use); });
+    }
+    void hide_label() override {
+        later([this] { target_->hide_label(); });
+    }
+    void isolate_label() override {
+        later([this] { target_->isolate_label(); });
+    }
+    void show_hidden() override {
+        later([this] { target_->show_hidden(); });
     }
     void delete_labelled_splats() override {
         later([this] { target_->delete_labelled_splats(); });
@@ -163,6 +184,9 @@ public:
     }
     void set_comparison(Comparison comparison) override {
         later([this, comparison] { target_->set_comparison(comparison); });
+    }
+    void compare_with(std::size_t position) override {
+        later([this, position] { target_->compare_with(position); });
     }
     void look_through(std::size_t view) override {
         later([this, view] { target_->look_through(view); });

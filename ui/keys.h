@@ -20,14 +20,14 @@ struct KeyHelp {
 };
 
 /// The fixed set; what the shortcuts and the camera do must agree with it.
-inline constexpr std::array<KeyHelp, 47> KeyTable{{
+inline constexpr std::array<KeyHelp, 52> KeyTable{{
     {"Camera", "Left drag (no tool), middle drag", "Orbit"},
     {"Camera", "Shift + middle drag, right drag", "Pan"},
     {"Camera", "Wheel", "Zoom to the cursor"},
     {"Camera", "Double click", "Turn around what is under the cursor"},
     {"Camera", "W A S D, E up, Q down", "Fly (Shift fast, Alt slow)"},
     {"Camera", "F", "Frame what is labelled, else the scene"},
-    {"Camera", "H", "Home"},
+    {"Camera", "Home", "Home"},
     {"Camera", "Left, Right (nothing has the focus)", "Previous, next view"},
     {"Labels", "B", "Brush"},
     {"Labels", "R", "Rectangle"},
@@ -40,7 +40,12 @@ inline constexpr std::array<KeyHelp, 47> KeyTable{{
     {"Labels", "N", "Front only, or all the way through"},
     {"Labels", "Ctrl + I", "Invert the label"},
     {"Labels", "Ctrl + D", "Clear the label"},
+    {"Labels", "Ctrl + click on a view of the search", "Leave it out of the vote, or put it back"},
+    {"Labels", "H", "Hide what is labelled; the scene keeps it"},
+    {"Labels", "I", "Isolate what is labelled: hide all else"},
+    {"Labels", "Shift + H", "Show what is hidden"},
     {"Labels", "Delete", "Delete the labelled splats"},
+    {"Show", "M", "Chosen view of the search: its attention, its mask, nothing"},
     {"Show", "T", "Tint of what is labelled on, off"},
     {"Show", "V", "Wipe between before and after"},
     {"Show", "hold `", "Flip to the original"},

@@ -104,6 +104,12 @@ void select_menu(Context& context) {
     if (item(context, {"menu.invert", "Invert", "Ctrl+I", label})) context.actions.invert_label();
     if (item(context, {"menu.clear", "Clear", "Ctrl+D", label})) context.actions.clear_label();
     ImGui::Separator();
+    const std::string shown = why_not_hide(context);
+    if (item(context, {"menu.hide_label", "Hide", "H", shown})) hide_label(context);
+    if (item(context, {"menu.isolate", "Isolate", "I", shown})) isolate_label(context);
+    if (item(context, {"menu.show_hidden", "Show all", "Shift+H", context.model.hidden > 0 ? "" : "Nothing is hidden"}))
+        context.actions.show_hidden();
+    ImGui::Separator();
     if (item(context, {"menu.new_label", "New label", "", open})) add_label(context);
 }
 
@@ -135,7 +141,7 @@ void view_menu(Context& context) {
     }
     ImGui::Separator();
     if (item(context, {"menu.frame", "Frame what is labelled", "F", why})) frame_selection(context);
-    if (item(context, {"menu.home", "Home", "H", why})) go_home(context);
+    if (item(context, {"menu.home", "Home", "Home", why})) go_home(context);
     if (item(context, {"menu.previous", "Previous view", "Left", why})) step_view(context, -1);
     if (item(context, {"menu.next", "Next view", "Right", why})) step_view(context, 1);
     if (item(context, {"menu.add_view", "Add this view", "", why})) context.actions.add_view();

@@ -316,7 +316,9 @@ void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
     answer_requests(context);
     state_->keyboard.stops.clear();  // their names are those of the widgets
     widgets_.clear();
+    state_->pick.seen = false;
     draw_window(context);
+    if (model.picked.shown && !state_->pick.seen) deferred_->drop_picked();
     end_keyboard(context);
     if (context.request_changed) deferred_->set_request(context.request);
     if (context.view_changed) deferred_->set_view_settings(context.view);

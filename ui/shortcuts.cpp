@@ -3,6 +3,7 @@
 #include "ui/keys.h"
 #include "ui/menu.h"
 #include "ui/state.h"
+#include "ui/viewport/viewport.h"
 
 namespace gse::ui {
 namespace {
@@ -42,6 +43,20 @@ void resize_brush(Context& context, float factor) {
     context.view_changed = true;
 }
 
+/// To another view: of the search while one of them is looked through, else of the scene.
+void step(Context& context, int by) {
+    const int count = static_cast<int>(context.model.attention.size());
+    if (view_looked_through(context) == nullptr) return step_view(context, by);
+    look_through_attention(context, (context.state.attention.chosen + by + count) % count);
+}
+
+/// Over the picture: attention of the chosen view, its mask, nothing.
+void step_evidence(Context& context) {
+    auto& state = context.state.attention;
+    if (view_looked_through(context) == nullptr) return look_through_attention(context, state.chosen);
+    state.over = state.over == Over::Attention ? Over::Mask : Over::Nothing;
+}
+
 void plain_keys(Context& context) {
     if (pressed('P')) {
         show_panel(context.state, PanelId::Prompt);
@@ -53,13 +68,16 @@ void plain_keys(Context& context) {
     if (pressed('L')) set_tool(context, Tool::Lasso);
     if (pressed('C')) set_tool(context, Tool::CutOut);
     if (pressed('F')) frame_selection(context);
-    if (pressed('H')) go_home(context);
+    if (pressed(key::Home)) go_home(context);
+    if (pressed('H')) ImGui::GetIO().KeyShift ? context.actions.show_hidden() : hide_label(context);
+    if (pressed('I')) isolate_label(context);
     if (pressed('N')) toggle(context, &ViewSettings::front_only);
     if (pressed('T')) toggle(context, &ViewSettings::tint_labels);
     if (pressed('V')) toggle_wipe(context);
+    if (pressed('M')) step_evidence(context);
     const bool arrows_free = !context.state.keyboard.on || has_focus(context, "viewport");
-    if (pressed(key::Left) && arrows_free) step_view(context, -1);
-    if (pressed(key::Right) && arrows_free) step_view(context, 1);
+    if (arrows_free && pressed(key::Left)) step(context, -1);
+    if (arrows_free && pressed(key::Right)) step(context, 1);
     if (ImGui::IsKeyPressed(key::LeftBracket)) resize_brush(context, 1 / 1.15f);
     if (ImGui::IsKeyPressed(key::RightBracket)) resize_brush(context, 1.15f);
     if (pressed(key::Delete) && context.active_label() != nullptr && label_count(context) > 0)
@@ -81,6 +99,8 @@ void escape(Context& context) {
         viewport.stroke = false;
     } else if (viewport.tool != Tool::Orbit) {
         viewport.tool = Tool::Orbit;
+    } else if (view_looked_through(context) != nullptr) {
+        context.state.attention.over = Over::Nothing;
     } else if (context.model.job.running || context.model.file_job.running) {
         cancel_job(context);
     }

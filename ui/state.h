@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/localize/row_property.h"
 #include "ui/context.h"
 #include "ui/keyboard.h"
 #include "ui/layout.h"
@@ -72,8 +73,14 @@ struct PromptState {
     bool advanced = false;
 };
 
+/// What of the chosen view of a search lies over the picture while the camera stands there.
+enum class Over : std::uint8_t { Nothing, Attention, Mask };
+
 struct AttentionState {
     int chosen = 0;
+    Over over = Over::Nothing;
+    std::shared_ptr<const Image> layer;    // [H,W,4] over the picture
+    std::shared_ptr<const void> layer_of;  // map or mask it was made from
     double threshold = -1;                    // while dragged, else negative
     std::shared_ptr<const Image> picture;     // thresholded map over the render
     std::shared_ptr<const Image> picture_of;  // the map it was made from
@@ -92,6 +99,20 @@ struct LabelsState {
     std::shared_ptr<const std::vector<std::uint8_t>> counted;
     std::size_t count = 0;
     int steps = 1;
+};
+
+/// Splats by a property; of each property what was chosen last.
+struct PickState {
+    int property = 0;
+    bool within = false;
+    int frames_to_bring = 0;   // in which it is scrolled to, after it was unfolded
+    bool seen = false;   // in this frame: what is chosen is only shown while its controls are
+    std::array<localize::RowChoice, 4> choices{
+        {{localize::RowProperty::Opacity, {}, 0.1f, false, false},
+         {localize::RowProperty::Size, {}, static_cast<float>(localize::property_value(localize::RowProperty::Size, 0.05)), true, false},
+         {localize::RowProperty::Colour, {0.5f, 0.5f, 0.5f}, 0.15f, false, false},
+         {localize::RowProperty::Isolation, {}, static_cast<float>(localize::property_value(localize::RowProperty::Isolation, 4)), true, false}}};
+    WeightHistogram histogram;
 };
 
 struct ProgressState {
@@ -122,6 +143,7 @@ struct UiState {
     PromptState prompt;
     AttentionState attention;
     LabelsState labels;
+    PickState pick;
     ProgressState progress;
     TargetsState targets;
     LogState log;

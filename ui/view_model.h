@@ -17,6 +17,7 @@
 #include "engine/edit/request.h"
 #include "engine/edit/view_targets.h"
 #include "engine/math/framing.h"
+#include "engine/pipeline/evidence_pictures.h"
 #include "engine/scene/camera_key.h"
 #include "engine/scene/document.h"
 #include "ui/model_settings.h"
@@ -104,21 +105,8 @@ struct SnapshotView {
     std::size_t splats = 0;
 };
 
-/// What Locate found, per view; the pictures are made once, ready for the screen.
-struct AttentionView {
-    std::string name;
-    std::shared_ptr<const Image> render;         // [H,W,3]
-    bool drawn = false;                          // it shows what was drawn into the view to see where it goes
-    std::shared_ptr<const Image> map;            // [H,W,1] attention in [0,1]
-    std::shared_ptr<const Image> map_coloured;   // [H,W,3] the map in false colour over the render
-    std::shared_ptr<const Image> mask_picture;   // [H,W,3] mask over the render
-    std::vector<edit::PointPrompt> points;
-    std::string branch;                          // what made the mask
-    double captured = 0;
-    bool failed = false;
-    edit::ViewStep step = edit::ViewStep::Found; // where it failed
-    Camera camera;
-};
+/// What Locate found, per view.
+using AttentionView = pipeline::SeenView;
 
 /// What came of the last search.
 struct SearchView {
@@ -220,6 +208,7 @@ struct ExportSettings {
     bool before_after = false;
     std::string scene_path = "edited.ply";       // format by extension
     bool with_labels = false;
+    bool visible_only = false;
     std::string camera_path_path = "camera_path.json";
 
     template <class Self, class F>
@@ -240,6 +229,7 @@ struct ExportSettings {
         f("before_after", self.before_after, "Before and after side by side.");
         f("scene_path", self.scene_path, "File of the scene: .ply, .compressed.ply, .splat, .spz.");
         f("with_labels", self.with_labels, "Write the label as a float column (PLY).");
+        f("visible_only", self.visible_only, "Leave out what is hidden in the window.");
         f("camera_path_path", self.camera_path_path, "File of the camera path.");
     }
 };
@@ -279,6 +269,14 @@ struct EditReach {
     bool corrected = false;   // something of it was set by hand
 };
 
+/// Splats that are chosen by a property, to be seen before anything is done with them.
+struct PickedRows {
+    bool shown = false;                                 // they take the place of the label's tint
+    bool working = false;                               // the property is being measured
+    std::size_t count = 0;
+    std::shared_ptr<const std::vector<float>> values;   // [N] of the property, NaN where there is none; null until it is measured
+};
+
 /// What the networks were asked for by the running or last job.
 struct NetworkCost {
     std::uint64_t unet = 0, encoder = 0, decoder = 0;   // passes over one picture
@@ -308,6 +306,7 @@ struct ViewModel {
     double frames_per_second = 0, render_ms = 0;
     std::string renderer;                        // "native AVX-512", "Vulkan: llvmpipe"
     std::size_t labelled = 0;
+    std::size_t hidden = 0;                      // splats of the scene that the artist does not want to see at present
     // Prompt
     edit::EditRequest request;                   // as edited by the panel, echoed by the application
     edit::EditRequest request_defaults;          // what suits the model in use
@@ -316,6 +315,7 @@ struct ViewModel {
     std::vector<std::string> said_words;         // what the applied edits say of the scene: no news any more
     std::string read_target;                     // what a search of this very sentence saw to be new; empty = none has looked
     EditReach reach;
+    PickedRows picked;
     bool labelled_by_hand = false;               // the active label says what may change, whatever the words find
     std::size_t words_read = 0;                  // of the sentence, by the text encoder; 0 = all, or not known
     ModelSettings model_settings, model_settings_defaults;
@@ -325,6 +325,8 @@ struct ViewModel {
     std::vector<AttentionView> attention;
     std::string attention_word, attention_mode;  // "bear", "modify: ..."
     double attention_threshold = 0.5;
+    bool attention_arriving = false;             // a search is under way: views come in as they are attended
+    bool voting = false;                         // the job only votes anew: more views can be left out meanwhile
     bool attention_corrected = false;            // the label was set by hand since: the masks are older than it
     SearchView search;
     // Work
@@ -354,6 +356,8 @@ struct ViewModel {
     ExportSettings exports;
     std::vector<CameraKey> camera_keys;
     Comparison comparison = Comparison::None;
+    std::uint64_t compared_revision = 0;         // of the step that comparisons show as before; 0 = what an edit began with, or the original
+    std::string compared_name;                   // of that step
     float ui_scale = 1;
     int cache_mb = 0;               // most that answers of the networks take on the disk; 0 = none are kept
     std::uint64_t cache_bytes = 0;  // what they take

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace gse::edit {
 namespace {
@@ -27,7 +28,7 @@ double share_of(const localize::LabelWeights& weights, const std::vector<std::ui
     return all > 0 ? labelled / all : 0;
 }
 
-/// Mean over the views; one that found nothing has no attention inside.
+/// Mean over the views; one that found nothing has no attention inside, one that was left out does not count.
 struct Attention {
     double inside = 0;       // share of the attention inside the masks
     double focus = 0;        // attention per pixel inside, over that inside and outside: 0.5 = as strong outside as inside
@@ -35,6 +36,7 @@ struct Attention {
 
 Attention attention_of(const std::vector<ViewEvidence>& views) {
     Attention mean;
+    const auto out = std::count_if(views.begin(), views.end(), [](const auto& view) { return view.step == ViewStep::LeftOut; });
     for (const auto& view : views) {
         if (view.failed) continue;
         double inside = 0, all = 0, area = 0;
@@ -50,7 +52,7 @@ Attention attention_of(const std::vector<ViewEvidence>& views) {
         mean.inside += inside / all;
         mean.focus += dense / (dense + thin);
     }
-    const auto count = static_cast<double>(std::max<std::size_t>(1, views.size()));
+    const auto count = static_cast<double>(std::max<std::ptrdiff_t>(1, std::ssize(views) - out));
     return {mean.inside / count, mean.focus / count};
 }
 

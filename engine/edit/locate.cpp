@@ -16,6 +16,7 @@
 #include "engine/edit/confidence.h"
 #include "engine/edit/ground_rows.h"
 #include "engine/edit/head.h"
+#include "engine/edit/left_out.h"
 #include "engine/edit/shape_room.h"
 #include "engine/edit/view_vote.h"
 #include "engine/edit/vocabulary.h"
@@ -31,7 +32,6 @@ constexpr std::size_t RecognisedViews = 6;   // pictures that are compared with 
 constexpr int LeastViews = 3;                // fewer voting views cannot tell front from back
 constexpr float GroundWeight = 0.5f;         // of tau: what ground under a thing keeps of its weight at most
 constexpr double LargestLabelShare = 0.97;   // of what the views see, where the sentence names other things too
-constexpr double LeastEvidenceShare = 0.2;  // of the mean evidence of the rows that are seen at all
 constexpr float LabelSeen = 0.5f;           // share of a pixel from which it shows the artist's label
 constexpr std::uint64_t SearchSeed = 0;      // one for all: what is found does not follow the loop's dice
 constexpr double AtOdds = 0.6;              // IoU of a view's mask and the common label, below which the view is asked again
@@ -50,6 +50,7 @@ struct Search {
     std::vector<std::string> rivals;
     bool rivals_given = false;   // by the user, not read off the sentence
     bool absent = false;
+    bool whole = false;   // what the request is about: views that are left out do not vote on it
 };
 
 /// Steps of locate() over all views.
@@ -61,6 +62,7 @@ public:
 
     LocateResult run() {
         LocateResult result;
+        left_out_ = views_left_out(request().left_out);
         render_all();
         std::tie(result.mode, result.reason) = decide_mode(input_.request, found_share());
         log::info("{} \"{}\": {}",
@@ -164,10 +166,13 @@ private:
             check_stop();
             prepare(search, all, v, request().attention_repeats, FirstAsking);
             views.push_back(attend(search, v));
+            if (tools_.seen) tools_.seen(v, views.back());
             tools_.job.report(fmt::format("looking for \"{}\"", search.word), static_cast<int>(v + 1),
                               static_cast<int>(input_.views.size()));
         }
         make_masks(search, views);
+        if (tools_.seen)
+            for (std::size_t v = 0; v < views.size(); ++v) tools_.seen(v, views[v]);
         return views;
     }
 
@@ -232,6 +237,7 @@ private:
     /// them: where more are, it is not the noise.
     Found search_views(const Search& search, std::vector<ViewEvidence>& views) {
         views = look(search);
+        leave_out(views, search.whole ? left_out_ : std::vector<std::size_t>{});
         Found found = fuse(search, views);
         if (found.problem != SearchProblem::None || request().second_look < 1) return found;
         const auto odd = to_ask_again(search, found.label, views);
@@ -254,6 +260,7 @@ private:
         }
         make_masks(search, again);
         for (std::size_t i = 0; i < odd.size(); ++i) views[odd[i]] = std::move(again[i]);
+        leave_out(views, search.whole ? left_out_ : std::vector<std::size_t>{});
         log::debug("{} of {} views were asked again", odd.size(), views.size());
         return fuse(search, views);
     }
@@ -304,18 +311,6 @@ private:
         return tools_.attention.locate(query);
     }
 
-    /// How far ahead the others are; those that the user gave take every pixel they have more of, those of the sentence only
-    /// count in vote_of(): the attention of a wide ground is strong under the feet of what stands on it.
-    static void compete(ViewEvidence& view, const std::vector<Image>& maps, bool strict) {
-        if (maps.size() < 2) return;
-        view.lead = Image(view.map.width, view.map.height, 1);
-        for (std::size_t i = 0; i < view.map.data.size(); ++i) {
-            for (std::size_t rival = 1; rival < maps.size(); ++rival)
-                view.lead.data[i] = std::max(view.lead.data[i], maps[rival].data[i] - view.map.data[i]);
-            if (strict && view.lead.data[i] > 0) view.map.data[i] = 0;
-        }
-    }
-
     Found nothing(const Search& search, SearchProblem problem, std::string message, std::string remedy) const {
         const std::size_t rows = input_.gaussians.size();
         Found found;
@@ -333,17 +328,18 @@ private:
     Found fuse(const Search& search, const std::vector<ViewEvidence>& views) {
         std::vector<localize::MaskedView> votes;
         for (std::size_t v = 0; v < views.size(); ++v)
-            votes.push_back({input_.views[v].camera, vote_of(views[v], threshold()), views[v].failed});
+            if (views[v].step != ViewStep::LeftOut)
+                votes.push_back({input_.views[v].camera, vote_of(views[v], threshold()), views[v].failed});
         const auto voting = static_cast<std::size_t>(
             std::count_if(votes.begin(), votes.end(), [](const auto& vote) { return !vote.failed; }));
-        if (voting < LeastViews || voting * 2 < views.size())
+        if (voting < LeastViews || voting * 2 < votes.size())
             return nothing(search, SearchProblem::FewViews,
-                           fmt::format("\"{}\" was found in only {} of {} views", search.word, voting, views.size()),
-                           voting * 2 < views.size() ? common_remedy(views) : "look from more views");
+                           fmt::format("\"{}\" was found in only {} of {} views", search.word, voting, votes.size()),
+                           voting * 2 < votes.size() ? common_remedy(views) : "look from more views");
         Found found;
         auto& weights = found.weights;
         weights = localize::back_project(input_.gaussians.spans(), votes, input_.settings, tools_.rasterizer);
-        const double least = least_evidence(weights);
+        const double least = least_evidence(weights, request().evidence_px);
         localize::SpreadParameters spread;
         spread.least_evidence_px = least;
         spread.tau = request().tau;
@@ -400,26 +396,13 @@ private:
         result.remedy = std::move(found.remedy);
     }
 
-    /// The request's evidence is meant for scenes whose splats cover a few pixels; in denser ones no splat
-    /// has that much.
-    double least_evidence(const localize::LabelWeights& weights) const {
-        double sum = 0;
-        std::size_t seen = 0;
-        for (const double evidence : weights.evidence) {
-            sum += evidence;
-            seen += evidence > 0 ? 1 : 0;
-        }
-        return seen == 0
-                   ? 0
-                   : std::min(request().evidence_px, LeastEvidenceShare * sum / static_cast<double>(seen));
-    }
-
     static std::size_t count_bits(const Label& label) {
         return static_cast<std::size_t>(std::count(label.bits->begin(), label.bits->end(), std::uint8_t{1}));
     }
 
     void modify(LocateResult& result) {
-        const Search search = search_for(request().source, false);
+        Search search = search_for(request().source, false);
+        search.whole = true;
         result.word = search.word;
         if (input_.label != nullptr) {
             result.views = labelled_views();
@@ -553,6 +536,7 @@ private:
         auto views = draw(search, wearer);
         const bool drawn = votes(views);
         result.views = drawn ? std::move(views) : look(search);
+        leave_out(result.views, left_out_);
         std::vector<Mask> masks;
         for (const auto& view : result.views) masks.push_back(view.failed ? Mask() : view.mask);
         const RegionSearch space{
@@ -572,6 +556,7 @@ private:
             return;
         }
         show_region(result, attended, drawn);
+        leave_out(result.views, left_out_);
         result.seeds =
             seed_splats(result.region, request().seed_splats, input_.gaussians.sh_degree(), SearchSeed);
     }
@@ -579,6 +564,7 @@ private:
     const LocateInput& input_;
     const LocateTools& tools_;
     std::vector<Image> renders_, depths_;
+    std::vector<std::size_t> left_out_;
     std::size_t broken_ = 0;   // values of the attention so far
 };
 

@@ -2,6 +2,7 @@
 // S5).
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -46,6 +47,8 @@ struct ViewMemory {
     std::map<std::string, DrawnViews> drawn = {};   // by all that was drawn
 };
 
+struct ViewEvidence;
+
 /// The parts it calls. Both segmenters may be null: then the attention regions themselves are the masks.
 struct LocateTools {
     raster::Rasterizer& rasterizer;
@@ -56,6 +59,9 @@ struct LocateTools {
     Recognition* recognition = nullptr;  // null: whether pictures show a word is judged by its attention alone
     ViewMemory* memory = nullptr;        // may be null
     ThreadPool* threads = nullptr;       // views are segmented side by side: only for segmenters that allow it; may be null
+    /// Told of every view as it is attended, and again once its mask is made; views of one search come in any order, and from several
+    /// threads. May be empty.
+    std::function<void(std::size_t view, const ViewEvidence& evidence)> seen = {};
     /// Draws what is added, to see where it goes: it is shown the scene (TextToImage::knows_scene()). Null: attention alone says where.
     ViewGuidance* drawing = nullptr;
 };

@@ -6,6 +6,7 @@
 
 #include "engine/base/error.h"
 #include "engine/edit/add_region.h"
+#include "engine/edit/left_out.h"
 #include "engine/edit/relation.h"
 #include "engine/edit/scales.h"
 #include "engine/localize/clusters.h"
@@ -250,6 +251,7 @@ EditRequest validated(EditRequest request) {
         throw Error(ErrorCode::InvalidArgument, "\"" + request.quality + "\" is not a quality", "use draft, normal or fine");
     if (request.method != "auto" && request.method != "views" && request.method != "sds")
         throw Error(ErrorCode::InvalidArgument, "\"" + request.method + "\" is not a method", "use auto, views or sds");
+    views_left_out(request.left_out);
     if (!request.source.empty()) request.source = phrase_of(request.source, "source");
     if (request.target.empty()) {
         if (request.source.empty())

@@ -108,12 +108,14 @@ struct SearchSettings {
 struct LabelThresholds {
     double attention_threshold = 0;
     double tau = 0.4;
+    std::string left_out;
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
         f("attention_threshold", self.attention_threshold,
           "Attention above this share of the maximum counts; 0 = what the model states (0.5 in the paper).", Range{0, 1});
         f("tau", self.tau, "Splats of which the views say more than this are labelled: half a mask, half the attention, 0 to 1.", Range{0, 1});
+        f("left_out", self.left_out, "Views that do not vote, by their numbers from 0 (\"3, 17\"): those whose masks are seen to be wrong.");
     }
 };
 

@@ -21,7 +21,8 @@ enum class ViewStep {
     NoAttention,   // the word drew none
     TooLittle,     // too small or scattered above the threshold
     Everything,    // nearly the whole picture is above the threshold
-    Hidden         // the place of a new thing is out of sight
+    Hidden,        // the place of a new thing is out of sight
+    LeftOut        // by the artist
 };
 
 /// Why nothing was labelled.

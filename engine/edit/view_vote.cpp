@@ -1,7 +1,12 @@
 // Half the mask, half the attention.
 #include "engine/edit/view_vote.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
+
+#include "engine/base/error.h"
 
 namespace gse::edit {
 namespace {
@@ -9,6 +14,7 @@ namespace {
 constexpr double AttentionShare = 0.5;      // of a vote: the attention itself, beside the mask cut out of it
 constexpr double AttentionLevel = 0.85;     // of the threshold: attention that counts half
 constexpr double AttentionSoftness = 0.05;  // how far from there it counts a quarter more or less
+constexpr double LeastEvidenceShare = 0.2;  // of the mean evidence of the rows that are seen at all
 constexpr double RivalLead = 0.5;           // another thing that has so much more takes the pixel from the mask
 
 /// Whether the attention is above a level, in [0,1].
@@ -34,6 +40,36 @@ Image vote_of(const ViewEvidence& view, double threshold) {
             static_cast<float>((1 - AttentionShare) * (1 - lost) * vote.data[i] + AttentionShare * attention);
     }
     return vote;
+}
+
+void compete(ViewEvidence& view, const std::vector<Image>& maps, bool strict) {
+    if (maps.size() < 2) return;
+    view.lead = Image(view.map.width, view.map.height, 1);
+    for (std::size_t i = 0; i < view.map.data.size(); ++i) {
+        for (std::size_t rival = 1; rival < maps.size(); ++rival)
+            view.lead.data[i] = std::max(view.lead.data[i], maps[rival].data[i] - view.map.data[i]);
+        if (strict && view.lead.data[i] > 0) view.map.data[i] = 0;
+    }
+}
+
+void leave_out(std::vector<ViewEvidence>& views, const std::vector<std::size_t>& left_out) {
+    for (const auto view : left_out) {
+        if (view >= views.size())
+            throw Error(ErrorCode::InvalidArgument, fmt::format("view {} is to be left out, but the last one is {}", view, views.size() - 1),
+                        "correct left_out, or leave it empty");
+        views[view].failed = true;
+        views[view].step = ViewStep::LeftOut;
+    }
+}
+
+double least_evidence(const localize::LabelWeights& weights, double asked) {
+    double sum = 0;
+    std::size_t seen = 0;
+    for (const double evidence : weights.evidence) {
+        sum += evidence;
+        seen += evidence > 0 ? 1 : 0;
+    }
+    return seen == 0 ? 0 : std::min(asked, LeastEvidenceShare * sum / static_cast<double>(seen));
 }
 
 }  // namespace gse::edit

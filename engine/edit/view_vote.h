@@ -14,4 +14,15 @@ Image mask_image(const Mask& mask);
 /// legs of a dog on snow) the mask does not take from it. The mask of a segmenter that is trusted is believed as it is.
 Image vote_of(const ViewEvidence& view, double threshold);
 
+/// How far ahead the others are (`lead`); maps[0] is the view's own. Those that the user gave (`strict`) take every pixel they have
+/// more of, those of the sentence only count in vote_of(): the attention of a wide ground is strong under the feet of what stands on it.
+void compete(ViewEvidence& view, const std::vector<Image>& maps, bool strict);
+
+/// Views that do not vote, by their number: marked as such. Throws Error (InvalidArgument) for one that is not there.
+void leave_out(std::vector<ViewEvidence>& views, const std::vector<std::size_t>& left_out);
+
+/// Evidence from which a row counts as seen, in pixels: `asked` is meant for scenes whose splats cover a few pixels; in denser ones
+/// no splat has that much.
+double least_evidence(const localize::LabelWeights& weights, double asked);
+
 }  // namespace gse::edit

@@ -218,6 +218,7 @@ Json to_json(const ProjectDescription::LabelEntry& entry) {
             {"threshold", any_number(static_cast<double>(entry.label.threshold))},
             {"attention_threshold", any_number(entry.label.attention_threshold)},
             {"found_for", entry.label.found_for},
+            {"left_out", entry.label.left_out},
             {"weight", entry.weight},
             {"manual", entry.manual},
             {"absent", entry.absent}};
@@ -228,6 +229,7 @@ ProjectDescription::LabelEntry read_label(const Json& json, const std::string& n
     ProjectDescription::LabelEntry entry;
     fields.text("name", entry.label.name);
     fields.text("found_for", entry.label.found_for);
+    fields.text("left_out", entry.label.left_out);
     double threshold = static_cast<double>(entry.label.threshold);
     fields.number("threshold", threshold, true);
     if (std::isnan(threshold)) throw_field(fields.full("threshold"), "is not a number");

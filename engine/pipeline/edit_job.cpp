@@ -53,6 +53,17 @@ std::vector<std::string> absolute_loras(const JobParameters& job) {
 
 }  // namespace
 
+std::vector<float> splat_attention(EditJob& job) {
+    const auto& set = job.drawn();
+    std::vector<double> inside(set.size()), all(set.size());
+    for (std::size_t v = 0; v < job.views().size(); ++v)
+        job.painter().rasterizer().contributions(set.spans(), job.views()[v].camera, job.plan().settings, job.located().views[v].map, inside, all);
+    std::vector<float> result(set.size());
+    for (std::size_t row = 0; row < result.size(); ++row)
+        result[row] = all[row] > 0 ? static_cast<float>(std::clamp(inside[row] / all[row], 0.0, 1.0)) : 0.0f;
+    return result;
+}
+
 void warn_unknown_words(const std::vector<std::string>& words, const std::vector<std::string>& known) {
     if (known.empty()) return;
     for (const auto& word : words) {
@@ -220,8 +231,9 @@ double EditJob::attention_threshold() const {
     return asked > 0 ? asked : workplace_->stated_threshold();
 }
 
-void EditJob::locate_again(double attention_threshold) {
+void EditJob::locate_again(double attention_threshold, const std::string& left_out) {
     EditRecipe recipe = recipe_;
+    recipe.request.left_out = left_out;
     recipe.request.attention_threshold = attention_threshold;
     look_again(recipe);
 }
@@ -253,8 +265,9 @@ void EditJob::take_settings(const EditRecipe& recipe, bool relabels) {
     recipe_.request.tau = request.tau;
     recipe_.guidance = recipe.guidance;
     plan_.reset();   // how far masks are grown, and whether the label counts at all
-    if (before.attention_threshold != request.attention_threshold || (relabels && before.tau != request.tau))
-        locate_again(request.attention_threshold);
+    if (before.attention_threshold != request.attention_threshold || before.left_out != request.left_out ||
+        (relabels && before.tau != request.tau))
+        locate_again(request.attention_threshold, request.left_out);
 }
 
 const edit::EditPlan& EditJob::plan() {

@@ -51,8 +51,12 @@ public:
     bool found() const { return located_->found(); }
     /// Labels what an unsure search found all the same.
     void locate_anyway();
-    /// The same from the views chosen already, with another attention threshold: no network is asked anything.
-    void locate_again(double attention_threshold);
+    /// The same from the views chosen already, with another attention threshold, or without some views (`left_out` of the request):
+    /// no network is asked anything.
+    void locate_again(double attention_threshold, const std::string& left_out);
+    void locate_again(double attention_threshold) { locate_again(attention_threshold, recipe_.request.left_out); }
+    /// Who is told of the views while locate() looks; empty = nobody.
+    void watch_views(ViewWatch watch) { workplace_->watch_views(std::move(watch)); }
     /// The attention threshold in force: the request's, or what the model states.
     double attention_threshold() const;
     /// What may change, corrected by hand (modify mode): [N] 0 or 1.
@@ -141,6 +145,9 @@ private:
     std::optional<edit::EditPlan> plan_;   // follows from what was located
     std::optional<neural::TuneReport> tuning_;
 };
+
+/// The attention itself on the splats of a located job: sum(alpha T map) / sum(alpha T) over the views, [N] in [0,1].
+std::vector<float> splat_attention(EditJob& job);
 
 /// Warns about words the model was not trained on and suggests the nearest known ones.
 void warn_unknown_words(const std::vector<std::string>& words, const std::vector<std::string>& known);

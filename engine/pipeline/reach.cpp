@@ -1,6 +1,8 @@
 // Label or search.
 #include "engine/pipeline/reach.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "engine/edit/vocabulary.h"
@@ -19,6 +21,18 @@ bool corrected_by_hand(const NamedLabel& label) {
 
 bool is_label_of(const NamedLabel& label, const std::string& word) {
     return !word.empty() && (label.name == word || label.found_for == word);
+}
+
+FoundWith found_with(const DocumentState& state) {
+    if (state.active_label < 0 || state.active_label >= static_cast<int>(state.labels.size())) return {};
+    const auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
+    if (label.attention_threshold < 0) return {};
+    // With the fewest digits, so that what was 0.4 is 0.4 again.
+    return {label.name, {label.attention_threshold, std::stod(fmt::format("{}", label.threshold)), label.left_out}};
+}
+
+bool same_vote(const edit::LabelThresholds& a, const edit::LabelThresholds& b) {
+    return a.attention_threshold == b.attention_threshold && a.left_out == b.left_out;
 }
 
 bool label_says(const NamedLabel& label, const edit::EditRequest& request, const std::vector<std::string>& known,

@@ -31,4 +31,14 @@ bool is_label_of(const NamedLabel& label, const std::string& word);
 bool label_says(const NamedLabel& label, const edit::EditRequest& request, const std::vector<std::string>& known,
                 const std::optional<ReachChoice>& choice);
 
+/// What the active label was found with: thresholds and views left out; a negative attention threshold = not by a search.
+struct FoundWith {
+    std::string label;
+    edit::LabelThresholds with{-1, -1, {}};
+};
+FoundWith found_with(const DocumentState& state);
+
+/// Whether views vote the same with both, whatever share of the vote labels.
+bool same_vote(const edit::LabelThresholds& a, const edit::LabelThresholds& b);
+
 }  // namespace gse::pipeline

@@ -97,6 +97,15 @@ std::string search_key(const EditRecipe& recipe) {
     return key.dump();
 }
 
+std::string valid_search_key(EditRecipe recipe) {
+    try {
+        recipe.request = edit::validated(recipe.request);
+    } catch (const Error&) {
+        return {};
+    }
+    return search_key(recipe);
+}
+
 std::string tuning_key(const EditRecipe& recipe) {
     const auto& request = recipe.request;
     return Json{fields_to_json(recipe.dreambooth), request.source, request.prompt, request.views, request.image_size,

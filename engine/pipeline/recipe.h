@@ -95,6 +95,8 @@ EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::files
 /// What the networks are asked before the loop begins follows from this and the scene: recipes with the same key find the same.
 /// Of a recipe whose request is validated.
 std::string search_key(const EditRecipe& recipe);
+/// The key of what the recipe means once its words are completed; empty where they cannot be.
+std::string valid_search_key(EditRecipe recipe);
 
 /// What a tuning learns of a scene follows from this and the scene.
 std::string tuning_key(const EditRecipe& recipe);

@@ -303,7 +303,13 @@ edit::LocateInput question(const Workplace& workplace, const EditRecipe& recipe,
 
 Located locate(Workplace& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints, const JobControl& control) {
     workplace.ask_anew(recipe.attention);
-    return finished(Search(workplace, recipe, views, hints, control).run());
+    EditRecipe all = recipe;   // from all views; what is left out is a matter of those that it ends with
+    all.request.left_out.clear();
+    Located located = finished(Search(workplace, all, views, hints, control).run());
+    if (recipe.request.left_out.empty() || located.by_label()) return located;
+    all = located.recipe;
+    all.request.left_out = recipe.request.left_out;
+    return locate_again(workplace, located, all, control);
 }
 
 Located locate_again(Workplace& workplace, const Located& located, const EditRecipe& recipe, const JobControl& control) {

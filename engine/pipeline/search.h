@@ -34,7 +34,7 @@ struct Located {
 /// Works out which word is new where that is open, looks from all views, moves in on what was found, looks again. With a label
 /// made by hand, a word that the model does not know is not looked for, and one that is not found does no harm. A search that
 /// comes to nothing is a result too: see found(). The recipe's request is validated. Throws Error (Cancelled) on a stop request,
-/// and for failures of the tools.
+/// and for failures of the tools. Views that the recipe leaves out are of those that it ends with.
 Located locate(Workplace& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints, const JobControl& control);
 
 /// From the same views for a recipe with the same search_key(): other thresholds; networks are asked only what they were not

@@ -80,6 +80,10 @@ edit::LocateTools Workplace::tools(const Views& views, const JobControl& control
     tools.memory = &renders_;
     tools.threads = &threads_;
     tools.recognition = recognition_.get();
+    if (watch_)
+        tools.seen = [watch = watch_, list = &views.views](std::size_t view, const edit::ViewEvidence& evidence) {
+            watch((*list)[view], view, list->size(), evidence);
+        };
     return tools;
 }
 

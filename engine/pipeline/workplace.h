@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,6 +25,10 @@ struct PlaceCost {
     neural::NetworkUse use;
 };
 
+/// Told of each view of a search as it is attended and again once its mask is made: its number, how many there are, and what is known
+/// of it. A search begins with other views where it moves in. Calls may come from several threads.
+using ViewWatch = std::function<void(const View& view, std::size_t index, std::size_t count, const edit::ViewEvidence& evidence)>;
+
 /// Scene and model of a run. What they have answered is remembered: that changes how long a stage takes, never what comes of it.
 class Workplace {
 public:
@@ -45,7 +50,9 @@ public:
     void ask_anew(const neural::AttentionParameters& attention);
     /// The same, where nothing was asked yet.
     void ask(const neural::AttentionParameters& attention);
-    /// What locate() calls, for these views; needs ask() or ask_anew().
+    /// Who is told of the views of searches from here on; empty = nobody.
+    void watch_views(ViewWatch watch) { watch_ = std::move(watch); }
+    /// What locate() calls, for these views, which must stay while it is used; needs ask() or ask_anew().
     edit::LocateTools tools(const Views& views, const JobControl& control);
     /// What draws the place of what is added, where the model can (TextToImage::knows_scene()), else null; its cost is counted. Not the
     /// artist's guidance, which belongs to the loop.
@@ -72,6 +79,7 @@ private:
     Segmenters segmenters_;
     edit::ViewMemory renders_;   // of the views with this key
     std::string renders_key_;
+    ViewWatch watch_;
     PlaceCost place_cost_;
 };
 

@@ -367,6 +367,18 @@ void Document::go_to(std::size_t position) {
     trim();
 }
 
+DocumentState Document::state_at(std::size_t position) const {
+    GSE_CHECK(position < states_.size());
+    DocumentState state = states_[position].state;
+    if (states_[position].thin) rebuild_rows(state, states_[position_].state);
+    return state;
+}
+
+std::uint64_t Document::revision_at(std::size_t position) const {
+    GSE_CHECK(position < states_.size());
+    return states_[position].revision;
+}
+
 std::size_t Document::undo_bytes() const {
     Ledger all, current;
     for (const Step& step : states_) all.add(step.state);

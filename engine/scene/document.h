@@ -28,6 +28,7 @@ struct NamedLabel {
     float threshold = 0.5f;
     std::string found_for;            // word that a search found it for, whatever it is called now; empty = not by a search
     double attention_threshold = -1;  // it was found with; 0 = what the model states, negative = not by a search
+    std::string left_out;             // views of that search that did not vote, as numbers: "3, 17"
     std::shared_ptr<const std::vector<float>> weight;  // [N] in [0,1], from the views; never changed by hand
     std::shared_ptr<const std::vector<std::int8_t>>
         manual;  // [N] +1 added, -1 removed by hand, 0 = as the weight says
@@ -130,6 +131,10 @@ public:
     /// Names from the oldest; names()[position()] led to the current state.
     std::vector<std::string> names() const;
     std::size_t position() const { return position_; }
+    /// Any state that undo or redo leads to, whole; the document stays where it is.
+    DocumentState state_at(std::size_t position) const;
+    /// Its number, see revision(): positions move when the oldest states are forgotten.
+    std::uint64_t revision_at(std::size_t position) const;
     void go_to(std::size_t position);
     /// Bytes held by undo and redo beyond the current state.
     std::size_t undo_bytes() const;

@@ -9,13 +9,17 @@
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/threshold_picture.h"
+#include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
 #include "ui/widgets/icons.h"
 
 namespace gse::ui {
 namespace {
 
+bool left_out(const AttentionView& view) { return view.step == edit::ViewStep::LeftOut; }
+
 std::string branch_words(const AttentionView& view) {
+    if (left_out(view)) return "You left this view out: it does not vote.";
     if (view.failed) {
         const std::string step = edit::step_text(view.step), remedy = edit::step_remedy(view.step);
         return fmt::format("This view does not vote{}{}{}{}.", step.empty() ? "" : ": ", step, remedy.empty() ? "" : "; ",
@@ -38,8 +42,27 @@ std::string captured_words(const AttentionView& view) {
 }
 
 ImU32 state_colour(const AttentionView& view) {
+    if (left_out(view) || view.mask == nullptr) return palette::TextDim;
     if (view.failed) return palette::Bad;
     return view.captured >= 0.5 ? palette::Good : palette::Warning;
+}
+
+/// A slanted line through what does not count.
+void cross_out(Context& context, ImVec2 low, ImVec2 high) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const float inset = context.em * 0.3f;
+    const ImVec2 from(low.x + inset, high.y - inset), to(high.x - inset, low.y + inset);
+    list->AddLine(from, to, palette::Shade, context.em * 0.3f);
+    list->AddLine(from, to, palette::Text, std::max(1.5f, context.em * 0.12f));
+}
+
+std::string thumbnail_help(const Context& context, const AttentionView& view) {
+    if (view.render == nullptr) return "This view has not been looked from yet.";
+    const auto captured = captured_words(view);
+    return fmt::format("{}\n{}\n{}{}{}Click: look through it, with its map over the picture. Ctrl + click: {}.", view.name, branch_words(view),
+                       captured, captured.empty() ? "" : "\n",
+                       context.model.attention_corrected ? "It voted before your corrections.\n" : "",
+                       left_out(view) ? "let it vote again" : "leave it out, where its mask is wrong");
 }
 
 /// One thumbnail: the map over the render, a dot for the vote, a frame when chosen.
@@ -48,25 +71,27 @@ void draw_thumbnail(Context& context, int index, float side) {
     const auto& view = context.model.attention[static_cast<std::size_t>(index)];
     ImGui::PushID(index);
     const ImVec2 low = ImGui::GetCursorScreenPos();
-    if (ImGui::InvisibleButton("view", {side, side})) state.chosen = index;
+    if (ImGui::InvisibleButton("view", {side, side}))
+        ImGui::GetIO().KeyCtrl ? toggle_vote(context, index) : look_through_attention(context, index);
     note(context, fmt::format("attention.view.{}", index));
     const ImVec2 high(low.x + side, low.y + side);
     ImDrawList* list = ImGui::GetWindowDrawList();
-    const auto& picture = view.map_coloured != nullptr ? view.map_coloured : view.render;
+    const bool mask = state.over == Over::Mask && view.mask_picture != nullptr;
+    const auto& picture = mask ? view.mask_picture : view.map_coloured != nullptr ? view.map_coloured : view.render;
     const float round = context.em * 0.2f;
     list->AddRectFilled(low, high, palette::Sunken, round);
     if (ImGui::IsItemVisible() && picture != nullptr)
         list->AddImageRounded(imgui_texture(context.textures.texture(picture)), low, high, {0, 0}, {1, 1},
                               view.failed ? IM_COL32(255, 255, 255, 90) : IM_COL32_WHITE, round);
     const float r = context.em * 0.22f;
-    list->AddCircleFilled({high.x - 2 * r, low.y + 2 * r}, r * 1.35f, palette::Shade);
-    list->AddCircleFilled({high.x - 2 * r, low.y + 2 * r}, r, state_colour(view));
+    if (left_out(view)) cross_out(context, low, high);
+    if (view.mask != nullptr) {
+        list->AddCircleFilled({high.x - 2 * r, low.y + 2 * r}, r * 1.35f, palette::Shade);
+        list->AddCircleFilled({high.x - 2 * r, low.y + 2 * r}, r, state_colour(view));
+    }
     if (index == state.chosen)
         list->AddRect(low, high, palette::Accent, round, 0, std::max(2.0f, context.em * 0.14f));
-    const auto captured = captured_words(view);
-    tooltip(fmt::format("{}\n{}\n{}{}{}Double click: look through it.", view.name, branch_words(view), captured,
-                        captured.empty() ? "" : "\n", context.model.attention_corrected ? "It voted before your corrections.\n" : ""));
-    if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) context.actions.set_camera(view.camera);
+    tooltip(thumbnail_help(context, view));
     ImGui::PopID();
 }
 
@@ -167,15 +192,17 @@ void draw_controls(Context& context, const AttentionView& view) {
     bullet_dot(state_colour(view));
     wrapped_text(view.name);
     dim_text(branch_words(view));
-    if (!view.failed)
+    if (!view.failed && view.mask != nullptr)
         if (const auto words = captured_words(view); !words.empty()) dim_text(words);
+    draw_vote(context, "attention.votes", state.chosen);
+    flow(context.em * 5);
     checkbox(context, "attention.points", "Points", state.points,
              "Green: clicks inside, red: clicks outside");
     flow(button_width("Look through"));
     if (button(context, {.name = "attention.look",
                          .text = "Look through",
-                         .tooltip = "Puts the camera where this view is"}))
-        context.actions.set_camera(view.camera);
+                         .tooltip = "Puts the camera where this view is, with its map over the picture (M)"}))
+        look_through_attention(context, state.chosen);
 }
 
 /// What a search came to that labelled nothing, and the ways on.
@@ -231,9 +258,22 @@ void draw_front(Context& context) {
             "back view.\nWhere that is wrong, set Front in Settings, in degrees, or none.");
 }
 
+/// How far the search is that the views come from.
+void draw_arriving(Context& context) {
+    const auto& views = context.model.attention;
+    const auto here = std::count_if(views.begin(), views.end(), [](const AttentionView& view) { return view.render != nullptr; });
+    badge(context, "looking", palette::Accent);
+    ImGui::SameLine();
+    const std::string text = fmt::format("{} of {} views so far", here, views.size());
+    ImGui::TextUnformatted(shortened(text, ImGui::GetContentRegionAvail().x).c_str());
+    note(context, "attention.arriving");
+    tooltip(context.model.job.stage);
+}
+
 /// Word, mode and how many views vote.
 void draw_summary(Context& context) {
     const auto& views = context.model.attention;
+    if (context.model.attention_arriving) return draw_arriving(context);
     const auto voting =
         std::count_if(views.begin(), views.end(), [](const AttentionView& view) { return !view.failed; });
     badge(context, context.model.attention_word, palette::Accent);

@@ -231,6 +231,10 @@ void draw_scene_file(Context& context) {
 }  // namespace
 
 void draw_export_panel(Context& context) {
+    if (context.model.hidden > 0 &&
+        checkbox(context, "export.visible_only", fmt::format("Leave out the {} hidden splats", count_text(context.model.hidden)),
+                 context.exports.visible_only, "Of everything that is written from here. Unticked, what is hidden is written too."))
+        context.exports_changed = true;
     draw_picture(context);
     draw_turntable(context);
     draw_scene_file(context);

@@ -106,6 +106,19 @@ void draw_edit(Context& context, std::size_t place, std::size_t count) {
     ImGui::PopID();
 }
 
+/// Wipes between this step and what is shown.
+void draw_compare(Context& context, std::size_t at, float side) {
+    const bool compared = context.model.document->revision_at(at) == context.model.compared_revision;
+    ImGui::SameLine();
+    if (icon_button(context, {.name = fmt::format("history.compare.{}", at),
+                              .icon = Icon::Wipe,
+                              .tooltip = compared ? "Compare with the original again" : "Compare with this: wipe between this step and now (V)",
+                              .active = compared,
+                              .why_off = !compared && at == context.model.document->position() ? "This is what is shown" : "",
+                              .size_em = side / context.em}))
+        context.actions.compare_with(at);
+}
+
 void draw_steps(Context& context) {
     const auto& document = *context.model.document;
     const auto names = document.names();
@@ -127,12 +140,13 @@ void draw_steps(Context& context) {
         ImGui::PushID(static_cast<int>(at));
         const bool later = at > document.position();
         if (later) ImGui::PushStyleColor(ImGuiCol_Text, palette::TextDim);
-        const std::string text =
-            shortened(names[at].empty() ? "Opened" : names[at], ImGui::GetContentRegionAvail().x);
-        if (ImGui::Selectable(text.c_str(), at == document.position()) && at != document.position())
+        const float side = context.em * 1.5f, width = ImGui::GetContentRegionAvail().x - side - ImGui::GetStyle().ItemSpacing.x;
+        const std::string text = shortened(names[at].empty() ? "Opened" : names[at], width);
+        if (ImGui::Selectable(text.c_str(), at == document.position(), ImGuiSelectableFlags_None, {width, side}) && at != document.position())
             context.actions.go_to(at);
         if (later) ImGui::PopStyleColor();
         note(context, fmt::format("history.step.{}", at));
+        draw_compare(context, at, side);
         ImGui::PopID();
     }
 }

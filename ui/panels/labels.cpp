@@ -156,6 +156,13 @@ void draw_operations(Context& context, const std::string& why) {
     flow(button_width("Clear"));
     if (act("labels.clear", "Clear", "Nothing is labelled any more (Ctrl + D)"))
         context.actions.clear_label();
+    const std::string why_hide = why_not_hide(context);
+    flow(button_width("Hide"));
+    if (button(context, {.name = "labels.hide", .text = "Hide", .why_off = why_hide, .tooltip = "Not seen and not picked until it is shown again; the scene keeps it (H)"}))
+        hide_label(context);
+    flow(button_width("Isolate"));
+    if (button(context, {.name = "labels.isolate", .text = "Isolate", .why_off = why_hide, .tooltip = "Hides all else (I)"}))
+        isolate_label(context);
     flow(button_width("Delete splats"));
     std::string why_delete = why;
     if (why_delete.empty() && label_count(context) == 0) why_delete = "Nothing is labelled";
@@ -191,6 +198,7 @@ void draw_labels_panel(Context& context) {
     heading(context, "Correct by hand");
     draw_tools(context, why);
     draw_operations(context, why);
+    draw_pick(context);
 }
 
 }  // namespace gse::ui

@@ -7,6 +7,8 @@
 namespace gse::ui {
 
 void draw_prompt_panel(Context& context);
+/// Part of the labels: splats by opacity, size, colour or isolation.
+void draw_pick(Context& context);
 void draw_labels_panel(Context& context);
 void draw_scene_panel(Context& context);
 void draw_models_panel(Context& context);

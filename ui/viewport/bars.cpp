@@ -7,6 +7,7 @@
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
 #include "ui/widgets/controls.h"
+#include "ui/widgets/icons.h"
 
 namespace gse::ui {
 namespace {
@@ -57,6 +58,42 @@ void draw_result_bar(Context& context, ImVec2 at) {
     end_floating(context);
 }
 
+/// That something is not to be seen must be seen.
+void draw_hidden_bar(Context& context, ImVec2 at) {
+    begin_floating("hidden bar", at);
+    ImGui::AlignTextToFramePadding();
+    bullet_dot(palette::Warning);
+    const std::size_t hidden = context.model.hidden;
+    ImGui::TextUnformatted(fmt::format("{} splat{} hidden", count_text(hidden), hidden == 1 ? " is" : "s are").c_str());
+    note(context, "hidden.note");
+    tooltip("They are still part of the scene: edits, saving and exports go on with them. Export has a choice to leave them out.");
+    ImGui::SameLine();
+    if (button(context, {.name = "hidden.show", .text = "Show all", .tooltip = "Shift + H"})) context.actions.show_hidden();
+    end_floating(context);
+}
+
+/// What of the search lies over the picture, and whether the view votes.
+void draw_evidence_bar(Context& context, ImVec2 at, const AttentionView& view) {
+    auto& state = context.state.attention;
+    begin_floating("evidence bar", at);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(shortened(view.name, context.em * 9).c_str());
+    note(context, "evidence.view");
+    ImGui::SameLine();
+    constexpr std::array<const char*, 2> Kinds{"Attention", "Mask"};
+    int kind = state.over == Over::Mask ? 1 : 0;
+    ImGui::BeginGroup();
+    if (segmented(context, "evidence.kind", Kinds, kind)) state.over = kind == 1 ? Over::Mask : Over::Attention;
+    ImGui::EndGroup();
+    tooltip("What of this view lies over the picture (M)");
+    ImGui::SameLine();
+    draw_vote(context, "evidence.votes", state.chosen);
+    ImGui::SameLine();
+    if (icon_button(context, {.name = "evidence.close", .icon = Icon::Close, .tooltip = "Takes it off the picture (Esc)", .size_em = 1.6f}))
+        state.over = Over::Nothing;
+    end_floating(context);
+}
+
 void draw_thumbnail(Context& context, const Image& picture, TextureId texture) {
     const float width = context.em * PictureEm;
     const float height = std::min(width, width * static_cast<float>(picture.height) /
@@ -102,6 +139,8 @@ void draw_bars(Context& context) {
     state.bars_bottom = state.low.y;
     if (!context.scene_open()) return;
     if (context.model.result_waiting) draw_result_bar(context, {middle, top});
+    if (context.model.hidden > 0) draw_hidden_bar(context, {middle, std::max(top, state.bars_bottom)});
+    if (const auto* view = view_looked_through(context)) draw_evidence_bar(context, {middle, std::max(top, state.bars_bottom)}, *view);
     const auto& found = context.model.recoverable;
     const auto offer = std::find_if(found.begin(), found.end(), [](const auto& one) { return one.offered; });
     if (offer == found.end()) return;   // one at a time: the next comes when this one is answered

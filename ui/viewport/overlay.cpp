@@ -168,9 +168,11 @@ void draw_wipe(Context& context, ImDrawList* list) {
         list->AddTriangleFilled({x + side * r * 0.65f, middle}, {x + side * r * 0.2f, middle - r * 0.35f},
                                 {x + side * r * 0.2f, middle + r * 0.35f}, palette::Text);
     const float y = state.high.y - context.em * 2.2f;
-    const float before = ImGui::CalcTextSize("before").x + context.em * 1.2f;
-    shaded_text(context, list, {x - before - context.em * 0.3f, y}, "before");
-    shaded_text(context, list, {x + context.em * 0.6f, y}, "after");
+    const bool chosen = context.model.compared_revision != 0;   // another step than usual
+    const std::string left = chosen ? shortened(context.model.compared_name, context.em * 14) : "before";
+    const float before = ImGui::CalcTextSize(left.c_str()).x + context.em * 1.2f;
+    shaded_text(context, list, {x - before - context.em * 0.3f, y}, left, chosen ? palette::Warning : palette::Text);
+    shaded_text(context, list, {x + context.em * 0.6f, y}, chosen ? "now" : "after");
     note_rect(context, "viewport.wipe", {x - r, middle - r}, {x + r, middle + r});
 }
 
@@ -239,7 +241,7 @@ void draw_overlays(Context& context, ImDrawList* list) {
     }
     if (context.model.comparison == Comparison::Wipe) draw_wipe(context, list);
     if (context.model.comparison == Comparison::Original) {
-        const std::string text = "original";
+        const std::string text = context.model.compared_revision != 0 ? shortened(context.model.compared_name, context.em * 14) : "original";
         shaded_text(
             context, list,
             {(state.low.x + state.high.x) * 0.5f - context.em * 2.2f, state.low.y + context.em * 0.5f}, text,

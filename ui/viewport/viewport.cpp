@@ -106,6 +106,9 @@ void draw_picture(Context& context, ImVec2 size) {
                        {state.low.x + share * (state.high.x - state.low.x), state.high.y}, {0, 0},
                        {share, 1});
     }
+    list->PushClipRect(state.low, state.high, true);
+    draw_evidence(context, list);
+    list->PopClipRect();
     navigate(context, hovered);
     const bool keys_free =
         !ImGui::GetIO().WantTextInput && !context.state.files.is_open() &&

@@ -22,6 +22,14 @@ bool use_tool(Context& context, bool hovered);
 /// Operation of the keys held now, else the chosen one.
 SetOperation operation_now(const ViewportState& state);
 
+/// The chosen view of the last search, where the picture is seen from there and something of it lies over it; else null.
+const AttentionView* view_looked_through(const Context& context);
+/// Chooses it, turns the camera there and shows its attention or mask over the picture.
+void look_through_attention(Context& context, int index);
+/// Whether that view of the search votes, as a box to tick.
+void draw_vote(Context& context, const char* name, int index);
+/// That attention or mask.
+void draw_evidence(Context& context, ImDrawList* list);
 void draw_overlays(Context& context, ImDrawList* list);
 void draw_tool_cursor(Context& context, ImDrawList* list, bool hovered);
 void draw_start_page(Context& context);

@@ -23,7 +23,7 @@ struct Frame {
 };
 
 /// One bar per few pixels; heights are logarithmic, because most splats weigh next to nothing.
-void draw_bars(Context& context, const WeightHistogram& data, const Frame& frame, float threshold) {
+void draw_bars(Context& context, const WeightHistogram& data, const Frame& frame, float threshold, bool below) {
     const float bar_px = std::max(2.0f, std::round(context.em * 0.18f));
     const int bars = std::max(1, static_cast<int>(frame.width() / bar_px));
     std::vector<double> heights(static_cast<std::size_t>(bars), 0.0);
@@ -37,16 +37,17 @@ void draw_bars(Context& context, const WeightHistogram& data, const Frame& frame
         const float left = frame.low.x + frame.width() * static_cast<float>(bar) / static_cast<float>(bars);
         const float share = static_cast<float>(heights[static_cast<std::size_t>(bar)] / most) * 0.94f;
         const bool inside = (static_cast<float>(bar) + 0.5f) / static_cast<float>(bars) > threshold;
+        const bool counts = inside != below;
         list->AddRectFilled({left, frame.high.y - share * frame.height()}, {left + bar_px - 1, frame.high.y},
-                            inside ? palette::Accent : IM_COL32(92, 95, 101, 255));
+                            counts ? palette::Accent : IM_COL32(92, 95, 101, 255));
     }
 }
 
-void draw_handle(Context& context, const Frame& frame, float threshold, bool hot) {
+void draw_handle(Context& context, const Frame& frame, float threshold, bool hot, bool below) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float x = std::round(frame.low.x + threshold * frame.width());
     const ImU32 colour = hot ? palette::OnAccent : palette::Text;
-    list->AddRectFilled({frame.low.x, frame.low.y}, {x, frame.high.y}, IM_COL32(0, 0, 0, 60));
+    list->AddRectFilled({below ? x : frame.low.x, frame.low.y}, {below ? frame.high.x : x, frame.high.y}, IM_COL32(0, 0, 0, 60));
     list->AddLine({x, frame.low.y}, {x, frame.high.y}, colour, std::max(1.0f, context.em * 0.1f));
     const float r = context.em * 0.35f;
     list->AddTriangleFilled({x - r, frame.low.y}, {x + r, frame.low.y}, {x, frame.low.y + r * 1.3f}, colour);
@@ -59,7 +60,8 @@ void WeightHistogram::update(const std::shared_ptr<const std::vector<float>>& we
     weight_ = weight;
     std::fill(counts_.begin(), counts_.end(), 0u);
     if (weight_ != nullptr)
-        for (const float value : *weight_) ++counts_[static_cast<std::size_t>(bin_of(value))];
+        for (const float value : *weight_)
+            if (value == value) ++counts_[static_cast<std::size_t>(bin_of(value))];
     above_[Bins] = 0;
     for (int bin = Bins; bin-- > 0;)
         above_[static_cast<std::size_t>(bin)] =
@@ -72,7 +74,7 @@ std::size_t WeightHistogram::above(float threshold) const {
 }
 
 ThresholdDrag histogram(Context& context, std::string_view name, const WeightHistogram& data, float height,
-                        float& threshold) {
+                        float& threshold, bool below) {
     const float width = std::max(1.0f, ImGui::GetContentRegionAvail().x);
     const ImVec2 low = ImGui::GetCursorScreenPos();
     const Frame frame{low, {low.x + width, low.y + height}};
@@ -94,8 +96,8 @@ ThresholdDrag histogram(Context& context, std::string_view name, const WeightHis
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddRectFilled(frame.low, frame.high, palette::Sunken, context.em * 0.2f);
     list->PushClipRect(frame.low, frame.high, true);
-    draw_bars(context, data, frame, threshold);
-    draw_handle(context, frame, threshold, ImGui::IsItemActive() || ImGui::IsItemHovered());
+    draw_bars(context, data, frame, threshold, below);
+    draw_handle(context, frame, threshold, ImGui::IsItemActive() || ImGui::IsItemHovered(), below);
     list->PopClipRect();
     if (ImGui::IsItemHovered() || ImGui::IsItemActive()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     return drag;

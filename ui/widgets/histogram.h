@@ -26,12 +26,12 @@ private:
 };
 
 /// Draws it over the width there is, `height` pixels high. True while the threshold is dragged; `released`
-/// when let go.
+/// when let go. `below`: what is left of the threshold counts.
 struct ThresholdDrag {
     bool changed = false;
     bool released = false;
 };
 ThresholdDrag histogram(Context& context, std::string_view name, const WeightHistogram& data, float height,
-                        float& threshold);
+                        float& threshold, bool below = false);
 
 }  // namespace gse::ui

@@ -204,6 +204,9 @@ void FakeApplication::make_attention() {
         shown.render = std::make_shared<const Image>(render);
         shown.map_coloured = std::make_shared<const Image>(coloured_map(render, map));
         shown.mask_picture = std::make_shared<const Image>(masked(render, object));
+        Mask mask(render.width, render.height);
+        for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] = object.data[i] > 0.5f ? 1 : 0;
+        shown.mask = std::make_shared<const Mask>(std::move(mask));
         shown.map = std::make_shared<const Image>(std::move(map));
         for (int point = 0; point < 4; ++point)
             shown.points.push_back({38.0 + 7 * point, 44.0 + 5 * (point % 2), true});
@@ -361,6 +364,19 @@ ui::TextureId FakeApplication::texture(const std::shared_ptr<const Image>& image
 bool FakeApplication::asked(const std::string& start) const {
     return std::any_of(calls.begin(), calls.end(),
                        [&start](const std::string& call) { return call.starts_with(start); });
+}
+
+void FakeApplication::leave_out_view(std::size_t view, bool out) {
+    calls.push_back(fmt::format("leave_out_view {} {}", view, out ? "out" : "back"));
+    model_.attention[view].failed = out;
+    model_.attention[view].step = out ? edit::ViewStep::LeftOut : edit::ViewStep::Found;
+}
+
+void FakeApplication::pick_rows(const localize::RowChoice& choice) {
+    calls.push_back("pick_rows " + localize::choice_text(choice) + (choice.within_label ? " within" : ""));
+    const auto values = localize::row_values(document_->state().current, choice.property, choice.colour, nullptr);
+    const auto rows = localize::chosen_rows(choice, values, {});
+    model_.picked = {true, false, static_cast<std::size_t>(std::count(rows.begin(), rows.end(), 1)), std::make_shared<const std::vector<float>>(values)};
 }
 
 void FakeApplication::set_attention_threshold(double value, bool drag_ends) {

@@ -75,7 +75,18 @@ public:
     void branch_from_snapshot(int iteration) override {
         calls.push_back("branch_from_snapshot " + std::to_string(iteration));
     }
+    void hide_label() override { calls.push_back("hide_label"); }
+    void isolate_label() override { calls.push_back("isolate_label"); }
+    void show_hidden() override { calls.push_back("show_hidden"); }
+    void compare_with(std::size_t position) override { calls.push_back("compare_with " + std::to_string(position)); }
+    void pick_rows(const localize::RowChoice& choice) override;
+    void drop_picked() override {
+        calls.push_back("drop_picked");
+        model_.picked = {};
+    }
+    void use_picked(ui::PickedUse use) override { calls.push_back("use_picked " + std::to_string(static_cast<int>(use))); }
     void set_attention_threshold(double value, bool drag_ends) override;
+    void leave_out_view(std::size_t view, bool out) override;
     void set_label_threshold(float value, bool drag_ends) override;
     void set_active_label(int index) override {
         calls.push_back("set_active_label " + std::to_string(index));

@@ -310,6 +310,51 @@ DOCTEST_TEST_CASE("attention: choosing a view and the threshold") {
     DOCTEST_CHECK(asks(harness, "attention.look", "set_camera"));
 }
 
+DOCTEST_TEST_CASE("attention: a thumbnail turns the camera there, with its map over the picture; Ctrl leaves the view out") {
+    Harness harness({Wide, High, 1, Situation::Located, false});
+    auto& over = harness.shell.state().attention.over;
+    DOCTEST_CHECK(harness.find("viewport.evidence") == nullptr);
+    harness.click("attention.view.3");
+    harness.frame(3);
+    const Camera& wanted = harness.application.model().attention[3].camera;
+    DOCTEST_CHECK(length(harness.application.model().camera.centre() - wanted.centre()) < 1e-6);
+    const auto shown = harness.rect("viewport.evidence");
+    DOCTEST_CHECK(shown.width / shown.height == doctest::Approx(static_cast<double>(wanted.width) / wanted.height).epsilon(0.02));
+    DOCTEST_CHECK(over == ui::Over::Attention);
+    harness.key('M');
+    DOCTEST_CHECK(over == ui::Over::Mask);
+    harness.key('M');
+    harness.frame(2);
+    DOCTEST_CHECK(harness.find("viewport.evidence") == nullptr);
+    harness.key('M');
+    harness.frame(2);
+    DOCTEST_CHECK(over == ui::Over::Attention);
+    harness.key(ui::key::Right);   // to the next view of the search
+    harness.frame(3);
+    DOCTEST_CHECK(harness.shell.state().attention.chosen == 4);
+    DOCTEST_CHECK(harness.find("viewport.evidence") != nullptr);
+    harness.modifiers(false, true, false);
+    harness.click("attention.view.3");
+    DOCTEST_CHECK(harness.application.asked("leave_out_view 3 out"));
+    harness.click("attention.view.3");
+    DOCTEST_CHECK(harness.application.asked("leave_out_view 3 back"));
+    harness.modifiers(false, false, false);
+    DOCTEST_CHECK(harness.shell.state().attention.chosen == 4);
+    DOCTEST_CHECK(asks(harness, "evidence.votes", "leave_out_view 4 out"));
+    harness.key(ui::key::Escape);
+    harness.frame(2);
+    DOCTEST_CHECK(harness.find("evidence.votes") == nullptr);
+    DOCTEST_CHECK(asks(harness, "attention.votes", "leave_out_view 4 back"));
+    harness.application.model().attention_arriving = true;   // nothing is voted while the search looks
+    harness.application.model().attention[2] = {};
+    harness.frame(2);
+    DOCTEST_CHECK(harness.find("attention.arriving") != nullptr);
+    DOCTEST_CHECK_FALSE(harness.rect("attention.votes").enabled);
+    const auto calls = harness.application.calls.size();
+    harness.click("attention.view.2");
+    DOCTEST_CHECK(harness.application.calls.size() == calls);   // it has no camera yet
+}
+
 DOCTEST_TEST_CASE("progress: pause, snapshots, cancel") {
     Harness harness({Wide, High, 1, Situation::Editing, false});
     harness.shell.show(ui::PanelId::Progress);

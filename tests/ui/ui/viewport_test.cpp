@@ -138,7 +138,7 @@ DOCTEST_TEST_CASE("keys fly, frame and go home") {
     // The bear is smaller than the scene with its ground: the camera went nearer.
     DOCTEST_CHECK(harness.shell.state().viewport.camera.pose().distance <
                   harness.application.model().orbit.radius);
-    harness.key('H');
+    harness.key(ui::key::Home);
     harness.frame(90);
     DOCTEST_CHECK(length(harness.shell.state().viewport.camera.pose().pivot -
                          harness.application.model().framing.centre()) < 1e-6);

@@ -44,6 +44,36 @@ class Session(WindowTest):
         window.click("tab.Attention")
         window.wait(lambda s: not s["busy"], "the picture did not come to rest", 30)
         window.picture("05_located")
+        self.looks_at_evidence(window)
+
+    def looks_at_evidence(self, window):
+        found = window.state()["labelled"]
+        window.click("attention.view.4")
+        window.wait_widget("evidence.votes")
+        window.picture("05b_view_with_attention")
+        window.press("evidence.votes", lambda s: s["left_out"] == "4", "the view was not left out", 30, pause=5)
+        window.idle()
+        window.picture("05c_left_out")
+        window.key("ctrl+z")
+        window.wait(lambda s: s["left_out"] == "" and s["labelled"] == found, "undo did not put the view back", 20)
+        window.idle()
+        window.key("Escape")
+        window.click("tool.home")
+        window.wait(lambda s: not s["busy"], "the picture did not come to rest", 30)
+
+    def chooses_and_hides(self, window):
+        """On the tab of the labels."""
+        before, labelled = window.state()["splats"], window.state()["labelled"]
+        window.click("pick.open")
+        window.press("pick.side.Above", lambda s: s["picked"] > 0, "nothing is chosen by opacity", 20, pause=3)
+        window.picture("07b_chosen_by_opacity")
+        window.click("pick.open")
+        window.wait(lambda s: s["picked"] == 0, "what was chosen is still shown", 10)
+        window.key("i")
+        window.wait(lambda s: s["hidden"] == before - labelled, "the label was not isolated", 10)
+        window.picture("07c_isolated")
+        window.key("shift+h")
+        window.wait(lambda s: s["hidden"] == 0 and s["labelled"] == labelled, "what was hidden is not shown", 10)
 
     def corrects(self, window):
         found = window.state()["labelled"]
@@ -60,6 +90,7 @@ class Session(WindowTest):
         window.click("tool.orbit")
         window.click("tab.Labels")
         window.picture("07_labels")
+        self.chooses_and_hides(window)
         window.click("tab.Prompt")
 
     def edits(self, window):

@@ -183,6 +183,9 @@ DOCTEST_TEST_CASE("undo and redo walk like a plain list of copies") {
                 position = position - document.position() + to;
                 document.go_to(to);
             }
+            const auto any = static_cast<std::size_t>(step * 7) % document.names().size();   // looked at without going there
+            DOCTEST_REQUIRE(same(picture_of(document.state_at(any)), model[position - document.position() + any]));
+            DOCTEST_CHECK(document.revision_at(document.position()) == document.revision());
             DOCTEST_REQUIRE(same(picture_of(document.state()), model[position]));
             DOCTEST_CHECK(document.undo_bytes() <= limits.bytes);
             DOCTEST_CHECK(document.names().size() <= limits.entries);

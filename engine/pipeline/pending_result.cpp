@@ -1,0 +1,71 @@
+// Names, proof and thumbnail of a result.
+#include "engine/pipeline/pending_result.h"
+
+#include "engine/base/error.h"
+#include "engine/base/json.h"
+#include "engine/base/log.h"
+#include "engine/pipeline/edit_output.h"
+#include "engine/scene/row_values.h"
+
+namespace gse::pipeline {
+
+void fill_pending(EditJob& job, PendingResult& pending) {
+    const auto& result = job.result();
+    if (result.iterations == 0) throw Error(ErrorCode::Cancelled, "the edit was stopped before its first step");
+    const auto report = make_report(job);
+    pending.before = job.scene().gaussians;
+    pending.set = result.set;
+    pending.base_to_new = std::make_shared<const std::vector<std::int64_t>>(result.base_to_new);
+    pending.name = job.recipe().request.prompt;
+    pending.target = job.recipe().request.target;
+    pending.adds = job.located().mode == edit::EditMode::Add;
+    pending.recipe = json_text(recipe_to_json(job.recipe()), -1);
+    for (const auto& [stage, seconds] : result.seconds) pending.seconds += seconds;
+    pending.psnr_outside_db = report["psnr_outside_db"].get<double>();
+    pending.changed_outside_label = result.changed_outside_label;
+    constexpr int thumbnail_px = 96;
+    const Camera camera = orbit_camera(job.film_orbit(), 0.35, thumbnail_px, thumbnail_px);
+    pending.thumbnail = std::make_shared<const Image>(job.painter().paint(job.drawn_result().spans(), camera, job.plan().settings).colour);
+}
+
+EditNode node_of(const PendingResult& result) {
+    EditNode node;
+    node.name = result.name;
+    node.recipe = result.recipe;
+    node.seconds = result.seconds;
+    node.psnr_outside_db = result.psnr_outside_db;
+    node.changed_outside_label = result.changed_outside_label;
+    node.thumbnail = result.thumbnail;
+    return node;
+}
+
+std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann::json& jobs) {
+    try {
+        const auto edit = jobs.find("edit");
+        if (edit == jobs.end() || state.stack.empty() || edit->value("id", std::uint64_t{0}) != state.stack.back().id)
+            return std::nullopt;
+        const EditNode node = state.stack.back();
+        auto stack = state.stack;
+        stack.pop_back();
+        DocumentState before = with_stack(state, std::move(stack));
+        PendingResult pending;
+        pending.set = state.current;
+        pending.base_to_new =
+            std::make_shared<const std::vector<std::int64_t>>(row_map(*before.row_ids, *state.row_ids));
+        pending.name = node.name;
+        pending.recipe = node.recipe;
+        pending.target = edit->value("target", "");
+        pending.adds = edit->value("adds", false);
+        pending.seconds = node.seconds;
+        pending.psnr_outside_db = node.psnr_outside_db;
+        pending.changed_outside_label = node.changed_outside_label;
+        pending.thumbnail = node.thumbnail;
+        state = std::move(before);
+        return pending;
+    } catch (const nlohmann::json::exception& error) {
+        log::warning("the edit stays on the stack, its description is damaged ({})", error.what());
+        return std::nullopt;
+    }
+}
+
+}  // namespace gse::pipeline

@@ -1,0 +1,44 @@
+// Deltas for the stack, and labels that follow.
+#include "engine/scene/stack_edits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/base/check.h"
+#include "engine/scene/label_ops.h"
+
+namespace gse {
+
+EditNode removal_of(const DocumentState& state, std::span<const std::uint8_t> rows, std::uint64_t id) {
+    GSE_CHECK_EQ(rows.size(), state.current.size());
+    SceneDelta delta;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] != 0) delta.removed.push_back((*state.row_ids)[row]);
+    std::sort(delta.removed.begin(), delta.removed.end());
+    delta.changed_rows.sh_degree = delta.added_rows.sh_degree = state.current.sh_degree();
+    EditNode node;
+    node.id = id;
+    node.name = fmt::format("Delete {} splats", delta.removed.size());
+    node.delta = std::make_shared<const SceneDelta>(std::move(delta));
+    return node;
+}
+
+DocumentState with_edit(const DocumentState& before, EditNode node, const std::string& target, bool beside) {
+    const std::uint64_t id = node.id;
+    auto stack = before.stack;
+    stack.push_back(std::move(node));
+    DocumentState state = with_stack(before, std::move(stack));
+    std::vector<std::uint8_t> added(state.current.size(), 0);
+    for (std::size_t row = 0; row < added.size(); ++row) added[row] = ((*state.row_ids)[row] >> EditIdShift) == id ? 1 : 0;
+    if (std::find(added.begin(), added.end(), std::uint8_t{1}) == added.end()) return state;
+    if (beside || state.active_label < 0) {
+        state.labels.push_back(empty_label(target, added.size()));
+        state.active_label = static_cast<int>(state.labels.size()) - 1;
+    }
+    auto& label = state.labels[static_cast<std::size_t>(state.active_label)];
+    label = with_added(std::move(label), added);
+    return state;
+}
+
+}  // namespace gse
