@@ -205,7 +205,7 @@ SavedRows save_scene(const std::filesystem::path& path, const Scene& scene, cons
         if (format == "ply") return io::write_gaussian_ply(scene, options);
         if (format == "compressed.ply") return io::write_compressed_ply(scene, &order);
         if (format == "splat") return io::write_splat(scene);
-        if (format == "spz") return io::write_spz(scene);
+        if (format == "spz") return io::write_spz(scene, options.spz_version);
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("\"{}\" is no scene format that can be written", format),
                     "use ply, compressed.ply, splat or spz");

@@ -47,6 +47,7 @@ inline void exercise_scene(const Scene& scene) {
     io::write_compressed_ply(scene);
     io::write_splat(scene);
     io::write_spz(scene);
+    io::write_spz(scene, 4);
 }
 
 /// Calls `read`; Error with a message is a fine answer, any other exception is not.
