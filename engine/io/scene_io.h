@@ -31,7 +31,7 @@ Scene parse_scene(std::span<const std::byte> bytes, std::string_view name);
 
 /// What to write beside the Gaussians.
 struct SaveOptions {
-    /// "ply", "compressed.ply", "splat" or "spz"; empty = from the file's name.
+    /// "ply", "compressed.ply", "splat", "spz" or "sog"; empty = from the file's name.
     std::string format = {};
     /// Optional columns of a 3DGS PLY, each empty or one value per row; written as floats after rot_3.
     std::span<const float> label = {};

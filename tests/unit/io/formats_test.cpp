@@ -195,7 +195,7 @@ DOCTEST_TEST_CASE("opacities of exactly 0 and 1 become finite logits") {
     GaussianData data = scene.gaussians.to_data();
     data.opacity_logit = {-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
     scene.gaussians = GaussianSet(data);
-    for (const char* name : {"a.spz", "a.splat", "a.compressed.ply"}) {
+    for (const char* name : {"a.spz", "a.splat", "a.compressed.ply", "a.sog"}) {
         const GaussianSet again = reload(scene, name).gaussians;
         DOCTEST_CAPTURE(name);
         const float low = std::min(again.opacity_logit()[0], again.opacity_logit()[1]);
@@ -263,7 +263,7 @@ DOCTEST_TEST_CASE("quantised formats leave unusable rows out") {
     data.sh[50] = std::numeric_limits<float>::infinity();
     Scene scene;
     scene.gaussians = GaussianSet(data);
-    for (const char* name : {"a.spz", "a.splat", "a.compressed.ply"})
+    for (const char* name : {"a.spz", "a.splat", "a.compressed.ply", "a.sog"})
         DOCTEST_CHECK(reload(scene, name).gaussians.size() == 8);
 }
 
