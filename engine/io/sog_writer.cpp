@@ -27,6 +27,7 @@ constexpr std::size_t LargestPalette = 65536;         // 16-bit numbers
 constexpr std::size_t SmallestPalette = 1024;
 constexpr std::size_t EntriesPerLine = 64;            // of the centroid texture
 constexpr float LargestSogLogScale = 20;              // a size that no scene has would take a code of its own
+constexpr float LargestCoefficient = 100;             // nor a colour 28 times as bright as white: others would get coarser steps
 constexpr std::uint64_t BytesPerRow = 100;            // textures, codebooks and palette while they are made
 
 /// A texture and the name of its file.
@@ -117,6 +118,12 @@ void write_rotations(Sog& sog) {
     sog.meta["quats"] = {{"files", {"quats.webp"}}};
 }
 
+/// The codebook of coefficients; what is beyond its ends is held by the last value.
+Codebook fit_coefficients(std::vector<float> values) {
+    for (float& value : values) value = std::clamp(value, -LargestCoefficient, LargestCoefficient);
+    return fit_codebook(std::move(values));
+}
+
 void write_base_colours(Sog& sog) {
     const std::size_t stride = sog.sh_stride();
     std::vector<float> values;
@@ -124,7 +131,7 @@ void write_base_colours(Sog& sog) {
     for (std::size_t row = 0; row < sog.size(); ++row)
         values.insert(values.end(), sog.set.sh.begin() + static_cast<std::ptrdiff_t>(row * stride),
                       sog.set.sh.begin() + static_cast<std::ptrdiff_t>(row * stride + 3));
-    const Codebook codebook = fit_codebook(std::move(values));
+    const Codebook codebook = fit_coefficients(std::move(values));
     Texture& texture = sog.add("sh0.webp", splat_texture(sog.size()));
     for (std::size_t row = 0; row < sog.size(); ++row) {
         const std::size_t source = sog.order[row];
@@ -146,7 +153,7 @@ void write_palette(Sog& sog, ThreadPool& pool) {
     if (rest == 0) return;
     const Palette palette =
         fit_palette({sog.set.sh, sog.sh_stride(), 3, rest * 3, sog.size()}, palette_size(sog.size()), pool);
-    const Codebook codebook = fit_codebook(palette.entries);
+    const Codebook codebook = fit_coefficients(palette.entries);
     Texture centroids = blank_texture(EntriesPerLine * rest, (palette.size() + EntriesPerLine - 1) / EntriesPerLine);
     for (std::size_t entry = 0; entry < palette.size(); ++entry) {
         const std::size_t first = entry / EntriesPerLine * centroids.width + entry % EntriesPerLine * rest;
