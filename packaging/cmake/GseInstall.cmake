@@ -50,7 +50,7 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-# Not linked, so not found by dpkg-shlibdeps: the window's font; and what makes it fast or work without a GPU.
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "fonts-dejavu-core")
+# Not linked, so not found by dpkg-shlibdeps: the window's font and graphics; and what makes it fast or work without a GPU.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "fonts-dejavu-core, libvulkan1")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libopenblas0-pthread, mesa-vulkan-drivers")
 include(CPack)
