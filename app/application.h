@@ -174,6 +174,7 @@ public:
     void export_picture() override;
     void export_turntable() override;
     void export_scene() override;
+    void export_viewpoints() override;
     void add_camera_key() override;
     void delete_camera_key(std::size_t index) override;
     void export_camera_path(bool as_film) override;

@@ -10,10 +10,12 @@
 #include "engine/base/log.h"
 #include "engine/base/path_text.h"
 #include "engine/io/camera_json.h"
+#include "engine/io/cameras.h"
 #include "engine/io/free_path.h"
 #include "engine/io/image_file.h"
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/film.h"
+#include "engine/pipeline/picture_text.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/scene/viewpoints.h"
 
@@ -80,16 +82,16 @@ void Application::export_picture() {
     auto settings = settings_of(model_.view, document_.state().info.antialiased);
     if (exports.transparent) settings.background = {0, 0, 0};
     const Camera camera = fitted(model_.camera, exports.width, exports.height);
-    auto recipe_json = recipe_to_json(current_recipe());
+    const auto recipe = current_recipe();
+    auto recipe_json = recipe_to_json(recipe);
     recipe_json["camera"] = camera_to_json(model_.camera);
-    const std::string recipe = json_text(recipe_json, -1);
     auto work = [=, set = exported(set_on_screen())](const JobControl& control) {
         control.report("rendering", 0, 1);
         Painter painter;
         const auto& painted = painter.paint(set.spans(), camera, settings);
         control.report("writing", 1, 1);
         write_png(path, exports.transparent ? transparent_picture(painted) : painted.colour,
-                  {{"Recipe", recipe}, {"Software", "GSEditPro"}});
+                  picture_text(recipe, recipe_json));
     };
     start_export("Screenshot", path, work, said_of_export());
 }
@@ -144,13 +146,20 @@ void Application::write_scene(const std::filesystem::path& path) {
         const auto weight = rest(named->weight);   // one made by hand has none
         if (bits) *label = {named->name, weight ? weight : bits, std::make_shared<const std::vector<std::uint8_t>>(bits->begin(), bits->end())};
     }
-    auto work = [=](const JobControl& control) {
+    auto work = [=, spz_version = model_.exports.spz_version](const JobControl& control) {
         control.report("writing", 0, 0);
-        SaveOptions save;
+        SaveOptions save{.spz_version = spz_version};
         if (label->bits) save.from_label = label.get();
         save_scene(path, *scene, save);
     };
     start_export("Export", path, work, said_of_export());
+}
+
+void Application::export_viewpoints() {
+    if (!require_scene()) return;
+    if (document_.state().views.empty()) return toast("Add viewpoints first.");
+    const auto path = free_place(model_.exports.viewpoints_path);
+    start_export("Viewpoints", path, [path, views = document_.state().views](const JobControl&) { save_cameras(path, views); }, {});
 }
 
 void Application::add_camera_key() {

@@ -16,6 +16,7 @@
 #include "engine/io/image_file.h"
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/film.h"
+#include "engine/pipeline/scene_report.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/synth/synth.h"
 
@@ -24,65 +25,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json to_json(const Vec3& v) { return Json::array({v.x, v.y, v.z}); }
-
-Json info_json(const Scene& scene, const std::filesystem::path& path, std::size_t cameras) {
-    const SceneStatistics statistics = compute_statistics(scene.gaussians);
-    Json json;
-    json["file"] = text_of_path(path.string());
-    json["format"] = scene.info.format;
-    json["splats"] = scene.gaussians.size();
-    json["sh_degree"] = scene.gaussians.sh_degree();
-    json["attribute_mb"] = static_cast<double>(scene.gaussians.byte_size()) / 1e6;
-    json["cameras"] = cameras;
-    json["up"] = to_json(scene.info.up);
-    json["up_known"] = scene.info.up_known;
-    json["antialiased"] = scene.info.antialiased;
-    json["mean_opacity"] = statistics.mean_opacity;
-    json["bounds"] = {{"low", to_json(statistics.bounds_low)}, {"high", to_json(statistics.bounds_high)}};
-    json["robust_bounds"] = {{"low", to_json(statistics.robust_low)}, {"high", to_json(statistics.robust_high)}};
-    json["lint"] = {{"nan", statistics.nan_rows},
-                    {"infinite", statistics.infinite_rows},
-                    {"giant", statistics.giant_rows},
-                    {"invisible", statistics.invisible_rows},
-                    {"zero_quaternion", statistics.zero_quaternion_rows}};
-    json["labels"] = Json::array();
-    for (const auto& label : scene.labels.labels) json["labels"].push_back(label.name);
-    json["warnings"] = scene.info.warnings;
-    return json;
-}
-
-void print_info(const Json& json) {
-    const auto number = [&](const char* key) { return json["lint"][key].get<std::size_t>(); };
-    print("{}\n", json["file"].get<std::string>());
-    print("  format        {}, SH degree {}\n", json["format"].get<std::string>(), json["sh_degree"].get<int>());
-    print("  splats        {} ({:.1f} MB of attributes)\n", json["splats"].get<std::size_t>(),
-               json["attribute_mb"].get<double>());
-    print("  cameras       {}\n", json["cameras"].get<std::size_t>());
-    print("  bounds        {} to {}\n", json["bounds"]["low"].dump(), json["bounds"]["high"].dump());
-    print("  robust bounds {} to {}\n", json["robust_bounds"]["low"].dump(), json["robust_bounds"]["high"].dump());
-    print("  up            {}{}\n", json["up"].dump(), json["up_known"].get<bool>() ? "" : " (assumed)");
-    print("  lint          {} NaN, {} infinite, {} giant, {} invisible, {} zero quaternions\n", number("nan"),
-               number("infinite"), number("giant"), number("invisible"), number("zero_quaternion"));
-    for (const auto& label : json["labels"]) print("  label         {}\n", label.get<std::string>());
-    for (const auto& warning : json["warnings"]) print("  warning       {}\n", warning.get<std::string>());
-}
-
 struct SceneOptions {
     std::filesystem::path input, output;
     RenderParameters render;
     TurntableParameters turn;
-    std::string format;
+    SaveOptions save;
     bool labels = false;
     bool drop = false;
     bool json = false;
 };
-
-/// What is known about one scene.
-Json info_of(const std::filesystem::path& path) {
-    const Scene scene = load_scene(path);
-    return info_json(scene, path, scene_cameras(path, "").size());
-}
 
 /// One broken file of several does not hide the others.
 void print_infos(const std::vector<std::filesystem::path>& paths, bool as_json) {
@@ -90,9 +41,9 @@ void print_infos(const std::vector<std::filesystem::path>& paths, bool as_json) 
     Json list = Json::array();
     for (const auto& path : paths) {
         try {
-            const Json json = info_of(path);
+            const Json json = scene_report(path);
             if (as_json) list.push_back(json);
-            else print_info(json);
+            else fmt::print("{}", report_text(json));
         } catch (const Error& error) {
             log::error("{}", error.what());
             ++failed;
@@ -109,14 +60,14 @@ void add_info(CLI::App& app, CommandContext&) {
         bool json = false;
     };
     auto options = std::make_shared<InfoOptions>();
-    auto* command = app.add_subcommand("info", "Print what scenes hold and what may be wrong with them");
-    command->add_option("scene", options->scenes, "Scene files or folders")->required();
+    auto* command = app.add_subcommand("info", "Print what scenes hold and what may be wrong with them, or how pictures were made");
+    command->add_option("scene", options->scenes, "Scene files or folders, or pictures (.png)")->required();
     command->add_flag("--json", options->json, "Print JSON; a list for several scenes");
     command->callback([options] {
         if (options->scenes.size() > 1) return print_infos(options->scenes, options->json);
-        const Json json = info_of(options->scenes.front());
+        const Json json = scene_report(options->scenes.front());
         if (options->json) print_json(json);
-        else print_info(json);
+        else fmt::print("{}", report_text(json));
     });
 }
 
@@ -128,8 +79,11 @@ void add_convert(CLI::App& app, CommandContext&) {
     auto options = std::make_shared<SceneOptions>();
     auto* command = app.add_subcommand("convert", "Write a scene in another format");
     command->add_option("input", options->input, "Scene file or folder")->required();
-    command->add_option("output", options->output, "New file: .ply, .compressed.ply, .splat or .spz")->required();
-    command->add_option("--format", options->format, "ply, compressed.ply, splat or spz; from the name when left out");
+    command->add_option("output", options->output, "New file: .ply, .compressed.ply, .splat, .spz or .sog")->required();
+    command->add_option("--format", options->save.format, "ply, compressed.ply, splat, spz or sog; from the name when left out");
+    command->add_option("--spz-version", options->save.spz_version, "Of a .spz: 3 (most programs read it), 4 (newest) or 2 (oldest)")
+        ->capture_default_str()
+        ->check(CLI::Range(2, 4));
     command->add_flag("--labels", options->labels, "Keep label columns (PLY only)");
     command->add_flag("--drop-unusable", options->drop, "Leave out splats with NaN or illegal infinities");
     command->callback([options] {
@@ -140,8 +94,7 @@ void add_convert(CLI::App& app, CommandContext&) {
             if (scene.gaussians.size() != before) scene.labels = {};
             log::info("{} unusable splats were dropped", before - scene.gaussians.size());
         }
-        SaveOptions save;
-        save.format = options->format;
+        SaveOptions save = options->save;
         if (options->labels && !scene.labels.labels.empty()) save.from_label = &scene.labels.labels.front();
         else if (!scene.labels.labels.empty())
             log::warning("the labels of the scene are not written; --labels keeps them in a .ply");
@@ -150,6 +103,23 @@ void add_convert(CLI::App& app, CommandContext&) {
             throw Error(ErrorCode::InvalidArgument, "the output is the input itself", "choose another name", options->output);
         const SavedRows rows = save_scene(options->output, scene, save);
         print("{} splats written to {}{}\n", rows.written, options->output.string(), left_out_text(rows));
+    });
+}
+
+void add_cameras(CLI::App& app, CommandContext&) {
+    struct CameraOptions {
+        std::filesystem::path input, output;
+        int orbit = 0;
+    };
+    auto options = std::make_shared<CameraOptions>();
+    auto* command = app.add_subcommand("cameras", "Write viewpoints as cameras.json (3DGS) or transforms.json (nerfstudio)");
+    command->add_option("input", options->input, "Project (.gsep), camera file or folder, or a scene with cameras beside it")->required();
+    command->add_option("output", options->output, "New file; a name that begins with transforms is nerfstudio's form")->required();
+    command->add_option("--orbit", options->orbit, "This many viewpoints around the scene instead of its own")->check(CLI::Range(1, 100000));
+    command->callback([options] {
+        const auto views = viewpoints_of(options->input, options->orbit);
+        save_cameras(options->output, views);
+        print("{} viewpoints written to {}\n", views.size(), options->output.string());
     });
 }
 
@@ -286,6 +256,7 @@ void add_synth(CLI::App& app, CommandContext&) {
 void add_scene_commands(CLI::App& app, CommandContext& context) {
     add_info(app, context);
     add_convert(app, context);
+    add_cameras(app, context);
     add_render(app, context);
     add_turntable(app, context);
     add_synth(app, context);

@@ -109,6 +109,7 @@ public:
     virtual void export_picture() = 0;
     virtual void export_turntable() = 0;
     virtual void export_scene() = 0;
+    virtual void export_viewpoints() = 0;
     virtual void add_camera_key() = 0;
     virtual void delete_camera_key(std::size_t index) = 0;
     virtual void export_camera_path(bool as_film) = 0;             // JSON, or the film along the path

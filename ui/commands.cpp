@@ -82,7 +82,7 @@ const std::vector<std::string>& scene_extensions() {
 }
 
 const std::vector<std::string>& writable_extensions() {
-    static const std::vector<std::string> Endings{".ply", ".splat", ".spz"};
+    static const std::vector<std::string> Endings{".ply", ".splat", ".spz", ".sog"};
     return Endings;
 }
 

@@ -230,6 +230,9 @@ public:
     void export_scene() override {
         later([this] { target_->export_scene(); });
     }
+    void export_viewpoints() override {
+        later([this] { target_->export_viewpoints(); });
+    }
     void add_camera_key() override {
         later([this] { target_->add_camera_key(); });
     }

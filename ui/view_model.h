@@ -209,6 +209,8 @@ struct ExportSettings {
     std::string scene_path = "edited.ply";       // format by extension
     bool with_labels = false;
     bool visible_only = false;
+    int spz_version = 3;
+    std::string viewpoints_path = "cameras.json";   // format by name: transforms... is nerfstudio's
     std::string camera_path_path = "camera_path.json";
 
     template <class Self, class F>
@@ -227,9 +229,11 @@ struct ExportSettings {
         f("elevation_degrees", self.elevation_degrees, "Height above the horizon.", Range{-89, 89});
         f("around_label", self.around_label, "Turn around what is labelled.");
         f("before_after", self.before_after, "Before and after side by side.");
-        f("scene_path", self.scene_path, "File of the scene: .ply, .compressed.ply, .splat, .spz.");
+        f("scene_path", self.scene_path, "File of the scene: .ply, .compressed.ply, .splat, .spz, .sog.");
         f("with_labels", self.with_labels, "Write the label as a float column (PLY).");
         f("visible_only", self.visible_only, "Leave out what is hidden in the window.");
+        f("spz_version", self.spz_version, "Version of a .spz file.", Range{2, 4});
+        f("viewpoints_path", self.viewpoints_path, "File of the viewpoints: cameras.json or transforms.json.");
         f("camera_path_path", self.camera_path_path, "File of the camera path.");
     }
 };

@@ -148,4 +148,15 @@ std::optional<fs::path> find_cameras(const fs::path& scene_path) {
     return std::nullopt;
 }
 
+bool names_transforms(const fs::path& path) { return path.filename().string().starts_with("transforms"); }
+
+void save_cameras(const fs::path& path, const std::vector<View>& views) {
+    if (path.extension() != ".json")
+        throw Error(ErrorCode::InvalidArgument, "the name does not end in a camera format that can be written",
+                    "use cameras.json (3DGS) or transforms.json (nerfstudio)", path);
+    if (views.empty()) throw Error(ErrorCode::InvalidArgument, "there are no cameras to write", "", path);
+    if (names_transforms(path)) save_transforms_json(path, views);
+    else save_cameras_json(path, views);
+}
+
 }  // namespace gse

@@ -33,6 +33,17 @@ double visible_share(const std::vector<View>& views, std::span<const float> posi
 /// principal point; it is taken as the image centre when read back.
 void save_cameras_json(const std::filesystem::path& path, const std::vector<View>& views);
 
+/// Writes a nerfstudio transforms.json: camera-to-world matrices in OpenGL axes (right, up, back) and every frame's own
+/// focal lengths, principal point and size, in the world of the splats. Distorted cameras are written as pinholes, with a
+/// warning.
+void save_transforms_json(const std::filesystem::path& path, const std::vector<View>& views);
+
+/// Either of them, told by the name: "transforms..." is nerfstudio's, any other .json the one of 3DGS. Atomic. Throws Error
+/// (InvalidArgument for another ending or no views, Unwritable).
+void save_cameras(const std::filesystem::path& path, const std::vector<View>& views);
+/// Whether save_cameras() would write nerfstudio's form.
+bool names_transforms(const std::filesystem::path& path);
+
 /// Readers on memory. The two COLMAP files go together; `images` and `cameras` are both binary or both text.
 std::vector<View> parse_colmap_binary(std::span<const std::byte> cameras, std::span<const std::byte> images);
 std::vector<View> parse_colmap_text(std::string_view cameras, std::string_view images);

@@ -54,6 +54,12 @@ std::string write_gaussian_ply(const Scene& scene, const SaveOptions& options);
 /// `order`, when wanted: row order[i] of the usable rows became row i.
 std::string write_compressed_ply(const Scene& scene, std::vector<std::uint32_t>* order = nullptr);
 std::string write_splat(const Scene& scene);
-std::string write_spz(const Scene& scene);
+/// SOG version 2 as an archive; `order` as above. Throws Error (InvalidArgument) without a splat or with more than the
+/// textures have room for.
+std::string write_sog(const Scene& scene, std::vector<std::uint32_t>* order = nullptr);
+/// `version` 2, 3 or 4. Throws Error (InvalidArgument) for another.
+std::string write_spz(const Scene& scene, int version = 3);
+/// Throws what write_spz would.
+void check_spz_version(int version);
 
 }  // namespace gse::io

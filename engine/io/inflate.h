@@ -20,4 +20,7 @@ std::vector<std::byte> decompress_zstd(std::span<const std::byte> bytes, std::ui
 /// The bytes as one gzip stream.
 std::string deflate_gzip(std::string_view bytes);
 
+/// The bytes as one zstd frame that states its size.
+std::string compress_zstd(std::string_view bytes);
+
 }  // namespace gse::io

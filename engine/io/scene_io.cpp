@@ -112,10 +112,10 @@ Scene load_folder(const std::filesystem::path& folder) {
 
 std::string format_of_name(const std::filesystem::path& path) {
     const std::string name = lower(path.filename().string());
-    for (const std::string format : {"compressed.ply", "ply", "splat", "spz"})
+    for (const std::string format : {"compressed.ply", "ply", "splat", "spz", "sog"})
         if (name.ends_with("." + format)) return format;
     throw Error(ErrorCode::InvalidArgument, "the name does not end in a scene format that can be written",
-                "use .ply, .compressed.ply, .splat or .spz", path);
+                "use .ply, .compressed.ply, .splat, .spz or .sog", path);
 }
 
 /// Reads back what is about to be written: the error is that of whoever opens the file, not an estimate.
@@ -126,7 +126,7 @@ void warn_of_losses(const std::string& name, const Scene& scene, const GaussianS
     const std::string loss = io::describe_loss(rows, back.gaussians, order);
     if (!loss.empty()) log::warning("{} keeps rounded values: {}", name, loss);
     if (scene.info.antialiased && !back.info.antialiased)
-        log::warning("{} does not say that the scene was trained with antialiasing; .ply, .compressed.ply and .spz do", name);
+        log::warning("{} does not say that the scene was trained with antialiasing; .ply, .compressed.ply, .spz and .sog do", name);
     if (scene.info.up_known && !back.info.up_known)
         log::warning("{} does not say which way is up in the scene; .ply and .compressed.ply do", name);
 }
@@ -191,7 +191,7 @@ std::vector<std::filesystem::path> scenes_in_folder(const std::filesystem::path&
 
 bool holds_scene(const std::filesystem::path& folder) { return scene_of_layout(folder) || !scenes_in_folder(folder).empty(); }
 
-std::vector<std::string> writable_formats() { return {"ply", "compressed.ply", "splat", "spz"}; }
+std::vector<std::string> writable_formats() { return {"ply", "compressed.ply", "splat", "spz", "sog"}; }
 
 SavedRows save_scene(const std::filesystem::path& path, const Scene& scene, const SaveOptions& options) {
     const std::string format = options.format.empty() ? format_of_name(path) : options.format;
@@ -205,13 +205,13 @@ SavedRows save_scene(const std::filesystem::path& path, const Scene& scene, cons
         if (format == "ply") return io::write_gaussian_ply(scene, options);
         if (format == "compressed.ply") return io::write_compressed_ply(scene, &order);
         if (format == "splat") return io::write_splat(scene);
-        if (format == "spz") return io::write_spz(scene);
+        if (format == "sog") return io::write_sog(scene, &order);
+        if (format == "spz") return io::write_spz(scene, options.spz_version);
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("\"{}\" is no scene format that can be written", format),
-                    "use ply, compressed.ply, splat or spz");
+                    "use ply, compressed.ply, splat, spz or sog");
     });
-    if (format == "compressed.ply")
-        log::info("a compressed PLY is stored in another order: splat numbers change");
+    if (!order.empty()) log::info("a .{} file is stored in another order: splat numbers change", format);
     const GaussianSet rows = format == "ply" ? scene.gaussians : drop_unusable(scene.gaussians);
     if (rows.empty() && !scene.gaussians.empty())
         throw Error(ErrorCode::Malformed, fmt::format("none of the {} splats can be written as {}", scene.gaussians.size(), format),

@@ -1,13 +1,15 @@
-// libzip and libwebp behind the SOG reader.
+// libzip and libwebp behind the SOG reader and writer.
 #include "engine/io/sog_files.h"
 
 #include <fmt/core.h>
 #include <webp/decode.h>
+#include <webp/encode.h>
 #include <zip.h>
 
 #include <algorithm>
 #include <limits>
 
+#include "engine/base/check.h"
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/memory.h"
@@ -16,6 +18,7 @@
 namespace gse::io {
 namespace {
 
+constexpr int WebpLevel = 6;   // of 0 (fast) to 9 (small)
 constexpr std::size_t EntryPieceBytes = std::size_t{1} << 20;
 
 class Folder final : public SogFiles {
@@ -137,6 +140,27 @@ Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, s
         nullptr)
         fail("cannot be decoded");
     return texture;
+}
+
+std::string encode_webp(const Texture& texture) {
+    WebPConfig config;
+    WebPPicture picture;
+    GSE_CHECK(WebPConfigInit(&config) != 0 && WebPPictureInit(&picture) != 0);
+    GSE_CHECK(WebPConfigLosslessPreset(&config, WebpLevel) != 0);
+    config.exact = 1;   // else colours under alpha 0 are changed
+    WebPMemoryWriter writer;
+    WebPMemoryWriterInit(&writer);
+    const std::unique_ptr<WebPPicture, void (*)(WebPPicture*)> free_picture(&picture, WebPPictureFree);
+    const std::unique_ptr<WebPMemoryWriter, void (*)(WebPMemoryWriter*)> free_writer(&writer, WebPMemoryWriterClear);
+    picture.use_argb = 1;
+    picture.width = static_cast<int>(texture.width);
+    picture.height = static_cast<int>(texture.height);
+    picture.writer = WebPMemoryWrite;
+    picture.custom_ptr = &writer;
+    if (WebPPictureImportRGBA(&picture, texture.rgba.data(), picture.width * 4) == 0 || WebPEncode(&config, &picture) == 0)
+        throw Error(ErrorCode::Foreign, fmt::format("a texture of {} x {} texels cannot be made (WebP error {})", texture.width,
+                                                    texture.height, static_cast<int>(picture.error_code)));
+    return {reinterpret_cast<const char*>(writer.mem), writer.size};
 }
 
 }  // namespace gse::io

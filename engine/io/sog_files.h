@@ -42,5 +42,8 @@ struct Texture {
 /// Decodes a WebP picture that lies in a scene of `stored_bytes`. `name` is for messages. Throws Error (Malformed)
 /// or OutOfMemory.
 Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, std::uint64_t stored_bytes);
+/// The texture as a lossless WebP picture: every byte comes back, those of transparent texels too. Sides of 1 to 16383.
+/// The same texture gives the same bytes. Throws Error (Foreign).
+std::string encode_webp(const Texture& texture);
 
 }  // namespace gse::io

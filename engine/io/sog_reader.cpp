@@ -15,6 +15,7 @@
 #include "engine/base/json.h"
 #include "engine/base/memory.h"
 #include "engine/io/claims.h"
+#include "engine/io/codebook.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 #include "engine/io/json_numbers.h"
@@ -26,7 +27,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t PaletteColumns = 64;  // palette entries side by side in the centroid texture
-constexpr std::size_t CodebookSize = 256;
 constexpr std::uint64_t LargestDescription = std::uint64_t{4} << 20;  // bytes of a meta.json, which has a few thousand
 constexpr std::uint64_t LargestCount = std::uint64_t{16383} * 16383;  // a WebP picture has no more texels
 constexpr std::uint64_t LargestTexture = LargestCount * 4 + (std::uint64_t{1} << 20);  // bytes of its file, were nothing compressed

@@ -195,4 +195,38 @@ std::vector<View> parse_transforms_json(std::string_view text, const std::filesy
     }
 }
 
+void save_transforms_json(const std::filesystem::path& path, const std::vector<View>& views) {
+    using Ordered = nlohmann::ordered_json;
+    Ordered frames = Ordered::array();
+    std::size_t distorted = 0;
+    for (const View& view : views) {
+        const Camera& camera = view.camera;
+        const Vec3 centre = camera.centre();
+        const Mat3 to_world = camera.rotation.transposed();
+        Ordered matrix = Ordered::array();
+        for (int row = 0; row < 3; ++row)   // OpenGL axes: up and back instead of down and forward
+            matrix.push_back({to_world(row, 0), -to_world(row, 1), -to_world(row, 2), centre[row]});
+        matrix.push_back({0.0, 0.0, 0.0, 1.0});
+        distorted += view.distorted ? 1u : 0u;
+        frames.push_back({{"file_path", view.name},
+                          {"w", camera.width},
+                          {"h", camera.height},
+                          {"fl_x", camera.fx},
+                          {"fl_y", camera.fy},
+                          {"cx", camera.cx},
+                          {"cy", camera.cy},
+                          {"transform_matrix", matrix}});
+    }
+    // No exchange of axes: without the key nerfstudio's tools take its old converter's for granted.
+    const Ordered identity = {{1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}, {0.0, 0.0, 1.0, 0.0}};
+    const Ordered file = {{"camera_model", "OPENCV"}, {"applied_transform", identity}, {"frames", frames}};
+    if (distorted > 0)
+        log::warning("{} of {} cameras had lens distortion; they are written as pinholes", distorted, views.size());
+    std::error_code ignored;
+    if (std::filesystem::exists(path.parent_path() / "dataparser_transforms.json", ignored))
+        log::warning("beside {} lies a dataparser_transforms.json: readers turn and scale the cameras by it once more",
+                     path.filename().string());
+    write_file(path, file.dump(1) + "\n");
+}
+
 }  // namespace gse

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 
+#include "engine/base/assets.h"
 #include "engine/base/error.h"
 
 namespace gse::neural {
@@ -13,7 +14,7 @@ namespace fs = std::filesystem;
 fs::path find_tokenizer(const fs::path& beside) {
     const char* assets = std::getenv("GSE_ASSETS");
     const std::array<fs::path, 3> candidates{beside / "tokenizer", beside,
-                                             fs::path(assets != nullptr ? assets : GSE_ASSETS) / "tokenizer"};
+                                             (assets != nullptr ? fs::path(assets) : assets_folder(GSE_ASSETS)) / "tokenizer"};
     for (const auto& candidate : candidates)
         if (fs::exists(candidate / "merges.txt")) return candidate;
     throw Error(ErrorCode::NotFound, "a single-file checkpoint has no tokenizer and none was found",

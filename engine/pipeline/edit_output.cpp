@@ -17,6 +17,7 @@
 #include "engine/io/scene_io.h"
 #include "engine/io/video.h"
 #include "engine/pipeline/model_settings.h"
+#include "engine/pipeline/picture_text.h"
 #include "engine/pipeline/target_sheet.h"
 
 namespace gse::pipeline {
@@ -124,7 +125,7 @@ void write_before_after(const fs::path& folder, EditJob& job) {
         std::copy(row.data.begin(), row.data.end(),
                   sheet.data.begin() + static_cast<std::ptrdiff_t>(row.data.size()) * i);
     }
-    write_png(folder / "before_after.png", sheet, {{"Recipe", json_text(recipe_to_json(job.recipe()), -1)}});
+    write_png(folder / "before_after.png", sheet, picture_text(job.recipe(), recipe_to_json(job.recipe())));
 }
 
 namespace {

@@ -11,6 +11,8 @@
 #include "engine/base/error.h"
 #include "engine/io/cameras.h"
 #include "engine/io/image_file.h"
+#include "engine/io/project_file.h"
+#include "engine/io/scene_io.h"
 
 namespace gse::pipeline {
 namespace {
@@ -64,6 +66,29 @@ std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const s
     if (!cameras.empty()) return load_cameras(cameras, scene_path);
     const auto found = find_cameras(scene_path);
     return found ? load_cameras(*found, scene_path) : std::vector<View>{};
+}
+
+std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit) {
+    const bool project = is_project_file(path);
+    const RenderParameters usual;
+    if (orbit > 0) {
+        Scene scene;
+        if (project) {
+            const ProjectData data = load_project(path);
+            scene.gaussians = data.state.current;
+            scene.info = data.state.info;
+        } else {
+            scene = load_scene(path);
+        }
+        return orbit_views(scene_orbit(scene, usual), orbit, usual.width, usual.height);
+    }
+    std::vector<View> views = project              ? read_project_summary(path).views
+                              : only_cameras(path) ? load_cameras(path)
+                                                   : scene_cameras(path, "");
+    if (views.empty())
+        throw Error(ErrorCode::NotFound, project ? "the project holds no viewpoints" : "there are no cameras beside the scene",
+                    "--orbit 24 makes viewpoints around the scene", path);
+    return views;
 }
 
 Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path, const RenderParameters& parameters) {

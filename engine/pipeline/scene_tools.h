@@ -65,6 +65,11 @@ OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& paramete
 /// The cameras named, or those found beside the scene; none when there are none.
 std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const std::string& cameras);
 
+/// Viewpoints to be written elsewhere: those that a project holds, that a camera file or folder names, or that are found
+/// beside a scene; with `orbit` > 0 so many around the scene of the project or file instead. Throws Error (NotFound when
+/// there are none).
+std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit = 0);
+
 /// The one camera `render` uses.
 Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path, const RenderParameters& parameters);
 

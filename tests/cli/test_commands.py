@@ -1,4 +1,5 @@
 """info, convert, render, turntable, synth and bench do what their help says."""
+import gzip
 import json
 import os
 import re
@@ -11,7 +12,7 @@ from program import PROGRAM, SHARED, ProgramTest, grid_rows, ply_bytes, run
 class Commands(ProgramTest):
     def test_version_and_help(self):
         self.assertRegex(run("--version").stdout, r"gseditpro \d+\.\d+")
-        for command in ["info", "convert", "render", "turntable", "locate", "edit", "synth", "train-starter", "bench"]:
+        for command in ["info", "convert", "cameras", "render", "turntable", "locate", "edit", "synth", "train-starter", "bench"]:
             process = run(command, "--help")
             self.assertEqual(process.returncode, 0)
             lines = process.stdout.splitlines()
@@ -41,14 +42,58 @@ class Commands(ProgramTest):
 
     def test_convert_there_and_back(self):
         source = self.write("scene.ply", ply_bytes(grid_rows()))
-        for name in ["a.compressed.ply", "b.splat", "c.spz"]:
-            process = run("convert", source, self.folder / name)
+        for name, *options in [("a.compressed.ply",), ("b.splat",), ("c.spz",), ("d.sog",), ("e.spz", "--spz-version", 4), ("f.spz", "--spz-version", 2)]:
+            process = run("convert", source, self.folder / name, *options)
             self.assertEqual(process.returncode, 0, process.stderr)
             self.assertEqual(self.info(self.folder / name)["splats"], 216)
         process = run("convert", source, self.folder / "copy.ply")
         self.assertEqual(process.returncode, 0, process.stderr)
         body = lambda path: path.read_bytes().split(b"end_header\n", 1)[1]
         self.assertEqual(body(self.folder / "copy.ply"), body(source))
+
+    def test_spz_versions_are_written_as_asked(self):
+        source = self.write("scene.ply", ply_bytes(grid_rows()))
+        self.assertEqual(run("convert", source, self.folder / "new.spz", "--spz-version", 4).returncode, 0)
+        self.assertEqual((self.folder / "new.spz").read_bytes()[:8], b"NGSP\4\0\0\0")
+        for version in [2, 3]:
+            self.assertEqual(run("convert", source, self.folder / "old.spz", "--spz-version", version).returncode, 0)
+            raw = gzip.decompress((self.folder / "old.spz").read_bytes())
+            self.assertEqual(raw[:8], b"NGSP" + bytes([version, 0, 0, 0]))
+        for version in [1, 5, "four"]:
+            self.assertNotEqual(run("convert", source, self.folder / "none.spz", "--spz-version", version).returncode, 0)
+        self.assertFalse((self.folder / "none.spz").exists())
+
+    def test_cameras_there_and_back_in_both_forms(self):
+        source = self.write("scene.ply", ply_bytes(grid_rows()))
+        self.assert_one_sentence(run("cameras", source, self.folder / "cameras.json"), "no cameras")
+        process = run("cameras", source, self.folder / "cameras.json", "--orbit", 5)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        first = json.loads((self.folder / "cameras.json").read_text())
+        self.assertEqual(len(first), 5)
+        for before, after in [("cameras.json", "transforms.json"), ("transforms.json", "again.cameras.json")]:
+            process = run("cameras", self.folder / before, self.folder / after)
+            self.assertEqual(process.returncode, 0, process.stderr)
+        frames = json.loads((self.folder / "transforms.json").read_text())["frames"]
+        self.assertEqual([frame["file_path"] for frame in frames], [camera["img_name"] for camera in first])
+        again = json.loads((self.folder / "again.cameras.json").read_text())
+        for one, other in zip(first, again):
+            for key in ["position", "rotation"]:
+                flat = lambda value: sum(value, []) if isinstance(value[0], list) else value
+                for a, b in zip(flat(one[key]), flat(other[key])):
+                    self.assertAlmostEqual(a, b, places=9)
+        self.assert_one_sentence(run("cameras", source, self.folder / "cameras.txt", "--orbit", 5), "cameras.json")
+        self.assertFalse((self.folder / "cameras.txt").exists())
+
+    def test_info_tells_how_a_picture_was_made(self):
+        source = self.write("scene.ply", ply_bytes(grid_rows()))
+        self.assertEqual(run("render", source, self.folder / "a.png", "--width", 64, "--height", 48).returncode, 0)
+        process = run("info", self.folder / "a.png")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn("64 x 48", process.stdout)
+        self.assertIn("GSEditPro", process.stdout)
+        found = json.loads(run("info", self.folder / "a.png", "--json").stdout)
+        self.assertEqual(json.loads(found["text"]["Recipe"])["width"], 64)
+        self.assert_one_sentence(run("info", self.write("b.png", b"no picture")), "PNG")
 
     def test_synth_is_reproducible_and_labelled(self):
         for name in ["one.ply", "two.ply"]:

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/io/cameras.h"
 #include "ui/commands.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
@@ -24,8 +25,9 @@ constexpr std::array<Size, 5> Sizes{
     {{"Current", 0, 0}, {"HD", 1920, 1080}, {"QHD", 2560, 1440}, {"4K", 3840, 2160}, {"Square", 1024, 1024}}};
 constexpr double LargestPixels = 16384.0 * 8192.0;
 
-/// A path to be written with a button that asks for it.
-void path_row(Context& context, const char* name, std::string& path, std::vector<std::string> endings) {
+/// One of the paths to be written, with a button that asks for it.
+void path_row(Context& context, const char* name, std::string ExportSettings::*member, std::vector<std::string> endings) {
+    std::string& path = context.exports.*member;
     const float icon = context.em * 1.75f;
     ImGui::SetNextItemWidth(
         std::max(context.em * 4, ImGui::GetContentRegionAvail().x - icon - ImGui::GetStyle().ItemSpacing.x));
@@ -38,11 +40,6 @@ void path_row(Context& context, const char* name, std::string& path, std::vector
                      {.name = fmt::format("{}.browse", name), .icon = Icon::Folder, .tooltip = "Choose..."}))
         return;
     auto& actions = context.actions;
-    std::string ExportSettings::*member =
-        &path == &context.exports.picture_path ? &ExportSettings::picture_path
-        : &path == &context.exports.film_path  ? &ExportSettings::film_path
-        : &path == &context.exports.scene_path ? &ExportSettings::scene_path
-                                               : &ExportSettings::camera_path_path;
     const ExportSettings settings = context.exports;
     context.state.files.ask({.title = "Where to write",
                              .confirm = "Choose",
@@ -112,7 +109,7 @@ void draw_picture(Context& context) {
     draw_size(context);
     if (checkbox(context, "export.transparent", "Transparent background", context.exports.transparent))
         context.exports_changed = true;
-    path_row(context, "export.picture_path", context.exports.picture_path, {".png"});
+    path_row(context, "export.picture_path", &ExportSettings::picture_path, {".png"});
     std::string why = why_not_write(context, context.exports.picture_path, {".png"});
     if (why.empty() && static_cast<double>(context.exports.width) * context.exports.height > LargestPixels)
         why = "That many pixels cannot be written";
@@ -160,7 +157,7 @@ void draw_turntable(Context& context) {
     };
     context.exports_changed |=
         field_rows(context, "export", context.exports, wanted, [](const char*, bool&) {});
-    path_row(context, "export.film_path", context.exports.film_path, film_extensions());
+    path_row(context, "export.film_path", &ExportSettings::film_path, film_extensions());
     const std::string why = why_not_film(context);
     say(why, film_text(context.exports));
     if (button(context, {.name = "export.turntable",
@@ -192,7 +189,7 @@ void draw_camera_path(Context& context) {
             context.actions.delete_camera_key(at);
         ImGui::PopID();
     }
-    path_row(context, "export.camera_path_path", context.exports.camera_path_path, {".json"});
+    path_row(context, "export.camera_path_path", &ExportSettings::camera_path_path, {".json"});
     std::string why = why_not_write(context, context.exports.camera_path_path, {".json"});
     if (why.empty() && keys.empty()) why = "Add a key first";
     std::string why_film = why_not_film(context);
@@ -207,15 +204,28 @@ void draw_camera_path(Context& context) {
         context.actions.export_camera_path(true);
 }
 
+void draw_spz_version(Context& context) {
+    constexpr std::array<const char*, 3> names{"Version 2", "3", "4"};
+    int chosen = std::clamp(context.exports.spz_version - 2, 0, 2);
+    if (segmented(context, "export.spz_version", names, chosen)) {
+        context.exports.spz_version = chosen + 2;
+        context.exports_changed = true;
+    }
+    dim_text(chosen == 0   ? "For the oldest programs; rotations are coarser."
+             : chosen == 1 ? "What most programs read."
+                           : "The newest: not read by every program yet.");
+}
+
 void draw_scene_file(Context& context) {
     heading(context, "Scene");
-    path_row(context, "export.scene_path", context.exports.scene_path, writable_extensions());
+    path_row(context, "export.scene_path", &ExportSettings::scene_path, writable_extensions());
     const bool ply = has_extension(context.exports.scene_path, std::vector<std::string>{".ply"}) &&
                      !has_extension(context.exports.scene_path, std::vector<std::string>{".compressed.ply"});
     if (checkbox(context, "export.with_labels", "With the label as a column", context.exports.with_labels,
                  "A float per splat; plain PLY only"))
         context.exports_changed = true;
-    const std::string why = why_not_write(context, context.exports.scene_path, {".ply", ".splat", ".spz"});
+    if (has_extension(context.exports.scene_path, std::vector<std::string>{".spz"})) draw_spz_version(context);
+    const std::string why = why_not_write(context, context.exports.scene_path, writable_extensions());
     std::string what = context.model.result_waiting ? "Writes the scene" : "Writes the edited scene";
     if (context.scene_open())
         what += fmt::format("{}, {} splats", context.model.result_waiting ? " with the result that waits" : "",
@@ -228,6 +238,21 @@ void draw_scene_file(Context& context) {
         context.actions.export_scene();
 }
 
+/// The viewpoints of the project, for other programs.
+void draw_viewpoints(Context& context) {
+    heading(context, "Viewpoints");
+    path_row(context, "export.viewpoints_path", &ExportSettings::viewpoints_path, {".json"});
+    std::string why = why_not_write(context, context.exports.viewpoints_path, {".json"});
+    const std::size_t count = context.scene_open() ? context.document().views.size() : 0;
+    if (why.empty() && count == 0) why = "The scene has no viewpoints: add some in the Views panel";
+    const bool nerfstudio = names_transforms(path_of(context.exports.viewpoints_path));
+    say(why, fmt::format("Writes {} viewpoint{} as {}.", count, count == 1 ? "" : "s",
+                         nerfstudio ? "nerfstudio's transforms.json"
+                                    : "the cameras.json of 3DGS; a name that begins with transforms gives nerfstudio's form"));
+    if (button(context, {.name = "export.viewpoints", .text = "Save viewpoints", .why_off = why}))
+        context.actions.export_viewpoints();
+}
+
 }  // namespace
 
 void draw_export_panel(Context& context) {
@@ -238,6 +263,7 @@ void draw_export_panel(Context& context) {
     draw_picture(context);
     draw_turntable(context);
     draw_scene_file(context);
+    draw_viewpoints(context);
     draw_camera_path(context);
 }
 

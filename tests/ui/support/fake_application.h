@@ -142,6 +142,7 @@ public:
     void export_picture() override { calls.push_back("export_picture"); }
     void export_turntable() override { calls.push_back("export_turntable"); }
     void export_scene() override { calls.push_back("export_scene"); }
+    void export_viewpoints() override { calls.push_back("export_viewpoints"); }
     void add_camera_key() override { calls.push_back("add_camera_key"); }
     void delete_camera_key(std::size_t index) override {
         calls.push_back("delete_camera_key " + std::to_string(index));

@@ -183,6 +183,52 @@ DOCTEST_TEST_CASE("cameras.json that cannot be right is refused") {
     }
 }
 
+DOCTEST_TEST_CASE("transforms.json round trip: pose, focal lengths, principal point and size of every view") {
+    constexpr double Rounding = 1e-9;   // the reader takes a scale out of the matrix, which has none
+    ScratchFolder scratch;
+    std::vector<View> views;
+    for (std::uint64_t i = 0; i < 5; ++i) {
+        views.push_back({"images/view " + std::to_string(i) + ".png", some_camera(i), false});
+        views.back().camera.cx += 3.25 * static_cast<double>(i);
+        views.back().camera.width += static_cast<int>(i);
+    }
+    views[4].distorted = true;   // its coefficients are not known any more: a pinhole is written
+    const auto path = scratch.path() / "transforms.json";
+    save_cameras(path, views);
+    for (const auto& place : {path, scratch.path()}) {
+        const auto again = load_cameras(place);
+        DOCTEST_REQUIRE(again.size() == 5);
+        for (std::size_t i = 0; i < 5; ++i) {
+            DOCTEST_CHECK(again[i].name == views[i].name);
+            DOCTEST_CHECK(again[i].camera.width == views[i].camera.width);
+            DOCTEST_CHECK(again[i].camera.height == views[i].camera.height);
+            DOCTEST_CHECK(largest_difference(again[i].camera, views[i].camera) < Rounding);
+            DOCTEST_CHECK_FALSE(again[i].distorted);
+        }
+    }
+    // nerfstudio's tools undo applied_transform: it says that nothing was done to the axes.
+    DOCTEST_CHECK(read_file(path).find("applied_transform") != std::string::npos);
+}
+
+DOCTEST_TEST_CASE("cameras are written in the form that the name asks for, and nothing where that is none") {
+    ScratchFolder scratch;
+    const std::vector<View> views = {{"a", some_camera(1), false}};
+    for (const char* name : {"transforms.json", "transforms_edited.json", "cameras.json", "mine.json"}) {
+        save_cameras(scratch.path() / name, views);
+        const bool list = read_file(scratch.path() / name).starts_with("[");
+        DOCTEST_CHECK(list != names_transforms(name));
+        DOCTEST_CHECK(largest_difference(load_cameras(scratch.path() / name)[0].camera, views[0].camera) < 1e-9);
+    }
+    for (const char* name : {"cameras.txt", "cameras", "transforms.jsn"}) {
+        const auto refused = error_of([&] { save_cameras(scratch.path() / name, views); });
+        DOCTEST_REQUIRE(refused.has_value());
+        DOCTEST_CHECK(refused->code() == ErrorCode::InvalidArgument);
+        DOCTEST_CHECK_FALSE(std::filesystem::exists(scratch.path() / name));
+    }
+    DOCTEST_CHECK(error_of([&] { save_cameras(scratch.path() / "none.json", {}); }).has_value());
+    DOCTEST_CHECK_FALSE(std::filesystem::exists(scratch.path() / "none.json"));
+}
+
 DOCTEST_TEST_CASE("a Blender frame: field of view over the width, OpenGL axes turned to ours") {
     const char* text = R"({"camera_angle_x": 1.5707963267948966, "w": 200, "h": 100, "frames": [
         {"file_path": "./train/r_0", "transform_matrix": [[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]}]})";

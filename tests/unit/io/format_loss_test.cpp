@@ -75,7 +75,7 @@ DOCTEST_TEST_CASE("what is said of a scene beside its splats is told where the f
     const std::string spz = said_of_saving(scene, "a.spz"), splat = said_of_saving(scene, "a.splat");
     const std::string compressed = said_of_saving(scene, "a.compressed.ply");
     const auto says = [](const std::string& said, const char* words) { return said.find(words) != std::string::npos; };
-    for (const char* words : {"which way is up", "antialiasing; .ply, .compressed.ply and .spz do"}) DOCTEST_CHECK(says(splat, words));
+    for (const char* words : {"which way is up", "antialiasing; .ply, .compressed.ply, .spz and .sog do"}) DOCTEST_CHECK(says(splat, words));
     for (const char* words : {"which way is up", "antialiasing"}) DOCTEST_CHECK_FALSE(says(compressed, words));
     DOCTEST_CHECK(says(spz, "which way is up in the scene; .ply and .compressed.ply do"));
     DOCTEST_CHECK_FALSE(says(spz, "antialiasing"));
@@ -109,7 +109,7 @@ DOCTEST_TEST_CASE("rows that a format cannot hold are counted, and a file of non
     scene.gaussians = GaussianSet(data);
     const ScratchFolder scratch;
     log::set_level(log::Level::Off);
-    for (const char* name : {"a.spz", "a.splat", "a.compressed.ply"}) {
+    for (const char* name : {"a.spz", "a.splat", "a.compressed.ply", "a.sog"}) {
         const SavedRows rows = save_scene(scratch.path() / name, scene);
         DOCTEST_CHECK(rows.written == 6);
         DOCTEST_CHECK(rows.left_out == 4);

@@ -14,9 +14,9 @@ namespace {
 
 constexpr double OpacityStep = 0.5 / 255 + 1e-6;
 
-Scene reload(const Scene& scene, const char* name) {
+Scene reload(const Scene& scene, const char* name, const SaveOptions& options = {}) {
     ScratchFolder scratch;
-    save_scene(scratch.path() / name, scene);
+    save_scene(scratch.path() / name, scene, options);
     return load_scene(scratch.path() / name);
 }
 
@@ -65,35 +65,62 @@ std::string spz_header(std::uint32_t version, std::uint32_t count, int degree, i
 
 }  // namespace
 
-DOCTEST_TEST_CASE("SPZ round trip stays within its steps") {
+DOCTEST_TEST_CASE("SPZ round trip stays within its steps, in every version") {
     constexpr double PositionStep = 0.5 / 4096 + 1e-6;
     constexpr double ScaleStep = 0.5 / 16 + 1e-6;
     constexpr double BaseStep = 0.5 / 255 / 0.15 + 1e-5;
     constexpr double ShStep = 0.5 / 128 + 1e-6;
     constexpr double RotationFloor = 1 - 1e-5;  // nine bits per component
-    for (int degree = 0; degree <= 3; ++degree) {
-        const Scene scene = random_scene(500, degree, 20 + static_cast<std::uint64_t>(degree));
-        const Scene again = reload(scene, "a.spz");
-        DOCTEST_REQUIRE(again.gaussians.size() == 500);
-        DOCTEST_REQUIRE(again.gaussians.sh_degree() == degree);
-        DOCTEST_CHECK(largest_difference(scene.gaussians.position(), again.gaussians.position()) <=
-                      PositionStep);
-        DOCTEST_CHECK(largest_difference(scene.gaussians.log_scale(), again.gaussians.log_scale()) <=
-                      ScaleStep);
-        DOCTEST_CHECK(opacity_difference(scene.gaussians, again.gaussians) <= OpacityStep);
-        DOCTEST_CHECK(worst_rotation(scene.gaussians, again.gaussians) >= RotationFloor);
-        const std::size_t stride = scene.gaussians.sh().size() / 500;
-        double base = 0, rest = 0;
-        for (std::size_t i = 0; i < scene.gaussians.sh().size(); ++i) {
-            const double difference =
-                std::abs(static_cast<double>(scene.gaussians.sh()[i]) - again.gaussians.sh()[i]);
-            (i % stride < 3 ? base : rest) = std::max(i % stride < 3 ? base : rest, difference);
+    constexpr double ByteRotationFloor = 0.99;  // seven bits, and w, which is small, from the rest: sqrt(3 / 127.5)
+    for (int version = 2; version <= 4; ++version)
+        for (int degree = 0; degree <= 3; ++degree) {
+            DOCTEST_CAPTURE(version);
+            DOCTEST_CAPTURE(degree);
+            const Scene scene = random_scene(500, degree, 20 + static_cast<std::uint64_t>(degree));
+            const SaveOptions options{.spz_version = version};
+            const Scene again = reload(scene, "a.spz", options);
+            DOCTEST_REQUIRE(again.gaussians.size() == 500);
+            DOCTEST_REQUIRE(again.gaussians.sh_degree() == degree);
+            DOCTEST_CHECK(largest_difference(scene.gaussians.position(), again.gaussians.position()) <=
+                          PositionStep);
+            DOCTEST_CHECK(largest_difference(scene.gaussians.log_scale(), again.gaussians.log_scale()) <=
+                          ScaleStep);
+            DOCTEST_CHECK(opacity_difference(scene.gaussians, again.gaussians) <= OpacityStep);
+            DOCTEST_CHECK(worst_rotation(scene.gaussians, again.gaussians) >=
+                          (version == 2 ? ByteRotationFloor : RotationFloor));
+            const std::size_t stride = scene.gaussians.sh().size() / 500;
+            double base = 0, rest = 0;
+            for (std::size_t i = 0; i < scene.gaussians.sh().size(); ++i) {
+                const double difference =
+                    std::abs(static_cast<double>(scene.gaussians.sh()[i]) - again.gaussians.sh()[i]);
+                (i % stride < 3 ? base : rest) = std::max(i % stride < 3 ? base : rest, difference);
+            }
+            DOCTEST_CHECK(base <= BaseStep);
+            DOCTEST_CHECK(rest <= ShStep);
+            // A second round changes nothing: the quantised values are fixed points.
+            DOCTEST_CHECK(same_bits(reload(again, "b.spz", options).gaussians.position(), again.gaussians.position()));
         }
-        DOCTEST_CHECK(base <= BaseStep);
-        DOCTEST_CHECK(rest <= ShStep);
-        // A second round changes nothing: the quantised values are fixed points.
-        DOCTEST_CHECK(same_bits(reload(again, "b.spz").gaussians.position(), again.gaussians.position()));
+}
+
+DOCTEST_TEST_CASE("SPZ versions 3 and 4 hold the same splats; other versions are refused before anything is written") {
+    Scene scene = random_scene(300, 3, 5);
+    scene.info.antialiased = true;
+    const Scene third = parse_scene(as_bytes(io::write_spz(scene, 3)), "x.spz");
+    const std::string newest = io::write_spz(scene, 4);
+    const Scene fourth = parse_scene(as_bytes(newest), "x.spz");
+    DOCTEST_CHECK(newest.starts_with(std::string("NGSP\4\0\0\0", 8)));
+    DOCTEST_CHECK(newest[15] == 6);   // streams; a scene without view-dependent colour has five
+    DOCTEST_CHECK(io::write_spz(random_scene(3, 0, 5), 4)[15] == 5);
+    DOCTEST_CHECK(same_bits(third.gaussians, fourth.gaussians));
+    DOCTEST_CHECK(fourth.info.antialiased);
+    DOCTEST_CHECK(fourth.info.warnings.empty());
+    ScratchFolder scratch;
+    for (const int version : {-1, 0, 1, 5}) {
+        const auto refused = error_of([&] { save_scene(scratch.path() / "a.spz", scene, {.spz_version = version}); });
+        DOCTEST_REQUIRE(refused.has_value());
+        DOCTEST_CHECK(refused->code() == ErrorCode::InvalidArgument);
     }
+    DOCTEST_CHECK(std::filesystem::is_empty(scratch.path()));
 }
 
 DOCTEST_TEST_CASE("SPZ takes far positions with fewer fractional bits instead of wrapping") {
@@ -168,7 +195,7 @@ DOCTEST_TEST_CASE("opacities of exactly 0 and 1 become finite logits") {
     GaussianData data = scene.gaussians.to_data();
     data.opacity_logit = {-std::numeric_limits<float>::infinity(), std::numeric_limits<float>::infinity()};
     scene.gaussians = GaussianSet(data);
-    for (const char* name : {"a.spz", "a.splat", "a.compressed.ply"}) {
+    for (const char* name : {"a.spz", "a.splat", "a.compressed.ply", "a.sog"}) {
         const GaussianSet again = reload(scene, name).gaussians;
         DOCTEST_CAPTURE(name);
         const float low = std::min(again.opacity_logit()[0], again.opacity_logit()[1]);
@@ -236,7 +263,7 @@ DOCTEST_TEST_CASE("quantised formats leave unusable rows out") {
     data.sh[50] = std::numeric_limits<float>::infinity();
     Scene scene;
     scene.gaussians = GaussianSet(data);
-    for (const char* name : {"a.spz", "a.splat", "a.compressed.ply"})
+    for (const char* name : {"a.spz", "a.splat", "a.compressed.ply", "a.sog"})
         DOCTEST_CHECK(reload(scene, name).gaussians.size() == 8);
 }
 

@@ -30,6 +30,8 @@ std::vector<Sample> samples() {
     result.push_back({"a.compressed.ply", io::write_compressed_ply(scene)});
     result.push_back({"a.splat", io::write_splat(scene)});
     result.push_back({"a.spz", io::write_spz(scene)});
+    result.push_back({"four.spz", io::write_spz(scene, 4)});
+    result.push_back({"a.sog", io::write_sog(scene)});
     const auto fixtures = data_folder() / "fixtures";
     for (const char* name : {"splat-transform/minimal-raw.spz", "splat-transform/minimal-v2.spz",
                              "splat-transform/minimal-v4.spz", "gsplat-rs/minimal_ascii.ply"})
