@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include "engine/raster/cuda/emulated_device.h"
 #include "tests/agree/raster/cases.h"
 
 using namespace gse;
@@ -63,6 +64,7 @@ DOCTEST_TEST_CASE("contributions equal the gradient of a constant colour, and ad
     all.push_back(make_plain_rasterizer());
     for (const std::string& kernels : raster::usable_kernels())
         all.push_back(raster::make_fast_rasterizer(pool, kernels));
+    all.push_back(raster::cuda::make_emulated_cuda_rasterizer());
     for (const auto& rasterizer : all) {
         DOCTEST_CAPTURE(rasterizer->name());
         std::vector<double> masked(data.size()), total(data.size());
