@@ -32,9 +32,22 @@ constexpr Entry Entries[] = {
 
 constexpr int Unknown = 0xff;
 
+struct alignas(64) Line {
+    std::byte bytes[64];
+};
+using SharedMemory = std::vector<Line>;
+
+void run_blocks(int kernel, std::uint32_t blocks, const void* arguments, bool reversed, SharedMemory& shared) {
+    shared.resize(SharedBytes / sizeof(Line));
+    for (std::uint32_t i = 0; i < blocks; ++i) {
+        std::memset(static_cast<void*>(shared.data()), Unknown, SharedBytes);
+        Entries[kernel].run({reversed ? blocks - 1 - i : i, shared.data(), reversed}, arguments);
+    }
+}
+
 class EmulatedDevice final : public Device {
 public:
-    explicit EmulatedDevice(EmulationOrder order) : reversed_(order == EmulationOrder::Reversed), shared_(SharedBytes / sizeof(Line)) {}
+    explicit EmulatedDevice(EmulationOrder order) : reversed_(order == EmulationOrder::Reversed) {}
 
     void* allocate(std::size_t bytes) override {
         void* memory = std::aligned_alloc(sizeof(Line), (bytes + sizeof(Line) - 1) / sizeof(Line) * sizeof(Line));
@@ -51,26 +64,24 @@ public:
 
 protected:
     void run(int kernel, std::uint32_t blocks, const void* arguments, std::size_t bytes) override {
-        const Entry& entry = Entries[kernel];
-        GSE_CHECK_EQ(entry.bytes, bytes);
-        for (std::uint32_t i = 0; i < blocks; ++i) {
-            std::memset(static_cast<void*>(shared_.data()), Unknown, SharedBytes);
-            entry.run({reversed_ ? blocks - 1 - i : i, shared_.data(), reversed_}, arguments);
-        }
+        GSE_CHECK_EQ(Entries[kernel].bytes, bytes);
+        run_blocks(kernel, blocks, arguments, reversed_, shared_);
     }
 
 private:
-    struct alignas(64) Line {
-        std::byte bytes[64];
-    };
     bool reversed_;
-    std::vector<Line> shared_;
+    SharedMemory shared_;
 };
 
 }  // namespace
 }  // namespace emulated
 
 std::unique_ptr<Device> make_emulated_device(EmulationOrder order) { return std::make_unique<emulated::EmulatedDevice>(order); }
+
+void run_emulated(int kernel, std::uint32_t blocks, const void* arguments) {
+    emulated::SharedMemory shared;
+    emulated::run_blocks(kernel, blocks, arguments, false, shared);
+}
 
 std::unique_ptr<Rasterizer> make_emulated_cuda_rasterizer(EmulationOrder order) {
     return make_device_rasterizer(make_emulated_device(order), "emulated cuda");

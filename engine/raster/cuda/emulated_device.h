@@ -16,6 +16,9 @@ enum class EmulationOrder { Forward, Reversed };
 /// Fresh and shared memory is filled with ones (NaN), so that what is read before it is written shows.
 std::unique_ptr<Device> make_emulated_device(EmulationOrder order = EmulationOrder::Forward);
 
+/// One launch of a kernel (its index in kernel_list.inl) whose arguments point to the processor's memory.
+void run_emulated(int kernel, std::uint32_t blocks, const void* arguments);
+
 /// The rasterizer on it, named "emulated cuda".
 std::unique_ptr<Rasterizer> make_emulated_cuda_rasterizer(EmulationOrder order = EmulationOrder::Forward);
 
