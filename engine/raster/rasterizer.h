@@ -112,9 +112,14 @@ std::unique_ptr<Rasterizer> make_cuda_rasterizer();
 /// Whether make_cuda_rasterizer() gives one; `why` (may be null) gets the sentence where it does not.
 bool cuda_usable(std::string* why = nullptr);
 
-/// By name: "cpu" is the fast one, "cuda" the CUDA one, "auto" is "cpu": no CUDA device has been measured to be worth its copies.
+/// The fast one with the instruction set of that name, the best for an empty one, or the CUDA one for "cuda". Throws Error.
+std::unique_ptr<Rasterizer> make_rasterizer_of(const std::string& kernels, ThreadPool& pool);
+
+/// By a user's choice: "cpu" is the fast one, "cuda" the CUDA one, "auto" is "cpu": no CUDA device has been measured to be worth its copies.
 /// Throws Error for other names and where that one cannot be had.
 std::unique_ptr<Rasterizer> make_rasterizer(const std::string& choice, ThreadPool& pool);
+/// Throws what that would throw.
+void require_rasterizer(const std::string& choice);
 
 /// The instruction sets that run here, the fastest first.
 std::vector<std::string> usable_kernels();

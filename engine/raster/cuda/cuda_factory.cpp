@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "engine/base/error.h"
+#include "engine/base/printable.h"
 #include "engine/raster/cuda/cuda_factory.h"
 #include "engine/raster/cuda/device_rasterizer.h"
 #include "engine/raster/cuda/driver.h"
@@ -33,10 +34,19 @@ bool cuda_usable(std::string* why) {
     }
 }
 
+std::unique_ptr<Rasterizer> make_rasterizer_of(const std::string& kernels, ThreadPool& pool) {
+    return kernels == "cuda" ? make_cuda_rasterizer() : make_fast_rasterizer(pool, kernels);
+}
+
 std::unique_ptr<Rasterizer> make_rasterizer(const std::string& choice, ThreadPool& pool) {
     if (choice == "cuda") return make_cuda_rasterizer();
     if (choice == "auto" || choice == "cpu") return make_fast_rasterizer(pool);
-    throw Error(ErrorCode::InvalidArgument, fmt::format("there is no rasterizer \"{}\"", choice), "choose auto, cpu or cuda");
+    throw Error(ErrorCode::InvalidArgument, fmt::format("there is no rasterizer \"{}\"", printable(choice)), "choose auto, cpu or cuda");
+}
+
+void require_rasterizer(const std::string& choice) {
+    ThreadPool pool(1);
+    make_rasterizer(choice, pool);
 }
 
 }  // namespace gse::raster
