@@ -66,9 +66,9 @@ GSE_DEVICE void sum_lanes(PerLane<float>& value) {
 /// Counts; sums of whole numbers are the same in any order.
 GSE_DEVICE void add_atomically(std::uint32_t* to, std::uint32_t value) { *to += value; }
 
-/// a b + c, which a device rounds once and this twice.
-GSE_DEVICE float fused(float a, float b, float c) { return a * b + c; }
-GSE_DEVICE double fused(double a, double b, double c) { return a * b + c; }
+/// a b + c, rounded once as on a device.
+GSE_DEVICE float fused(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
+GSE_DEVICE double fused(double a, double b, double c) { return __builtin_fma(a, b, c); }
 /// 2^a; what is below 2^-126 is 0.
 GSE_DEVICE float power_of_two(float a) { return a > -126.0f ? __builtin_exp2f(a) : 0.0f; }
 
