@@ -72,7 +72,7 @@ void Application::take_recipe(const EditRecipe& recipe) {
     if (recipe.use_dreambooth) settings.learning = recipe.dreambooth;
     settings.guidance = recipe.guidance;
     settings.attention = recipe.attention;
-    settings.device = recipe.job.device, settings.precision = recipe.job.precision;
+    settings.device = recipe.job.device, settings.rasterizer = recipe.job.rasterizer, settings.precision = recipe.job.precision;
     settings.threads = recipe.job.threads, settings.front = recipe.job.front;
     if (recipe.job.model != model_path_ || recipe.job.lora != loras_) try_model(recipe.job.model, recipe.job.lora, false);
 }

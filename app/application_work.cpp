@@ -46,7 +46,7 @@ EditRecipe Application::current_recipe() const {
     recipe.dreambooth = model_.model_settings.learning;
     recipe.guidance = model_.model_settings.guidance;
     recipe.attention = model_.model_settings.attention;
-    recipe.job.device = model_.model_settings.device;
+    recipe.job.device = model_.model_settings.device, recipe.job.rasterizer = model_.model_settings.rasterizer;
     recipe.job.precision = model_.model_settings.precision;
     recipe.job.threads = model_.model_settings.threads;
     recipe.job.front = model_.model_settings.front;

@@ -82,6 +82,7 @@ void add_raster_bench(CLI::App& bench, CommandContext& context) {
         if (options->scene.empty()) return SweepOutput{options->output}.leave(bench_raster_sweep(options->sweep, context.job()));
         options->settings.width = options->sweep.width, options->settings.height = options->sweep.height;
         options->settings.repetitions = options->sweep.repetitions;
+        if (options->sweep.kernels != "all") options->settings.kernels = options->sweep.kernels;
         const Scene scene = load_scene(options->scene);
         const auto& sweep = options->sweep;
         const auto cameras = spread_cameras(scene, options->scene, options->cameras, sweep.views, sweep.width, sweep.height);

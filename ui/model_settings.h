@@ -17,6 +17,7 @@ struct ModelSettings {
     bool review = false;
     bool learn_scene = false;
     std::string device = "cpu";
+    std::string rasterizer = "auto";
     std::string precision = "auto";
     int threads = 1;
     std::string front;
@@ -30,6 +31,7 @@ struct ModelSettings {
         f("review", self.review, "Method views: before the scene is fitted to redrawn views, wait until you have looked at them.");
         f("learn_scene", self.learn_scene, "DreamBooth: the model learns this scene from renders of it first.");
         f("device", self.device, "Where the networks run: cpu, or cuda where there is one.");
+        f("rasterizer", self.rasterizer, "What draws the splats of an edit: cpu, cuda where there is one, or auto, which is cpu.");
         f("precision", self.precision, "Numbers the UNet computes in: fp32, bf16, or auto: bf16 where a large model was measured to be faster with it.");
         f("threads", self.threads, "Threads of the networks; small ones gain nothing from more. Another number may round differently.", Range{1, 256});
         f("front", self.front, "Direction in degrees from which the scene shows its front (0, 90, -45.5); the model is then told which view is the front. Empty = read off the scene where the model can tell; none = not told.");

@@ -90,13 +90,19 @@ std::vector<SettingPoint> raster_points(const RasterSweepParameters& parameters,
 
 std::vector<std::string> kernels_in_list(const std::string& list) {
     const auto usable = raster::usable_kernels();
-    if (list == "all") return usable;
-    const auto names = words_in_list(list);
-    if (names.empty()) throw Error(ErrorCode::InvalidArgument, "no kernels are named", "use all, or some of scalar avx2 avx512");
-    for (const auto& name : names)
-        if (std::find(usable.begin(), usable.end(), name) == usable.end())
+    std::vector<std::string> names;
+    for (const auto& name : words_in_list(list)) {
+        if (name == "all") {
+            names.insert(names.end(), usable.begin(), usable.end());
+            continue;
+        }
+        if (name == "cuda") raster::require_rasterizer(name);
+        else if (std::find(usable.begin(), usable.end(), name) == usable.end())
             throw Error(ErrorCode::InvalidArgument, "the kernels \"" + name + "\" do not run here",
-                        "use all, or some of scalar avx2 avx512");
+                        "use all, or some of scalar avx2 avx512 cuda");
+        names.push_back(name);
+    }
+    if (names.empty()) throw Error(ErrorCode::InvalidArgument, "no kernels are named", "use all, or some of scalar avx2 avx512 cuda");
     return names;
 }
 

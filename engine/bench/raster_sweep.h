@@ -29,14 +29,14 @@ struct RasterSweepParameters {
         f("height", self.height, "Picture height.", Range{1, 8192});
         f("views", self.views, "How many cameras to use.", Range{1, 1000});
         f("repetitions", self.repetitions, "Timed rounds over them, after one to warm up.", Range{1, 10000});
-        f("kernels", self.kernels, "Instruction sets: all that run here, or some of scalar avx2 avx512.");
+        f("kernels", self.kernels, "Instruction sets: all that run here, or some of scalar avx2 avx512; cuda only where it is named.");
         f("thread_counts", self.thread_counts, "Numbers of threads; one per core is always among them.");
         f("floor_cases", self.floor_cases,
           "Scenes and pictures, SPLATS@WIDTHxHEIGHT, for which forward and backward are compared with the floor of this machine.");
     }
 };
 
-/// The instruction sets that a list names: "all" that run here, or some of them. Throws Error (InvalidArgument).
+/// The instruction sets that a list names: "all" that run here, or some of them and "cuda". Throws Error (InvalidArgument).
 std::vector<std::string> kernels_in_list(const std::string& list);
 
 /// Forward and backward pass over a generated scene (synth/timing_scene.h): wall time per picture, least of the rounds, against

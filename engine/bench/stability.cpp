@@ -119,9 +119,10 @@ double StabilityTruth::clear_share() const {
 }
 
 KernelStability::KernelStability(const std::string& kernels)
-    : kernels_(kernels),
-      single_(raster::make_fast_rasterizer(one_, kernels)),
-      threaded_(raster::make_fast_rasterizer(three_, kernels)) {}
+    : KernelStability(kernels, [&](ThreadPool& pool) { return raster::make_rasterizer_of(kernels, pool); }) {}
+
+KernelStability::KernelStability(std::string name, const std::function<std::unique_ptr<raster::Rasterizer>(ThreadPool&)>& make)
+    : kernels_(std::move(name)), single_(make(one_)), threaded_(make(three_)) {}
 
 Disagreement KernelStability::measure(const StabilityTruth& truth) {
     const HostileScene& scene = truth.scene_;

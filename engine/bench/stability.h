@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -54,11 +55,13 @@ struct Disagreement {
     bool same_bits = true;        // of three threads and of the view session, of those of one thread
 };
 
-/// One instruction set with one and three threads, kept from scene to scene.
+/// One instruction set, or CUDA, with one and three threads, kept from scene to scene.
 class KernelStability {
 public:
-    /// Throws Error where the instruction set is unknown or not on this processor.
+    /// Throws Error where the instruction set is unknown or not on this processor, or no CUDA device is usable.
     explicit KernelStability(const std::string& kernels);
+    /// Of another rasterizer: `make` gets the threads.
+    KernelStability(std::string name, const std::function<std::unique_ptr<raster::Rasterizer>(ThreadPool&)>& make);
     Disagreement measure(const StabilityTruth& truth);
     const std::string& kernels() const { return kernels_; }
 

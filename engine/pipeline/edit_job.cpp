@@ -134,6 +134,7 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});
     parse_front(recipe_.job.front);
+    raster::require_rasterizer(recipe_.job.rasterizer);
 }
 
 /// The text encoder has so many places; what stands behind them has no effect.

@@ -93,6 +93,7 @@ std::string search_key(const EditRecipe& recipe) {
     if (!recipe.job.cut_out.empty()) key.push_back({{"cut_out", recipe.job.cut_out}});
     if (recipe.use_dreambooth) key.push_back(fields_to_json(recipe.dreambooth));
     if (!recipe.job.segmenter.empty()) key.push_back({{"segmenter", recipe.job.segmenter}});
+    if (recipe.job.rasterizer == "cuda") key.push_back({{"rasterizer", recipe.job.rasterizer}});   // other last digits
     if (!recipe.job.text_segmenter.empty()) key.push_back({{"text_segmenter", recipe.job.text_segmenter}});
     return key.dump();
 }

@@ -26,6 +26,7 @@ struct JobParameters {
     std::string segmenter;
     std::string text_segmenter;
     std::string device = "cpu";
+    std::string rasterizer = "auto";
     std::string precision = "auto";
     int threads = 1;
     std::string up = "auto";
@@ -51,6 +52,9 @@ struct JobParameters {
         f("text_segmenter", self.text_segmenter,
           "Folder of CLIPSeg, which finds a noun in a picture by itself; where it agrees with the attention, its mask counts. Empty = none.");
         f("device", self.device, "Where the networks run: cpu or cuda.");
+        f("rasterizer", self.rasterizer,
+          "What draws the splats and differentiates their pictures: cpu, cuda (a device that draws a test scene otherwise is refused), or "
+          "auto: cpu.");
         f("precision", self.precision,
           "Numbers the UNet computes in: fp32, bf16 (AVX-512 BF16 or AMX), or auto: bf16 where a large model was measured to be faster with it.");
         f("threads", self.threads, "Threads of the networks; small ones gain nothing from more. Another number may round differently.", Range{1, 256});

@@ -104,7 +104,7 @@ Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path
     return orbit_camera(scene_orbit(scene, parameters), parameters.azimuth * Degree, parameters.width, parameters.height);
 }
 
-Painter::Painter(unsigned threads) : pool_(threads), rasterizer_(raster::make_fast_rasterizer(pool_)) {}
+Painter::Painter(unsigned threads, const std::string& rasterizer) : pool_(threads), rasterizer_(raster::make_rasterizer(rasterizer, pool_)) {}
 
 const raster::ForwardOutput& Painter::paint(const GaussianSpans& gaussians, const Camera& camera,
                                             const raster::Settings& settings) {

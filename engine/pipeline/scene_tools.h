@@ -76,7 +76,8 @@ Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path
 /// A rasterizer with its threads.
 class Painter {
 public:
-    explicit Painter(unsigned threads = 0);
+    /// `rasterizer`: auto, cpu or cuda (raster::make_rasterizer, which may throw Error).
+    explicit Painter(unsigned threads = 0, const std::string& rasterizer = "auto");
     const raster::ForwardOutput& paint(const GaussianSpans& gaussians, const Camera& camera,
                                        const raster::Settings& settings);
     raster::Rasterizer& rasterizer() { return *rasterizer_; }

@@ -35,7 +35,7 @@ private:
 }  // namespace
 
 Workplace::Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job, Segmenters segmenters)
-    : scene_(std::move(scene)), model_(std::move(model)), segmenters_(std::move(segmenters)) {
+    : scene_(std::move(scene)), model_(std::move(model)), painter_(0, job.rasterizer), segmenters_(std::move(segmenters)) {
     if (!segmenters_.clicks) segmenters_.clicks = edit::make_default_segmenter();
     const auto statistics = compute_statistics(scene_.gaussians);
     if (statistics.visible_rows == 0)

@@ -32,8 +32,8 @@ using ViewWatch = std::function<void(const View& view, std::size_t index, std::s
 /// Scene and model of a run. What they have answered is remembered: that changes how long a stage takes, never what comes of it.
 class Workplace {
 public:
-    /// Of the job, the up axis counts. `segmenters`: where null, the one that needs no weights. Throws Error (InvalidArgument) for a scene of
-    /// which nothing can be seen.
+    /// Of the job, the up axis and the rasterizer count. `segmenters`: where null, the one that needs no weights. Throws Error (InvalidArgument) for a scene of
+    /// which nothing can be seen, and where the rasterizer cannot be had.
     Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job, Segmenters segmenters = {});
 
     const Scene& scene() const { return scene_; }

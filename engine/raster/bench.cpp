@@ -88,7 +88,7 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
                          const BenchSettings& settings) {
     GSE_CHECK(!cameras.empty() && settings.repetitions > 0);
     ThreadPool pool(settings.threads);
-    const auto rasterizer = make_fast_rasterizer(pool, settings.kernels);
+    const auto rasterizer = make_rasterizer_of(settings.kernels, pool);
     std::vector<Camera> views;
     for (const Camera& camera : cameras) views.push_back(camera.resized(settings.width, settings.height));
     const Image d_colour = noise_image(settings.width, settings.height);
@@ -96,7 +96,7 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     ForwardOutput image;
     Gradients gradients;
     std::optional<FloorBench> floor;
-    if (settings.floor) floor.emplace(choose_kernels(settings.kernels.c_str()), pool);
+    if (settings.floor && rasterizer->name() != "cuda") floor.emplace(choose_kernels(settings.kernels.c_str()), pool);
     std::vector<Round> forward, backward;
     std::size_t pairs = 0, blended = 0, reached = 0, blocks = 0;
     for (int round = -1; round < settings.repetitions; ++round) {  // round -1 warms up

@@ -19,7 +19,7 @@ struct BenchTimes {
 };
 
 struct RasterBench {
-    std::string kernels;  // "avx512", "avx2", "scalar"
+    std::string kernels;  // "avx512", "avx2", "scalar" or "cuda"
     unsigned threads = 0;
     std::size_t splats = 0;
     int width = 0, height = 0;
@@ -49,9 +49,9 @@ struct BenchSettings {
     int width = 512, height = 512;
     int repetitions = 5;
     unsigned threads = 0;       // 0 = one per hardware thread
-    std::string kernels;        // instruction set; empty = the best
+    std::string kernels;        // instruction set, or cuda; empty = the best
     bool compare_plain = true;  // the plain version takes seconds on large scenes
-    bool floor = false;         // also measure the floor, before every round
+    bool floor = false;         // also measure the processor's floor, before every round; not for cuda
 };
 
 /// Runs the fast rasterizer on every camera (resized to the settings' size), after one round of warming up.

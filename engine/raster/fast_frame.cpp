@@ -3,11 +3,9 @@
 #include "engine/raster/fast_frame.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "engine/base/check.h"
 #include "engine/base/error.h"
-#include "engine/raster/conventions.h"
+#include "engine/raster/viewpoint.h"
 
 namespace gse::raster {
 namespace {
@@ -18,58 +16,20 @@ void at_least(Values& values, std::size_t count) {
     if (values.size() < count) values.resize(count);
 }
 
-constexpr std::size_t MostPairs = 1'000'000'000;
-
-void check_lengths(const GaussianSpans& g) {
-    GSE_CHECK_EQ(g.position.size(), g.size * 3);
-    GSE_CHECK_EQ(g.log_scale.size(), g.size * 3);
-    GSE_CHECK_EQ(g.rotation.size(), g.size * 4);
-    GSE_CHECK_EQ(g.opacity_logit.size(), g.size);
-    GSE_CHECK_EQ(g.sh.size(), g.size * static_cast<std::size_t>(sh_coefficient_count(g.sh_degree)) * 3);
-}
-
 }  // namespace
 
 Frame::Frame(const Kernels& kernels, ThreadPool& pool) : kernels_(kernels), pool_(pool), sort_(pool) {}
 
-void Frame::set_view(const Camera& camera, const Settings& settings, int scene_degree) {
-    std::ranges::copy(camera.rotation.rows(), view_.rotation);
-    const Vec3 eye = camera.centre();
-    for (int axis = 0; axis < 3; ++axis) {
-        view_.translation[axis] = camera.translation[axis];
-        view_.eye[axis] = eye[axis];
-    }
-    view_.fx = camera.fx;
-    view_.fy = camera.fy;
-    view_.cx = camera.cx;
-    view_.cy = camera.cy;
-    const double margin_x = FrustumMargin * 0.5 * camera.width / camera.fx;
-    const double margin_y = FrustumMargin * 0.5 * camera.height / camera.fy;
-    view_.ratio_low[0] = -(camera.cx / camera.fx + margin_x);
-    view_.ratio_low[1] = -(camera.cy / camera.fy + margin_y);
-    view_.ratio_high[0] = (camera.width - camera.cx) / camera.fx + margin_x;
-    view_.ratio_high[1] = (camera.height - camera.cy) / camera.fy + margin_y;
-    view_.near_plane = settings.near_plane;
-    view_.far_plane = settings.far_plane;
-    view_.blur = settings.blur_px2;
-    view_.width = camera.width;
-    view_.height = camera.height;
-    view_.sh_count = sh_coefficient_count(std::clamp(settings.sh_degree, 0, scene_degree));
-    view_.negative_slope = settings.negative_colour_slope;
-    view_.antialiased = settings.antialiased;
-    tile_columns_ = static_cast<std::size_t>((camera.width + TileSize - 1) / TileSize);
-    tile_rows_ = static_cast<std::size_t>((camera.height + TileSize - 1) / TileSize);
-}
-
 void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                     std::span<const float> values) {
-    check_lengths(gaussians);
-    GSE_CHECK(camera.width > 0 && camera.height > 0 && camera.fx > 0 && camera.fy > 0);
-    set_view(camera, with_depth_range(settings, gaussians, camera), gaussians.sh_degree);
+    check_inputs(gaussians, camera);
+    view_ = viewpoint_of(camera, with_depth_range(settings, gaussians, camera), gaussians.sh_degree);
+    tile_columns_ = static_cast<std::size_t>((camera.width + TileSize - 1) / TileSize);
+    tile_rows_ = static_cast<std::size_t>((camera.height + TileSize - 1) / TileSize);
     source_ = {
         gaussians.position.data(), gaussians.log_scale.data(),
         gaussians.rotation.data(), gaussians.opacity_logit.data(),
-        gaussians.sh.data(),       static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3};
+        gaussians.sh.data(),       sh_floats(gaussians)};
     values_ = values.empty() ? nullptr : values.data();
     rows_ = gaussians.size;
     at_least(records_, rows_);

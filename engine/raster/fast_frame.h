@@ -77,7 +77,6 @@ public:
     std::uint32_t slot_shift(std::size_t chunk) const { return chunk_pairs_[chunk] - first_slot_; }
 
 private:
-    void set_view(const Camera& camera, const Settings& settings, int scene_degree);
     void project_chunk(std::size_t chunk);
     void bin_chunk(std::size_t chunk, unsigned worker);
     void collect_keys();

@@ -91,7 +91,7 @@ public:
     /// that are rendered in full. The rasterizer must outlive it. backward() of the one does not follow forward() of the other.
     virtual std::unique_ptr<ViewSession> view_session(std::size_t views, std::size_t budget_bytes);
 
-    /// "plain", "scalar", "avx2" or "avx512".
+    /// "plain", "scalar", "avx2", "avx512" or "cuda".
     virtual std::string name() const = 0;
 };
 
@@ -103,6 +103,23 @@ std::unique_ptr<Rasterizer> make_plain_rasterizer();
 std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool);
 /// The same with the instruction set of that name. Throws Error for one that there is not, or not on this processor.
 std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool, const std::string& kernels);
+
+/// The CUDA one, on the first device of NVIDIA's driver (compute capability 6.0 or newer): the kernels of engine/raster/cuda, which
+/// every device first has to draw and differentiate a small scene with as the plain version does. Results are bit-identical from call
+/// to call. Throws Error: no kernels in this build, no driver, no device, or one that computes something else.
+std::unique_ptr<Rasterizer> make_cuda_rasterizer();
+
+/// Whether make_cuda_rasterizer() gives one; `why` (may be null) gets the sentence where it does not.
+bool cuda_usable(std::string* why = nullptr);
+
+/// The fast one with the instruction set of that name, the best for an empty one, or the CUDA one for "cuda". Throws Error.
+std::unique_ptr<Rasterizer> make_rasterizer_of(const std::string& kernels, ThreadPool& pool);
+
+/// By a user's choice: "cpu" is the fast one, "cuda" the CUDA one, "auto" is "cpu": no CUDA device has been measured to be worth its copies.
+/// Throws Error for other names and where that one cannot be had.
+std::unique_ptr<Rasterizer> make_rasterizer(const std::string& choice, ThreadPool& pool);
+/// Throws what that would throw.
+void require_rasterizer(const std::string& choice);
 
 /// The instruction sets that run here, the fastest first.
 std::vector<std::string> usable_kernels();

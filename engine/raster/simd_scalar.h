@@ -2,8 +2,15 @@
 // namespace.
 #pragma once
 
-#define GSE_SCALAR_MATH 1
 #define GSE_INLINE static inline __attribute__((always_inline))
+
+#ifndef GSE_ONE_LANE_MATH
+// Who includes this may bring these, and an exponential and a logarithm, along.
+#define GSE_SCALAR_MATH 1
+GSE_INLINE float fused(float a, float b, float c) { return a * b + c; }
+GSE_INLINE double fused(double a, double b, double c) { return a * b + c; }
+GSE_INLINE float power_of_two(float a) { return a > -100.0f ? __builtin_exp2f(a) : 0.0f; }
+#endif
 
 /// W lanes of float.
 struct F {
@@ -31,8 +38,8 @@ GSE_INLINE F operator+(F a, F b) { return {a.v + b.v}; }
 GSE_INLINE F operator-(F a, F b) { return {a.v - b.v}; }
 GSE_INLINE F operator*(F a, F b) { return {a.v * b.v}; }
 GSE_INLINE F operator/(F a, F b) { return {a.v / b.v}; }
-GSE_INLINE F fma(F a, F b, F c) { return {a.v * b.v + c.v}; }
-GSE_INLINE F fnma(F a, F b, F c) { return {c.v - a.v * b.v}; }
+GSE_INLINE F fma(F a, F b, F c) { return {fused(a.v, b.v, c.v)}; }
+GSE_INLINE F fnma(F a, F b, F c) { return {fused(-a.v, b.v, c.v)}; }
 GSE_INLINE F min(F a, F b) { return {a.v < b.v ? a.v : b.v}; }
 GSE_INLINE F max(F a, F b) { return {a.v > b.v ? a.v : b.v}; }
 GSE_INLINE F sqrt(F a) { return {__builtin_sqrtf(a.v)}; }
@@ -73,7 +80,7 @@ GSE_INLINE I bit_range(M m, F first, F last) {
     return {m.v ? (2 << static_cast<std::int32_t>(last.v)) - (1 << static_cast<std::int32_t>(first.v)) : 0};
 }
 /// 2^a for a in about [-100, 0]; anything else gives an arbitrary value.
-GSE_INLINE F exp2_lanes(F a) { return {a.v > -100.0f ? __builtin_exp2f(a.v) : 0.0f}; }
+GSE_INLINE F exp2_lanes(F a) { return {power_of_two(a.v)}; }
 
 GSE_INLINE D setd(double a) { return {a}; }
 GSE_INLINE D widen(const float* p) { return {static_cast<double>(*p)}; }
@@ -82,8 +89,8 @@ GSE_INLINE D operator+(D a, D b) { return {a.v + b.v}; }
 GSE_INLINE D operator-(D a, D b) { return {a.v - b.v}; }
 GSE_INLINE D operator*(D a, D b) { return {a.v * b.v}; }
 GSE_INLINE D operator/(D a, D b) { return {a.v / b.v}; }
-GSE_INLINE D fma(D a, D b, D c) { return {a.v * b.v + c.v}; }
-GSE_INLINE D fnma(D a, D b, D c) { return {c.v - a.v * b.v}; }
+GSE_INLINE D fma(D a, D b, D c) { return {fused(a.v, b.v, c.v)}; }
+GSE_INLINE D fnma(D a, D b, D c) { return {fused(-a.v, b.v, c.v)}; }
 GSE_INLINE D min(D a, D b) { return {a.v < b.v ? a.v : b.v}; }
 GSE_INLINE D max(D a, D b) { return {a.v > b.v ? a.v : b.v}; }
 GSE_INLINE D sqrt(D a) { return {__builtin_sqrt(a.v)}; }
@@ -95,8 +102,10 @@ GSE_INLINE MD operator==(D a, D b) { return {a.v == b.v}; }
 GSE_INLINE MD operator&(MD a, MD b) { return {a.v && b.v}; }
 GSE_INLINE D select(MD m, D a, D b) { return m.v ? a : b; }
 GSE_INLINE unsigned bits(MD m) { return m.v ? 1u : 0u; }
+#ifdef GSE_SCALAR_MATH
 GSE_INLINE D exp_lanes(D a) { return {__builtin_exp(a.v)}; }
 GSE_INLINE D log2_lanes(D a) { return {__builtin_log2(a.v)}; }
+#endif
 
 /// columns of W rows -> to[column][row]; rows may lie anywhere.
 GSE_INLINE void load_columns(const float* const* rows, int columns, float* to) {

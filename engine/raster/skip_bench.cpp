@@ -159,7 +159,7 @@ std::vector<SkipBench> bench_skips(const GaussianSpans& gaussians, std::span<con
                                    const BenchSettings& settings, std::span<const double> shares) {
     GSE_CHECK(!cameras.empty() && settings.repetitions > 0 && gaussians.size > 0);
     ThreadPool pool(settings.threads);
-    const auto rasterizer = make_fast_rasterizer(pool);
+    const auto rasterizer = make_rasterizer_of(settings.kernels, pool);
     std::vector<Camera> views;
     for (const Camera& camera : cameras) views.push_back(camera.resized(settings.width, settings.height));
     const Image d_colour = noise_image(settings.width, settings.height);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "engine/raster/cuda/emulated_device.h"
 #include "engine/raster/fast_frame.h"
 #include "tests/agree/raster/scenes.h"
 
@@ -72,6 +73,7 @@ DOCTEST_TEST_CASE("a restriction to rows gives exactly the tail of the full grad
     all.push_back(make_plain_rasterizer());
     for (const std::string& kernels : raster::usable_kernels())
         all.push_back(raster::make_fast_rasterizer(pool, kernels));
+    all.push_back(raster::cuda::make_emulated_cuda_rasterizer());
     for (const auto& rasterizer : all) {
         DOCTEST_CAPTURE(rasterizer->name());
         const Gradients full = run(*rasterizer, data, camera, 0).gradients;

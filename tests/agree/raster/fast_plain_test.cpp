@@ -2,88 +2,21 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "tests/agree/raster/scenes.h"
+#include "engine/raster/cuda/emulated_device.h"
+#include "tests/agree/raster/cases.h"
 
 using namespace gse;
 using namespace gse::raster;
-
-namespace {
-
-// Float sums of up to a few hundred terms below 1; the goldens' gates are 2e-5 and 1e-4.
-constexpr double ImageTolerance = 1e-5;
-constexpr double GradientTolerance = 1e-4;
-constexpr double ContributionTolerance = 1e-5;
-
-struct Case {
-    std::string name;
-    test::SceneRecipe recipe;
-    int width = 96, height = 64;
-    Settings settings;
-    double distance = 4.0;
-};
-
-std::vector<Case> cases() {
-    std::vector<Case> all;
-    all.push_back({"random", {}, 96, 64, {}});
-    all.push_back({"dense", {.count = 1500, .seed = 2, .log_scale = -1.8, .opacity = 2.5}, 80, 80, {}});
-    all.push_back({"ragged", {.count = 400, .seed = 3}, 101, 67, {}});
-    all.push_back({"small splats", {.count = 4000, .seed = 4, .log_scale = -4.5}, 120, 90, {}});
-    all.push_back({"needles", {.count = 300, .seed = 5, .log_scale = -2.5, .stretch = 2.5}, 96, 96, {}});
-    all.push_back({"opaque", {.count = 300, .seed = 6, .opacity = 8, .opacity_spread = 4}, 64, 48, {}});
-    all.push_back({"degree 0", {.count = 200, .seed = 7, .sh_degree = 0}, 50, 50, {}});
-    all.push_back({"degree 1", {.count = 200, .seed = 8, .sh_degree = 1}, 50, 50, {}});
-    all.push_back({"degree 2", {.count = 200, .seed = 9, .sh_degree = 2}, 50, 50, {}});
-    all.push_back({"camera inside", {.count = 500, .seed = 10}, 64, 64, {}, 0.8});
-    all.push_back({"wider than a window of bins", {.count = 60, .seed = 11, .log_scale = -0.5}, 700, 20, {}});
-    Settings odd;
-    odd.antialiased = true;
-    odd.background = {0.3f, 0.6f, 0.9f};
-    odd.sh_degree = 1;
-    odd.negative_colour_slope = 0.25f;
-    odd.blur_px2 = 0.1f;
-    all.push_back({"odd settings", {.count = 600, .seed = 12, .log_scale = -3.5}, 96, 64, odd});
-    return all;
-}
-
-void compare(const Case& c, Rasterizer& fast) {
-    const GaussianData data = test::random_scene(c.recipe);
-    const Camera camera = test::test_camera(c.width, c.height, c.distance);
-    const auto plain = make_plain_rasterizer();
-    const auto ambiguous = test::ambiguous_pixels(data, camera, c.settings);
-    ForwardOutput image, truth;
-    plain->forward(spans(data), camera, c.settings, truth);
-    fast.forward(spans(data), camera, c.settings, image);
-    DOCTEST_CHECK(test::clear_error(image.colour.data, truth.colour.data, ambiguous) < ImageTolerance);
-    DOCTEST_CHECK(test::clear_error(image.alpha.data, truth.alpha.data, ambiguous) < ImageTolerance);
-    DOCTEST_CHECK(test::clear_error(image.depth.data, truth.depth.data, ambiguous) < 10 * ImageTolerance);
-    DOCTEST_CHECK(test::clear_error(image.blended, truth.blended, ambiguous) == 0);
-
-    Image d_colour = test::noise_image(c.width, c.height, 3, 20),
-          d_alpha = test::noise_image(c.width, c.height, 1, 21);
-    test::blank(d_colour, ambiguous);
-    test::blank(d_alpha, ambiguous);
-    Gradients found, expected;
-    plain->backward(d_colour, d_alpha, 0, expected);
-    fast.backward(d_colour, d_alpha, 0, found);
-    DOCTEST_CHECK(test::relative_l2(found.position, expected.position) < GradientTolerance);
-    DOCTEST_CHECK(test::relative_l2(found.log_scale, expected.log_scale) < GradientTolerance);
-    DOCTEST_CHECK(test::relative_l2(found.rotation, expected.rotation) < GradientTolerance);
-    DOCTEST_CHECK(test::relative_l2(found.opacity_logit, expected.opacity_logit) < GradientTolerance);
-    DOCTEST_CHECK(test::relative_l2(found.sh, expected.sh) < GradientTolerance);
-    DOCTEST_CHECK(test::relative_l2(found.mean2d_norm, expected.mean2d_norm) < GradientTolerance);
-}
-
-}  // namespace
 
 DOCTEST_TEST_CASE("every fast version agrees with the plain one") {
     ThreadPool pool(2);
     for (const std::string& kernels : raster::usable_kernels()) {
         const auto fast = raster::make_fast_rasterizer(pool, kernels);
         DOCTEST_CHECK(fast->name() == kernels);
-        for (const Case& c : cases()) {
+        for (const test::Case& c : test::cases()) {
             DOCTEST_CAPTURE(kernels);
             DOCTEST_CAPTURE(c.name);
-            compare(c, *fast);
+            test::compare(c, *fast);
         }
     }
 }
@@ -114,7 +47,7 @@ DOCTEST_TEST_CASE("contributions and composited values agree with the plain vers
         DOCTEST_CHECK(test::relative_l2(fast_total, total) < ambiguity_tolerance);
         Image found;
         fast->forward_values(spans(data), camera, {}, values, found);
-        DOCTEST_CHECK(test::clear_error(found.data, expected.data, ambiguous) < ImageTolerance);
+        DOCTEST_CHECK(test::clear_error(found.data, expected.data, ambiguous) < test::ImageTolerance);
     }
 }
 
@@ -131,6 +64,7 @@ DOCTEST_TEST_CASE("contributions equal the gradient of a constant colour, and ad
     all.push_back(make_plain_rasterizer());
     for (const std::string& kernels : raster::usable_kernels())
         all.push_back(raster::make_fast_rasterizer(pool, kernels));
+    all.push_back(raster::cuda::make_emulated_cuda_rasterizer());
     for (const auto& rasterizer : all) {
         DOCTEST_CAPTURE(rasterizer->name());
         std::vector<double> masked(data.size()), total(data.size());
@@ -143,13 +77,13 @@ DOCTEST_TEST_CASE("contributions equal the gradient of a constant colour, and ad
         std::vector<double> from_gradient(data.size());
         for (std::size_t row = 0; row < data.size(); ++row)
             from_gradient[row] = static_cast<double>(g.sh[row * 3]) / ShC0;
-        DOCTEST_CHECK(test::relative_l2(masked, from_gradient) < ContributionTolerance);
+        DOCTEST_CHECK(test::relative_l2(masked, from_gradient) < test::ContributionTolerance);
         double weights = 0, alphas = 0;
         for (const double weight : total) weights += weight;
         for (const float alpha : image.alpha.data) alphas += static_cast<double>(alpha);
-        DOCTEST_CHECK(std::abs(weights - alphas) < ContributionTolerance * alphas);
+        DOCTEST_CHECK(std::abs(weights - alphas) < test::ContributionTolerance * alphas);
         Image ones;
         rasterizer->forward_values(spans(data), camera, {}, std::vector<float>(data.size(), 1.0f), ones);
-        DOCTEST_CHECK(test::relative_l2(ones.data, image.alpha.data) < ContributionTolerance);
+        DOCTEST_CHECK(test::relative_l2(ones.data, image.alpha.data) < test::ContributionTolerance);
     }
 }

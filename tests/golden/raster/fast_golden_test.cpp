@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "engine/base/thread_pool.h"
+#include "engine/raster/cuda/emulated_device.h"
 #include "tests/golden/raster/golden_case.h"
 
 using namespace gse;
@@ -21,24 +22,20 @@ Image image_from(const std::vector<double>& values, const Camera& camera, int ch
     return image;
 }
 
-}  // namespace
-
-DOCTEST_TEST_CASE("fast rasterizer equals the goldens") {
-    ThreadPool pool(2);
-    const auto rasterizer = make_fast_rasterizer(pool);
+void equal_goldens(Rasterizer& rasterizer) {
     for (const std::string& name : test::golden_names()) {
         DOCTEST_CAPTURE(name);
         const test::GoldenCase golden(name);
         const test::Tensors& t = golden.tensors;
         ForwardOutput image;
-        rasterizer->forward(spans(golden.data), golden.camera, golden.settings, image);
+        rasterizer.forward(spans(golden.data), golden.camera, golden.settings, image);
         DOCTEST_CHECK(test::clear_pixel_error(image.colour.data, t["render"], t["ambiguous"]) <
                       ImageTolerance);
         DOCTEST_CHECK(test::clear_pixel_error(image.alpha.data, t["alpha"], t["ambiguous"]) < AlphaTolerance);
         DOCTEST_CHECK(test::relative_l2(image.depth.data, t["depth_acc"]) < AlphaTolerance);
         DOCTEST_CHECK(test::clear_pixel_error(image.blended, t["n_contrib"], t["ambiguous"]) == 0);
         Gradients g;
-        rasterizer->backward(image_from(t["v_render"], golden.camera, 3),
+        rasterizer.backward(image_from(t["v_render"], golden.camera, 3),
                              image_from(t["v_alpha"], golden.camera, 1), 0, g);
         DOCTEST_CHECK(test::relative_l2(g.position, t["g_means"]) < GradientTolerance);
         DOCTEST_CHECK(test::relative_l2(g.log_scale, t["g_log_scales"]) < GradientTolerance);
@@ -47,3 +44,12 @@ DOCTEST_TEST_CASE("fast rasterizer equals the goldens") {
         DOCTEST_CHECK(test::relative_l2(g.sh, t["g_sh"]) < GradientTolerance);
     }
 }
+
+}  // namespace
+
+DOCTEST_TEST_CASE("fast rasterizer equals the goldens") {
+    ThreadPool pool(2);
+    equal_goldens(*make_fast_rasterizer(pool));
+}
+
+DOCTEST_TEST_CASE("the CUDA kernels equal the goldens") { equal_goldens(*cuda::make_emulated_cuda_rasterizer()); }

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "engine/raster/cuda/emulated_device.h"
 #include "tests/agree/raster/scenes.h"
 
 using namespace gse;
@@ -31,6 +32,7 @@ struct Everyone {
         versions.push_back(make_plain_rasterizer());
         for (const std::string& kernels : raster::usable_kernels())
             versions.push_back(raster::make_fast_rasterizer(pool, kernels));
+        versions.push_back(cuda::make_emulated_cuda_rasterizer());
     }
     ThreadPool pool{2};
     std::vector<std::unique_ptr<Rasterizer>> versions;

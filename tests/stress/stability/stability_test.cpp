@@ -8,6 +8,7 @@
 #include "engine/base/error.h"
 #include "engine/base/print.h"
 #include "engine/bench/stability_bench.h"
+#include "engine/raster/cuda/emulated_device.h"
 #include "engine/raster/rasterizer.h"
 
 using namespace gse;
@@ -100,6 +101,23 @@ DOCTEST_TEST_CASE("hostile scenes: every kernel near to the double version, by c
     }
     DOCTEST_CHECK(pictures ==
                   hostile_causes().size() * raster::usable_kernels().size() * static_cast<std::size_t>(scenes_per_cause()));
+}
+
+DOCTEST_TEST_CASE("hostile scenes: the CUDA kernels near to the double version, by cause") {
+    constexpr int one_in = 5;   // they stand in for a device, which is slow
+    KernelStability kernels("emulated cuda", [](ThreadPool&) { return raster::cuda::make_emulated_cuda_rasterizer(); });
+    for (const auto& cause : hostile_causes()) {
+        double picture = 0, gradient = 0, row = 0;
+        for (int i = 0; i < std::max(1, scenes_per_cause() / one_in); ++i) {
+            const auto seed = static_cast<std::uint64_t>(1 + i);
+            const HostileScene scene = hostile_scene(cause.name, seed);
+            const StabilityTruth truth(scene);
+            const auto error = kernels.measure(truth);
+            check_record({cause.name, kernels.kernels(), seed, truth.clear_share(), error}, tolerance_of(cause.name));
+            picture = std::max(picture, error.picture), gradient = std::max(gradient, error.gradient), row = std::max(row, error.row);
+        }
+        fmt::print("{:15} picture {:.2e}  gradient {:.2e}  row {:.2e}\n", cause.name, picture, gradient, row);
+    }
 }
 
 DOCTEST_TEST_CASE("the scenes that were worst among 250 per cause") {

@@ -79,6 +79,9 @@ DOCTEST_TEST_CASE("another model, up axis, front or set of cameras looks again; 
     tuned.job.lora = {"a.safetensors:0.5"};
     DOCTEST_CHECK(pipeline::search_key(tuned) != before);
     auto recipe = plain();
+    recipe.job.rasterizer = "cuda";
+    DOCTEST_CHECK(pipeline::search_key(recipe) != before);
+    recipe.job.rasterizer = "cpu";   // which "auto" is
     recipe.job.turntable_frames = 7;
     DOCTEST_CHECK(pipeline::search_key(recipe) == before);
     recipe.use_dreambooth = true;

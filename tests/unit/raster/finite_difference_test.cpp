@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include "engine/raster/cuda/emulated_device.h"
 #include "tests/agree/raster/scenes.h"
 
 using namespace gse;
@@ -153,6 +154,7 @@ DOCTEST_TEST_CASE("the clamp of dark colours lets through the slope that was ask
     all.push_back(make_plain_rasterizer());
     for (const std::string& kernels : raster::usable_kernels())
         all.push_back(raster::make_fast_rasterizer(pool, kernels));
+    all.push_back(raster::cuda::make_emulated_cuda_rasterizer());
     for (const auto& rasterizer : all) {
         ForwardOutput image;
         Gradients strict, soft;

@@ -1,0 +1,22 @@
+// What the kernels of every fast version are told about camera and scene.
+#pragma once
+
+#include "engine/math/camera.h"
+#include "engine/raster/kernels.h"
+#include "engine/raster/rasterizer.h"
+
+namespace gse::raster {
+
+/// Tile-Gaussian pairs of one picture; more are refused.
+inline constexpr std::size_t MostPairs = 1'000'000'000;
+
+/// Aborts if the arrays' lengths disagree or the camera has no pixels.
+void check_inputs(const GaussianSpans& gaussians, const Camera& camera);
+
+/// Floats of spherical harmonics per row.
+std::size_t sh_floats(const GaussianSpans& gaussians);
+
+/// `settings` with both planes given (with_depth_range).
+Viewpoint viewpoint_of(const Camera& camera, const Settings& settings, int scene_degree);
+
+}  // namespace gse::raster
