@@ -456,6 +456,14 @@ DOCTEST_TEST_CASE("views, export, scene, models, settings") {
     DOCTEST_CHECK(asks(harness, "export.screenshot", "export_picture"));
     DOCTEST_CHECK(asks(harness, "export.turntable", "export_turntable"));
     DOCTEST_CHECK(asks(harness, "export.scene", "export_scene"));
+    DOCTEST_CHECK(asks(harness, "export.viewpoints", "export_viewpoints"));
+    harness.application.model().exports.scene_path = "out.sog";
+    harness.frame(2);
+    DOCTEST_CHECK(asks(harness, "export.scene", "export_scene"));
+    harness.application.model().exports.scene_path = "out.spz";
+    harness.frame(2);
+    DOCTEST_CHECK(asks(harness, "export.spz_version.4", "set_exports"));
+    DOCTEST_CHECK(harness.application.model().exports.spz_version == 4);
     harness.application.model().exports.film_path = "film.avi";
     harness.application.model().exports.picture_path.clear();
     harness.frame(2);
