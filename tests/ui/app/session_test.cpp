@@ -10,6 +10,8 @@
 #include <thread>
 
 #include "app/application.h"
+#include "engine/base/file.h"
+#include "engine/io/cameras.h"
 #include "engine/io/image_file.h"
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/film.h"
@@ -511,6 +513,7 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     exports.film_path = (place.folder / "turn").string();
     exports.scene_path = (place.folder / "out.spz").string();
     exports.camera_path_path = (place.folder / "path.json").string();
+    exports.spz_version = 4;
     session.app.set_exports(exports);
     session.app.update(session.preview);
     session.app.export_picture();
@@ -520,6 +523,7 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     DOCTEST_CHECK(shot.channels == 4);
     DOCTEST_CHECK(shot.data[3] == 0);  // the corner shows nothing
     DOCTEST_CHECK(read_png_text(place.folder / "shot.png").count("Recipe") == 1);
+    DOCTEST_CHECK(read_png_text(place.folder / "shot.png").at("parameters").find("Seed: ") != std::string::npos);
     session.app.export_turntable();
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(fs::exists(place.folder / "turn/frame_0003.png"));
@@ -536,6 +540,17 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(load_scene(place.folder / "out.spz").gaussians.size() ==
                   session.app.document().state().current.size());
+    DOCTEST_CHECK(read_file(place.folder / "out.spz").starts_with("NGSP"));   // only version 4 begins so
+    const auto& views = session.app.document().state().views;
+    for (const char* name : {"cameras.json", "transforms.json"}) {
+        exports.viewpoints_path = (place.folder / name).string();
+        session.app.set_exports(exports);
+        session.app.export_viewpoints();
+        DOCTEST_REQUIRE(session.idle());
+        const auto written = load_cameras(place.folder / name);
+        DOCTEST_REQUIRE(written.size() == views.size());
+        DOCTEST_CHECK(length(written[0].camera.centre() - views[0].camera.centre()) < 1e-9);
+    }
     session.app.add_camera_key();
     session.app.add_camera_key();
     session.app.export_camera_path(false);
