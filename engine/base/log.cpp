@@ -9,10 +9,13 @@
 #include <mutex>
 #include <string>
 
+#include "engine/base/log_quiet.h"
 #include "engine/base/printable.h"
 
 namespace gse::log {
 namespace {
+
+thread_local int quiet_depth = 0;
 
 struct State {
     std::mutex mutex;
@@ -53,8 +56,11 @@ void set_sink(Sink sink) {
     state().sink = std::move(sink);
 }
 
+Quiet::Quiet() { ++quiet_depth; }
+Quiet::~Quiet() { --quiet_depth; }
+
 void write(Level level, std::string_view raw) {
-    if (level < state().level.load()) return;
+    if (level < state().level.load() || (quiet_depth > 0 && level < Level::Error)) return;
     const std::string text = printable(raw, true);   // names and comments of files stand in it
     const std::lock_guard lock(state().mutex);
     if (state().sink)

@@ -10,6 +10,7 @@
 #include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/log.h"
+#include "engine/base/log_quiet.h"
 #include "engine/base/spelling.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/localize/focus.h"
@@ -305,6 +306,7 @@ void EditJob::run(const EditObserver& observer) {
 }
 
 Edited EditJob::probe(const ProbeSize& size) {
+    const log::Quiet nothing_said;   // of how well a few steps did: they only tell what a step takes
     EditRecipe plain = recipe_;
     plain.request.iterations = plain.request.fit_steps = size.steps;
     plain.request.dynamic_mask = plain.request.look_again = plain.request.early_stop = false;

@@ -64,11 +64,13 @@ class Session(WindowTest):
     def chooses_and_hides(self, window):
         """On the tab of the labels."""
         before, labelled = window.state()["splats"], window.state()["labelled"]
+        window.scroll_to("pick.open", "panel.Labels")
         window.click("pick.open")
+        window.scroll_to("pick.side.Above", "panel.Labels")
         window.press("pick.side.Above", lambda s: s["picked"] > 0, "nothing is chosen by opacity", 20, pause=3)
         window.picture("07b_chosen_by_opacity")
-        window.click("pick.open")
-        window.wait(lambda s: s["picked"] == 0, "what was chosen is still shown", 10)
+        window.scroll_to("pick.open", "panel.Labels")
+        window.press("pick.open", lambda s: s["picked"] == 0, "what was chosen is still shown", 20, pause=3)
         window.key("i")
         window.wait(lambda s: s["hidden"] == before - labelled, "the label was not isolated", 10)
         window.picture("07c_isolated")

@@ -28,17 +28,6 @@ class Words(WindowTest):
         window.xdotool("type", "--delay", "40", text)
         window.key("Return")
 
-    def scroll_to(self, window, name):
-        """Turns the wheel over the prompt until the control is in sight."""
-        px, py = window.place("panel.Prompt", 0.5, 0.4)
-        window.xdotool("mousemove", px, py)
-        for _ in range(40):
-            if window.widgets().get(name, {}).get("visible"):
-                return
-            window.xdotool("click", 5)
-            time.sleep(0.3)
-        self.fail(f"{name} does not come into sight")
-
     def test_a_target_goes_with_its_sentence(self):
         window = self.start()
         window.write("prompt.source", "bear")
@@ -103,11 +92,11 @@ class Words(WindowTest):
         window = self.start()
         window.write("prompt.source", "bear")
         window.write("prompt.sentence", "a golden bear")
-        self.scroll_to(window, "prompt.advanced")
+        window.scroll_to("prompt.advanced", "panel.Prompt")
         window.click("prompt.advanced")
-        self.scroll_to(window, "prompt.group.Localization")
+        window.scroll_to("prompt.group.Localization", "panel.Prompt")
         window.click("prompt.group.Localization")
-        self.scroll_to(window, "request.least_confidence")
+        window.scroll_to("request.least_confidence", "panel.Prompt")
         self.type_number(window, "request.least_confidence", "0.999")
         window.click("prompt.locate")
         window.wait(lambda s: s["job"]["running"], "the search did not start", 20)

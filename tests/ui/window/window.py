@@ -130,6 +130,16 @@ class Window:
             time.sleep(0.1)
         self.settle()
 
+    def scroll_to(self, name, panel):
+        """Turns the wheel over a panel until the control is in sight."""
+        self.xdotool("mousemove", *self.place(panel, 0.5, 0.4))
+        for button in [5] * 40 + [4] * 60:   # down, and up again
+            if self.widgets().get(name, {}).get("visible"):
+                return
+            self.xdotool("click", button)
+            time.sleep(0.3)
+        raise AssertionError(f"{name} does not come into sight")
+
     def press(self, name, condition, message, seconds=120, pause=1):
         """Clicks until condition(state) holds, or the program has ended: on a busy machine a click may fall between frames.
         `pause`: how long a click may take to show, in seconds, before the next one."""

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 
 #include "engine/base/error.h"
 #include "engine/base/fields.h"
 #include "engine/base/file.h"
 #include "engine/base/image.h"
 #include "engine/base/log.h"
+#include "engine/base/log_quiet.h"
 #include "engine/base/random.h"
 #include "engine/base/thread_pool.h"
 #include "tests/test_paths.h"
@@ -153,6 +155,21 @@ DOCTEST_TEST_CASE("the log reaches its sink from the level on") {
     log::set_sink({});
     DOCTEST_REQUIRE(lines.size() == 1);
     DOCTEST_CHECK(lines[0] == "seen 2");
+}
+
+DOCTEST_TEST_CASE("what is measured says nothing but errors, in its own thread") {
+    std::vector<std::string> lines;
+    log::set_sink([&](log::Level, std::string_view text) { lines.emplace_back(text); });
+    {
+        const log::Quiet outer;
+        { const log::Quiet inner; }
+        log::warning("of the measured");
+        log::error("an error");
+        std::thread([] { log::warning("of another thread"); }).join();
+    }
+    log::warning("afterwards");
+    log::set_sink({});
+    DOCTEST_CHECK(lines == std::vector<std::string>{"an error", "of another thread", "afterwards"});
 }
 
 DOCTEST_TEST_CASE("a loop visits every item once, for any number of threads and any chunk") {
