@@ -158,7 +158,7 @@ DOCTEST_TEST_CASE("SOG holds far, flat, opaque, single and equal splats") {
 }
 
 DOCTEST_TEST_CASE("SOG: colours that no scene has spoil nothing: every value read is finite, and the colours of others keep their steps") {
-    constexpr float Huge = 3e38f;
+    constexpr float Huge = 9000;   // rows with more than 10,000 are left out by every format (scene/statistics.cpp)
     GaussianData data = random_gaussians(3000, 1, 74);
     for (std::size_t row = 0; row < 40; ++row)
         for (std::size_t i = 0; i < 12; ++i) data.sh[row * 12 + i] = (row + i) % 2 == 0 ? Huge : -Huge;
