@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "engine/base/check.h"
-#include "engine/base/log.h"
 #include "engine/edit/place_drawing.h"
 #include "engine/edit/region_frame.h"
 
@@ -68,9 +67,8 @@ Wearer wearer_of(const EditRequest& request, const GaussianSet& set, std::span<c
     if (drawn && at_head && draws_place(request, EditMode::Add)) {
         auto bust = bust_of(set, bits, up, front, usual_place(request.target) == "neck" ? HeadAndNeck : 1);
         if (bust.has_small_head()) {
-            log::info("the head is {:.0f} % of its height: \"{}\" goes there", 100 * bust.head, request.target);
             const auto standing = standing_alone(set, bust.bits, up, front);
-            return {std::move(bust.bits), standing};
+            return {std::move(bust.bits), standing, bust.head};
         }
     }
     return {{bits.begin(), bits.end()}, standing_of(set, bits, up, front)};

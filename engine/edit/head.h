@@ -28,6 +28,7 @@ Bust bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const V
 struct Wearer {
     std::vector<std::uint8_t> bits;   // [N]
     Standing standing;
+    double head = 1;   // where it is the head: its height, as a share of the whole thing's
 };
 
 /// Of what `bits` [N] label: the head, where it is small and the target has its place there (add_region.h, usual_place) and is `drawn` into the

@@ -533,6 +533,7 @@ private:
         const bool of_source = request().source != request().target;
         const auto relation = of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None;
         const auto wearer = wearer_of(request(), input_.gaussians, *result.source_label.bits, input_.up, input_.front, tools_.drawing != nullptr);
+        if (wearer.head < 1) log::info("the head is {:.0f} % of its height: \"{}\" goes there", 100 * wearer.head, search.word);
         auto views = draw(search, wearer);
         const bool drawn = votes(views);
         result.views = drawn ? std::move(views) : look(search);
