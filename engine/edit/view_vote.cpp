@@ -52,11 +52,16 @@ void compete(ViewEvidence& view, const std::vector<Image>& maps, bool strict) {
     }
 }
 
-void leave_out(std::vector<ViewEvidence>& views, const std::vector<std::size_t>& left_out) {
-    for (const auto view : left_out) {
-        if (view >= views.size())
-            throw Error(ErrorCode::InvalidArgument, fmt::format("view {} is to be left out, but the last one is {}", view, views.size() - 1),
+void require_views(const std::vector<std::size_t>& left_out, std::size_t count) {
+    for (const auto view : left_out)
+        if (view >= count)
+            throw Error(ErrorCode::InvalidArgument, fmt::format("view {} is to be left out, but the last one is {}", view, count - 1),
                         "correct left_out, or leave it empty");
+}
+
+void leave_out(std::vector<ViewEvidence>& views, const std::vector<std::size_t>& left_out) {
+    require_views(left_out, views.size());
+    for (const auto view : left_out) {
         views[view].failed = true;
         views[view].step = ViewStep::LeftOut;
     }

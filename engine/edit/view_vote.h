@@ -18,6 +18,9 @@ Image vote_of(const ViewEvidence& view, double threshold);
 /// more of, those of the sentence only count in vote_of(): the attention of a wide ground is strong under the feet of what stands on it.
 void compete(ViewEvidence& view, const std::vector<Image>& maps, bool strict);
 
+/// Throws Error (InvalidArgument) for a view that is none of `count`.
+void require_views(const std::vector<std::size_t>& left_out, std::size_t count);
+
 /// Views that do not vote, by their number: marked as such. Throws Error (InvalidArgument) for one that is not there.
 void leave_out(std::vector<ViewEvidence>& views, const std::vector<std::size_t>& left_out);
 

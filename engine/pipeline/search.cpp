@@ -13,10 +13,12 @@
 #include "engine/base/log.h"
 #include "engine/edit/front_reading.h"
 #include "engine/edit/head.h"
+#include "engine/edit/left_out.h"
 #include "engine/edit/place_drawing.h"
 #include "engine/edit/relation.h"
 #include "engine/edit/scene_reading.h"
 #include "engine/edit/standing.h"
+#include "engine/edit/view_vote.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/localize/focus.h"
 
@@ -302,6 +304,7 @@ edit::LocateInput question(const Workplace& workplace, const EditRecipe& recipe,
 }
 
 Located locate(Workplace& workplace, const EditRecipe& recipe, const Views& views, const Hints& hints, const JobControl& control) {
+    if (hints.label.empty()) edit::require_views(edit::views_left_out(recipe.request.left_out), views.views.size());   // before any work
     workplace.ask_anew(recipe.attention);
     EditRecipe all = recipe;   // from all views; what is left out is a matter of those that it ends with
     all.request.left_out.clear();

@@ -129,6 +129,9 @@ class BadOptions(ProgramTest):
         self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "red", "--model",
                           self.folder / "no_model"], "no_model")
 
+    def test_a_view_to_be_left_out_that_is_not_there_is_told_before_any_work(self):
+        self.refuse_edit(["--source", "bear", "--prompt", "a red bear", "--target", "red", "--left-out", "3, 99"], "view 99", "left_out")
+
     def test_unwritable_output(self):
         blocker = self.write("file", b"x")
         process = run("convert", self.scene, blocker / "new.ply")
