@@ -3,11 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "engine/edit/head.h"
+#include "engine/pipeline/edit_job.h"
+#include "engine/pipeline/installed.h"
 #include "engine/synth/synth.h"
 #include "tests/unit/edit/box_rows.h"
 
@@ -95,3 +98,32 @@ DOCTEST_TEST_CASE("rows of a label that are too faint to be seen are no part of 
     DOCTEST_CHECK(std::vector<std::uint8_t>(after.bits.begin(), after.bits.begin() + static_cast<std::ptrdiff_t>(seen)) == before.bits);
     DOCTEST_CHECK(std::count(after.bits.begin() + static_cast<std::ptrdiff_t>(seen), after.bits.end(), 1) == 0);
 }
+
+#ifdef GSE_NEURAL
+DOCTEST_TEST_CASE("a person's hat is drawn around the head, and the film shows the person from head to foot") {
+    const auto rows = person();
+    Scene scene;
+    scene.gaussians = rows.set();
+    scene.info.up = Up;
+    auto request = wearing("hat");
+    request.prompt = "a person wearing a red hat";
+    request.views = 8;
+    request.place_views = request.shape_views = 4;
+    request.place_steps = request.shape_steps = 1;
+    request.shape_fit_steps = 2;
+    pipeline::EditRecipe recipe;
+    recipe.request = request;
+    pipeline::EditJob job(recipe, {scene, {}, pipeline::load_recipe_model({}), rows.bits}, JobControl{});
+    job.locate();
+    DOCTEST_REQUIRE(job.found());
+    DOCTEST_REQUIRE(job.located().mode == edit::EditMode::Add);
+    const Camera near = job.views().front().camera;   // a head of 0.25 in a picture of 1.74 times its height
+    DOCTEST_CHECK(near.width / near.fx * near.to_camera({0, -1.7, 0}).z < 1);
+    job.run({});
+    const Camera film = orbit_camera(job.film_orbit(), 0, 100, 100);
+    for (const double height : {0.02, 1.78}) {
+        const Vec3 end = film.to_camera({0, -height, 0});
+        DOCTEST_CHECK(std::abs(film.fy * end.y / end.z) < 50);
+    }
+}
+#endif
