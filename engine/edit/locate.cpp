@@ -17,6 +17,7 @@
 #include "engine/edit/ground_rows.h"
 #include "engine/edit/head.h"
 #include "engine/edit/left_out.h"
+#include "engine/edit/plain_ground.h"
 #include "engine/edit/shape_room.h"
 #include "engine/edit/view_vote.h"
 #include "engine/edit/vocabulary.h"
@@ -497,15 +498,15 @@ private:
     }
 
     /// What a model that is shown the scene draws around what wears it; nothing where there is no such model.
-    std::vector<ViewEvidence> draw(const Search& search, const Wearer& wearer) {
+    std::vector<ViewEvidence> draw(const Search& search, const Wearer& wearer, const std::vector<std::uint8_t>& source_bits) {
         if (tools_.drawing == nullptr || !draws_place(request(), EditMode::Add)) return {};
         const auto room = room_above(wearer.standing, input_.up, input_.front, request().add_room);
         if (room.empty()) return {};
         const PlaceDrawing drawing{input_.views, input_.view_words, input_.azimuths, input_.elevations, renders_, depths_, room, request(),
                                    search.word, Random::stream(SearchSeed, Drawing).next()};
         DrawnViews drawn;
-        DrawnViews& kept = tools_.memory != nullptr ? tools_.memory->drawn[drawing_key(drawing, wearer.bits)] : drawn;
-        if (kept.views.empty()) kept = draw_thing(drawing, *tools_.drawing, tools_.job);
+        DrawnViews& kept = tools_.memory != nullptr ? tools_.memory->drawn[drawing_key(drawing, wearer.bits) + (tools_.plain_ground ? "" : " before the scene")] : drawn;
+        if (kept.views.empty()) kept = drawn_into(drawing, source_bits);
         std::vector<ViewEvidence> views(input_.views.size());
         for (std::size_t v = 0; v < views.size(); ++v) {
             views[v].render = renders_[v];
@@ -524,6 +525,14 @@ private:
         return views;
     }
 
+    DrawnViews drawn_into(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits) const {
+        std::optional<GroundUnder> ground;
+        if (tools_.plain_ground) ground = ground_under(request().prompt, input_.gaussians, source_bits, input_.up, input_.front, tools_.rasterizer);
+        if (!ground || !ground->in_nothing) return draw_thing(drawing, *tools_.drawing, tools_.job);
+        OnPlainGround on_ground(*tools_.drawing, ground->plain, BeforePlain::Scene);
+        return draw_thing(drawing, on_ground, tools_.job);
+    }
+
     void add(LocateResult& result) {
         result.label = make_label(request().target, std::vector<float>(input_.gaussians.size(), 0.0f), 0.5f);
         find_source(result);
@@ -534,7 +543,7 @@ private:
         const auto relation = of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None;
         const auto wearer = wearer_of(request(), input_.gaussians, *result.source_label.bits, input_.up, input_.front, tools_.drawing != nullptr);
         if (wearer.head < 1) log::info("the head is {:.0f} % of its height: \"{}\" goes there", 100 * wearer.head, search.word);
-        auto views = draw(search, wearer);
+        auto views = draw(search, wearer, *result.source_label.bits);
         const bool drawn = votes(views);
         result.views = drawn ? std::move(views) : look(search);
         leave_out(result.views, left_out_);

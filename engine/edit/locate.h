@@ -64,6 +64,7 @@ struct LocateTools {
     std::function<void(std::size_t view, const ViewEvidence& evidence)> seen = {};
     /// Draws what is added, to see where it goes: it is shown the scene (TextToImage::knows_scene()). Null: attention alone says where.
     ViewGuidance* drawing = nullptr;
+    bool plain_ground = true;            // what stands in nothing is shown to it on a plain ground
 };
 
 /// Everything one view contributed, for the window and the evidence pictures.

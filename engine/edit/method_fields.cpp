@@ -14,11 +14,10 @@ constexpr std::array<Names, 22> GradientOnly{
     "iterations",    "guidance_weight", "gate_guidance",  "preserve",    "l1",          "ssim",  "dynamic_mask",
     "dynamic_from",  "dynamic_every",   "look_again",     "look_again_tau", "densify_from", "densify_until", "t_min",
     "t_max_start",   "t_max_end",       "guidance_scale", "clamp",       "weight",      "sample_posterior", "delta",       "before_prompt"};
-constexpr std::array<Names, 21> ViewsOnly{"quality", "polish_steps",    "edited_views",    "rounds",         "view_steps",          "fit_steps",
+constexpr std::array<Names, 20> ViewsOnly{"quality", "polish_steps",    "edited_views",    "rounds",         "view_steps",          "fit_steps",
                                           "view_strength",   "view_guidance_scale", "shape_rounds",   "shape_steps",    "add_rounds",
                                           "shape_fit_steps", "shape_strength", "shape_again_strength", "shape_views",
-                                          "shape_guided_until", "shape_guidance_scale", "restyle_steps", "restyle", "restyle_guidance_scale",
-                                          "plain_ground"};
+                                          "shape_guided_until", "shape_guidance_scale", "restyle_steps", "restyle", "restyle_guidance_scale"};
 /// Of the gradient, what a polish goes by too: its noise levels are its own, and nothing is taken off.
 constexpr std::array<Names, 9> Polishing{"guidance_weight", "gate_guidance", "preserve",         "l1",    "ssim",
                                          "guidance_scale",  "clamp",         "sample_posterior", "weight"};

@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "engine/base/log.h"
+#include "engine/edit/ground_cover.h"
 #include "engine/edit/words.h"
 
 namespace gse::edit {
@@ -13,11 +15,22 @@ namespace {
 
 constexpr double PlainReach = 3;      // figures' heights: as wide as in the pictures that the bundled model learned from
 constexpr double LeastUpright = 0.1;  // of its width: what is lower is a ground itself
+constexpr double LeastCover = 0.5;    // of the ground around it: less is no ground that a picture would show
 constexpr int PlainSamples = 2;       // along a pixel's side
+// Before it st-peter is drawn more golden (score 0.49) than before black (0.38), and more of a red cat (0.32, 0.29).
+constexpr std::array<float, 3> Sky{0.69f, 0.78f, 0.88f};
+
+/// Takes what shows beside and through a thing for what is behind it in the scene.
+void move_before(const Image& scene, const Image& shown, const Image& outline, Image& picture) {
+    for (std::size_t i = 0; i < picture.data.size(); ++i) {
+        const float through = 1 - std::clamp(outline.data[i / 3], 0.0f, 1.0f);
+        picture.data[i] = std::clamp(picture.data[i] + through * (scene.data[i] - shown.data[i]), 0.0f, 1.0f);
+    }
+}
 
 }  // namespace
 
-std::optional<PlainGround> plain_ground(const std::string& sentence, const Standing& standing, const Vec3& up, const std::array<float, 3>& sky) {
+std::optional<PlainGround> plain_ground(const std::string& sentence, const Standing& standing, const Vec3& up) {
     if (!standing.found() || standing.height < LeastUpright * standing.width()) return std::nullopt;
     // Means of what engine/synth paints. Of grass, snow and sand under a cat the last left the least of a rim; a grey like that of stone, which
     // is no ground in the pictures that the model learned from, did no better than the scene.
@@ -25,7 +38,18 @@ std::optional<PlainGround> plain_ground(const std::string& sentence, const Stand
     std::array<float, 3> colour{0.85f, 0.73f, 0.5f};
     for (const auto& [word, of_word] : known)
         if (has_word(sentence, word)) colour = of_word;
-    return PlainGround{standing, normalized(up), colour, sky};
+    return PlainGround{standing, normalized(up), colour, Sky};
+}
+
+std::optional<GroundUnder> ground_under(const std::string& sentence, const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front,
+                                        raster::Rasterizer& rasterizer) {
+    if (bits.size() != set.size()) return std::nullopt;
+    const auto standing = standing_of(set, bits, up, front);
+    const auto plain = plain_ground(sentence, standing, up);
+    if (!plain) return std::nullopt;
+    const double cover = ground_cover(set, bits, standing, up, rasterizer);
+    log::debug("{:.0f} % of the ground around it are there", 100 * cover);
+    return GroundUnder{*plain, cover < LeastCover};
 }
 
 Image picture_of(const PlainGround& plain, const Camera& camera) {
@@ -48,6 +72,13 @@ Image picture_of(const PlainGround& plain, const Camera& camera) {
     return picture;
 }
 
+Image before_plain(const PlainGround& plain, const Camera& camera, const Image& picture, const Image& depth) {
+    Image result = picture_of(plain, camera);
+    for (std::size_t i = 0; i < result.data.size(); ++i)
+        if (depth.data[i / 3] > 0) result.data[i] = picture.data[i];
+    return result;
+}
+
 RoundTargets OnPlainGround::edit(const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) {
     if (input.anew) return input.round == 0 ? draw_anew(views, input, job) : guidance_.edit(views, input, job);
     return restyles() ? restyle(views, input, job) : guidance_.edit(views, input, job);
@@ -55,9 +86,15 @@ RoundTargets OnPlainGround::edit(const std::vector<RoundView>& views, const Roun
 
 RoundTargets OnPlainGround::draw_anew(const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) {
     auto plain = views;
-    for (auto& view : plain) view.rendered = view.original = view.backdrop.picture = picture_of(plain_, view.view.camera);
+    for (auto& view : plain) {
+        const auto& behind = view.backdrop;
+        view.backdrop.picture = shown_ == BeforePlain::Scene ? before_plain(plain_, view.view.camera, behind.picture, behind.depth) : picture_of(plain_, view.view.camera);
+        view.rendered = view.original = view.backdrop.picture;
+    }
     auto drawn = guidance_.edit(plain, input, job);
-    return drawn.outlines.empty() ? guidance_.edit(views, input, job) : drawn;
+    if (drawn.outlines.empty()) return guidance_.edit(views, input, job);
+    for (std::size_t v = 0; v < views.size(); ++v) move_before(views[v].backdrop.picture, plain[v].backdrop.picture, drawn.outlines[v], drawn.images[v]);
+    return drawn;
 }
 
 RoundTargets OnPlainGround::restyle(const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) {

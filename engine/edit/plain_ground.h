@@ -2,11 +2,14 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "engine/edit/interfaces.h"
 #include "engine/edit/standing.h"
+#include "engine/raster/rasterizer.h"
 
 namespace gse::edit {
 
@@ -20,18 +23,36 @@ struct PlainGround {
 
 /// The ground for a sentence: of the colour of the one that it names, of sand where it names none that the bundled model has learned. None
 /// where nothing stands, or what is labelled is itself as flat as a ground.
-std::optional<PlainGround> plain_ground(const std::string& sentence, const Standing& standing, const Vec3& up, const std::array<float, 3>& sky);
+std::optional<PlainGround> plain_ground(const std::string& sentence, const Standing& standing, const Vec3& up);
+
+/// The plain ground under what a scene shows.
+struct GroundUnder {
+    PlainGround plain;
+    bool in_nothing = false;   // the scene has hardly any ground there (ground_cover()): the thing was cut out of its surroundings
+};
+
+/// The same of what `bits` [N] label; none also where they label nothing, or are not of the scene's size.
+std::optional<GroundUnder> ground_under(const std::string& sentence, const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front,
+                                        raster::Rasterizer& rasterizer);
 
 /// [H,W,3] in [0,1], of the camera's size: a disc around the foot, three figures' heights in radius, as the camera sees it.
 Image picture_of(const PlainGround& plain, const Camera& camera);
+/// The same behind a picture of the scene; `depth` [H,W,1] is 0 where that has nothing.
+Image before_plain(const PlainGround& plain, const Camera& camera, const Image& picture, const Image& depth);
 
-/// Shows the model the plain ground instead of the scene: in the first round of those that draw anew nothing else (what it draws is cut out
-/// of its pictures by the outlines that it tells; where it tells none, it is shown the scene after all), in rounds that restyle what the masks hold
-/// on it. All others go through.
+/// What of the scene a model is still shown.
+enum class BeforePlain {
+    Nothing,   // where something is drawn anew in the place of all that stands there
+    Scene,     // where something is added: the ground and the sky show where the scene has nothing
+};
+
+/// Shows the model the plain ground instead of the scene: in the first round of those that draw anew (what it draws is moved before the scene
+/// by the outlines that it tells; where it tells none, it is shown the scene after all), in rounds that restyle what the masks hold on it. All
+/// others go through.
 class OnPlainGround final : public ViewGuidance {
 public:
     /// `guidance` stays alive.
-    OnPlainGround(ViewGuidance& guidance, PlainGround plain) : guidance_(guidance), plain_(std::move(plain)) {}
+    OnPlainGround(ViewGuidance& guidance, PlainGround plain, BeforePlain shown) : guidance_(guidance), plain_(std::move(plain)), shown_(shown) {}
     RoundTargets edit(const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) override;
     bool restyles() const override { return guidance_.restyles(); }
 
@@ -41,6 +62,7 @@ private:
 
     ViewGuidance& guidance_;
     PlainGround plain_;
+    BeforePlain shown_;
 };
 
 }  // namespace gse::edit

@@ -43,8 +43,8 @@ struct SdsParameters {
           "Another colour, material or ground is drawn by the network that is shown the scene, where the model has one; where its pictures "
           "hardly show what was asked, the model itself draws them all the same.");
         f("plain_ground", self.plain_ground,
-          "Where its pictures, or those of a thing in another's place, hardly show what was asked, that network draws them as if the thing "
-          "stood alone on a plain ground, too.");
+          "What stands in nothing is shown to that network on a plain ground. So is what stands alone there, where pictures of the scene hardly "
+          "show what was asked.");
         f("restyle_guidance_scale", self.restyle_guidance_scale,
           "The same where a model that is shown the scene gives a thing another colour or material, or another ground.", Range{0, 200});
         f("image_guidance_scale", self.image_guidance_scale,

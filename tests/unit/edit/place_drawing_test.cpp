@@ -73,6 +73,7 @@ public:
             if (tells) targets.changes.push_back(std::move(change));
             if (outlines) targets.outlines.push_back(std::move(outline));
             rooms.push_back(view.mask.count());
+            corners.push_back(view.original.data.front());
             DOCTEST_CHECK(view.backdrop.picture.data == view.original.data);   // all of the scene stays to be seen
         }
         return targets;
@@ -80,6 +81,7 @@ public:
     bool paints = true, tells = true, outlines = false, soft = false, breaks = false;   // breaks: the first value of each picture is not finite
     std::vector<edit::RoundInput> asked;
     std::vector<std::size_t> rooms;
+    std::vector<float> corners;   // the first value of what it was shown
 };
 
 struct Fixture {
@@ -92,6 +94,7 @@ struct Fixture {
     HatPainter painter;
     edit::ViewMemory memory;
     edit::EditRequest request;
+    bool plain_ground = false;
 
     explicit Fixture(const std::string& prompt = "a ball wearing a hat") {
         request.source = "ball";
@@ -104,6 +107,7 @@ struct Fixture {
         edit::LocateTools tools{*rasterizer, attention, nullptr, nullptr, {}};
         tools.drawing = &painter;
         tools.memory = &memory;
+        tools.plain_ground = plain_ground;
         return edit::locate({scene.set, views, words, request, {}, {0, -1, 0}, {0, 0, -1}, label}, tools);
     }
 };
@@ -183,6 +187,19 @@ DOCTEST_TEST_CASE("something added goes where a model that is shown the scene dr
         // What was drawn is blue, and so all views are told where the sentence says no colour.
         const auto plan = edit::make_plan({fixture.scene.set, fixture.views, fixture.words, fixture.request, {}}, found, *fixture.rasterizer);
         DOCTEST_CHECK(plan.drawn_colour == "blue");
+    }
+}
+
+DOCTEST_TEST_CASE("what stands in nothing is shown on a plain ground, where the model tells outlines of what it draws there") {
+    const Quiet quiet;
+    for (const bool outlines : {true, false}) {
+        Fixture fixture;
+        fixture.plain_ground = true;
+        fixture.painter.outlines = outlines;
+        DOCTEST_CHECK(fixture.locate(&fixture.scene.first).problem == edit::SearchProblem::None);
+        DOCTEST_REQUIRE(fixture.painter.asked.size() == (outlines ? 1 : 2));
+        DOCTEST_CHECK(fixture.painter.corners.front() > 0.5f);   // the sky
+        DOCTEST_CHECK((fixture.painter.corners.back() == 0) == !outlines);
     }
 }
 

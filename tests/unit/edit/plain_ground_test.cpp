@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/edit/ground_cover.h"
 #include "engine/edit/plain_ground.h"
 
 namespace {
@@ -17,7 +18,7 @@ const Vec3 Up{0, -1, 0};
 
 Standing figure() { return {{0.5, 1, 2}, 1.0, 0.5, 0.4}; }
 
-PlainGround ground_of(const std::string& sentence) { return *plain_ground(sentence, figure(), Up, {0, 0, 0.25f}); }
+PlainGround ground_of(const std::string& sentence) { return *plain_ground(sentence, figure(), Up); }
 
 /// Where the camera sees a point of the world.
 std::pair<int, int> pixel_of(const Camera& camera, const Vec3& point) {
@@ -35,11 +36,14 @@ public:
         for (const auto& view : views) {
             targets.images.push_back(view.rendered);
             if (outlines_) targets.outlines.emplace_back(view.rendered.width, view.rendered.height, 1);
+            if (outlines_ && covers > 0)
+                for (auto& share : targets.outlines.back().data) share = covers;
         }
         return targets;
     }
     bool restyles() const override { return restyles_; }
     std::vector<std::vector<RoundView>> shown;
+    float covers = 0;   // of every pixel, what it tells
 
 private:
     bool outlines_, restyles_;
@@ -69,9 +73,9 @@ DOCTEST_TEST_CASE("the plain ground lies where the thing stands, three figures w
     DOCTEST_CHECK(green_at({0, 0, 0}) == doctest::Approx(plain.ground[1]));
     for (const double side : {-1.0, 1.0}) {
         DOCTEST_CHECK(green_at({side * 2.9, 0, 0}) == doctest::Approx(plain.ground[1]));
-        DOCTEST_CHECK(green_at({side * 3.1, 0, 0}) == 0);   // the sky
+        DOCTEST_CHECK(green_at({side * 3.1, 0, 0}) == doctest::Approx(plain.sky[1]));
     }
-    DOCTEST_CHECK(picture.at(100, 1, 2) == doctest::Approx(0.25));
+    DOCTEST_CHECK(picture.at(100, 1, 2) == doctest::Approx(plain.sky[2]));
     DOCTEST_CHECK(ground_of("a red cat").ground != plain.ground);
     DOCTEST_CHECK(ground_of("a red cat on the snow").ground != ground_of("a red cat").ground);
     const auto below = Camera::look_at({0.5, 3, -6}, {0.5, 1, 2}, Up, 0.9, 40, 40);   // seen from under it, there is no more than that
@@ -81,15 +85,15 @@ DOCTEST_TEST_CASE("the plain ground lies where the thing stands, three figures w
 DOCTEST_TEST_CASE("what is as flat as a ground, or is not there, stands on none") {
     auto flat = figure();
     flat.height = 0.02;
-    DOCTEST_CHECK_FALSE(plain_ground("snow", flat, Up, {}).has_value());
-    DOCTEST_CHECK_FALSE(plain_ground("a cat", Standing{}, Up, {}).has_value());
+    DOCTEST_CHECK_FALSE(plain_ground("snow", flat, Up).has_value());
+    DOCTEST_CHECK_FALSE(plain_ground("a cat", Standing{}, Up).has_value());
 }
 
 DOCTEST_TEST_CASE("only rounds that begin a new thing, and restyles, are shown the plain ground") {
     const auto view = red_view();
     const JobControl job;
     const auto asked = [&](Recorder& model, const RoundInput& input) {
-        OnPlainGround on_ground(model, ground_of("a red cat"));
+        OnPlainGround on_ground(model, ground_of("a red cat"), BeforePlain::Nothing);
         on_ground.edit({view}, input, job);
     };
     RoundInput anew;
@@ -116,4 +120,87 @@ DOCTEST_TEST_CASE("only rounds that begin a new thing, and restyles, are shown t
     const auto& styled = restyles.shown[0][0];
     DOCTEST_CHECK(styled.rendered.at(16, 12, 0) == 1);   // what may change is shown as it is
     DOCTEST_CHECK(styled.rendered.at(15, 12, 0) != 1);
+}
+
+DOCTEST_TEST_CASE("what is drawn on the plain ground is moved before the scene, as far as it is seen through") {
+    auto view = red_view();
+    RoundInput anew;
+    anew.anew = true;
+    for (const float covers : {0.0f, 0.25f, 1.0f}) {
+        Recorder model(true);   // draws what it was shown: nothing of its own
+        model.covers = covers;
+        OnPlainGround on_ground(model, ground_of("a red cat"), BeforePlain::Nothing);
+        const auto drawn = on_ground.edit({view}, anew, JobControl{});
+        const auto& shown = model.shown[0][0].rendered;
+        for (std::size_t i = 0; i < shown.data.size(); ++i)
+            DOCTEST_REQUIRE(drawn.images[0].data[i] == doctest::Approx(covers * shown.data[i] + (1 - covers) * view.rendered.data[i]));
+    }
+}
+
+DOCTEST_TEST_CASE("to what something is added the plain ground is shown only where the scene has nothing") {
+    auto view = red_view();
+    view.backdrop.depth = Image(32, 24, 1);
+    view.backdrop.depth.at(16, 12, 0) = 4;
+    RoundInput anew;
+    anew.anew = true;
+    Recorder model(true);
+    OnPlainGround on_ground(model, ground_of("a man wearing a hat"), BeforePlain::Scene);
+    on_ground.edit({view}, anew, JobControl{});
+    const auto plain = picture_of(ground_of("a man wearing a hat"), view.view.camera);
+    const auto& shown = model.shown[0][0];
+    for (int c = 0; c < 3; ++c) {
+        DOCTEST_CHECK(shown.rendered.at(16, 12, c) == view.rendered.at(16, 12, c));
+        DOCTEST_CHECK(shown.rendered.at(15, 12, c) == plain.at(15, 12, c));
+    }
+    DOCTEST_CHECK(shown.backdrop.picture.data == shown.rendered.data);
+}
+
+namespace {
+
+/// A column of the label, a metre high, and other splats at `ground` metres of height in a square around it.
+struct Column {
+    GaussianSet set;
+    std::vector<std::uint8_t> bits;
+};
+
+Column column_on(double half_side, double height) {
+    GaussianData data;
+    std::vector<std::uint8_t> bits;
+    const auto add = [&](const Vec3& at, std::uint8_t label) {
+        const auto row = data.size();
+        data.resize(row + 1);
+        for (int axis = 0; axis < 3; ++axis) {
+            data.position[row * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(at[axis]);
+            data.log_scale[row * 3 + static_cast<std::size_t>(axis)] = std::log(0.06f);
+        }
+        data.rotation[row * 4] = 1;
+        data.opacity_logit[row] = 6;
+        bits.push_back(label);
+    };
+    for (int i = 0; i <= 20; ++i)
+        for (int k = 0; k < 4; ++k) add({0.1 * (k % 2), -0.05 * i, 0.1 * (k / 2)}, 1);
+    for (double x = -half_side; x <= half_side; x += 0.08)
+        for (double z = -half_side; z <= half_side; z += 0.08) add({x, -height, z}, 0);
+    return {GaussianSet(std::move(data)), std::move(bits)};
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("how much ground there is around a thing is seen from above: all, a plinth, none") {
+    const auto rasterizer = raster::make_plain_rasterizer();
+    const auto cover = [&](const Column& column) {
+        const auto standing = standing_of(column.set, column.bits, Up, {0, 0, -1});
+        return ground_cover(column.set, column.bits, standing, Up, *rasterizer);
+    };
+    const auto in_nothing = [&](const Column& column) { return ground_under("a cat", column.set, column.bits, Up, {0, 0, -1}, *rasterizer)->in_nothing; };
+    const auto field = column_on(1.6, 0), plinth = column_on(0.3, 0), bare = column_on(-1, 0), roof = column_on(1.6, 0.8);
+    DOCTEST_CHECK(cover(field) > 0.95);
+    DOCTEST_CHECK_FALSE(in_nothing(field));
+    DOCTEST_CHECK(cover(plinth) > 0);
+    DOCTEST_CHECK(in_nothing(plinth));
+    DOCTEST_CHECK(cover(bare) == 0);
+    DOCTEST_CHECK(in_nothing(bare));
+    DOCTEST_CHECK(cover(roof) == 0);   // over its head is no ground
+    const std::vector<std::uint8_t> other(3, 1);
+    DOCTEST_CHECK_FALSE(ground_under("a cat", field.set, other, Up, {0, 0, -1}, *rasterizer).has_value());
 }

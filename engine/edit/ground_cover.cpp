@@ -1,0 +1,49 @@
+// One picture from straight above.
+#include "engine/edit/ground_cover.h"
+
+#include <cmath>
+#include <vector>
+
+#include "engine/base/check.h"
+#include "engine/edit/region_frame.h"
+
+namespace gse::edit {
+namespace {
+
+constexpr double GroundHeight = 0.25;   // of a figure's height, up and down from the foot: a ground is not quite level
+constexpr double Above = 20;            // radii: from so far the picture is all but a parallel projection
+constexpr int Side = 64;                // pixels
+
+}  // namespace
+
+double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, const Standing& standing, const Vec3& up, raster::Rasterizer& rasterizer) {
+    GSE_CHECK_EQ(bits.size(), set.size());
+    if (!standing.found()) return 0;
+    const double figure = figure_height(standing), inner = 0.5 * standing.width(), outer = inner + figure;
+    const Vec3 above = normalized(up), foot = standing.foot;
+    std::vector<unsigned char> ground(set.size(), 0);
+    for (std::size_t row = 0; row < ground.size(); ++row) {
+        const auto p = set.position().subspan(row * 3, 3);
+        const Vec3 from = Vec3{p[0], p[1], p[2]} - foot;
+        const double height = dot(from, above), way = length(from - above * height);
+        ground[row] = bits[row] == 0 && std::abs(height) <= GroundHeight * figure && way <= 2 * outer ? 1 : 0;   // also not what is not a number
+    }
+    const GaussianSet rows = set.filtered(ground);
+    if (rows.empty()) return 0;
+    const auto across = make_frame(above, {}).front;
+    const auto camera = Camera::look_at(foot + above * (Above * outer), foot, across, 2 * std::atan(1 / Above), Side, Side);
+    raster::ForwardOutput output;
+    rasterizer.forward(rows.spans(), camera, {}, output);
+    double covered = 0;
+    int pixels = 0;
+    for (int y = 0; y < Side; ++y)
+        for (int x = 0; x < Side; ++x) {
+            const double way = std::hypot(x + 0.5 - Side / 2, y + 0.5 - Side / 2) * outer / (Side / 2);
+            if (way < inner || way > outer) continue;
+            covered += output.alpha.at(x, y, 0);
+            ++pixels;
+        }
+    return pixels > 0 ? covered / pixels : 0;
+}
+
+}  // namespace gse::edit
