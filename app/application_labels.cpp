@@ -9,6 +9,7 @@
 #include "engine/base/log.h"
 #include "engine/base/random.h"
 #include "engine/pipeline/cut_out.h"
+#include "engine/pipeline/views.h"
 #include "engine/pipeline/segmenters.h"
 #include "engine/scene/label_ops.h"
 #include "engine/scene/stack_edits.h"
@@ -28,6 +29,12 @@ LabelOperation operation_of(ui::SetOperation operation) {
         case ui::SetOperation::Replace: return LabelOperation::Replace;
     }
     return LabelOperation::Add;
+}
+
+/// With rows that were picked in a view: where they begin the label, it was made from there.
+NamedLabel marked(NamedLabel label, const std::vector<std::uint8_t>& rows, ui::SetOperation operation, const Camera& camera, const Vec3& up) {
+    if (operation == ui::SetOperation::Replace || count_labelled(label) == 0) label.looked_from = fmt::format("{:.0f}", looked_from(camera, up));
+    return combine(std::move(label), rows, operation_of(operation));
 }
 
 }  // namespace
@@ -122,7 +129,7 @@ void Application::select(const ui::ScreenRegion& region, ui::SetOperation operat
     const char* names[] = {"Add to label", "Remove from label", "Intersect label", "Select"};
     if (count > 0 || operation == ui::SetOperation::Replace || operation == ui::SetOperation::Intersect)
         change_label(names[static_cast<int>(operation)],
-                     [&](NamedLabel label) { return combine(std::move(label), rows, operation_of(operation)); },
+                     [&](NamedLabel label) { return marked(std::move(label), rows, operation, model_.camera, document_.state().info.up); },
                      fmt::format("stroke{}", stroke_));
     if (stroke_ends) ++stroke_;
 }
@@ -140,10 +147,10 @@ void Application::cut_out(const ui::ScreenRegion& box, ui::SetOperation operatio
                      control.report("cutting out what is in the box", 0, 0);
                      *rows = pipeline::cut_out(set, request, open_segmenters(job, cache).clicks.get(), control);
                  },
-                 [this, rows, operation](const Error* error) {
+                 [this, rows, operation, camera = request.camera, up = request.up](const Error* error) {
                      if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
                      if (rows->size() != document_.state().current.size()) return;   // another scene meanwhile
-                     change_label("Cut out", [&](NamedLabel label) { return combine(std::move(label), *rows, operation_of(operation)); });
+                     change_label("Cut out", [&](NamedLabel label) { return marked(std::move(label), *rows, operation, camera, up); });
                  }});
 }
 

@@ -50,6 +50,7 @@ EditRecipe Application::current_recipe() const {
     recipe.job.precision = model_.model_settings.precision;
     recipe.job.threads = model_.model_settings.threads;
     recipe.job.front = model_.model_settings.front;
+    if (label_drives_edit()) recipe.job.looked_from = active_label()->looked_from;
     auto set_by_user = changed_fields("request", recipe.request, defaults_.request);
     set_by_user.merge(changed_fields("dreambooth", recipe.dreambooth, defaults_.dreambooth));
     set_by_user.merge(changed_fields("guidance", recipe.guidance, defaults_.guidance));

@@ -40,6 +40,7 @@ constexpr double LeastLead = 0.005;   // of a front by words: below, fronts are 
 /// Of a front by viewpoints (nats per picture). Of 512 held-out drawn scenes five are below, off by 30 degrees (median; 5 of all). Of the
 /// photographed scenes, which the classifier has not seen the like of, house and tree are below, the statue has 1.6 to 2.2.
 constexpr double LeastGain = 1.5;
+constexpr double SureGain = 2.5;      // 26 readings of drawn scenes have 2.7 to 5.3 (`eval --seed 55`), of photographed ones at most 2.2
 constexpr double Sharpness = 4;       // of how likely a front is: pictures that count for themselves, as neighbours err alike
 constexpr double LeastShare = 1e-3;   // of a sector: one picture alone rules nothing out
 
@@ -120,6 +121,7 @@ FrontReading front_by_viewpoints(const std::vector<std::vector<float>>& seen, co
     best.azimuth = std::remainder(2 * Pi * (middle + offset / weights) / Fronts, 2 * Pi);
     best.lead = *peak - std::accumulate(fit.begin(), fit.end(), 0.0) / Fronts;
     best.clear = best.lead >= LeastGain;
+    best.sure = best.lead >= SureGain;
     return best;
 }
 
@@ -132,6 +134,12 @@ FrontReading read_front(Recognition& recognition, const std::string& sentence, c
         if (const auto read = front_by_viewpoints(seen, azimuths); read.clear) return read;
     }
     return front_by_words(recognition, sentence, pictures, azimuths);
+}
+
+std::optional<double> chosen_front(const std::optional<FrontReading>& read, const std::optional<double>& looked_from) {
+    if (looked_from && !(read && read->sure)) return looked_from;
+    if (read && read->clear) return read->azimuth;
+    return std::nullopt;
 }
 
 }  // namespace gse::edit

@@ -1,6 +1,7 @@
 // From where a scene shows its front, by the model's own picture encoder.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct FrontReading {
     double azimuth = 0;   // of the cameras that see the front, radians in [-pi, pi)
     double lead = 0;      // how much better the pictures fit it: see below
     bool clear = false;   // the lead is large enough to go by
+    bool sure = false;    // even where somebody else says otherwise: of viewpoints, larger than of anything photographed
 };
 
 /// The azimuth with which the words for the sides fit the pictures best. A picture may like all words more than another
@@ -39,5 +41,8 @@ FrontReading front_by_viewpoints(const std::vector<std::vector<float>>& seen, co
 /// By viewpoints where the model has learned to tell them and they are clear, else by words.
 FrontReading read_front(Recognition& recognition, const std::string& sentence, const std::vector<Image>& pictures,
                         const std::vector<double>& azimuths);
+
+/// Of what pictures showed and of the side from which somebody labelled the thing, the front; nothing where none is known.
+std::optional<double> chosen_front(const std::optional<FrontReading>& read, const std::optional<double>& looked_from);
 
 }  // namespace gse::edit

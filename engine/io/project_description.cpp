@@ -219,6 +219,7 @@ Json to_json(const ProjectDescription::LabelEntry& entry) {
             {"attention_threshold", any_number(entry.label.attention_threshold)},
             {"found_for", entry.label.found_for},
             {"left_out", entry.label.left_out},
+            {"looked_from", entry.label.looked_from},
             {"weight", entry.weight},
             {"manual", entry.manual},
             {"absent", entry.absent}};
@@ -230,6 +231,7 @@ ProjectDescription::LabelEntry read_label(const Json& json, const std::string& n
     fields.text("name", entry.label.name);
     fields.text("found_for", entry.label.found_for);
     fields.text("left_out", entry.label.left_out);
+    fields.text("looked_from", entry.label.looked_from);
     double threshold = static_cast<double>(entry.label.threshold);
     fields.number("threshold", threshold, true);
     if (std::isnan(threshold)) throw_field(fields.full("threshold"), "is not a number");

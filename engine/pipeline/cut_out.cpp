@@ -182,6 +182,11 @@ CutOutRequest cut_out_request(const std::string& text, const Scene& scene, const
     return request;
 }
 
+double azimuth_of_box(const std::string& text) {
+    const auto numbers = numbers_of(text);
+    return numbers.size() == 7 ? numbers[4] : RenderParameters{}.azimuth;
+}
+
 std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& request, edit::Segmenter* segmenter, const JobControl& control) {
     const auto section = section_of(request);
     if (!section) return std::vector<std::uint8_t>(set.size(), 0);

@@ -26,6 +26,9 @@ struct CutOutRequest {
 /// ",AZIMUTH,ELEVATION,ZOOM" behind it, as `render` takes them. Throws Error (InvalidArgument).
 CutOutRequest cut_out_request(const std::string& text, const Scene& scene, const std::string& up);
 
+/// The azimuth of that picture, degrees.
+double azimuth_of_box(const std::string& text);
+
 /// One byte per row of `set`: 1 for the thing, from all sides. `segmenter` cuts it out of a picture of the view, told the box around the area,
 /// and then out of views around it (cut_out_sides.h); null = the one that needs no weights. Where the first comes to nothing, the area itself
 /// is the outline. Throws Error (Cancelled).

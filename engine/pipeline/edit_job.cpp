@@ -135,6 +135,7 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});
     parse_front(recipe_.job.front);
+    parse_front(recipe_.job.looked_from, "--looked-from");
     raster::require_rasterizer(recipe_.job.rasterizer);
 }
 

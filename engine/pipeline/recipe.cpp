@@ -91,10 +91,12 @@ std::string search_key(const EditRecipe& recipe) {
     Json key{fields_to_json<edit::EditWords>(recipe.request), fields_to_json<edit::SearchSettings>(recipe.request),
              fields_to_json(recipe.attention), surroundings(recipe.job), recipe.job.use_label};
     if (!recipe.job.cut_out.empty()) key.push_back({{"cut_out", recipe.job.cut_out}});
+    if (!recipe.job.looked_from.empty()) key.push_back({{"looked_from", recipe.job.looked_from}});
     if (recipe.use_dreambooth) key.push_back(fields_to_json(recipe.dreambooth));
     if (!recipe.job.segmenter.empty()) key.push_back({{"segmenter", recipe.job.segmenter}});
     if (recipe.job.rasterizer == "cuda") key.push_back({{"rasterizer", recipe.job.rasterizer}});   // other last digits
     if (!recipe.job.text_segmenter.empty()) key.push_back({{"text_segmenter", recipe.job.text_segmenter}});
+    if (!recipe.guidance.plain_ground) key.push_back({{"plain_ground", false}});
     return key.dump();
 }
 

@@ -33,6 +33,7 @@ struct JobParameters {
     std::string front;
     bool use_label = false;
     std::string cut_out;
+    std::string looked_from;
     int turntable_size = 480;
     int turntable_frames = 60;
 
@@ -67,6 +68,9 @@ struct JobParameters {
         f("cut_out", self.cut_out,
           "Box around the thing that may change, LEFT,TOP,RIGHT,BOTTOM as shares of the picture that \"render\" makes, and where that is not "
           "the one of its defaults ,AZIMUTH,ELEVATION,ZOOM behind it: the thing is cut out of it, all its sides, and nothing is looked for.");
+        f("looked_from", self.looked_from,
+          "Azimuth in degrees from which the label was made by hand, or empty; a box of cut_out tells its own. That side is the front where "
+          "none is given and the model's encoder is not sure of one.");
         f("turntable_size", self.turntable_size, "Side of each half of the before/after film in pixels.",
           Range{16, 4096});
         f("turntable_frames", self.turntable_frames, "Frames of the before/after film.", Range{1, 10000});

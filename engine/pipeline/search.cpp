@@ -21,6 +21,7 @@
 #include "engine/edit/view_vote.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/localize/focus.h"
+#include "engine/pipeline/cut_out.h"
 
 namespace gse::pipeline {
 namespace {
@@ -106,6 +107,7 @@ edit::LocateResult look_from(Workplace& workplace, const Views& views, const Edi
     auto tools = workplace.tools(views, control);
     const auto drawing = workplace.place_drawing(recipe.request);
     tools.drawing = drawing.get();
+    tools.plain_ground = recipe.guidance.plain_ground;
     return edit::locate(question(workplace, recipe, views, label), tools);
 }
 
@@ -159,20 +161,35 @@ private:
         distances_ = std::move(worth);
     }
 
-    /// The views with the front that their pictures show, where the recipe leaves it open and the model's encoder can tell.
+    /// From where the label was made by hand, radians; nothing where it was not, or that is not known.
+    std::optional<double> looked_from() const {
+        if (hints_.label.empty()) return std::nullopt;
+        const auto& job = recipe_.job;
+        if (!job.looked_from.empty() || job.cut_out.empty()) return parse_front(job.looked_from, "--looked-from");
+        return azimuth_of_box(job.cut_out) * Degree;
+    }
+
+    /// The views with their front, where the recipe leaves it open: that which their pictures show, where the model's encoder can tell, or else
+    /// the side that whoever labelled the thing looked at.
     Views faced(Views views) {
+        if (!recipe_.job.front.empty() || !views.words.empty() || !edit::knows(workplace_.model().known_words(), "front side back view")) return views;
+        const auto looked = looked_from();
+        const auto front = edit::chosen_front(front_shown(views), looked);
+        if (front && front == looked) log::info("the side from which the label was made ({:.0f} degrees) is taken for the front", *front / Degree);
+        return front ? facing(std::move(views), *front, recipe_) : views;
+    }
+
+    std::optional<edit::FrontReading> front_shown(const Views& views) {
         auto& recognition = workplace_.recognition();
-        if (!recipe_.job.front.empty() || !views.words.empty() || !recognition.compares() ||
-            !edit::knows(workplace_.model().known_words(), "front side back view"))
-            return views;
+        if (!recognition.compares()) return std::nullopt;
         const auto some = farthest_views(views.views, FrontViews);
-        if (some.size() < 3) return views;
+        if (some.size() < 3) return std::nullopt;
         std::vector<double> azimuths;
         for (const auto& view : some) azimuths.push_back(azimuth_of(view.camera, views.orbit));
         const auto pictures = workplace_.pictures(some, render_settings(workplace_.scene(), recipe_.request), control_);
         const auto read = edit::read_front(recognition, edit::sentence_before(recipe_.request), pictures, azimuths);
         log::info("the front is seen at {:.0f} degrees (lead {:.4f})", read.azimuth / Degree, read.lead);
-        return read.clear ? facing(std::move(views), read.azimuth, recipe_) : views;
+        return read;
     }
 
     edit::LocateResult look(const EditRecipe& recipe, const Views& views, const std::vector<std::uint8_t>& label) {

@@ -78,6 +78,14 @@ double azimuth_of(const Camera& camera, const OrbitParameters& orbit) {
     return std::atan2(dot(direction, side), dot(direction, front));
 }
 
+double looked_from(const Camera& camera, const Vec3& up) {
+    OrbitParameters orbit;
+    orbit.up = up;
+    orbit.centre = camera.centre() + camera.forward();
+    const double degrees = std::round(azimuth_of(camera, orbit) / Degree);
+    return std::fmod(degrees + 360, 360);
+}
+
 Views facing(Views views, double front, const EditRecipe& recipe) {
     views.front = direction_at(views.orbit, front);
     views.front_read = front;
@@ -130,7 +138,7 @@ std::vector<std::string> words_around(const Views& views, bool sided) {
     return words;
 }
 
-std::optional<double> parse_front(const std::string& text) {
+std::optional<double> parse_front(const std::string& text, const std::string& option) {
     if (text.empty() || text == "none") return std::nullopt;
     std::size_t used = 0;
     double value = 0;
@@ -140,7 +148,7 @@ std::optional<double> parse_front(const std::string& text) {
         used = 0;
     }
     if (used == 0 || used != text.size() || !std::isfinite(value))
-        throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not an angle", "give --front in degrees, for example 0, or none");
+        throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not an angle", "give " + option + " in degrees, for example 0, or none");
     return value * Degree;
 }
 

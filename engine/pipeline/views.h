@@ -58,7 +58,10 @@ OrbitParameters nearer(OrbitParameters orbit, double share);
 std::vector<View> farthest_views(const std::vector<View>& views, std::size_t count);
 
 /// --front in radians; nothing where it is left open or "none". Throws Error (InvalidArgument).
-std::optional<double> parse_front(const std::string& text);
+std::optional<double> parse_front(const std::string& text, const std::string& option = "--front");
+
+/// Azimuth, as orbit_camera() counts it, of an orbit's camera that looks the same way; degrees in [0,360), whole ones.
+double looked_from(const Camera& camera, const Vec3& up);
 
 /// How views of a scene are rendered for a run.
 raster::Settings render_settings(const Scene& scene, const edit::EditRequest& request);

@@ -2,7 +2,10 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include "engine/base/file.h"
+#include "engine/pipeline/views.h"
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 
@@ -53,7 +56,7 @@ DOCTEST_TEST_CASE("a thing in a box is cut out in the background, one step of un
     session.open_bear();
     auto& app = session.app;
     ui::ScreenRegion box;   // around the bear, which is small in the home view
-    const auto& camera = app.model().camera;
+    const auto camera = app.model().camera;
     const auto cx = static_cast<float>(camera.width) / 2, cy = static_cast<float>(camera.height) / 2;
     box.polygon = {{cx - 40, cy - 40}, {cx + 40, cy - 40}, {cx + 40, cy + 40}, {cx - 40, cy + 40}};
     app.cut_out(box, ui::SetOperation::Replace);
@@ -65,6 +68,20 @@ DOCTEST_TEST_CASE("a thing in a box is cut out in the background, one step of un
     // All of the bear, which has six of ten splats, and nothing of the grass.
     DOCTEST_CHECK(cut > state.current.size() * 55 / 100);
     DOCTEST_CHECK(cut < state.current.size() * 65 / 100);
+    // From where it was begun is its front later; more of it from elsewhere changes nothing of that.
+    const auto looked = [&] { return app.document().state().labels.at(0).looked_from; };
+    const auto first = fmt::format("{:.0f}", pipeline::looked_from(camera, state.info.up));
+    DOCTEST_CHECK(looked() == first);
+    app.set_camera(Camera::look_at(camera.centre() + camera.rotation.row(0) * 2.0, camera.centre() + camera.forward() * 4.0, state.info.up, 0.9, camera.width, camera.height));
+    app.update(session.preview);
+    app.select(box, ui::SetOperation::Add, true);
+    DOCTEST_CHECK(looked() == first);
+    app.select(box, ui::SetOperation::Replace, true);
+    DOCTEST_CHECK(looked() != first);
+    app.set_camera(camera);
+    app.update(session.preview);
+    app.undo();
+    app.undo();
     app.undo();
     DOCTEST_CHECK(app.document().state().labels.empty());
     app.cut_out(box, ui::SetOperation::Replace);

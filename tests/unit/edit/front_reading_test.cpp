@@ -138,3 +138,20 @@ DOCTEST_TEST_CASE("words of a side") {
     DOCTEST_CHECK(view_words(-Pi / 2, true) == "right side view");
     DOCTEST_CHECK(view_words(-0.7, true) == "front right view");
 }
+
+DOCTEST_TEST_CASE("the side that was looked at is the front, unless the pictures are sure of another") {
+    const auto by_words = read<ToyEncoder>(0.7, 1, 24), sharp = read<ToyClassifier>(0.7, 30, 24), dull = read<ToyClassifier>(0.7, 2, 24);
+    DOCTEST_REQUIRE(by_words.clear);
+    DOCTEST_CHECK_FALSE(by_words.sure);
+    DOCTEST_REQUIRE(sharp.sure);
+    DOCTEST_REQUIRE(dull.clear);
+    DOCTEST_REQUIRE_FALSE(dull.sure);
+    for (const auto& unsure : {by_words, dull}) {
+        DOCTEST_CHECK(chosen_front(unsure, -2.0) == -2.0);
+        DOCTEST_CHECK(chosen_front(unsure, std::nullopt) == unsure.azimuth);
+    }
+    DOCTEST_CHECK(chosen_front(sharp, -2.0) == sharp.azimuth);
+    DOCTEST_CHECK(chosen_front(std::nullopt, -2.0) == -2.0);
+    DOCTEST_CHECK_FALSE(chosen_front(std::nullopt, std::nullopt).has_value());
+    DOCTEST_CHECK_FALSE(chosen_front(FrontReading{}, std::nullopt).has_value());
+}

@@ -45,6 +45,7 @@ inline ProjectData random_project(const SceneSource& source, std::uint64_t seed)
     }
     project.state.labels = {random_label(project.state, seed), random_label(project.state, seed + 1)};
     project.state.labels[0].left_out = "3, 17";
+    project.state.labels[0].looked_from = "270";
     project.state.labels[0].attention_threshold = 0.3125;   // the other was not found by a search
     project.state.labels[1].weight = nullptr;
     project.state.labels[1] = with_bits(project.state.labels[1]);
@@ -78,7 +79,7 @@ inline bool same_label(const NamedLabel& a, const NamedLabel& b) {
                             ? a.absent == b.absent
                             : a.absent->ids == b.absent->ids && a.absent->weight == b.absent->weight &&
                                   a.absent->manual == b.absent->manual;
-    return absent && a.name == b.name && a.threshold == b.threshold && a.attention_threshold == b.attention_threshold && a.left_out == b.left_out && same_array(a.weight, b.weight) &&
+    return absent && a.name == b.name && a.threshold == b.threshold && a.attention_threshold == b.attention_threshold && a.left_out == b.left_out && a.looked_from == b.looked_from && same_array(a.weight, b.weight) &&
            same_array(a.manual, b.manual) && same_array(a.bits, b.bits);
 }
 

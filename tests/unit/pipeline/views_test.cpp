@@ -60,3 +60,19 @@ DOCTEST_TEST_CASE("azimuths and elevations of views are those of the orbit that 
         DOCTEST_CHECK(elevations[v] == doctest::Approx(places[v].second).epsilon(1e-9));
     }
 }
+
+DOCTEST_TEST_CASE("a label remembers the azimuth of the camera that it was made from, wherever that stood") {
+    using namespace gse;
+    for (const Vec3& up : {Vec3{0, -1, 0}, Vec3{0, 0, 1}, normalized({0.2, 1, -0.3})}) {
+        OrbitParameters orbit;
+        orbit.up = up;
+        orbit.centre = {3, -1, 2};
+        for (int degrees = 0; degrees < 360; degrees += 30) {
+            const auto camera = orbit_camera(orbit, degrees * pipeline::Degree, 64, 48);
+            DOCTEST_CHECK(pipeline::looked_from(camera, up) == degrees);
+            auto moved = camera;
+            moved.translation = moved.translation + Vec3{1, 2, 3};
+            DOCTEST_CHECK(pipeline::looked_from(moved, up) == degrees);
+        }
+    }
+}
