@@ -131,6 +131,7 @@ void Application::refresh_jobs(const JobStatus& work, const JobStatus& files) {
     model_.result_waiting = pending_.has_value() && !work_.running();
     model_.result_splats = pending_ ? pending_->set.size() : 0;
     model_.result_changed_outside = pending_ ? pending_->changed_outside_label : 0;
+    model_.result_psnr_outside_db = pending_ ? pending_->psnr_outside_db : 0;
     model_.result_seconds = pending_ ? pending_->seconds : 0;
     vote_if_wanted();
 }

@@ -330,10 +330,7 @@ void Application::finish_edit(const Error* error) {
     ++content_;
     const bool said = job_ && !job_->found();   // with its evidence
     if (error != nullptr && error->code() != ErrorCode::Cancelled && !said) report_error(*error);
-    if (!pending_) return;
-    untint();
-    toast(fmt::format("Outside the label {} splats changed, PSNR {:.1f} dB. Apply keeps the edit.",
-                      pending_->changed_outside_label, pending_->psnr_outside_db));
+    if (pending_) untint();
 }
 
 void Application::apply_result() {

@@ -347,6 +347,7 @@ struct ViewModel {
     bool result_waiting = false;                 // an edit is done and asks: apply or discard
     std::size_t result_splats = 0;               // of the result that waits
     std::size_t result_changed_outside = 0;      // splats outside the label that are not as they were
+    double result_psnr_outside_db = 0;
     double result_seconds = 0;                   // that it took
     // Rest
     std::vector<ModelView> models;

@@ -33,14 +33,23 @@ void end_floating(Context& context) {
 void draw_result_bar(Context& context, ImVec2 at) {
     begin_floating("result bar", at);
     const auto& model = context.model;
-    ImGui::TextUnformatted(fmt::format("Edit done in {}", duration_text(model.result_seconds)).c_str());
-    note(context, "result.time");
-    // What Apply is decided by stands beside it.
     const std::size_t changed = model.result_changed_outside;
-    bullet_dot(changed == 0 ? palette::Good : palette::Bad);
-    ImGui::TextUnformatted(fmt::format("{} splat{} outside the label changed", count_text(changed), changed == 1 ? "" : "s").c_str());
-    note(context, "result.proof");
+    const auto time = fmt::format("Edit done in {}", duration_text(model.result_seconds));
+    const auto proof = fmt::format("{} splat{} outside the label changed", count_text(changed), changed == 1 ? "" : "s");
     const bool wipes = context.model.comparison == Comparison::Wipe;
+    const float words = ImGui::CalcTextSize(time.c_str()).x + ImGui::CalcTextSize(proof.c_str()).x + context.em * 3;
+    const float buttons = button_width("Stop comparing") + button_width("Apply") + button_width("Discard") + context.em * 2;
+    const bool one_line = words + buttons < context.state.viewport.high.x - context.state.viewport.low.x - context.em * 2;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(time.c_str());
+    note(context, "result.time");
+    ImGui::SameLine();
+    // What Apply is decided by stands beside it.
+    bullet_dot(changed == 0 ? palette::Good : palette::Bad);
+    ImGui::TextUnformatted(proof.c_str());
+    note(context, "result.proof");
+    tooltip(fmt::format("PSNR outside the label: {:.1f} dB", model.result_psnr_outside_db));
+    if (one_line) ImGui::SameLine();
     if (button(context, {.name = "result.compare",
                          .text = wipes ? "Stop comparing" : "Compare",
                          .tooltip = "Wipe between before and after (V)"}))

@@ -179,7 +179,7 @@ void draw_wipe(Context& context, ImDrawList* list) {
 /// A line below the numbers: what the active tool does, and with which keys; as much as fits.
 void draw_hint(Context& context, ImDrawList* list) {
     const auto& state = context.state.viewport;
-    if (state.tool == Tool::Orbit) return;
+    if (state.tool == Tool::Orbit || context.model.result_waiting) return;   // the bar of the result lies there
     std::string text = state.tool == Tool::Brush       ? "Brush: drag to paint"
                        : state.tool == Tool::Rectangle ? "Rectangle: drag a box"
                        : state.tool == Tool::CutOut    ? "Cut out: drag a box around a thing"
@@ -187,7 +187,7 @@ void draw_hint(Context& context, ImDrawList* list) {
     const float room = state.high.x - state.low.x - context.em * 2;
     for (const char* part :
          {"Shift add", "Ctrl remove", "Alt intersect",
-          state.tool == Tool::CutOut     ? "labels all its sides"
+          state.tool == Tool::CutOut     ? "labels all its sides; you see its front"
           : context.view.front_only ? "N: front only"
                                     : "N: all the way through",
           state.tool == Tool::Brush ? "[ ] size" : "", "middle drag orbits", "Esc leaves"}) {
