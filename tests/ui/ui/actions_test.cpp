@@ -416,8 +416,10 @@ DOCTEST_TEST_CASE("where Apply is decided stands what it took and what it left a
     for (const char* name : {"result.time", "result.proof"}) {
         DOCTEST_REQUIRE(harness.find(name) != nullptr);
         DOCTEST_CHECK(harness.rect(name).visible);
-        DOCTEST_CHECK(harness.rect(name).y < harness.rect("result.apply").y);
+        const auto words = harness.rect(name), compare = harness.rect("result.compare");
+        DOCTEST_CHECK((words.x + words.width <= compare.x || words.y + words.height <= compare.y));   // beside them, or above where that is too wide
     }
+    DOCTEST_CHECK(harness.rect("result.apply").y < harness.rect("viewport").y + harness.rect("viewport").height / 4);   // not over what was edited
 }
 
 DOCTEST_TEST_CASE("history: stack and steps") {
