@@ -147,7 +147,7 @@ void draw_bars(Context& context) {
     const float top = state.low.y + context.em * 2.6f, middle = (state.low.x + state.high.x) * 0.5f;
     state.bars_bottom = state.low.y;
     if (!context.scene_open()) return;
-    if (context.model.result_waiting) draw_result_bar(context, {middle, top});
+    if (context.model.result_waiting) draw_result_bar(context, {middle, state.low.y + context.em * 0.3f});
     if (context.model.hidden > 0) draw_hidden_bar(context, {middle, std::max(top, state.bars_bottom)});
     if (const auto* view = view_looked_through(context)) draw_evidence_bar(context, {middle, std::max(top, state.bars_bottom)}, *view);
     const auto& found = context.model.recoverable;

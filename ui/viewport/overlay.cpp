@@ -153,7 +153,8 @@ void draw_hud(Context& context, ImDrawList* list) {
         const std::string longer = text.empty() ? part : fmt::format("{}   {}", text, part);
         if (!part.empty() && ImGui::CalcTextSize(longer.c_str()).x < room) text = longer;
     }
-    shaded_text(context, list, {state.low.x + context.em * 0.5f, state.low.y + context.em * 0.5f}, text);
+    const float below = model.result_waiting ? 3.2f : 0.5f;   // its bar lies at the very top, over as little of the scene as can be
+    shaded_text(context, list, {state.low.x + context.em * 0.5f, state.low.y + context.em * below}, text);
 }
 
 void draw_wipe(Context& context, ImDrawList* list) {
