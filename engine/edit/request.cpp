@@ -130,6 +130,8 @@ std::vector<Candidate> candidates_of(const Words& words, const std::string& sour
         add_phrase(0);
         for (std::size_t i = 0; i < words.size(); ++i)
             if (ends_phrase(words[i])) add_phrase(i + 1);
+        // "A bear wearing a crown" for the hat: what is worn takes the place of what is worn.
+        std::stable_partition(list.begin(), list.end(), [&](const Candidate& candidate) { return has_usual_place(source) && has_usual_place(candidate.head); });
         return list;
     }
     const auto at = static_cast<std::size_t>(found - words.begin());
@@ -140,6 +142,21 @@ std::vector<Candidate> candidates_of(const Words& words, const std::string& sour
     for (std::size_t place = at; place < words.size(); ++place)
         if (words[place] == source) add_descriptions(words, place, list);
     return list;
+}
+
+}  // namespace
+
+namespace {
+
+/// The thing that has the source at `at` on, or holds it: "bear" in "a bear wearing a red hat"; empty where none does.
+std::string wearer_of(const Words& words, std::size_t at) {
+    static const Words having{"wearing", "with", "has", "having", "holding", "carrying", "in"};
+    std::size_t first = at;
+    while (first > 0 && !ends_phrase(words[first - 1])) --first;   // of the source's phrase
+    if (first < 2 || !contains(having, words[first - 1])) return {};
+    std::size_t begin = first - 1;
+    while (begin > 0 && !ends_phrase(words[begin - 1])) --begin;
+    return head_of_phrase(words, begin);
 }
 
 }  // namespace
@@ -163,8 +180,14 @@ std::vector<std::string> possible_targets(const std::string& prompt, const std::
         if (word != source && says_something(word) && !contains(targets, word) && !contains(said, word)) targets.push_back(word);
     };
     for (const auto& candidate : candidates_of(words, source)) add(candidate.head);
+    const auto found = std::find(words.begin(), words.end(), source);
+    // What wears the source is there as that is, where the sentence has something else to say of it.
+    const auto wearer = found != words.end() && targets.front() != source ? wearer_of(words, static_cast<std::size_t>(found - words.begin())) : std::string();
     for (std::size_t i = 0; i < words.size(); ++i)
-        if (i == 0 || ends_phrase(words[i - 1])) add(head_of_phrase(words, i));
+        if (i == 0 || ends_phrase(words[i - 1])) {
+            const auto head = head_of_phrase(words, i);
+            if (head != wearer) add(head);
+        }
     return targets;
 }
 

@@ -270,6 +270,9 @@ DOCTEST_TEST_CASE("the target is guessed from the sentence") {
         DOCTEST_CHECK_MESSAGE(edit::planned_mode(golden) == edit::EditMode::Modify, sentence);
     }
     DOCTEST_CHECK(guessed_target("a panda on the grass", "bear") == "panda");
+    DOCTEST_CHECK(guessed_target("a bear wearing a golden crown", "hat") == "crown");   // worn for worn
+    DOCTEST_CHECK(guessed_target("a bear wearing a golden crown", "dog") == "bear");
+    DOCTEST_CHECK(guessed_target("a bear wearing a red hat", "hat") == "red");
     DOCTEST_CHECK(guessed_target("a photo of a bear", "bear") == "bear");
     DOCTEST_CHECK(guessed_target("bear", "bear") == "bear");
     DOCTEST_CHECK(guessed_target("a bear with", "bear") == "bear");
@@ -286,6 +289,9 @@ DOCTEST_TEST_CASE("all that a sentence says of the source or names may be its ne
     DOCTEST_CHECK(possible("a red ball beside a bear", "bear") == Words{"bear", "ball"});   // the sentence alone does not tell
     DOCTEST_CHECK(possible("a blue bear", "bear", {"a", "blue", "bear"}) == Words{"blue"});
     DOCTEST_CHECK(possible("bear", "bear") == Words{"bear"});
+    // What wears the source is there.
+    DOCTEST_CHECK(edit::possible_targets("a bear wearing a red hat on the grass", "hat", {}) == std::vector<std::string>{"red", "grass"});
+    DOCTEST_CHECK(edit::possible_targets("a big bear with a hat", "hat", {}) == std::vector<std::string>{"hat", "bear"});
 }
 
 DOCTEST_TEST_CASE("what applied edits said already is no news") {
