@@ -10,7 +10,7 @@
 namespace gse::edit {
 namespace {
 
-constexpr double GroundHeight = 0.25;   // of a figure's height, up and down from the foot: a ground is not quite level
+constexpr double GroundHeight = 0.25;   // of a figure's height, up from the foot: a ground is not quite level
 constexpr double Above = 20;            // radii: from so far the picture is all but a parallel projection
 constexpr int Side = 64;                // pixels
 
@@ -26,7 +26,7 @@ double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, 
         const auto p = set.position().subspan(row * 3, 3);
         const Vec3 from = Vec3{p[0], p[1], p[2]} - foot;
         const double height = dot(from, above), way = length(from - above * height);
-        ground[row] = bits[row] == 0 && std::abs(height) <= GroundHeight * figure && way <= 2 * outer ? 1 : 0;   // also not what is not a number
+        ground[row] = bits[row] == 0 && height <= GroundHeight * figure && way <= 2 * outer ? 1 : 0;   // also not what is not a number
     }
     const GaussianSet rows = set.filtered(ground);
     if (rows.empty()) return 0;

@@ -10,7 +10,8 @@
 namespace gse::edit {
 
 /// How much of the ground around a thing the rows cover that `bits` [N] do not label, in [0,1]: the mean opacity, seen from straight above, of
-/// those near the height of its foot, in a ring from the thing itself to as far out as a figure of its size is high. 0 where nothing stands.
+/// those at the height of its foot and below (a hat is worn above the ground), in a ring from the thing itself to as far out as a figure of its
+/// size is high. 0 where nothing stands.
 double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, const Standing& standing, const Vec3& up, raster::Rasterizer& rasterizer);
 
 }  // namespace gse::edit

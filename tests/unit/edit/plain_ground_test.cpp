@@ -193,7 +193,7 @@ DOCTEST_TEST_CASE("how much ground there is around a thing is seen from above: a
         return ground_cover(column.set, column.bits, standing, Up, *rasterizer);
     };
     const auto in_nothing = [&](const Column& column) { return ground_under("a cat", column.set, column.bits, Up, {0, 0, -1}, *rasterizer)->in_nothing; };
-    const auto field = column_on(1.6, 0), plinth = column_on(0.3, 0), bare = column_on(-1, 0), roof = column_on(1.6, 0.8);
+    const auto field = column_on(1.6, 0), plinth = column_on(0.3, 0), bare = column_on(-1, 0), roof = column_on(1.6, 0.8), below = column_on(1.6, -1.5);
     DOCTEST_CHECK(cover(field) > 0.95);
     DOCTEST_CHECK_FALSE(in_nothing(field));
     DOCTEST_CHECK(cover(plinth) > 0);
@@ -201,6 +201,7 @@ DOCTEST_TEST_CASE("how much ground there is around a thing is seen from above: a
     DOCTEST_CHECK(cover(bare) == 0);
     DOCTEST_CHECK(in_nothing(bare));
     DOCTEST_CHECK(cover(roof) == 0);   // over its head is no ground
+    DOCTEST_CHECK(cover(below) > 0.95);   // it is worn, or held
     const std::vector<std::uint8_t> other(3, 1);
     DOCTEST_CHECK_FALSE(ground_under("a cat", field.set, other, Up, {0, 0, -1}, *rasterizer).has_value());
 }
