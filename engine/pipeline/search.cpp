@@ -250,9 +250,20 @@ private:
         const auto mode = edit::decide_mode(recipe_.request, std::nullopt).first;
         const auto focused = focused_on(glance.result.label, mode, glance.orbit, views_.front);
         const bool frames = focused.radius < MostBack * glance.orbit.radius;   // a thing; a ground is seen as well from here
-        if (framed_as_figure(mode) && frames) return moved_in(views_on(focused, recipe_), {});   // a glance tells a thing's size roughly
-        const Views views = faced(views_on(frames ? focused : glance.orbit, recipe_));
-        return {views, recipe_, {}, look(recipe_, views, {}), target_read_, {}};
+        const Views views = views_on(frames ? focused : glance.orbit, recipe_);
+        Located near = framed_as_figure(mode) && frames ? moved_in(views, {}) : seen_from(faced(views));   // a glance tells a thing's size roughly
+        return near.found() || !frames ? near : seen_from_afar(glance, std::move(near));
+    }
+
+    Located seen_from(const Views& views) { return {views, recipe_, {}, look(recipe_, views, {}), target_read_, {}}; }
+
+    /// So near that it fills the pictures the model may not know what it knew within its surroundings: a hat without who wears it.
+    Located seen_from_afar(const Glance& glance, Located near) {
+        Located far = seen_from(faced(views_on(glance.orbit, recipe_)));
+        if (!far.found()) return near;
+        log::info("\"{}\" is not known from near by: it is looked for from farther off", far.result.word);
+        if (!framed_as_figure(far.result.mode) || far.result.mode == edit::EditMode::Add) return far;
+        return moved_in(near.views, *far.result.label.bits);   // where it is drawn anew
     }
 
     /// Looks from the views as they are, and once more from nearer where what was found is small.

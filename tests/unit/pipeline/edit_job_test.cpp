@@ -163,6 +163,33 @@ DOCTEST_TEST_CASE("edit job: what reaches beyond the pictures of the thing that 
     DOCTEST_CHECK(cut < 3);   // of 6
 }
 
+DOCTEST_TEST_CASE("edit job: what is worn is found from as far as its wearer is known, and what wears it is no news") {
+    synth::SceneSpec spec;
+    spec.object = "bear";
+    spec.material = "red";
+    spec.accessory = "hat";
+    spec.accessory_colour = "blue";
+    spec.seed = 7;
+    const auto scene = synth::generate(spec);
+    EditRecipe recipe;
+    recipe.request.source = "hat";   // fills the pictures where it is framed alone: there the network looks for one above it
+    recipe.request.prompt = "a bear wearing a green hat on the grass";
+    EditJob job(recipe, EditJobInput{scene.scene, {}, load_recipe_model({})}, JobControl{});
+    job.locate();
+    DOCTEST_REQUIRE(job.found());
+    DOCTEST_CHECK(job.located().mode == edit::EditMode::Modify);
+    DOCTEST_CHECK(job.recipe().request.target == "green");
+    const auto& bits = *job.located().label.bits;
+    DOCTEST_REQUIRE(bits.size() == scene.parts.size());
+    std::size_t both = 0, either = 0;
+    for (std::size_t row = 0; row < bits.size(); ++row) {
+        const bool hat = scene.parts[row] == synth::Part::Accessory;
+        both += hat && bits[row] != 0 ? 1 : 0;
+        either += hat || bits[row] != 0 ? 1 : 0;
+    }
+    DOCTEST_CHECK(both * 10 >= either * 7);
+}
+
 DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it open") {
     EditRecipe recipe = bear_recipe(false);
     recipe.request.views = 8;
