@@ -55,7 +55,9 @@ std::vector<Way> ways_to_draw(const neural::TextToImage& model, edit::EditMode m
 /// A plain ground under what changes, or under what something is added to; none where it stands on nothing, or is not asked for.
 std::optional<edit::GroundUnder> ground_under(Workplace& workplace, const GaussianSet& scene, const Located& located, const edit::EditPlan& plan, const EditRecipe& recipe) {
     if (!recipe.guidance.plain_ground || !edit::edits_by_views(recipe.request)) return std::nullopt;
-    const auto& bits = plan.mode == edit::EditMode::Add ? *located.result.source_label.bits : plan.label;
+    const bool adds = plan.mode == edit::EditMode::Add;
+    if (adds && recipe.request.source == recipe.request.target) return std::nullopt;   // to all of the scene
+    const auto& bits = adds ? *located.result.source_label.bits : plan.label;
     return edit::ground_under(recipe.request.prompt, scene, bits, located.views.orbit.up, located.views.front, workplace.painter().rasterizer());
 }
 
