@@ -263,7 +263,9 @@ private:
         if (!far.found()) return near;
         log::info("\"{}\" is not known from near by: it is looked for from farther off", far.result.word);
         if (!framed_as_figure(far.result.mode) || far.result.mode == edit::EditMode::Add) return far;
-        return moved_in(near.views, *far.result.label.bits);   // where it is drawn anew
+        Located drawn = moved_in(near.views, *far.result.label.bits);   // where it is drawn anew
+        drawn.result.confidence = far.result.confidence;                // that of the search which found it
+        return drawn;
     }
 
     /// Looks from the views as they are, and once more from nearer where what was found is small.

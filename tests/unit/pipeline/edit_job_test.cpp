@@ -188,6 +188,13 @@ DOCTEST_TEST_CASE("edit job: what is worn is found from as far as its wearer is 
         either += hat || bits[row] != 0 ? 1 : 0;
     }
     DOCTEST_CHECK(both * 10 >= either * 7);
+    recipe.request.prompt = "a bear wearing a golden crown";
+    EditJob other(recipe, EditJobInput{scene.scene, {}, load_recipe_model({})}, JobControl{});
+    other.locate();
+    DOCTEST_REQUIRE(other.found());
+    DOCTEST_CHECK(other.located().mode == edit::EditMode::Replace);
+    DOCTEST_CHECK(other.recipe().request.target == "crown");
+    DOCTEST_CHECK(other.located().confidence.value >= 0);   // it was looked for
 }
 
 DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it open") {
