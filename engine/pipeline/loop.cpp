@@ -38,8 +38,8 @@ struct Way {
 /// it does not: a photographed wooden statue became blue for "a golden statue" (score -0.12), and for "a red cat" a green bush (-0.18). As if
 /// they stood alone on a plain ground it drew them golden (0.38) and as a cat with a face (0.29). Of 72 restyles of the suite (seeds 1 to 4)
 /// none scored below 0.30. So where the first views hardly show what was asked, the next way is tried, and the best of all is used.
-/// What stands in nothing is drawn so at first: a man cut out of his surroundings became a green bear with a face (0.45; before black a dark
-/// lump, 0.27), and a golden figure (0.51; 0.28, no figure), and the wings that he got were wings.
+/// What stands in nothing is drawn so at first: a man cut out of his surroundings became a green bear with a face (0.45; without it a dark
+/// lump, 0.26), and a golden figure (0.51; 0.30, no figure), and the wings that he got were wings (0.51; 0.05).
 std::vector<Way> ways_to_draw(const neural::TextToImage& model, edit::EditMode mode, const EditRecipe& recipe, const std::optional<edit::GroundUnder>& ground) {
     const auto& guidance = recipe.guidance;
     std::vector<Way> ways{{guidance.restyle, false}};
