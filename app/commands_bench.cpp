@@ -172,6 +172,7 @@ void add_search_bench(CLI::App& bench, CommandContext& context) {
     command->add_option("--out", options->output, "Also write the JSON to this file");
     bind_fields(*command, options->parameters, "Cases");
     command->add_option("--views", options->settings.request.views, "Viewpoints of a search")->capture_default_str()->check(CLI::Range(3, 512));
+    command->add_flag("--plain-ground,!--no-plain-ground", options->settings.guidance.plain_ground, "Show the model a ground where scenes have none");
     command->callback([options, &context] {
         const auto json = bench_search(options->parameters, options->settings, context.job());
         if (!options->output.empty()) write_file(options->output, json.dump(2) + "\n");

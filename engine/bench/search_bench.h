@@ -14,6 +14,7 @@ struct SearchBenchParameters {
     int scenes = 24;
     std::uint64_t seed = 11;
     double least_overlap = 0.5;
+    bool ground = true;
 
     template <class Self, class F>
     static void visit_fields(Self& self, F&& f) {
@@ -21,6 +22,7 @@ struct SearchBenchParameters {
         f("seed", self.seed, "Seed of the scenes and words.");
         f("least_overlap", self.least_overlap, "Overlap (IoU) with the true splats from which a search counts as right.",
           Range{0, 1});
+        f("ground", self.ground, "Scenes with their ground; without it, things cut out of their surroundings.");
     }
 };
 

@@ -9,9 +9,10 @@ namespace gse::edit {
 namespace {
 
 /// Share of what is seen that all views have one opinion of: 1 when every splat is always or never inside the masks, 0 when
-/// all are half the time.
-double agreement_of(const localize::LabelWeights& weights) {
-    double decided = 0, all = 0;
+/// all are half the time. The ground that is no part of the scene counts as one splat, as that of other scenes does, which is never what was
+/// looked for.
+double agreement_of(const localize::LabelWeights& weights, const GroundEvidence& ground) {
+    double decided = std::max(0.0, ground.seen - 2 * ground.inside), all = ground.seen;
     for (std::size_t row = 0; row < weights.weight.size(); ++row) {
         decided += weights.evidence[row] * std::abs(2.0 * weights.weight[row] - 1);
         all += weights.evidence[row];
@@ -19,8 +20,8 @@ double agreement_of(const localize::LabelWeights& weights) {
     return all > 0 ? decided / all : 0;
 }
 
-double share_of(const localize::LabelWeights& weights, const std::vector<std::uint8_t>& bits) {
-    double labelled = 0, all = 0;
+double share_of(const localize::LabelWeights& weights, const std::vector<std::uint8_t>& bits, const GroundEvidence& ground) {
+    double labelled = 0, all = ground.seen;
     for (std::size_t row = 0; row < bits.size(); ++row) {
         labelled += bits[row] != 0 ? weights.evidence[row] : 0;
         all += weights.evidence[row];
@@ -61,13 +62,23 @@ double above_half(double value) { return std::clamp(2 * value - 1, 0.0, 1.0); }
 
 }  // namespace
 
+GroundEvidence ground_seen(const std::vector<ViewEvidence>& views, const std::vector<Image>& grounds) {
+    GroundEvidence ground;
+    for (std::size_t v = 0; v < grounds.size(); ++v)
+        for (std::size_t i = 0; !views[v].failed && i < grounds[v].data.size(); ++i) {
+            ground.seen += grounds[v].data[i];
+            ground.inside += views[v].mask.data[i] != 0 ? grounds[v].data[i] : 0;
+        }
+    return ground;
+}
+
 Confidence confidence_of(const std::vector<ViewEvidence>& views, const localize::LabelWeights& weights, const Label& label,
-                         double recognition) {
+                         double recognition, const GroundEvidence& ground) {
     Confidence confidence;
     const Attention attention = attention_of(views);
-    confidence.agreement = agreement_of(weights);
+    confidence.agreement = agreement_of(weights, ground);
     confidence.attention = attention.inside;
-    confidence.share = share_of(weights, *label.bits);
+    confidence.share = share_of(weights, *label.bits, ground);
     confidence.recognition = recognition;
     // Each part can refuse: views at odds, attention all over the picture, a word that others fit better.
     confidence.value = above_half(confidence.agreement) * above_half(attention.focus) * (recognition < 0 ? 1 : recognition);

@@ -46,4 +46,14 @@ double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, 
     return pixels > 0 ? covered / pixels : 0;
 }
 
+double ground_of_scene(const GaussianSet& set, const Standing& whole, const Vec3& up, raster::Rasterizer& rasterizer) {
+    const Vec3 above = normalized(up);
+    std::vector<std::uint8_t> rises(set.size(), 0);
+    for (std::size_t row = 0; row < rises.size(); ++row) {
+        const auto p = set.position().subspan(row * 3, 3);
+        rises[row] = dot(Vec3{p[0], p[1], p[2]} - whole.foot, above) > GroundHeight * whole.height ? 1 : 0;
+    }
+    return ground_cover(set, rises, standing_of(set, rises, up, {}), up, rasterizer);
+}
+
 }  // namespace gse::edit

@@ -14,4 +14,7 @@ namespace gse::edit {
 /// size is high. 0 where nothing stands.
 double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, const Standing& standing, const Vec3& up, raster::Rasterizer& rasterizer);
 
+/// The same of all that rises out of a scene's lower quarter: how much ground the scene has.
+double ground_of_scene(const GaussianSet& set, const Standing& whole, const Vec3& up, raster::Rasterizer& rasterizer);
+
 }  // namespace gse::edit

@@ -96,42 +96,24 @@ private:
 
     void render_all() {
         if (tools_.memory != nullptr && tools_.memory->renders.size() == input_.views.size()) {
-            renders_ = tools_.memory->renders;
-            depths_ = tools_.memory->depths;
+            seen_ = *tools_.memory;
             return;
         }
-        render_views();
-        if (tools_.memory != nullptr) tools_.memory->renders = renders_, tools_.memory->depths = depths_;
-    }
-
-    void render_views() {
-        raster::ForwardOutput output;
-        for (const auto& view : input_.views) {
-            check_stop();
-            tools_.rasterizer.forward(input_.gaussians.spans(), view.camera, input_.settings, output);
-            Image colour = output.colour;
-            for (auto& value : colour.data) value = std::clamp(value, 0.0f, 1.0f);
-            renders_.push_back(std::move(colour));
-            Image depth = output.depth;
-            for (std::size_t i = 0; i < depth.data.size(); ++i)
-                depth.data[i] = output.alpha.data[i] > 0.5f ? depth.data[i] / output.alpha.data[i] : 0.0f;
-            depths_.push_back(std::move(depth));
-            tools_.job.report("rendering views", static_cast<int>(renders_.size()),
-                              static_cast<int>(input_.views.size()));
-        }
+        seen_ = render_views(input_.gaussians, input_.views, input_.settings, input_.ground, tools_.rasterizer, tools_.job);
+        if (tools_.memory != nullptr) static_cast<ViewRenders&>(*tools_.memory) = seen_;
     }
 
     /// Share of the views in which the text segmenter sees the target word; nothing without one.
     std::optional<double> found_share() {
-        if (tools_.text_segmenter == nullptr || request().mode != "auto" || request().target.empty() || renders_.empty())
+        if (tools_.text_segmenter == nullptr || request().mode != "auto" || request().target.empty() || seen_.renders.empty())
             return std::nullopt;
         int found = 0;
-        for (const auto& render : renders_) {
+        for (const auto& render : seen_.renders) {
             check_stop();
             const auto [mask, score] = tools_.text_segmenter->segment(render, request().target);
             found += score >= LeastTextScore && mask.count() > 0 ? 1 : 0;
         }
-        return static_cast<double>(found) / static_cast<double>(renders_.size());
+        return static_cast<double>(found) / static_cast<double>(seen_.renders.size());
     }
 
     /// What the views of one word came to.
@@ -193,7 +175,7 @@ private:
     /// Attention map of a view.
     ViewEvidence attend(const Search& search, std::size_t v) {
         ViewEvidence view;
-        view.render = renders_[v];
+        view.render = seen_.renders[v];
         auto maps = maps_of(search, v, request().attention_repeats, FirstAsking + v);
         view.map = std::move(maps.front());
         compete(view, maps, search.rivals_given);
@@ -203,7 +185,7 @@ private:
     AttentionQuery query_of(const Search& search, std::size_t v, int repeats, std::uint64_t stream) const {
         std::vector<std::string> words{search.word};
         words.insert(words.end(), search.rivals.begin(), search.rivals.end());
-        return {renders_[v],
+        return {seen_.renders[v],
                 search.prompt,
                 std::move(words),
                 input_.view_words.empty() ? std::string() : input_.view_words[v],
@@ -228,7 +210,7 @@ private:
         auto maps = ask(query, search.rivals_given);
         GSE_CHECK_EQ(maps.size(), query.words.size());
         for (auto& map : maps) {
-            GSE_CHECK(map.width == renders_[v].width && map.height == renders_[v].height);
+            GSE_CHECK(map.width == seen_.renders[v].width && map.height == seen_.renders[v].height);
             broken_ += normalise_maximum(map);
         }
         return maps;
@@ -251,7 +233,7 @@ private:
             prepare(search, odd, i, request().second_look, SecondAsking);
             auto maps = maps_of(search, v, request().second_look, SecondAsking + v);
             ViewEvidence view;
-            view.render = renders_[v];
+            view.render = seen_.renders[v];
             view.map = std::move(maps.front());
             for (std::size_t p = 0; p < view.map.data.size(); ++p)
                 view.map.data[p] = (first * views[v].map.data[p] + more * view.map.data[p]) / (first + more);
@@ -361,7 +343,7 @@ private:
             return nothing(search, SearchProblem::NothingLabelled,
                            fmt::format("the views agree on no splat for \"{}\"", search.word),
                            "name something the scene shows and the model knows, or lower tau");
-        found.confidence = confidence_of(views, weights, found.label, recognised(search.word));
+        found.confidence = confidence_of(views, weights, found.label, recognised(search.word), ground_seen(views, seen_.grounds));
         // The sentence names other things, and nothing is left of the scene for them: it is only the word that is found everywhere.
         if (!search.rivals.empty() && found.confidence.share > LargestLabelShare) found.confidence.value = 0;
         if (found.confidence.value < request().least_confidence) {
@@ -377,8 +359,8 @@ private:
     double recognised(const std::string& word) const {
         if (tools_.recognition == nullptr) return -1;
         std::vector<const Image*> some;
-        const std::size_t step = std::max<std::size_t>(1, renders_.size() / RecognisedViews);
-        for (std::size_t v = 0; v < renders_.size(); v += step) some.push_back(&renders_[v]);
+        const std::size_t step = std::max<std::size_t>(1, seen_.renders.size() / RecognisedViews);
+        for (std::size_t v = 0; v < seen_.renders.size(); v += step) some.push_back(&seen_.renders[v]);
         const std::string sentence = sentence_before(request());
         return tools_.recognition->of(has_word(sentence, word) ? sentence : "a " + word, word, some);
     }
@@ -436,7 +418,7 @@ private:
             const Camera& camera = input_.views[v].camera;
             tools_.rasterizer.forward_values(input_.gaussians.spans(), camera, input_.settings, values, seen);
             ViewEvidence view;
-            view.render = renders_[v];
+            view.render = seen_.renders[v];
             view.map = Image(camera.width, camera.height, 1);
             view.mask = localize::threshold_map(seen, LabelSeen);
             view.region = view.mask;
@@ -468,7 +450,7 @@ private:
         const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
             for (std::size_t v = begin; v < end; ++v) {
                 auto& view = result.views[v];
-                view.mask = region_mask(result.region, input_.views[v].camera, &depths_[v]);
+                view.mask = region_mask(result.region, input_.views[v].camera, &seen_.depths[v]);
                 const bool undrawn = drawn && view.drawn.data.empty();
                 view.branch = attended && !undrawn ? drawn ? "drawn" : "attention" : "anchor";
                 if (undrawn) view.map = mask_image(view.mask);
@@ -502,15 +484,15 @@ private:
         if (tools_.drawing == nullptr || !draws_place(request(), EditMode::Add)) return {};
         const auto room = room_above(wearer.standing, input_.up, input_.front, request().add_room);
         if (room.empty()) return {};
-        const PlaceDrawing drawing{input_.views, input_.view_words, input_.azimuths, input_.elevations, renders_, depths_, room, request(),
+        const PlaceDrawing drawing{input_.views, input_.view_words, input_.azimuths, input_.elevations, seen_.renders, seen_.depths, room, request(),
                                    search.word, Random::stream(SearchSeed, Drawing).next()};
         DrawnViews drawn;
         DrawnViews& kept = tools_.memory != nullptr ? tools_.memory->drawn[drawing_key(drawing, wearer.bits) + (tools_.plain_ground ? "" : " before the scene")] : drawn;
         if (kept.views.empty()) kept = drawn_into(drawing, source_bits);
         std::vector<ViewEvidence> views(input_.views.size());
         for (std::size_t v = 0; v < views.size(); ++v) {
-            views[v].render = renders_[v];
-            views[v].map = Image(renders_[v].width, renders_[v].height, 1);
+            views[v].render = seen_.renders[v];
+            views[v].map = Image(seen_.renders[v].width, seen_.renders[v].height, 1);
             views[v].failed = true;
         }
         auto places = find_drawn(drawing, kept, tools_.attention, tools_.job);
@@ -550,7 +532,7 @@ private:
         std::vector<Mask> masks;
         for (const auto& view : result.views) masks.push_back(view.failed ? Mask() : view.mask);
         const RegionSearch space{
-            input_.gaussians, wearer.bits, input_.views, masks, depths_, input_.up, input_.front,
+            input_.gaussians, wearer.bits, input_.views, masks, seen_.depths, input_.up, input_.front,
             relation, tools_.threads, wearer.standing};
         result.region = vote_region(space, drawn ? of_drawn_views() : RegionParameters{});
         const bool attended = !result.region.empty();
@@ -573,7 +555,7 @@ private:
 
     const LocateInput& input_;
     const LocateTools& tools_;
-    std::vector<Image> renders_, depths_;
+    ViewRenders seen_;
     std::vector<std::size_t> left_out_;
     std::size_t broken_ = 0;   // values of the attention so far
 };

@@ -13,10 +13,12 @@
 #include "engine/edit/add_region.h"
 #include "engine/edit/interfaces.h"
 #include "engine/edit/place_drawing.h"
+#include "engine/edit/plain_ground.h"
 #include "engine/edit/recognition.h"
 #include "engine/edit/request.h"
 #include "engine/edit/search_outcome.h"
 #include "engine/edit/session.h"
+#include "engine/edit/view_renders.h"
 #include "engine/localize/back_projection.h"
 #include "engine/raster/rasterizer.h"
 #include "engine/scene/scene.h"
@@ -36,12 +38,11 @@ struct LocateInput {
     const std::vector<std::uint8_t>* label = nullptr;
     std::vector<std::string> known = {};  // words of the model; empty = it takes any
     std::vector<double> azimuths = {}, elevations = {};   // per view, as in RoundView, or empty
+    std::optional<PlainGround> ground = {};   // what the networks are shown where the scene has nothing; none = its background
 };
 
 /// What the views look like, kept from one search to the next over the same scene and views; empty = to be filled.
-struct ViewMemory {
-    std::vector<Image> renders;  // [H,W,3] in [0,1]
-    std::vector<Image> depths;   // [H,W,1], 0 = nothing there
+struct ViewMemory : ViewRenders {
     /// Views that were asked a second time, by sentence and word: at another threshold the same, so that no network is asked.
     std::map<std::string, std::vector<std::size_t>> asked_again = {};
     std::map<std::string, DrawnViews> drawn = {};   // by all that was drawn

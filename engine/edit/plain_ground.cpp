@@ -52,8 +52,17 @@ std::optional<GroundUnder> ground_under(const std::string& sentence, const Gauss
     return GroundUnder{*plain, cover < LeastCover};
 }
 
-Image picture_of(const PlainGround& plain, const Camera& camera) {
-    Image picture(camera.width, camera.height, 3);
+std::optional<PlainGround> ground_below(const std::string& sentence, const GaussianSet& set, const Vec3& up, raster::Rasterizer& rasterizer) {
+    const auto whole = standing_alone(set, std::vector<std::uint8_t>(set.size(), 1), up, {});
+    const auto plain = plain_ground(sentence, whole, up);
+    if (!plain) return std::nullopt;
+    const double cover = ground_of_scene(set, whole, up, rasterizer);
+    log::debug("{:.0f} % of the ground around what rises out of the scene are there", 100 * cover);
+    return cover < LeastCover ? plain : std::nullopt;
+}
+
+Image shown_of(const PlainGround& plain, const Camera& camera) {
+    Image shown(camera.width, camera.height, 1);
     const Vec3 from = camera.centre();
     const double above = dot(from - plain.standing.foot, plain.up), reach = PlainReach * figure_height(plain.standing);
     const auto hits = [&](double x, double y) {
@@ -61,14 +70,20 @@ Image picture_of(const PlainGround& plain, const Camera& camera) {
         const double rises = dot(ray, plain.up), way = rises != 0 ? -above / rises : -1;
         return way > 0 && length(from + ray * way - plain.standing.foot) <= reach;
     };
-    for (int y = 0; y < picture.height; ++y)
-        for (int x = 0; x < picture.width; ++x) {
+    for (int y = 0; y < shown.height; ++y)
+        for (int x = 0; x < shown.width; ++x) {
             int on = 0;
             for (int v = 0; v < PlainSamples; ++v)
                 for (int u = 0; u < PlainSamples; ++u) on += hits(x + (u + 0.5) / PlainSamples, y + (v + 0.5) / PlainSamples) ? 1 : 0;
-            const float share = static_cast<float>(on) / (PlainSamples * PlainSamples);
-            for (std::size_t c = 0; c < 3; ++c) picture.at(x, y, static_cast<int>(c)) = share * plain.ground[c] + (1 - share) * plain.sky[c];
+            shown.at(x, y, 0) = static_cast<float>(on) / (PlainSamples * PlainSamples);
         }
+    return shown;
+}
+
+Image picture_of(const PlainGround& plain, const Camera& camera) {
+    const Image shown = shown_of(plain, camera);
+    Image picture(camera.width, camera.height, 3);
+    for (std::size_t i = 0; i < picture.data.size(); ++i) picture.data[i] = shown.data[i / 3] * plain.ground[i % 3] + (1 - shown.data[i / 3]) * plain.sky[i % 3];
     return picture;
 }
 
@@ -76,6 +91,14 @@ Image before_plain(const PlainGround& plain, const Camera& camera, const Image& 
     Image result = picture_of(plain, camera);
     for (std::size_t i = 0; i < result.data.size(); ++i)
         if (depth.data[i / 3] > 0) result.data[i] = picture.data[i];
+    return result;
+}
+
+Image before_plain(const PlainGround& plain, const Camera& camera, const Image& picture, const Image& alpha, const std::array<float, 3>& background) {
+    const Image behind = picture_of(plain, camera);
+    Image result = picture;
+    for (std::size_t i = 0; i < result.data.size(); ++i)
+        result.data[i] = std::clamp(picture.data[i] + (1 - alpha.data[i / 3]) * (behind.data[i] - background[i % 3]), 0.0f, 1.0f);
     return result;
 }
 

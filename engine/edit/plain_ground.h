@@ -35,10 +35,18 @@ struct GroundUnder {
 std::optional<GroundUnder> ground_under(const std::string& sentence, const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front,
                                         raster::Rasterizer& rasterizer);
 
+/// The ground below a whole scene that was cut out of its surroundings (ground_of_scene()); none where it has one.
+std::optional<PlainGround> ground_below(const std::string& sentence, const GaussianSet& set, const Vec3& up, raster::Rasterizer& rasterizer);
+
+/// [H,W,1] share of each pixel that shows it, where nothing stands before it.
+Image shown_of(const PlainGround& plain, const Camera& camera);
 /// [H,W,3] in [0,1], of the camera's size: a disc around the foot, three figures' heights in radius, as the camera sees it.
 Image picture_of(const PlainGround& plain, const Camera& camera);
 /// The same behind a picture of the scene; `depth` [H,W,1] is 0 where that has nothing.
 Image before_plain(const PlainGround& plain, const Camera& camera, const Image& picture, const Image& depth);
+
+/// The same behind a picture that was rendered before `background`, and covers `alpha` [H,W,1] of it.
+Image before_plain(const PlainGround& plain, const Camera& camera, const Image& picture, const Image& alpha, const std::array<float, 3>& background);
 
 /// What of the scene a model is still shown.
 enum class BeforePlain {

@@ -40,6 +40,7 @@ constexpr double StepBack = 1.2;         // of the distance, where what was draw
 constexpr double CutShares[] = {0.6, 1}; // of the views, from which that is so, a step each: a wing may reach out of some views; every
                                          // step draws the thing once more, and the second is worth it only where no view shows all of it
 constexpr double CutRim = 1.0 / 7;       // of a picture's side: covered so far along its rim a thing is cut off there
+constexpr double WholeShare = 0.5;       // of the views that may cut off what is seen whole
 constexpr double SameFraming = 0.05;     // of the distance: a nearer framing shows the same
 constexpr double SameFramingWorn = 0.12; // the same where something is drawn that is worn: every look costs as much as an edit does
 constexpr double MostBack = 1.25;   // of the distance of a sure glance: what would be framed from farther off is no thing
@@ -102,13 +103,20 @@ Located finished(Located located) {
     return located;
 }
 
+/// Words are looked for on it; a label is what it is.
+std::optional<edit::PlainGround> ground_shown(Workplace& workplace, const EditRecipe& recipe) {
+    return recipe.guidance.plain_ground ? workplace.ground(edit::sentence_before(recipe.request)) : std::nullopt;
+}
+
 edit::LocateResult look_from(Workplace& workplace, const Views& views, const EditRecipe& recipe, const std::vector<std::uint8_t>* label,
                              const JobControl& control) {
-    auto tools = workplace.tools(views, control);
+    auto input = question(workplace, recipe, views, label);
+    input.ground = label == nullptr ? ground_shown(workplace, recipe) : std::nullopt;
+    auto tools = workplace.tools(views, input.ground, control);
     const auto drawing = workplace.place_drawing(recipe.request);
     tools.drawing = drawing.get();
     tools.plain_ground = recipe.guidance.plain_ground;
-    return edit::locate(question(workplace, recipe, views, label), tools);
+    return edit::locate(input, tools);
 }
 
 /// One search; every step of it gives a new value.
@@ -131,6 +139,8 @@ public:
 private:
     bool moves() const { return views_.automatic && recipe_.request.focus; }
 
+    std::optional<edit::PlainGround> ground() { return hints_.label.empty() ? ground_shown(workplace_, recipe_) : std::nullopt; }
+
     Located from_label() { return moved_in(views_, hints_.label); }
 
     /// Asks the model's encoders, where it has them, which word is new and which distances are worth a search.
@@ -144,7 +154,7 @@ private:
         for (const double distance : distances_) {
             const auto some = scans ? orbit_views(nearer(views_.orbit, distance), ScanViews, side, side)
                                     : farthest_views(views_.views, std::size_t{ScanViews});
-            pictures.push_back(workplace_.pictures(some, render_settings(workplace_.scene(), request), control_));
+            pictures.push_back(workplace_.pictures(some, render_settings(workplace_.scene(), request), ground(), control_));
             control_.report("comparing the sentence with the scene", static_cast<int>(pictures.size()), static_cast<int>(distances_.size()));
         }
         std::vector<std::string> targets{request.target};
@@ -157,6 +167,7 @@ private:
         request.target = reading.target;
         target_read_ = hints_.target_open;
         std::vector<double> worth;
+        if (scans && ground() && reading.distances.front() != 0) worth.push_back(ScanDistances.front());   // a scene of one thing shows it whole from there
         for (const auto index : reading.distances) worth.push_back(distances_[index]);
         distances_ = std::move(worth);
     }
@@ -186,7 +197,7 @@ private:
         if (some.size() < 3) return std::nullopt;
         std::vector<double> azimuths;
         for (const auto& view : some) azimuths.push_back(azimuth_of(view.camera, views.orbit));
-        const auto pictures = workplace_.pictures(some, render_settings(workplace_.scene(), recipe_.request), control_);
+        const auto pictures = workplace_.pictures(some, render_settings(workplace_.scene(), recipe_.request), ground(), control_);
         const auto read = edit::read_front(recognition, edit::sentence_before(recipe_.request), pictures, azimuths);
         log::info("the front is seen at {:.0f} degrees (lead {:.4f})", read.azimuth / Degree, read.lead);
         return read;
@@ -217,8 +228,10 @@ private:
             auto found = look(scan, views, {});
             if (found.problem != edit::SearchProblem::None && found.problem != edit::SearchProblem::Unsure) continue;   // try nearer
             log::debug("orbit at {:.2f} of the fitted distance: confidence {:.3f}", distance, found.confidence.value);
-            if (found.confidence.value > most) {
-                most = found.confidence.value;
+            const bool whole = ground() && found.problem == edit::SearchProblem::None && !is_cut_off(found, WholeShare);
+            const double sure = found.confidence.value + (whole ? 1 : 0);   // of what stands in nothing a part looks much like the whole
+            if (sure > most) {
+                most = sure;
                 best = {views.orbit, std::move(found)};
             }
         }

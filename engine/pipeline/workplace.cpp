@@ -1,6 +1,9 @@
 // Remembers renders and answers.
 #include "engine/pipeline/workplace.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -73,9 +76,19 @@ void Workplace::ask(const neural::AttentionParameters& attention) {
     if (attention_ == nullptr) ask_anew(attention);
 }
 
-edit::LocateTools Workplace::tools(const Views& views, const JobControl& control) {
-    if (renders_key_ != views.key) renders_ = {};
-    renders_key_ = views.key;
+std::optional<edit::PlainGround> Workplace::ground(const std::string& sentence) {
+    if (!model_->knows_scene()) return std::nullopt;
+    if (!ground_) {
+        ground_ = edit::ground_below(sentence, drawn_, scene_.info.up, painter_.rasterizer());
+        if (*ground_) log::info("the scene has hardly any ground: the model is shown it on a plain one");
+    }
+    return *ground_ ? edit::plain_ground(sentence, (*ground_)->standing, scene_.info.up) : std::nullopt;
+}
+
+edit::LocateTools Workplace::tools(const Views& views, const std::optional<edit::PlainGround>& ground, const JobControl& control) {
+    const std::string key = ground ? fmt::format("{} on {}", views.key, ground->ground) : views.key;
+    if (renders_key_ != key) renders_ = {};
+    renders_key_ = key;
     edit::LocateTools tools{painter_.rasterizer(), *attention_, segmenters_.clicks.get(), segmenters_.words.get(), control};
     tools.memory = &renders_;
     tools.threads = &threads_;
@@ -87,11 +100,13 @@ edit::LocateTools Workplace::tools(const Views& views, const JobControl& control
     return tools;
 }
 
-std::vector<Image> Workplace::pictures(const std::vector<View>& views, const raster::Settings& settings, const JobControl& control) {
+std::vector<Image> Workplace::pictures(const std::vector<View>& views, const raster::Settings& settings, const std::optional<edit::PlainGround>& ground,
+                                       const JobControl& control) {
     std::vector<Image> pictures;
     for (const auto& view : views) {
         if (control.stop_requested()) throw Error(ErrorCode::Cancelled, "the search was stopped");
-        pictures.push_back(painter_.paint(drawn_.spans(), view.camera, settings).colour);
+        const auto& painted = painter_.paint(drawn_.spans(), view.camera, settings);
+        pictures.push_back(ground ? edit::before_plain(*ground, view.camera, painted.colour, painted.alpha, settings.background) : painted.colour);
         for (auto& value : pictures.back().data) value = std::clamp(value, 0.0f, 1.0f);
     }
     return pictures;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,16 +53,20 @@ public:
     void ask(const neural::AttentionParameters& attention);
     /// Who is told of the views of searches from here on; empty = nobody.
     void watch_views(ViewWatch watch) { watch_ = std::move(watch); }
-    /// What locate() calls, for these views, which must stay while it is used; needs ask() or ask_anew().
-    edit::LocateTools tools(const Views& views, const JobControl& control);
+    /// What the model is shown below and behind a scene that was cut out of its surroundings, for a sentence that says what the scene shows
+    /// (edit::ground_below()); none for models that are not shown scenes.
+    std::optional<edit::PlainGround> ground(const std::string& sentence);
+    /// What locate() calls, for these views before this ground; the views must stay while it is used; needs ask() or ask_anew().
+    edit::LocateTools tools(const Views& views, const std::optional<edit::PlainGround>& ground, const JobControl& control);
     /// What draws the place of what is added, where the model can (TextToImage::knows_scene()), else null; its cost is counted. Not the
     /// artist's guidance, which belongs to the loop.
     std::unique_ptr<edit::ViewGuidance> place_drawing(const edit::EditRequest& request);
     const PlaceCost& place_cost() const { return place_cost_; }
     edit::Recognition& recognition() { return *recognition_; }
     edit::Segmenter& segmenter() { return *segmenters_.clicks; }
-    /// Renders in [0,1]. Throws Error (Cancelled) on a stop request.
-    std::vector<Image> pictures(const std::vector<View>& views, const raster::Settings& settings, const JobControl& control);
+    /// Renders in [0,1], before a ground where there is one. Throws Error (Cancelled) on a stop request.
+    std::vector<Image> pictures(const std::vector<View>& views, const raster::Settings& settings, const std::optional<edit::PlainGround>& ground,
+                                const JobControl& control);
     /// Pictures that the networks were asked about so far.
     std::size_t questions() const { return attention_ ? attention_->asked() : 0; }
     /// The threshold the model states for its attention; 0 before it was asked anything.
@@ -71,6 +76,7 @@ private:
     Scene scene_;
     GaussianSet drawn_;
     std::size_t unusable_ = 0;
+    std::optional<std::optional<edit::PlainGround>> ground_;   // of any sentence, once it was asked for
     std::shared_ptr<neural::TextToImage> model_;
     Painter painter_;
     ThreadPool threads_;

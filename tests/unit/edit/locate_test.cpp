@@ -559,3 +559,21 @@ DOCTEST_TEST_CASE("attention is asked about whole phrases, in the sentence as ev
     edit::locate(fixture.input(request), fixture.tools());
     DOCTEST_CHECK(fixture.attention.queries.back().words == std::vector<std::string>{"beach ball", "top hat", "grass"});
 }
+
+DOCTEST_TEST_CASE("networks see a ground that is no part of the scene, and the views agree on it") {
+    const Quiet quiet;
+    const auto request = request_for("a blue ball", "blue");
+    const auto seen = [&](const std::optional<edit::PlainGround>& ground) {
+        Fixture fixture;
+        auto input = fixture.input(request);
+        input.ground = ground;
+        return edit::locate(input, fixture.tools());
+    };
+    const edit::PlainGround plain{{{0, 2, 0}, 1, 1, 1}, {0, -1, 0}, {0, 0, 0.2f}, {0, 0, 0.5f}};
+    const auto before_black = seen({}), before_plain = seen(plain);
+    DOCTEST_CHECK(*before_plain.label.bits == *before_black.label.bits);   // both are as red as black
+    DOCTEST_CHECK(before_plain.views[0].render.at(0, 0, 2) == doctest::Approx(plain.sky[2]));
+    DOCTEST_CHECK(before_black.views[0].render.at(0, 0, 2) == 0);
+    DOCTEST_CHECK(before_plain.confidence.agreement > before_black.confidence.agreement);
+    DOCTEST_CHECK(before_plain.confidence.share < before_black.confidence.share);
+}

@@ -205,3 +205,28 @@ DOCTEST_TEST_CASE("how much ground there is around a thing is seen from above: a
     const std::vector<std::uint8_t> other(3, 1);
     DOCTEST_CHECK_FALSE(ground_under("a cat", field.set, other, Up, {0, 0, -1}, *rasterizer).has_value());
 }
+
+DOCTEST_TEST_CASE("a scene has a ground where that reaches out from under what rises out of it") {
+    const auto rasterizer = raster::make_plain_rasterizer();
+    const auto below = [&](const Column& column) { return ground_below("a cat", column.set, Up, *rasterizer); };
+    DOCTEST_CHECK_FALSE(below(column_on(1.6, 0)).has_value());
+    const auto bare = below(column_on(-1, 0)), plinth = below(column_on(0.3, 0));
+    DOCTEST_REQUIRE(bare.has_value());
+    DOCTEST_CHECK(plinth.has_value());
+    DOCTEST_CHECK(std::abs(dot(bare->standing.foot, Up)) < 0.1);   // the lowest of it
+    DOCTEST_CHECK_FALSE(ground_below("a cat", GaussianSet(), Up, *rasterizer).has_value());
+}
+
+DOCTEST_TEST_CASE("a picture is moved before the plain ground by what it covers of its background") {
+    const auto plain = ground_of("a red cat on the grass");
+    const auto camera = Camera::look_at({0.5, 0, -2}, {0.5, 0.7, 2}, Up, 0.8, 32, 24);
+    const std::array<float, 3> background{1, 1, 1};
+    const std::array<float, 3> red{0.8f, 0.1f, 0.2f};
+    const Image behind = picture_of(plain, camera);
+    for (const float alpha : {0.0f, 0.25f, 1.0f}) {
+        Image picture(32, 24, 3), covered(32, 24, 1, alpha);
+        for (std::size_t i = 0; i < picture.data.size(); ++i) picture.data[i] = alpha * red[i % 3] + (1 - alpha) * background[i % 3];
+        const Image shown = before_plain(plain, camera, picture, covered, background);
+        for (std::size_t i = 0; i < shown.data.size(); ++i) DOCTEST_CHECK(shown.data[i] == doctest::Approx(alpha * red[i % 3] + (1 - alpha) * behind.data[i]));
+    }
+}

@@ -197,6 +197,40 @@ DOCTEST_TEST_CASE("edit job: what is worn is found from as far as its wearer is 
     DOCTEST_CHECK(other.located().confidence.value >= 0);   // it was looked for
 }
 
+DOCTEST_TEST_CASE("edit job: a word finds all of a thing that was cut out of its surroundings, and shows the model a ground below it") {
+    const auto model = load_recipe_model({});
+    for (const std::string object : {"dog", "mushroom"}) {
+        synth::SceneSpec spec;
+        spec.object = object;
+        spec.material = "red";
+        spec.seed = 7;
+        auto made = synth::generate(spec);
+        std::vector<unsigned char> kept;
+        for (const auto part : made.parts) kept.push_back(part == synth::Part::Ground ? 0 : 1);
+        made.scene.gaussians = made.scene.gaussians.filtered(kept);
+        EditRecipe recipe;
+        recipe.request.source = object;
+        recipe.request.prompt = "a golden " + object + " on the grass";
+        const auto search = [&](bool plain_ground) {
+            recipe.guidance.plain_ground = plain_ground;
+            auto job = std::make_unique<EditJob>(recipe, EditJobInput{made.scene, {}, model}, JobControl{});
+            job->locate();
+            return job;
+        };
+        const auto job = search(true);
+        DOCTEST_REQUIRE(job->found());
+        const auto& bits = *job->located().label.bits;
+        DOCTEST_CHECK(std::count(bits.begin(), bits.end(), std::uint8_t{1}) * 10 >= std::ssize(bits) * 8);
+        DOCTEST_CHECK(job->located().confidence.share < 0.7);   // the ground is seen, too
+        const auto sky = [](const EditJob& of) { return of.located().views[0].render.at(0, 0, 2); };
+        DOCTEST_CHECK(sky(*job) > 0.5f);
+        DOCTEST_CHECK(sky(*search(false)) < 0.3f);   // the background, or the thing from near by
+    }
+    const auto whole = synth::generate({});
+    Workplace workplace(whole.scene, model, {});
+    DOCTEST_CHECK_FALSE(workplace.ground("a bear").has_value());
+}
+
 DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it open") {
     EditRecipe recipe = bear_recipe(false);
     recipe.request.views = 8;

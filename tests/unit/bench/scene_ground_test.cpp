@@ -1,0 +1,25 @@
+// Whether drawn scenes count as things on a ground.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "engine/edit/plain_ground.h"
+#include "engine/synth/synth.h"
+
+using namespace gse;
+
+DOCTEST_TEST_CASE("drawn scenes stand on their own ground, and without it in nothing") {
+    ThreadPool pool{1};
+    const auto rasterizer = raster::make_fast_rasterizer(pool);
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        Random random(seed);
+        const auto scene = synth::generate(synth::held_out_spec(random, 0.5));
+        DOCTEST_INFO(scene.spec.object, " ", scene.spec.accessory, " on ", scene.spec.ground);
+        const auto& set = scene.scene.gaussians;
+        DOCTEST_CHECK_FALSE(edit::ground_below("a cat", set, scene.scene.info.up, *rasterizer).has_value());
+        std::vector<unsigned char> kept;
+        for (const auto part : scene.parts) kept.push_back(part == synth::Part::Ground ? 0 : 1);
+        DOCTEST_CHECK(edit::ground_below("a cat", set.filtered(kept), scene.scene.info.up, *rasterizer).has_value());
+    }
+}
