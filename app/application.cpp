@@ -133,6 +133,9 @@ void Application::refresh_jobs(const JobStatus& work, const JobStatus& files) {
     model_.result_changed_outside = pending_ ? pending_->changed_outside_label : 0;
     model_.result_psnr_outside_db = pending_ ? pending_->psnr_outside_db : 0;
     model_.result_seconds = pending_ ? pending_->seconds : 0;
+    model_.results.clear();
+    for (const auto& result : pending_.all()) model_.results.push_back({result.thumbnail, result.seed});
+    model_.shown_result = pending_.shown().value_or(0);
     vote_if_wanted();
 }
 

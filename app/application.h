@@ -23,8 +23,8 @@
 #include "engine/pipeline/edit_job.h"
 #include "engine/pipeline/estimate.h"
 #include "engine/pipeline/evidence_pictures.h"
-#include "engine/pipeline/pending_result.h"
 #include "engine/pipeline/reach.h"
+#include "engine/pipeline/waiting_results.h"
 #include "engine/scene/document.h"
 #include "engine/scene/hidden_rows.h"
 #include "ui/actions.h"
@@ -124,6 +124,8 @@ public:
     void fit_to_targets() override;
     void apply_result() override;
     void discard_result() override;
+    void another_result() override;
+    void show_result(std::size_t index) override;
     void show_snapshot(int index) override;
     void take_snapshot(int iteration) override;
     void branch_from_snapshot(int iteration) override;
@@ -311,8 +313,7 @@ private:
 
     // application_labels.cpp
     NamedLabel* active_label_copy(DocumentState& state) const;
-    void change_label(const std::string& name, const std::function<NamedLabel(NamedLabel)>& change,
-                      const std::string& merge_key = {});
+    void change_label(const std::string& name, const std::function<NamedLabel(NamedLabel)>& change, const std::string& merge_key = {});
     void change_stack(const std::string& name, const std::function<void(std::vector<EditNode>&)>& change,
                       const std::string& merge_key = {});
 
@@ -401,7 +402,7 @@ private:
     std::optional<bool> tint_before_;            // of the edit whose snapshots are shown
     GaussianSet snapshot_base_;                  // what the snapshots are states of
     std::optional<edit::EditSnapshot> branch_;   // to go on from when the running edit has ended
-    std::optional<PendingResult> pending_;
+    WaitingResults pending_;
     std::uint64_t next_edit_id_ = 1;
     std::map<std::string, Measured> measured_;   // by model and size of pictures
     ModelLoad model_load_;                       // of the model in memory
@@ -429,7 +430,8 @@ private:
     struct ShownKey {
         std::uint64_t revision = 0, live = 0;
         int mode = -1, snapshot = -2, active = -1;
-        bool tint = false, pending = false;
+        bool tint = false;
+        std::optional<std::size_t> pending;
         bool operator==(const ShownKey&) const = default;
     } shown_key_;
     GaussianSet shown_set_;

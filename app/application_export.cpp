@@ -90,8 +90,7 @@ void Application::export_picture() {
         Painter painter;
         const auto& painted = painter.paint(set.spans(), camera, settings);
         control.report("writing", 1, 1);
-        write_png(path, exports.transparent ? transparent_picture(painted) : painted.colour,
-                  picture_text(recipe, recipe_json));
+        write_png(path, exports.transparent ? transparent_picture(painted) : painted.colour, picture_text(recipe, recipe_json));
     };
     start_export("Screenshot", path, work, said_of_export());
 }

@@ -143,8 +143,7 @@ void Application::ask_which(const std::filesystem::path& folder, const std::vect
     for (const auto& file : files) {
         std::error_code ignored;
         const double megabytes = static_cast<double>(std::filesystem::file_size(file, ignored)) / 1e6;
-        answers.push_back({{file.filename().string(), fmt::format("{:.1f} MB", megabytes), false, true},
-                           [this, file] { open(file); }});
+        answers.push_back({{file.filename().string(), fmt::format("{:.1f} MB", megabytes), false, true}, [this, file] { open(file); }});
     }
     answers.push_back({{"Cancel"}, [this] { keep_ = false; }});
     ask("Which one is to be opened?", fmt::format("{} holds several scenes.", folder.string()), std::move(answers));
@@ -159,7 +158,7 @@ void Application::take_loaded(Loaded loaded) {
     kept_edit_ = {};
     job_.reset();
     searched_ = {};
-    pending_ = std::move(loaded.pending);
+    pending_.reset(std::move(loaded.pending));
     forget_snapshots();
     model_.attention.clear();
     const auto searches = std::exchange(model_.search, {}).number;

@@ -90,8 +90,7 @@ void Application::set_active_label(int index) {
 void Application::add_label(const std::string& name) {
     if (!require_scene()) return;
     DocumentState state = document_.state();
-    state.labels.push_back(empty_label(name.empty() ? fmt::format("label {}", state.labels.size() + 1) : name,
-                                       state.current.size()));
+    state.labels.push_back(empty_label(name.empty() ? fmt::format("label {}", state.labels.size() + 1) : name, state.current.size()));
     state.active_label = static_cast<int>(state.labels.size()) - 1;
     document_.apply("New label", std::move(state));
     choose_label_by_hand();

@@ -31,7 +31,7 @@ void Application::show_located(const EditJob& job) {
     model_.attention = std::move(views);
     model_.attention_word = located.word;
     model_.attention_mode = fmt::format("{}: {}", edit::mode_name(located.mode), located.reason);
-    model_.search = {model_.search.number + 1, located.confidence, located.problem, located.message, located.remedy, {}};
+    model_.search = {model_.search.number + 1, located.confidence, located.problem, located.message, located.remedy, {}, located.on_ground};
     if (const auto front = job.front_read()) model_.search.front = std::fmod(std::round(*front / pipeline::Degree) + 360, 360);
     model_.attention_threshold = job.attention_threshold();
     model_.attention_arriving = false;

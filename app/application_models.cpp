@@ -54,8 +54,7 @@ void Application::refuse_model(const std::string& path, std::string problem) {
     model_problems_[path] = problem;
     list_models();
     const auto named = [&](const std::string& wanted) {
-        const auto row = std::find_if(model_.models.begin(), model_.models.end(),
-                                      [&](const auto& model) { return model.path == wanted; });
+        const auto row = std::find_if(model_.models.begin(), model_.models.end(), [&](const auto& model) { return model.path == wanted; });
         return row == model_.models.end() || row->name.empty() ? wanted : row->name;
     };
     toast(fmt::format("The model \"{}\" cannot be used: {}. \"{}\" stays in use.", named(path), problem,

@@ -76,7 +76,7 @@ bool Application::unsaved() const {
 }
 
 std::uint64_t Application::content_live() const {
-    if (pending_) return WaitingEdit | content_;
+    if (pending_.kept() != nullptr) return WaitingEdit | content_;
     if (!edit_running()) return 0;
     return RunningEdit | static_cast<std::uint64_t>(snapshots_.empty() ? 0 : snapshots_.back().iteration + 1);
 }
@@ -84,30 +84,32 @@ std::uint64_t Application::content_live() const {
 nlohmann::json Application::edit_json() const {
     if (content_live() == 0) return {};
     nlohmann::json json;
-    const bool whole = pending_.has_value();
-    json["waits"] = whole;
-    json["name"] = whole ? pending_->name : live_->name;
-    json["target"] = whole ? pending_->target : live_->target;
+    const auto* whole = pending_.kept();   // also while another edit runs
+    json["waits"] = whole != nullptr;
+    json["name"] = whole ? whole->name : live_->name;
+    json["target"] = whole ? whole->target : live_->target;
+    if (whole) json["seed"] = whole->seed;
     json["iterations"] = live_->iterations;
     json["id"] = whole || !snapshots_.empty() ? next_edit_id_ : 0;
     if (!model_.losses.empty()) json["iteration"] = model_.losses.back().iteration;
     const std::lock_guard lock(live_->mutex);
-    json["adds"] = whole ? pending_->adds : live_->adds;
+    json["adds"] = whole ? whole->adds : live_->adds;
     return json;
 }
 
 std::function<DocumentState()> Application::state_with_live_edit() const {
     const DocumentState state = document_.state();
-    if (!pending_ && (!edit_running() || snapshots_.empty())) return [state] { return state; };
+    const auto* whole = pending_.kept();
+    if (!whole && (!edit_running() || snapshots_.empty())) return [state] { return state; };
     GaussianSet after;
     std::shared_ptr<const std::vector<std::int64_t>> rows;
     std::optional<edit::EditSnapshot> snapshot;   // what waits to be applied goes before what ran
-    if (pending_) after = pending_->set, rows = pending_->base_to_new;
+    if (whole) after = whole->set, rows = whole->base_to_new;
     else snapshot = snapshots_.back();
     if (snapshot && newest_set_.of == snapshot->rows) after = newest_set_.set;
-    EditNode node = pending_ ? node_of(*pending_) : EditNode{};
+    EditNode node = whole ? node_of(*whole) : EditNode{};
     node.id = next_edit_id_;
-    if (!pending_) {
+    if (!whole) {
         node.name = fmt::format("{} (interrupted at iteration {})", live_->name, snapshots_.back().iteration);
         node.recipe = live_->recipe;
     }
@@ -244,8 +246,7 @@ void Application::refresh_recoverable() {
         if (recovered_ && recovered_->file == found.file) continue;
         auto view = view_of(found);
         const bool of_this = same_file(found.scene, scene_path_) || same_file(found.project, project_path_);
-        const bool was = std::any_of(before.begin(), before.end(),
-                                     [&](const auto& old) { return old.file == view.file && old.offered; });
+        const bool was = std::any_of(before.begin(), before.end(), [&](const auto& old) { return old.file == view.file && old.offered; });
         view.offered = !document_.empty() && (of_this || was || !start_page_seen_);
         model_.recoverable.push_back(std::move(view));
     }

@@ -33,8 +33,7 @@ void Application::take_snapshots(const std::deque<edit::EditSnapshot>& snapshots
     list_snapshots();
     ++content_;
     if (shown < 0) return;
-    const auto at = std::find_if(snapshots_.begin(), snapshots_.end(),
-                                 [&](const auto& snapshot) { return snapshot.iteration >= shown; });
+    const auto at = std::find_if(snapshots_.begin(), snapshots_.end(), [&](const auto& snapshot) { return snapshot.iteration >= shown; });
     show_snapshot(static_cast<int>(at - snapshots_.begin()));
 }
 
@@ -57,7 +56,7 @@ const edit::EditSnapshot* Application::usable_snapshot(int iteration) {
 }
 
 void Application::take_snapshot(int iteration) {
-    const edit::EditSnapshot* snapshot = pending_ && !work_.running() ? usable_snapshot(iteration) : nullptr;
+    const edit::EditSnapshot* snapshot = pending_.shows_last() && !work_.running() ? usable_snapshot(iteration) : nullptr;
     if (snapshot == nullptr) return;
     pending_->set = snapshot_set(*snapshot);
     pending_->base_to_new = std::make_shared<const std::vector<std::int64_t>>(snapshot->base_to_new());

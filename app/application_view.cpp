@@ -81,7 +81,7 @@ PictureRequest Application::picture_request() {
     const auto& state = document_.state();
     const int snapshot = model_.shown_snapshot;
     const ShownKey key{document_.revision(), content_, model_.view.mode, snapshot, state.active_label,
-                       (model_.view.tint_labels || picking_) && model_.comparison == ui::Comparison::None, pending_.has_value()};
+                       (model_.view.tint_labels || picking_) && model_.comparison == ui::Comparison::None, pending_.shown()};
     if (!(key == shown_key_)) {
         shown_key_ = key;
         shown_set_ = set_on_screen();

@@ -264,7 +264,8 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
         remember_measured(recipe_key, search->measured);
         refresh_live();   // what was found last, and the last steps
         if (branch_) return go_on_from_branch();
-        if (pending->set.size() > 0) pending_ = std::move(*pending);   // also what a shortage or a failure left
+        if (pending->set.size() > 0) pending_.add(std::move(*pending));   // also what a shortage or a failure left
+        pending_.come_back();
         finish_edit(error);
     };
     work_.start({fmt::format("Edit: {}", recipe.request.prompt), work, done, true});
@@ -361,6 +362,22 @@ void Application::untint() {
 void Application::discard_result() {
     pending_.reset();
     model_.view.tint_labels |= std::exchange(tint_before_, std::nullopt).value_or(false);   // what is labelled can be seen again
+    ++content_;
+}
+
+void Application::another_result() {
+    if (!pending_ || work_.running()) return;
+    model_.request.seed = pending_.next_seed();
+    pending_.set_aside();
+    edit();
+    if (!work_.running()) pending_.come_back();
+}
+
+void Application::show_result(std::size_t index) {
+    if (!pending_) return;
+    pending_.show(index);
+    model_.request.seed = pending_->seed;
+    model_.shown_snapshot = -1;
     ++content_;
 }
 

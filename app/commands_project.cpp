@@ -103,8 +103,7 @@ void add_project_command(CLI::App& app, CommandContext&) {
     auto* command = app.add_subcommand("project", "Print what a project holds, or write its edited scene");
     command->add_option("project", options->input, "Project file (.gsep)")->required();
     command->add_flag("--json", options->json, "Print JSON");
-    auto* output = command->add_option("--export", options->output,
-                                       "Write the scene with the edits that are on to this file");
+    auto* output = command->add_option("--export", options->output, "Write the scene with the edits that are on to this file");
     command->add_option("--label", options->label, "With --export to a .ply: this label as columns")
         ->needs(output);
     command->callback([options] {

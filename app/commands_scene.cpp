@@ -166,8 +166,7 @@ FilmRequest film_request(const FilmOptions& options) {
     film.fps = turn.fps;
     film.cameras = options.path.empty()
                        ? turn_cameras(scene_orbit(scene, render), turn, render.azimuth, render.width, render.height)
-                       : path_cameras(load_camera_path(options.path, render.width, render.height), turn.fps, render.width,
-                                      render.height);
+                       : path_cameras(load_camera_path(options.path, render.width, render.height), turn.fps, render.width, render.height);
     return film;
 }
 
@@ -192,8 +191,7 @@ void check_word(const std::string& word, const std::vector<std::string>& words, 
     if (std::find(words.begin(), words.end(), word) != words.end()) return;
     std::string list;
     for (const auto& known : words) list += (list.empty() ? "" : ", ") + known;
-    throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" is not {} of the synthetic world", word, kind),
-                "choose from " + list);
+    throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" is not {} of the synthetic world", word, kind), "choose from " + list);
 }
 
 /// Cameras that frame the object, alternately low and high.

@@ -40,8 +40,7 @@ public:
     std::string name() { return painter_.rasterizer().name(); }
 
 private:
-    void paint_part(const PictureRequest& request, bool original, const Camera& camera, int first_column,
-                    NativePicture& picture);
+    void paint_part(const PictureRequest& request, bool original, const Camera& camera, int first_column, NativePicture& picture);
     Painter painter_;
     Image values_;
     std::vector<std::uint8_t> part_;

@@ -50,7 +50,9 @@ public:
     virtual void order_target(const edit::TargetOrder& order) = 0;
     virtual void fit_to_targets() = 0;                             // the edit waits for it
     virtual void apply_result() = 0;
-    virtual void discard_result() = 0;
+    virtual void discard_result() = 0;                             // and those beside it
+    virtual void another_result() = 0;                             // once more with another seed; the result that waits is kept beside it
+    virtual void show_result(std::size_t index) = 0;               // that one waits
     virtual void show_snapshot(int index) = 0;                     // -1 = newest
     virtual void take_snapshot(int iteration) = 0;                 // that state is the result that waits
     virtual void branch_from_snapshot(int iteration) = 0;          // goes on from there with the settings as they are now

@@ -80,6 +80,12 @@ public:
     void discard_result() override {
         later([this] { target_->discard_result(); });
     }
+    void another_result() override {
+        later([this] { target_->another_result(); });
+    }
+    void show_result(std::size_t index) override {
+        later([this, index] { target_->show_result(index); });
+    }
     void show_snapshot(int index) override {
         later([this, index] { target_->show_snapshot(index); });
     }

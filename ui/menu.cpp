@@ -171,6 +171,7 @@ void prompt_menu(Context& context) {
     if (item(context, {"menu.apply", "Apply the result", "", why_waiting})) context.actions.apply_result();
     if (item(context, {"menu.discard", "Discard the result", "", why_waiting}))
         context.actions.discard_result();
+    if (item(context, {"menu.another", "Another result, with another seed", "", why_waiting})) context.actions.another_result();
     ImGui::Separator();
     if (item(context, {"menu.seed", "Another seed"})) roll_seed(context);
     if (item(context, {"menu.models", "Models"})) show_panel(context.state, PanelId::Models);

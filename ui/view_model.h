@@ -115,6 +115,7 @@ struct SearchView {
     edit::SearchProblem problem = edit::SearchProblem::None;
     std::string message, remedy;                 // of the problem
     std::optional<double> front;                 // azimuth in degrees, [0, 360), where the pictures said it
+    bool on_ground = false;                      // the model was shown a ground that the scene does not have
 };
 
 /// A place where a model was looked for.
@@ -288,6 +289,12 @@ struct NetworkCost {
 };
 
 /// Everything the panels read. Pointers are valid for the frame.
+/// One of several results that can be applied.
+struct ResultView {
+    std::shared_ptr<const Image> thumbnail;   // may be null
+    std::uint64_t seed = 0;
+};
+
 struct ViewModel {
     // Document
     const Document* document = nullptr;          // null or empty() = nothing open
@@ -349,6 +356,8 @@ struct ViewModel {
     std::size_t result_changed_outside = 0;      // splats outside the label that are not as they were
     double result_psnr_outside_db = 0;
     double result_seconds = 0;                   // that it took
+    std::vector<ResultView> results;             // of which one waits, the others beside it
+    std::size_t shown_result = 0;                // index into results
     // Rest
     std::vector<ModelView> models;
     bool edits_by_instruction = false;           // the model in use is told what to do, too

@@ -63,6 +63,7 @@ public:
 
     LocateResult run() {
         LocateResult result;
+        result.on_ground = input_.ground.has_value();
         left_out_ = views_left_out(request().left_out);
         render_all();
         std::tie(result.mode, result.reason) = decide_mode(input_.request, found_share());

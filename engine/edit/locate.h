@@ -97,6 +97,7 @@ struct LocateResult {
     int failed_views = 0;
     std::size_t broken_attention = 0;   // values of the attention that were not finite, and count as none
     Confidence confidence;
+    bool on_ground = false;             // LocateInput::ground was there
     SearchProblem problem = SearchProblem::None;
     std::string message, remedy;  // of the problem: what came of the search, and what to do
 };

@@ -170,6 +170,7 @@ void add_search(nlohmann::ordered_json& report, const EditJob& job) {
     report["segmenter"] = job.segmenter_name();
     report["views"] = job.views().size();
     if (job.front_read()) report["front_read"] = *job.front_read() / Degree;
+    if (located.on_ground) report["plain_ground"] = true;   // that the networks saw below the scene
     report["failed_views"] = located.failed_views;
     if (located.broken_attention > 0) report["broken_attention"] = located.broken_attention;
     report["confidence"] = nullptr;   // nothing was looked for

@@ -18,6 +18,7 @@ void fill_pending(EditJob& job, PendingResult& pending) {
     pending.base_to_new = std::make_shared<const std::vector<std::int64_t>>(result.base_to_new);
     pending.name = job.recipe().request.prompt;
     pending.target = job.recipe().request.target;
+    pending.seed = job.recipe().request.seed;
     pending.adds = job.located().mode == edit::EditMode::Add;
     pending.recipe = json_text(recipe_to_json(job.recipe()), -1);
     for (const auto& [stage, seconds] : result.seconds) pending.seconds += seconds;
@@ -55,6 +56,7 @@ std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann
         pending.name = node.name;
         pending.recipe = node.recipe;
         pending.target = edit->value("target", "");
+        pending.seed = edit->value("seed", std::uint64_t{0});
         pending.adds = edit->value("adds", false);
         pending.seconds = node.seconds;
         pending.psnr_outside_db = node.psnr_outside_db;

@@ -19,6 +19,7 @@ struct PendingResult {
     GaussianSet before, set;
     std::shared_ptr<const std::vector<std::int64_t>> base_to_new;   // [before rows]
     std::string name, recipe, target;
+    std::uint64_t seed = 0;
     bool adds = false;
     double seconds = 0, psnr_outside_db = 0;
     std::size_t changed_outside_label = 0;

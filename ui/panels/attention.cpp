@@ -258,6 +258,17 @@ void draw_front(Context& context) {
             "back view.\nWhere that is wrong, set Front in Settings, in degrees, or none.");
 }
 
+/// What the pictures below show that is no part of the scene.
+void draw_ground(Context& context) {
+    if (!context.model.search.on_ground) return;
+    const char* text = "on a plain ground";
+    flow(ImGui::CalcTextSize(text).x + context.em);
+    badge(context, text, palette::TextDim);
+    note(context, "attention.ground");
+    tooltip("The scene was cut out of its surroundings. The model knows things on a ground: it was shown one below this scene, and a sky behind it.\n"
+            "None of that becomes part of the scene.");
+}
+
 /// How far the search is that the views come from.
 void draw_arriving(Context& context) {
     const auto& views = context.model.attention;
@@ -283,6 +294,7 @@ void draw_summary(Context& context) {
     tooltip(context.model.attention_mode);
     draw_confidence(context);
     draw_front(context);
+    draw_ground(context);
     draw_problem(context);
     if (!context.model.attention_corrected) return;
     bullet_dot(palette::Warning);

@@ -14,9 +14,9 @@ namespace {
 
 constexpr float PictureEm = 7.5f;   // width of a thumbnail
 
-/// A small window over the picture that sizes itself.
-void begin_floating(const char* name, ImVec2 at) {
-    ImGui::SetNextWindowPos(at, ImGuiCond_Always, {0.5f, 0});
+/// A small window over the picture that sizes itself; `below`: its lower edge is at that place, not its upper one.
+void begin_floating(const char* name, ImVec2 at, bool below = false) {
+    ImGui::SetNextWindowPos(at, ImGuiCond_Always, {0.5f, below ? 1.0f : 0.0f});
     ImGui::SetNextWindowBgAlpha(0.96f);
     ImGui::Begin(name, nullptr,
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
@@ -30,6 +30,34 @@ void end_floating(Context& context) {
     ImGui::End();
 }
 
+constexpr float ResultEm = 4.5f;   // width of one of several results
+
+/// All that can be applied, small, at the picture's foot: a click shows one.
+void draw_results(Context& context) {
+    const auto& results = context.model.results;
+    const auto& state = context.state.viewport;
+    begin_floating("results", {(state.low.x + state.high.x) * 0.5f, state.high.y - context.em * 0.4f}, true);
+    const float room = (state.high.x - state.low.x) / static_cast<float>(results.size()) - context.em;
+    const float side = std::clamp(room, context.em, context.em * ResultEm);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        if (i > 0) ImGui::SameLine();
+        ImGui::PushID(static_cast<int>(i));
+        const ImVec2 low = ImGui::GetCursorScreenPos(), high(low.x + side, low.y + side);
+        if (ImGui::InvisibleButton("result", {side, side})) context.actions.show_result(i);
+        note(context, fmt::format("result.{}", i));
+        tooltip(fmt::format("Result {} of {}, seed {}", i + 1, results.size(), results[i].seed));
+        ImDrawList* list = ImGui::GetWindowDrawList();
+        list->AddRectFilled(low, high, palette::Sunken, context.em * 0.2f);
+        if (results[i].thumbnail != nullptr)
+            list->AddImageRounded(imgui_texture(context.textures.texture(results[i].thumbnail)), low, high, {0, 0}, {1, 1}, IM_COL32_WHITE, context.em * 0.2f);
+        const bool shown = i == context.model.shown_result;
+        if (shown || ImGui::IsItemHovered() || ImGui::IsItemFocused())
+            list->AddRect(low, high, shown ? palette::Accent : palette::TextDim, context.em * 0.2f, 0, std::max(2.0f, context.em * 0.14f));
+        ImGui::PopID();
+    }
+    ImGui::End();
+}
+
 void draw_result_bar(Context& context, ImVec2 at) {
     begin_floating("result bar", at);
     const auto& model = context.model;
@@ -38,7 +66,7 @@ void draw_result_bar(Context& context, ImVec2 at) {
     const auto proof = fmt::format("{} splat{} outside the label changed", count_text(changed), changed == 1 ? "" : "s");
     const bool wipes = context.model.comparison == Comparison::Wipe;
     const float words = ImGui::CalcTextSize(time.c_str()).x + ImGui::CalcTextSize(proof.c_str()).x + context.em * 3;
-    const float buttons = button_width("Stop comparing") + button_width("Apply") + button_width("Discard") + context.em * 2;
+    const float buttons = button_width("Stop comparing") + button_width("Apply") + button_width("Discard") + button_width("Another") + context.em * 2.5f;
     const bool one_line = words + buttons < context.state.viewport.high.x - context.state.viewport.low.x - context.em * 2;
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(time.c_str());
@@ -55,6 +83,9 @@ void draw_result_bar(Context& context, ImVec2 at) {
                          .tooltip = "Wipe between before and after (V)"}))
         toggle_wipe(context);
     ImGui::SameLine();
+    if (button(context, {.name = "result.another", .text = "Another", .tooltip = "The same once more with another seed; this result is kept beside it"}))
+        context.actions.another_result();
+    ImGui::SameLine();
     if (button(context, {.name = "result.apply",
                          .text = "Apply",
                          .tooltip = "Keep it as an entry of the edit stack",
@@ -65,6 +96,7 @@ void draw_result_bar(Context& context, ImVec2 at) {
                {.name = "result.discard", .text = "Discard", .tooltip = "Leave the scene as it was"}))
         context.actions.discard_result();
     end_floating(context);
+    if (model.results.size() > 1) draw_results(context);
 }
 
 /// That something is not to be seen must be seen.

@@ -70,6 +70,8 @@ public:
     void fit_to_targets() override { calls.push_back("fit_to_targets"); }
     void apply_result() override { calls.push_back("apply_result"); }
     void discard_result() override { calls.push_back("discard_result"); }
+    void another_result() override { calls.push_back("another_result"); }
+    void show_result(std::size_t index) override { calls.push_back("show_result " + std::to_string(index)); }
     void show_snapshot(int index) override { calls.push_back("show_snapshot " + std::to_string(index)); }
     void take_snapshot(int iteration) override { calls.push_back("take_snapshot " + std::to_string(iteration)); }
     void branch_from_snapshot(int iteration) override {

@@ -411,6 +411,20 @@ DOCTEST_TEST_CASE("a result that waits is applied or discarded") {
     DOCTEST_CHECK(!harness.rect("prompt.edit").enabled);
 }
 
+DOCTEST_TEST_CASE("one more result is asked for, and of several each can be shown") {
+    Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
+    DOCTEST_CHECK(asks(harness, "result.another", "another_result"));
+    DOCTEST_CHECK(harness.find("result.0") == nullptr);   // one needs no choice
+    harness.application.model().results = {{nullptr, 4}, {std::make_shared<const Image>(8, 8, 3), 5}, {nullptr, 6}};
+    harness.application.model().shown_result = 2;
+    harness.frame(3);
+    DOCTEST_CHECK(asks(harness, "result.0", "show_result 0"));
+    DOCTEST_CHECK(asks(harness, "result.1", "show_result 1"));
+    const auto first = harness.rect("result.0"), second = harness.rect("result.1"), apply = harness.rect("result.apply");
+    DOCTEST_CHECK(first.x + first.width <= second.x);
+    DOCTEST_CHECK(first.y >= apply.y + apply.height);
+}
+
 DOCTEST_TEST_CASE("where Apply is decided stands what it took and what it left alone") {
     Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
     for (const char* name : {"result.time", "result.proof"}) {

@@ -572,6 +572,8 @@ DOCTEST_TEST_CASE("networks see a ground that is no part of the scene, and the v
     const edit::PlainGround plain{{{0, 2, 0}, 1, 1, 1}, {0, -1, 0}, {0, 0, 0.2f}, {0, 0, 0.5f}};
     const auto before_black = seen({}), before_plain = seen(plain);
     DOCTEST_CHECK(*before_plain.label.bits == *before_black.label.bits);   // both are as red as black
+    DOCTEST_CHECK(before_plain.on_ground);
+    DOCTEST_CHECK_FALSE(before_black.on_ground);
     DOCTEST_CHECK(before_plain.views[0].render.at(0, 0, 2) == doctest::Approx(plain.sky[2]));
     DOCTEST_CHECK(before_black.views[0].render.at(0, 0, 2) == 0);
     DOCTEST_CHECK(before_plain.confidence.agreement > before_black.confidence.agreement);

@@ -1,0 +1,52 @@
+// Several results of one edit, of which one is applied.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include "app/application.h"
+#include "tests/ui/app/session.h"
+
+using namespace gse;
+using namespace gse::test;
+
+DOCTEST_TEST_CASE("one more result with another seed: each can be shown and applied, and a stopped one takes none away") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.method = "views";
+    request.edited_views = 2;
+    app.set_request(request);
+    app.another_result();   // of nothing
+    DOCTEST_CHECK_FALSE(app.model().job.running);
+    app.edit();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_REQUIRE(app.model().result_waiting);
+    const auto seed = app.model().request.seed;
+    const auto base = app.document().state().current, first = session.preview.last.set;
+    app.another_result();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_REQUIRE(app.model().results.size() == 2);
+    DOCTEST_CHECK(app.model().request.seed == seed + 1);
+    const auto second = session.preview.last.set;
+    DOCTEST_CHECK_FALSE(second.shares_all_with(first));
+    app.another_result();
+    DOCTEST_REQUIRE(session.until([&] { return app.model().edit_running; }));
+    DOCTEST_CHECK_FALSE(app.model().result_waiting);
+    DOCTEST_CHECK(app.model().unsaved);
+    app.cancel();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_REQUIRE(app.model().result_waiting);   // stopped before its first step, or after some
+    app.show_result(0);
+    app.update(session.preview);
+    DOCTEST_CHECK(session.preview.last.set.shares_all_with(first));
+    DOCTEST_CHECK(app.model().request.seed == seed);
+    app.apply_result();
+    app.update(session.preview);
+    const auto& state = app.document().state();
+    DOCTEST_REQUIRE(state.stack.size() == 1);
+    DOCTEST_CHECK(nlohmann::ordered_json::parse(state.stack[0].recipe)["request"]["seed"] == seed);
+    DOCTEST_CHECK_FALSE(state.current.shares_all_with(base));
+    DOCTEST_CHECK(app.model().results.empty());
+}
