@@ -30,7 +30,7 @@ void end_floating(Context& context) {
     ImGui::End();
 }
 
-constexpr float ResultEm = 4.5f;   // width of one of several results
+constexpr float ResultEm = 3.4f;   // width of one of several results
 
 /// All that can be applied, small, at the picture's foot: a click shows one.
 void draw_results(Context& context) {
