@@ -13,6 +13,7 @@ namespace {
 constexpr double GroundHeight = 0.25;   // of a figure's height, up from the foot: a ground is not quite level
 constexpr double Above = 20;            // radii: from so far the picture is all but a parallel projection
 constexpr int Side = 64;                // pixels
+constexpr std::size_t StandingRows = 200000;   // that tell where a scene stands
 
 }  // namespace
 
@@ -46,14 +47,27 @@ double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, 
     return pixels > 0 ? covered / pixels : 0;
 }
 
+Standing standing_of_scene(const GaussianSet& set, const Vec3& up) {
+    std::vector<std::uint8_t> some(set.size(), 0);
+    const std::size_t step = 1 + set.size() / StandingRows;
+    for (std::size_t row = 0; row < some.size(); row += step) some[row] = 1;
+    return standing_alone(set, some, up, {});
+}
+
 double ground_of_scene(const GaussianSet& set, const Standing& whole, const Vec3& up, raster::Rasterizer& rasterizer) {
     const Vec3 above = normalized(up);
-    std::vector<std::uint8_t> rises(set.size(), 0);
+    const std::size_t step = 1 + set.size() / StandingRows;
+    std::vector<std::uint8_t> rises(set.size(), 0), some(set.size(), 0);
     for (std::size_t row = 0; row < rises.size(); ++row) {
         const auto p = set.position().subspan(row * 3, 3);
         rises[row] = dot(Vec3{p[0], p[1], p[2]} - whole.foot, above) > GroundHeight * whole.height ? 1 : 0;
+        if (row % step == 0) some[row] = rises[row];
     }
-    return ground_cover(set, rises, standing_of(set, rises, up, {}), up, rasterizer);
+    auto risen = standing_alone(set, some, up, {});
+    const double lifted = dot(risen.foot - whole.foot, above);   // above the ground that the scene would have
+    risen.foot = risen.foot - above * lifted;
+    risen.height += lifted;
+    return ground_cover(set, rises, risen, up, rasterizer);
 }
 
 }  // namespace gse::edit

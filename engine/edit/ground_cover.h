@@ -14,7 +14,10 @@ namespace gse::edit {
 /// size is high. 0 where nothing stands.
 double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, const Standing& standing, const Vec3& up, raster::Rasterizer& rasterizer);
 
-/// The same of all that rises out of a scene's lower quarter: how much ground the scene has.
+/// Of all of a scene; of a large one some of its rows tell.
+Standing standing_of_scene(const GaussianSet& set, const Vec3& up);
+
+/// The cover of the ground around all that rises out of the lower quarter of a scene, of which `whole` is where it stands.
 double ground_of_scene(const GaussianSet& set, const Standing& whole, const Vec3& up, raster::Rasterizer& rasterizer);
 
 }  // namespace gse::edit

@@ -16,6 +16,8 @@ namespace {
 constexpr double PlainReach = 3;      // figures' heights: as wide as in the pictures that the bundled model learned from
 constexpr double LeastUpright = 0.1;  // of its width: what is lower is a ground itself
 constexpr double LeastCover = 0.5;    // of the ground around it: less is no ground that a picture would show
+constexpr double LeastShown = 0.05;   // of the pictures: where a scene shows less of a ground, its surroundings are there
+constexpr std::size_t LookedAt = 4;   // views that tell
 constexpr int PlainSamples = 2;       // along a pixel's side
 // Before it st-peter, cut out as in README, is drawn more golden (score 0.40) than before black (0.35), and as much of a red cat (0.30, 0.29).
 constexpr std::array<float, 3> Sky{0.69f, 0.78f, 0.88f};
@@ -26,6 +28,20 @@ void move_before(const Image& scene, const Image& shown, const Image& outline, I
         const float through = 1 - std::clamp(outline.data[i / 3], 0.0f, 1.0f);
         picture.data[i] = std::clamp(picture.data[i] + through * (scene.data[i] - shown.data[i]), 0.0f, 1.0f);
     }
+}
+
+/// Of some of the pictures, as far as the scene is not before it.
+double shown_share(const PlainGround& plain, const GaussianSet& set, const std::vector<View>& views, raster::Rasterizer& rasterizer) {
+    double shown = 0, pixels = 0;
+    raster::ForwardOutput output;
+    const std::size_t step = std::max<std::size_t>(1, views.size() / LookedAt);
+    for (std::size_t v = 0; v < views.size(); v += step) {
+        rasterizer.forward(set.spans(), views[v].camera, {}, output);
+        const Image ground = shown_of(plain, views[v].camera);
+        for (std::size_t i = 0; i < ground.data.size(); ++i) shown += ground.data[i] * (1 - output.alpha.data[i]);
+        pixels += static_cast<double>(ground.data.size());
+    }
+    return pixels > 0 ? shown / pixels : 0;
 }
 
 }  // namespace
@@ -52,13 +68,14 @@ std::optional<GroundUnder> ground_under(const std::string& sentence, const Gauss
     return GroundUnder{*plain, cover < LeastCover};
 }
 
-std::optional<PlainGround> ground_below(const std::string& sentence, const GaussianSet& set, const Vec3& up, raster::Rasterizer& rasterizer) {
-    const auto whole = standing_alone(set, std::vector<std::uint8_t>(set.size(), 1), up, {});
+std::optional<PlainGround> ground_below(const std::string& sentence, const GaussianSet& set, const std::vector<View>& views, const Vec3& up,
+                                        raster::Rasterizer& rasterizer) {
+    const auto whole = standing_of_scene(set, up);
     const auto plain = plain_ground(sentence, whole, up);
     if (!plain) return std::nullopt;
     const double cover = ground_of_scene(set, whole, up, rasterizer);
     log::debug("{:.0f} % of the ground around what rises out of the scene are there", 100 * cover);
-    return cover < LeastCover ? plain : std::nullopt;
+    return cover < LeastCover && shown_share(*plain, set, views, rasterizer) >= LeastShown ? plain : std::nullopt;
 }
 
 Image shown_of(const PlainGround& plain, const Camera& camera) {

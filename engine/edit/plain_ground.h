@@ -35,8 +35,10 @@ struct GroundUnder {
 std::optional<GroundUnder> ground_under(const std::string& sentence, const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front,
                                         raster::Rasterizer& rasterizer);
 
-/// The ground below a whole scene that was cut out of its surroundings (ground_of_scene()); none where it has one.
-std::optional<PlainGround> ground_below(const std::string& sentence, const GaussianSet& set, const Vec3& up, raster::Rasterizer& rasterizer);
+/// The ground below a whole scene that was cut out of its surroundings (ground_of_scene()); none where it has one, or where some of the
+/// `views` would hardly show it, as those within a room.
+std::optional<PlainGround> ground_below(const std::string& sentence, const GaussianSet& set, const std::vector<View>& views, const Vec3& up,
+                                        raster::Rasterizer& rasterizer);
 
 /// [H,W,1] share of each pixel that shows it, where nothing stands before it.
 Image shown_of(const PlainGround& plain, const Camera& camera);

@@ -104,14 +104,14 @@ Located finished(Located located) {
 }
 
 /// Words are looked for on it; a label is what it is.
-std::optional<edit::PlainGround> ground_shown(Workplace& workplace, const EditRecipe& recipe) {
-    return recipe.guidance.plain_ground ? workplace.ground(edit::sentence_before(recipe.request)) : std::nullopt;
+std::optional<edit::PlainGround> ground_shown(Workplace& workplace, const EditRecipe& recipe, const Views& views) {
+    return recipe.guidance.plain_ground ? workplace.ground(edit::sentence_before(recipe.request), views.views) : std::nullopt;
 }
 
 edit::LocateResult look_from(Workplace& workplace, const Views& views, const EditRecipe& recipe, const std::vector<std::uint8_t>* label,
                              const JobControl& control) {
     auto input = question(workplace, recipe, views, label);
-    input.ground = label == nullptr ? ground_shown(workplace, recipe) : std::nullopt;
+    input.ground = label == nullptr ? ground_shown(workplace, recipe, views) : std::nullopt;
     auto tools = workplace.tools(views, input.ground, control);
     const auto drawing = workplace.place_drawing(recipe.request);
     tools.drawing = drawing.get();
@@ -128,6 +128,7 @@ public:
     Located run() {
         const bool by_label = !hints_.label.empty() && (recipe_.job.brings_label() || !edit::knows(workplace_.model().known_words(),
                                                                                                 recipe_.request.source));
+        ground();   // as these views show it
         read_scene(moves() && !by_label);
         if (by_label) return from_label();
         Located located = moves() ? from_all_distances() : moved_in(views_, {});
@@ -139,7 +140,7 @@ public:
 private:
     bool moves() const { return views_.automatic && recipe_.request.focus; }
 
-    std::optional<edit::PlainGround> ground() { return hints_.label.empty() ? ground_shown(workplace_, recipe_) : std::nullopt; }
+    std::optional<edit::PlainGround> ground() { return hints_.label.empty() ? ground_shown(workplace_, recipe_, views_) : std::nullopt; }
 
     Located from_label() { return moved_in(views_, hints_.label); }
 

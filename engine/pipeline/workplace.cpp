@@ -76,10 +76,10 @@ void Workplace::ask(const neural::AttentionParameters& attention) {
     if (attention_ == nullptr) ask_anew(attention);
 }
 
-std::optional<edit::PlainGround> Workplace::ground(const std::string& sentence) {
+std::optional<edit::PlainGround> Workplace::ground(const std::string& sentence, const std::vector<View>& views) {
     if (!model_->knows_scene()) return std::nullopt;
     if (!ground_) {
-        ground_ = edit::ground_below(sentence, drawn_, scene_.info.up, painter_.rasterizer());
+        ground_ = edit::ground_below(sentence, drawn_, views, scene_.info.up, painter_.rasterizer());
         if (*ground_) log::info("the scene has hardly any ground: the model is shown it on a plain one");
     }
     return *ground_ ? edit::plain_ground(sentence, (*ground_)->standing, scene_.info.up) : std::nullopt;

@@ -54,8 +54,8 @@ public:
     /// Who is told of the views of searches from here on; empty = nobody.
     void watch_views(ViewWatch watch) { watch_ = std::move(watch); }
     /// What the model is shown below and behind a scene that was cut out of its surroundings, for a sentence that says what the scene shows
-    /// (edit::ground_below()); none for models that are not shown scenes.
-    std::optional<edit::PlainGround> ground(const std::string& sentence);
+    /// (edit::ground_below(), by the views of the first call); none for models that are not shown scenes.
+    std::optional<edit::PlainGround> ground(const std::string& sentence, const std::vector<View>& views);
     /// What locate() calls, for these views before this ground; the views must stay while it is used; needs ask() or ask_anew().
     edit::LocateTools tools(const Views& views, const std::optional<edit::PlainGround>& ground, const JobControl& control);
     /// What draws the place of what is added, where the model can (TextToImage::knows_scene()), else null; its cost is counted. Not the

@@ -17,9 +17,10 @@ DOCTEST_TEST_CASE("drawn scenes stand on their own ground, and without it in not
         const auto scene = synth::generate(synth::held_out_spec(random, 0.5));
         DOCTEST_INFO(scene.spec.object, " ", scene.spec.accessory, " on ", scene.spec.ground);
         const auto& set = scene.scene.gaussians;
-        DOCTEST_CHECK_FALSE(edit::ground_below("a cat", set, scene.scene.info.up, *rasterizer).has_value());
+        const auto views = orbit_views(fit_orbit(compute_statistics(set), scene.scene.info.up), 6, 48, 48);
+        DOCTEST_CHECK_FALSE(edit::ground_below("a cat", set, views, scene.scene.info.up, *rasterizer).has_value());
         std::vector<unsigned char> kept;
         for (const auto part : scene.parts) kept.push_back(part == synth::Part::Ground ? 0 : 1);
-        DOCTEST_CHECK(edit::ground_below("a cat", set.filtered(kept), scene.scene.info.up, *rasterizer).has_value());
+        DOCTEST_CHECK(edit::ground_below("a cat", set.filtered(kept), views, scene.scene.info.up, *rasterizer).has_value());
     }
 }

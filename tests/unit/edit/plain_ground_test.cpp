@@ -208,13 +208,19 @@ DOCTEST_TEST_CASE("how much ground there is around a thing is seen from above: a
 
 DOCTEST_TEST_CASE("a scene has a ground where that reaches out from under what rises out of it") {
     const auto rasterizer = raster::make_plain_rasterizer();
-    const auto below = [&](const Column& column) { return ground_below("a cat", column.set, Up, *rasterizer); };
+    OrbitParameters orbit;
+    orbit.centre = {0, -0.5, 0};
+    orbit.radius = 4;
+    const auto views = orbit_views(orbit, 6, 32, 32);
+    const auto below = [&](const Column& column) { return ground_below("a cat", column.set, views, Up, *rasterizer); };
     DOCTEST_CHECK_FALSE(below(column_on(1.6, 0)).has_value());
     const auto bare = below(column_on(-1, 0)), plinth = below(column_on(0.3, 0));
     DOCTEST_REQUIRE(bare.has_value());
     DOCTEST_CHECK(plinth.has_value());
     DOCTEST_CHECK(std::abs(dot(bare->standing.foot, Up)) < 0.1);   // the lowest of it
-    DOCTEST_CHECK_FALSE(ground_below("a cat", GaussianSet(), Up, *rasterizer).has_value());
+    DOCTEST_CHECK_FALSE(ground_below("a cat", GaussianSet(), views, Up, *rasterizer).has_value());
+    orbit.radius = 0.3;   // so near that hardly anything else is seen
+    DOCTEST_CHECK_FALSE(ground_below("a cat", column_on(-1, 0).set, orbit_views(orbit, 6, 32, 32), Up, *rasterizer).has_value());
 }
 
 DOCTEST_TEST_CASE("a picture is moved before the plain ground by what it covers of its background") {

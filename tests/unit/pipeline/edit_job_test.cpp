@@ -228,7 +228,7 @@ DOCTEST_TEST_CASE("edit job: a word finds all of a thing that was cut out of its
     }
     const auto whole = synth::generate({});
     Workplace workplace(whole.scene, model, {});
-    DOCTEST_CHECK_FALSE(workplace.ground("a bear").has_value());
+    DOCTEST_CHECK_FALSE(workplace.ground("a bear", orbit_views({}, 4, 64, 64)).has_value());
 }
 
 DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it open") {
