@@ -369,7 +369,9 @@ void Application::another_result() {
     if (!pending_ || work_.running()) return;
     model_.request.seed = pending_.next_seed();
     pending_.set_aside();
+    const auto tint = tint_before_;   // as before the first of them
     edit();
+    tint_before_ = tint;
     if (!work_.running()) pending_.come_back();
 }
 

@@ -50,3 +50,30 @@ DOCTEST_TEST_CASE("one more result with another seed: each can be shown and appl
     DOCTEST_CHECK_FALSE(state.current.shares_all_with(base));
     DOCTEST_CHECK(app.model().results.empty());
 }
+
+DOCTEST_TEST_CASE("one more result, and all of them discarded: the scene and what is tinted are as before the first") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.method = "views";
+    request.edited_views = 2;
+    app.set_request(request);
+    auto view = app.model().view;
+    view.tint_labels = true;
+    app.set_view_settings(view);
+    const auto base = app.document().state().current;
+    app.edit();
+    DOCTEST_REQUIRE(session.idle());
+    app.another_result();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_REQUIRE(app.model().results.size() == 2);
+    DOCTEST_CHECK_FALSE(app.model().view.tint_labels);
+    app.discard_result();
+    app.update(session.preview);
+    DOCTEST_CHECK(app.model().results.empty());
+    DOCTEST_CHECK(app.model().view.tint_labels);
+    DOCTEST_CHECK(app.document().state().current.shares_all_with(base));
+}
