@@ -11,7 +11,7 @@
 #include "engine/bench/eval_figures.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/evaluate/metrics.h"
-#include "engine/synth/synth.h"
+#include "engine/synth/without_ground.h"
 
 namespace gse::bench {
 namespace {
@@ -83,15 +83,6 @@ std::vector<Question> wrong_words(const SceneSpec& spec, const std::string& mate
     return list;
 }
 
-/// The scene as one that was cut out of its surroundings.
-synth::SynthScene without_ground(synth::SynthScene scene) {
-    std::vector<unsigned char> kept;
-    for (const auto part : scene.parts) kept.push_back(part == Part::Ground ? 0 : 1);
-    scene.scene.gaussians = scene.scene.gaussians.filtered(kept);
-    std::erase(scene.parts, Part::Ground);
-    return scene;
-}
-
 class SearchBench {
 public:
     SearchBench(const SearchBenchParameters& parameters, const pipeline::EditRecipe& settings, const JobControl& job)
@@ -105,7 +96,7 @@ public:
         for (int i = 0; i < parameters_.scenes; ++i) {
             Random random = Random::stream(parameters_.seed, 70000 + static_cast<std::uint64_t>(i));
             const SceneSpec spec = synth::held_out_spec(random, AccessoryShare);
-            const auto scene = parameters_.ground ? synth::generate(spec) : without_ground(synth::generate(spec));
+            const auto scene = parameters_.ground ? synth::generate(spec) : synth::without_ground(synth::generate(spec));
             const auto material = other_than(synth::material_words(), random, {spec.material, spec.accessory_colour});
             auto questions = present_words(spec, material, random);
             for (auto& question : wrong_words(spec, material, random)) questions.push_back(std::move(question));

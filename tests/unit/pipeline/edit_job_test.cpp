@@ -9,7 +9,7 @@
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/edit_job.h"
 #include "engine/pipeline/installed.h"
-#include "engine/synth/synth.h"
+#include "engine/synth/without_ground.h"
 
 #ifdef GSE_NEURAL
 namespace {
@@ -204,10 +204,7 @@ DOCTEST_TEST_CASE("edit job: a word finds all of a thing that was cut out of its
         spec.object = object;
         spec.material = "red";
         spec.seed = 7;
-        auto made = synth::generate(spec);
-        std::vector<unsigned char> kept;
-        for (const auto part : made.parts) kept.push_back(part == synth::Part::Ground ? 0 : 1);
-        made.scene.gaussians = made.scene.gaussians.filtered(kept);
+        const auto made = synth::without_ground(synth::generate(spec));
         EditRecipe recipe;
         recipe.request.source = object;
         recipe.request.prompt = "a golden " + object + " on the grass";
