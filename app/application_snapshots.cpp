@@ -57,7 +57,7 @@ const edit::EditSnapshot* Application::usable_snapshot(int iteration) {
 
 void Application::take_snapshot(int iteration) {
     const edit::EditSnapshot* snapshot = pending_.shows_last() && !work_.running() ? usable_snapshot(iteration) : nullptr;
-    if (snapshot == nullptr) return;
+    if (snapshot == nullptr) return pending_ && !pending_.shows_last() ? toast("Those states are of the last result: show that one first.") : void();
     pending_->set = snapshot_set(*snapshot);
     pending_->base_to_new = std::make_shared<const std::vector<std::int64_t>>(snapshot->base_to_new());
     pending_->name = fmt::format("{} (iteration {})", model_.request.prompt, snapshot->iteration);

@@ -8,16 +8,25 @@
 using namespace gse;
 using namespace gse::test;
 
+namespace {
+
+/// With the bear and a quick edit.
+app::Application& opened(Session& session) {
+    session.open_bear();
+    auto request = session.app.model().request;
+    request.method = "views";
+    request.edited_views = 2;
+    session.app.set_request(request);
+    return session.app;
+}
+
+}  // namespace
+
 DOCTEST_TEST_CASE("one more result with another seed: each can be shown and applied, and a stopped one takes none away") {
     if (!networks()) return;
     const Place place;
     Session session;
-    session.open_bear();
-    auto& app = session.app;
-    auto request = app.model().request;
-    request.method = "views";
-    request.edited_views = 2;
-    app.set_request(request);
+    auto& app = opened(session);
     app.another_result();   // of nothing
     DOCTEST_CHECK_FALSE(app.model().job.running);
     app.edit();
@@ -37,6 +46,7 @@ DOCTEST_TEST_CASE("one more result with another seed: each can be shown and appl
     DOCTEST_CHECK(app.model().unsaved);
     app.cancel();
     DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(app.model().results.size() >= 2);
     DOCTEST_REQUIRE(app.model().result_waiting);   // stopped before its first step, or after some
     app.show_result(0);
     app.update(session.preview);
@@ -55,12 +65,7 @@ DOCTEST_TEST_CASE("one more result, and all of them discarded: the scene and wha
     if (!networks()) return;
     const Place place;
     Session session;
-    session.open_bear();
-    auto& app = session.app;
-    auto request = app.model().request;
-    request.method = "views";
-    request.edited_views = 2;
-    app.set_request(request);
+    auto& app = opened(session);
     auto view = app.model().view;
     view.tint_labels = true;
     app.set_view_settings(view);
