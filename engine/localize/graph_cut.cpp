@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "engine/base/check.h"
 #include "engine/localize/row_tree.h"
@@ -22,11 +23,6 @@ constexpr double HalfTrust = 0.25;          // of the mean evidence: a row with 
 constexpr double InferredTrust = 0.25;      // of a row no view saw
 constexpr double LeastDifference = 1e-12;   // scenes of one colour
 constexpr float BeyondTau = 0.02f;          // a row that changes sides lies at least this far beyond
-
-struct Edge {
-    std::uint32_t from, to;    // indices into the rows that take part
-    double value;              // squared difference of the colours, then the cost of cutting it
-};
 
 struct Box {
     std::array<double, 3> low, high;
@@ -74,30 +70,14 @@ RowPoints taking_part(const GaussianSpans& gaussians, const CutParameters& param
     return rows;
 }
 
-double squared_colour_difference(const GaussianSpans& gaussians, std::size_t a, std::size_t b) {
+/// The colour of every row [M,3], side by side.
+std::vector<float> colours_of(const GaussianSpans& gaussians, const RowPoints& rows) {
     const auto stride = static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3;
-    double sum = 0;
-    for (std::size_t c = 0; c < 3; ++c)
-        sum += std::pow(static_cast<double>(gaussians.sh[a * stride + c]) - gaussians.sh[b * stride + c], 2);
-    return sum;
-}
-
-constexpr std::uint32_t NoRow = std::numeric_limits<std::uint32_t>::max();
-
-std::vector<Edge> neighbour_edges(const GaussianSpans& gaussians, const CutParameters& parameters, const RowPoints& rows,
-                                  ThreadPool* threads) {
-    const RowTree tree(3, rows, nanoflann::KDTreeSingleIndexAdaptorParams(RowTreeLeaf));
-    const auto wanted = static_cast<std::size_t>(parameters.neighbours) + 1;   // itself among them
-    std::vector<Edge> edges(rows.row.size() * wanted, Edge{NoRow, NoRow, 0});
-    const auto take = [&](std::size_t i, std::span<const std::uint32_t> nearest, std::span<const float>) {
-        for (std::size_t k = 0; k < nearest.size(); ++k)
-            if (nearest[k] != i)
-                edges[i * wanted + k] = {static_cast<std::uint32_t>(i), nearest[k],
-                                         squared_colour_difference(gaussians, rows.row[i], rows.row[nearest[k]])};
-    };
-    nearest_of_all(tree, rows.position, wanted, threads, take);
-    std::erase_if(edges, [](const Edge& edge) { return edge.from == NoRow; });
-    return edges;
+    std::vector<float> colours;
+    colours.reserve(rows.row.size() * 3);
+    for (const std::size_t row : rows.row)
+        for (std::size_t c = 0; c < 3; ++c) colours.push_back(gaussians.sh[row * stride + c]);
+    return colours;
 }
 
 /// -log p for "labelled" and "not labelled", each times the trust in the row.
@@ -111,28 +91,80 @@ std::pair<double, double> row_costs(const LabelWeights& weights, const CutParame
     return {-trust * std::log(p), -trust * std::log(1 - p)};
 }
 
+constexpr std::uint32_t NoRow = std::numeric_limits<std::uint32_t>::max();
+
 /// The energy's numbers for the rows that take part.
 struct Problem {
     RowPoints rows;
-    std::vector<std::pair<double, double>> row_costs;   // of "labelled" and of "not labelled"
-    std::vector<Edge> edges;
+    std::vector<std::pair<double, double>> row_costs;   // [M] of "labelled" and of "not labelled"
+    std::vector<float> colours;                         // [M,3]
+    std::vector<std::uint32_t> nearest;                 // [M,neighbours] indices into the rows; NoRow where there are not so many
+    std::size_t neighbours = 0;
+    double smoothness = 0, mean_difference = 0;
+
+    double squared_difference(std::size_t a, std::size_t b) const {
+        double sum = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double difference = static_cast<double>(colours[a * 3 + c]) - colours[b * 3 + c];
+            sum += difference * difference;
+        }
+        return sum;
+    }
+    std::span<const std::uint32_t> nearest_to(std::size_t i) const { return std::span(nearest).subspan(i * neighbours, neighbours); }
+    bool is_near(std::size_t i, std::uint32_t other) const {
+        const auto near = nearest_to(i);
+        return std::find(near.begin(), near.end(), other) != near.end();
+    }
+    /// Calls visit(from, to, cost of cutting it) once for every pair of which one is among the other's nearest; it costs half where only one is.
+    template <class F>
+    void for_each_edge(F&& visit) const {
+        for (std::size_t i = 0; i < rows.row.size(); ++i)
+            for (const auto j : nearest_to(i)) {
+                if (j == NoRow) break;
+                const bool mutual = is_near(j, static_cast<std::uint32_t>(i));
+                if (mutual && j < i) continue;   // it was met from there
+                const double alike = std::exp(-squared_difference(i, j) / std::max(mean_difference, LeastDifference));
+                visit(i, j, (mutual ? 1.0 : 0.5) * smoothness * alike);
+            }
+    }
 };
+
+/// Sets the nearest rows and the mean over them of the squared difference of the colours.
+void find_nearest(Problem& problem, ThreadPool* threads) {
+    const RowTree tree(3, problem.rows, nanoflann::KDTreeSingleIndexAdaptorParams(RowTreeLeaf));
+    const std::size_t count = problem.rows.row.size();
+    problem.nearest.assign(count * problem.neighbours, NoRow);
+    std::vector<double> difference(count);
+    std::vector<std::uint32_t> found(count);
+    const auto take = [&](std::size_t i, std::span<const std::uint32_t> nearest, std::span<const float>) {
+        std::uint32_t* next = problem.nearest.data() + i * problem.neighbours;
+        for (const auto other : nearest) {
+            if (other == i || found[i] == problem.neighbours) continue;
+            next[found[i]++] = other;
+            difference[i] += problem.squared_difference(i, other);
+        }
+    };
+    nearest_of_all(tree, problem.rows.position, problem.neighbours + 1, threads, take);   // itself among them
+    const double pairs = std::accumulate(found.begin(), found.end(), 0.0);
+    problem.mean_difference = pairs > 0 ? std::accumulate(difference.begin(), difference.end(), 0.0) / pairs : 0;
+}
 
 Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelWeights& weights,
                      ThreadPool* threads) {
     Problem problem;
     Box box;
     if (parameters.neighbours <= 0 || !labelled_box(gaussians, parameters, weights, box)) return problem;
-    problem.rows = taking_part(gaussians, parameters, weights, box);
+    problem.rows = along_curve(gaussians, taking_part(gaussians, parameters, weights, box));
+    problem.colours = colours_of(gaussians, problem.rows);
+    problem.neighbours = static_cast<std::size_t>(parameters.neighbours);
+    problem.smoothness = parameters.smoothness;
     const auto& rows = problem.rows.row;
     const double share = 1.0 / static_cast<double>(std::max<std::size_t>(rows.size(), 1));
-    double mean_evidence = 0, mean_difference = 0;
+    double mean_evidence = 0;
     for (const auto row : rows) mean_evidence += weights.evidence[row] * share;
+    problem.row_costs.reserve(rows.size());
     for (const auto row : rows) problem.row_costs.push_back(row_costs(weights, parameters, mean_evidence, row));
-    problem.edges = neighbour_edges(gaussians, parameters, problem.rows, threads);
-    for (const auto& edge : problem.edges) mean_difference += edge.value / static_cast<double>(problem.edges.size());
-    for (auto& edge : problem.edges)   // an edge found from both of its ends counts twice a half
-        edge.value = 0.5 * parameters.smoothness * std::exp(-edge.value / std::max(mean_difference, LeastDifference));
+    if (!rows.empty()) find_nearest(problem, threads);
     return problem;
 }
 
@@ -146,8 +178,9 @@ double label_energy(const GaussianSpans& gaussians, const CutParameters& paramet
     double energy = 0;
     for (std::size_t i = 0; i < rows.size(); ++i)
         energy += label[rows[i]] != 0 ? problem.row_costs[i].first : problem.row_costs[i].second;
-    for (const auto& edge : problem.edges)
-        if ((label[rows[edge.from]] != 0) != (label[rows[edge.to]] != 0)) energy += edge.value;
+    problem.for_each_edge([&](std::size_t from, std::size_t to, double cost) {
+        if ((label[rows[from]] != 0) != (label[rows[to]] != 0)) energy += cost;
+    });
     return energy;
 }
 
@@ -159,13 +192,16 @@ std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& param
     if (parameters.smoothness <= 0) return 0;
     Problem problem = make_problem(gaussians, parameters, weights, threads);
     const auto& rows = problem.rows.row;
-    if (problem.edges.empty()) return 0;
-    cv::detail::GCGraph<double> graph(static_cast<unsigned>(rows.size()), static_cast<unsigned>(problem.edges.size()));
+    if (rows.size() < 2) return 0;
+    std::size_t edges = 0;
+    problem.for_each_edge([&](std::size_t, std::size_t, double) { ++edges; });
+    cv::detail::GCGraph<double> graph(static_cast<unsigned>(rows.size()), static_cast<unsigned>(2 * edges));   // both ways
     for (const auto& [labelled, not_labelled] : problem.row_costs)
         graph.addTermWeights(graph.addVtx(), not_labelled, labelled);   // the source's side is "labelled"
-    for (const auto& edge : problem.edges)
-        graph.addEdges(static_cast<int>(edge.from), static_cast<int>(edge.to), edge.value, edge.value);
-    problem.edges = {};   // the graph has its own
+    problem.for_each_edge([&](std::size_t from, std::size_t to, double cost) {
+        graph.addEdges(static_cast<int>(from), static_cast<int>(to), cost, cost);
+    });
+    problem.nearest = {};   // the graph has its own
     graph.maxFlow();
     std::size_t changed = 0;
     const auto tau = static_cast<float>(parameters.tau);

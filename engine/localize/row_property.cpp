@@ -76,6 +76,7 @@ std::vector<float> isolations(const GaussianSet& set, ThreadPool* threads) {
     for (std::size_t row = 0; row < set.size(); ++row)
         if (finite_position(gaussians, row)) points.add(gaussians, row);
     if (points.row.size() < 2) return values;
+    points = along_curve(gaussians, points);
     const RowTree tree(3, points, nanoflann::KDTreeSingleIndexAdaptorParams(RowTreeLeaf));
     std::vector<float> distance(points.row.size());
     nearest_of_all(tree, points.position, Neighbours + 1, threads,   // the nearest is the row itself

@@ -41,12 +41,14 @@ void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& pa
     }
     const double reach = parameters.reach_share * labelled_diagonal(seen, weights, parameters.tau);
     if (seen.row.empty() || reach <= 0 || parameters.neighbours <= 0) return;
+    seen = along_curve(gaussians, seen);
     const RowTree tree(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(RowTreeLeaf));
     RowPoints unseen;
     for (std::size_t row = 0; row < gaussians.size; ++row) {
         if (weights.evidence[row] > parameters.least_evidence_px || !finite_position(gaussians, row)) continue;
         unseen.add(gaussians, row);
     }
+    unseen = along_curve(gaussians, unseen);
     const auto take = [&](std::size_t point, std::span<const std::uint32_t> nearest, std::span<const float> squared) {
         double opinion = 0, voices = 0;
         for (std::size_t i = 0; i < nearest.size(); ++i) {
@@ -62,7 +64,8 @@ void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& pa
         weights.weight[row] = static_cast<float>(std::clamp(opinion / voices, 0.0, 1.0));
         weights.inferred[row] = 1;
     };
-    nearest_of_all(tree, unseen.position, static_cast<std::size_t>(parameters.neighbours), threads, take);
+    constexpr double JustBeyond = 1 + 1e-6;   // distances are squared in single precision
+    nearest_of_all(tree, unseen.position, static_cast<std::size_t>(parameters.neighbours), threads, take, JustBeyond * reach);
 }
 
 }  // namespace gse::localize

@@ -2,7 +2,10 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "engine/base/random.h"
 #include "engine/localize/graph_cut.h"
@@ -77,6 +80,47 @@ DOCTEST_TEST_CASE("the cut has the least energy of all labels") {
         }
         DOCTEST_CHECK(found == doctest::Approx(least).epsilon(EnergyTolerance));
     }
+}
+
+DOCTEST_TEST_CASE("the energy is what its definition says, with every distance measured") {
+    constexpr std::size_t count = 60, neighbours = 4;
+    Random random(8);
+    Rows rows(count);
+    for (auto& value : rows.data.position) value = static_cast<float>(random.uniform(0, 1));
+    for (auto& value : rows.data.sh) value = static_cast<float>(random.uniform(0, 1));
+    rows.weights.weight.assign(count, 0.9f);   // all take part, and have one opinion
+    localize::CutParameters parameters;
+    parameters.neighbours = neighbours;
+    const auto squared = [&](const std::vector<float>& values, std::size_t a, std::size_t b) {
+        double sum = 0;
+        for (std::size_t c = 0; c < 3; ++c) sum += std::pow(double{values[a * 3 + c]} - values[b * 3 + c], 2);
+        return sum;
+    };
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;   // from either end
+    double mean = 0;
+    for (std::size_t a = 0; a < count; ++a) {
+        std::vector<std::pair<double, std::size_t>> others;
+        for (std::size_t b = 0; b < count; ++b)
+            if (b != a) others.emplace_back(squared(rows.data.position, a, b), b);
+        std::sort(others.begin(), others.end());
+        for (std::size_t k = 0; k < neighbours; ++k) {
+            pairs.emplace_back(a, others[k].second);
+            mean += squared(rows.data.sh, a, others[k].second) / (count * neighbours);
+        }
+    }
+    std::vector<std::uint8_t> none(count, 0), some(count, 0);
+    double cut = 0;
+    for (std::size_t row = 0; row < count; ++row) some[row] = rows.data.position[row * 3] > 0.5f ? 1 : 0;
+    for (const auto& [a, b] : pairs)
+        if (some[a] != some[b]) cut += 0.5 * parameters.smoothness * std::exp(-squared(rows.data.sh, a, b) / mean);
+    const auto energy = [&](const std::vector<std::uint8_t>& label) {
+        return localize::label_energy(spans(rows.data), parameters, rows.weights, label);
+    };
+    const std::vector<std::uint8_t> all(count, 1);
+    const double labelled = static_cast<double>(std::count(some.begin(), some.end(), 1)) / count;
+    const double opinions = labelled * energy(all) + (1 - labelled) * energy(none);   // one opinion: the same for every row
+    DOCTEST_CHECK(cut > 1);
+    DOCTEST_CHECK(energy(some) == doctest::Approx(opinions + cut).epsilon(EnergyTolerance));
 }
 
 DOCTEST_TEST_CASE("a hole is closed and a crumb goes, but the other colour stays what it is") {

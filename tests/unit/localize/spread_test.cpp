@@ -2,7 +2,11 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "engine/base/random.h"
 #include "engine/localize/spread.h"
@@ -33,6 +37,26 @@ struct Balls {
     }
 };
 
+double distance_of(const GaussianData& data, std::size_t a, std::size_t b) {
+    double sum = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) sum += std::pow(double{data.position[a * 3 + axis]} - data.position[b * 3 + axis], 2);
+    return std::sqrt(sum);
+}
+
+double plain_reach(const GaussianData& data, const localize::LabelWeights& weights, const localize::SpreadParameters& parameters) {
+    double squared = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        double low = 1e9, high = -1e9;
+        for (std::size_t row = 0; row < weights.weight.size(); ++row) {
+            if (weights.evidence[row] <= parameters.least_evidence_px || weights.weight[row] <= parameters.tau) continue;
+            low = std::min<double>(low, data.position[row * 3 + axis]);
+            high = std::max<double>(high, data.position[row * 3 + axis]);
+        }
+        squared += (high - low) * (high - low);
+    }
+    return parameters.reach_share * std::sqrt(squared);
+}
+
 }  // namespace
 
 DOCTEST_TEST_CASE("unseen rows take the opinion of their own ball") {
@@ -55,6 +79,35 @@ DOCTEST_TEST_CASE("no opinion comes from out of reach, and broken rows ask nobod
     DOCTEST_CHECK(balls.weights.inferred[0] == 0);
     DOCTEST_CHECK(balls.weights.inferred[3] == 0);
     DOCTEST_CHECK(balls.weights.inferred[6] == 1);
+}
+
+DOCTEST_TEST_CASE("the opinion is that of the nearest within reach, as measuring all distances tells") {
+    constexpr double FloatWeight = 1e-5;   // sums of eight opinions over distances in single precision
+    std::array<int, 3> of_kind{};   // rows with none of the eight in reach, some, all
+    for (const double share : {0.05, 0.1, 0.15}) {
+        Balls balls;
+        localize::SpreadParameters parameters;
+        parameters.reach_share = share;
+        const auto before = balls.weights;
+        localize::spread_to_unseen(spans(balls.data), parameters, balls.weights);
+        const double reach = plain_reach(balls.data, before, parameters);
+        for (std::size_t row = 0; row < 2 * PerBall; row += 3) {
+            std::vector<std::pair<double, std::size_t>> seen;
+            for (std::size_t other = 0; other < 2 * PerBall; ++other)
+                if (const double far = distance_of(balls.data, row, other); before.evidence[other] > 0 && far <= reach) seen.emplace_back(far, other);
+            std::sort(seen.begin(), seen.end());
+            of_kind[seen.empty() ? 0 : seen.size() < 8 ? 1 : 2] += 1;
+            seen.resize(std::min<std::size_t>(8, seen.size()));
+            double opinion = 0, voices = 0;
+            for (const auto& [far, other] : seen) {
+                opinion += before.evidence[other] * before.weight[other] / (far + 1e-3 * reach);
+                voices += before.evidence[other] / (far + 1e-3 * reach);
+            }
+            DOCTEST_CHECK(balls.weights.inferred[row] == (seen.empty() ? 0 : 1));
+            if (!seen.empty()) DOCTEST_CHECK(balls.weights.weight[row] == doctest::Approx(opinion / voices).epsilon(FloatWeight));
+        }
+    }
+    for (const int rows : of_kind) DOCTEST_CHECK(rows > 10);
 }
 
 DOCTEST_TEST_CASE("without a labelled or without a seen row nothing changes") {
