@@ -390,6 +390,7 @@ private:
     };
     Searched searched_;
     std::string job_key_, reach_key_;
+    std::string looked_from_;   // where the camera was turned to when the last search began; empty = nowhere
     std::optional<ReachChoice> reach_choice_;   // of the label that was active then
     EditRecipe live_recipe_;   // of the edit that runs
     GaussianSet job_set_;

@@ -50,13 +50,8 @@ EditRecipe Application::current_recipe() const {
     recipe.job.precision = model_.model_settings.precision;
     recipe.job.threads = model_.model_settings.threads;
     recipe.job.front = model_.model_settings.front;
-    if (label_drives_edit()) recipe.job.looked_from = active_label()->looked_from;
-    auto set_by_user = changed_fields("request", recipe.request, defaults_.request);
-    set_by_user.merge(changed_fields("dreambooth", recipe.dreambooth, defaults_.dreambooth));
-    set_by_user.merge(changed_fields("guidance", recipe.guidance, defaults_.guidance));
-    set_by_user.merge(changed_fields("attention", recipe.attention, defaults_.attention));
-    if (recipe.job.threads != defaults_.job.threads) set_by_user.insert("job.threads");
-    apply_profile(profile_, recipe, set_by_user);
+    recipe.job.looked_from = label_drives_edit() ? active_label()->looked_from : looked_from_;
+    apply_profile(profile_, recipe, changed_settings(recipe, defaults_));
     recipe.request = ui::with_target(std::move(recipe.request), model_.said_words, read_target());
     return recipe;
 }
@@ -112,6 +107,7 @@ void Application::locate() {
     const auto search = begin_run(text_model_, text_model_key_ == model_key(), model_load_, planned_memory(), arriving_);
     model_.request.left_out.clear();   // of the search before
     EditRecipe recipe = current_recipe();
+    recipe.job.looked_from = looked_from_ = turned_to(camera_, document_.state().info.up);   // whatever a label was made from
     if (recipe.request.prompt.empty() && !recipe.request.source.empty()) recipe.request.prompt = "a " + recipe.request.source;
     try {
         recipe.request = edit::validated(recipe.request);
@@ -213,6 +209,7 @@ void Application::edit() {
 
 void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     if (job_ && !job_fits()) model_.request.left_out.clear();   // they were views of another search
+    if (!job_fits()) looked_from_ = turned_to(camera_, document_.state().info.up);
     compare_as_usual();
     EditRecipe recipe = current_recipe();
     try {

@@ -8,7 +8,6 @@ namespace gse {
 namespace {
 
 constexpr double FilledShare = 0.9;     // of the picture's width and height, by a box that is to be seen whole
-constexpr double HomeAzimuth = 0.5;     // radians
 constexpr double SmallestBox = 1e-9;    // of the box's distance from the origin, so that a point has a camera beside it
 
 }  // namespace

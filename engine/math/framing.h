@@ -18,7 +18,9 @@ struct Bounds {
 /// of any shape that is fov_x (radians) wide.
 double fitting_distance(const Bounds& bounds, const Mat3& rotation, double fov_x, int width, int height);
 
-/// Where a scene is first seen from: the direction of the orbit a little to the side of its front, all of the box in the
+constexpr double HomeAzimuth = 0.5;   // radians
+
+/// Where a scene is first seen from: the direction of the orbit at HomeAzimuth, a little to the side of its front, all of the box in the
 /// picture.
 Camera home_camera(const OrbitParameters& orbit, const Bounds& bounds, double fov_x, int width, int height);
 

@@ -25,6 +25,7 @@ DocumentState with_located_label(DocumentState state, const EditJob& job, bool f
     label.threshold = static_cast<float>(request.tau);
     label.attention_threshold = request.attention_threshold;
     label.left_out = request.left_out;
+    label.looked_from = job.recipe().job.looked_from;
     label.weight = std::make_shared<const std::vector<float>>(std::move(weight));
     if (!fresh) {
         label.manual = found->manual;

@@ -34,6 +34,21 @@ void apply_profile(const neural::ModelProfile& profile, EditRecipe& recipe, cons
     for (const auto& name : set_by_user) recipe.sources[name] = "user";
 }
 
+std::set<std::string> changed_settings(const EditRecipe& now, const EditRecipe& before) {
+    std::set<std::string> names;
+    const auto compare = [&](const std::string& part, const auto& value, const auto& other) {
+        const auto values = fields_to_json(value), defaults = fields_to_json(other);
+        for (const auto& [name, set] : values.items())
+            if (set != defaults[name]) names.insert(part + "." + name);
+    };
+    compare("request", now.request, before.request);
+    compare("dreambooth", now.dreambooth, before.dreambooth);
+    compare("guidance", now.guidance, before.guidance);
+    compare("attention", now.attention, before.attention);
+    if (now.job.threads != before.job.threads) names.insert("job.threads");
+    return names;
+}
+
 nlohmann::ordered_json settings_from(const EditRecipe& recipe) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     const auto parts = recipe_to_json(recipe);

@@ -21,15 +21,8 @@ void apply_profile(const neural::ModelProfile& profile, EditRecipe& recipe, cons
 /// program's default; sources are "model", "file gseditpro.json" and "user".
 nlohmann::ordered_json settings_from(const EditRecipe& recipe);
 
-/// Names, with the part before them, of the fields in which the two differ.
-template <class P>
-std::set<std::string> changed_fields(const std::string& part, const P& now, const P& before) {
-    std::set<std::string> names;
-    const auto values = fields_to_json(now), defaults = fields_to_json(before);
-    for (const auto& [name, value] : values.items())
-        if (value != defaults[name]) names.insert(part + "." + name);
-    return names;
-}
+/// Names, with the part before them, of the settings in which the two differ; of the job the threads alone.
+std::set<std::string> changed_settings(const EditRecipe& now, const EditRecipe& before);
 
 /// Fields that still are as `before` has them become as `after` has them.
 template <class P>

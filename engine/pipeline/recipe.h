@@ -69,8 +69,8 @@ struct JobParameters {
           "Box around the thing that may change, LEFT,TOP,RIGHT,BOTTOM as shares of the picture that \"render\" makes, and where that is not "
           "the one of its defaults ,AZIMUTH,ELEVATION,ZOOM behind it: the thing is cut out of it, all its sides, and nothing is looked for.");
         f("looked_from", self.looked_from,
-          "Azimuth in degrees from which the label was made by hand, or empty; a box of cut_out tells its own. That side is the front where "
-          "none is given and the model's encoder is not sure of one.");
+          "Azimuth in degrees from which whoever asks looks at the thing, or made its label by hand; a box of cut_out tells its own. That "
+          "side is the front where none is given and the model's encoder is not sure of one. Empty = not known.");
         f("turntable_size", self.turntable_size, "Side of each half of the before/after film in pixels.",
           Range{16, 4096});
         f("turntable_frames", self.turntable_frames, "Frames of the before/after film.", Range{1, 10000});

@@ -173,21 +173,20 @@ private:
         distances_ = std::move(worth);
     }
 
-    /// From where the label was made by hand, radians; nothing where it was not, or that is not known.
+    /// From where the artist looked at the thing, radians; nothing where that is not known.
     std::optional<double> looked_from() const {
-        if (hints_.label.empty()) return std::nullopt;
         const auto& job = recipe_.job;
         if (!job.looked_from.empty() || job.cut_out.empty()) return parse_front(job.looked_from, "--looked-from");
         return azimuth_of_box(job.cut_out) * Degree;
     }
 
     /// The views with their front, where the recipe leaves it open: that which their pictures show, where the model's encoder can tell, or else
-    /// the side that whoever labelled the thing looked at.
+    /// the side that the artist looked at.
     Views faced(Views views) {
         if (!recipe_.job.front.empty() || !views.words.empty() || !edit::knows(workplace_.model().known_words(), "front side back view")) return views;
         const auto looked = looked_from();
         const auto front = edit::chosen_front(front_shown(views), looked);
-        if (front && front == looked) log::info("the side from which the label was made ({:.0f} degrees) is taken for the front", *front / Degree);
+        if (front && front == looked) log::info("the side that was looked at ({:.0f} degrees) is taken for the front", *front / Degree);
         return front ? facing(std::move(views), *front, recipe_) : views;
     }
 

@@ -1,6 +1,8 @@
 // Cameras of a run and the words for what they see.
 #include "engine/pipeline/views.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/base/hash.h"
 #include "engine/edit/front_reading.h"
+#include "engine/math/framing.h"
 #include "engine/scene/viewpoints.h"
 
 namespace gse::pipeline {
@@ -84,6 +87,12 @@ double looked_from(const Camera& camera, const Vec3& up) {
     orbit.centre = camera.centre() + camera.forward();
     const double degrees = std::round(azimuth_of(camera, orbit) / Degree);
     return std::fmod(degrees + 360, 360);
+}
+
+std::string turned_to(const Camera& camera, const Vec3& up) {
+    constexpr double WholeDegrees = 1;   // what rounding may be off by
+    const double degrees = looked_from(camera, up);
+    return std::abs(std::remainder(degrees - HomeAzimuth / Degree, 360)) <= WholeDegrees ? std::string() : fmt::format("{:.0f}", degrees);
 }
 
 Views facing(Views views, double front, const EditRecipe& recipe) {

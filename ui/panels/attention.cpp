@@ -254,8 +254,9 @@ void draw_front(Context& context) {
     flow(ImGui::CalcTextSize(text.c_str()).x + context.em);
     badge(context, text, palette::TextDim);
     note(context, "attention.front");
-    tooltip("The side from which the scene shows its front, as the pictures have it: the model is told which view is a front, side or "
-            "back view.\nWhere that is wrong, set Front in Settings, in degrees, or none.");
+    tooltip("The side from which the scene shows its front, as the pictures have it or, where the model is not sure of it, the side that you "
+            "had turned to: the model is told which view is a front, side or back view.\nWhere that is wrong, turn the scene to its front "
+            "before Locate, or set Front in Settings, in degrees, or none.");
 }
 
 /// What the pictures below show that is no part of the scene.

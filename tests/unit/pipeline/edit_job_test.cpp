@@ -248,6 +248,30 @@ DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it op
     DOCTEST_CHECK(found("none").words.empty());
 }
 
+DOCTEST_TEST_CASE("the side that the artist looks at is the front of what is searched for, where the pictures are not sure of one") {
+    const auto model = load_recipe_model({});
+    const auto front_of = [&](const std::string& object, const std::string& looked_from) {
+        synth::SceneSpec spec;
+        spec.object = object;
+        spec.material = "red";
+        spec.seed = 7;
+        const auto made = synth::without_ground(synth::generate(spec));
+        EditRecipe recipe;
+        recipe.request.source = object;
+        recipe.request.prompt = "a golden " + object;
+        recipe.request.views = 6;
+        recipe.job.looked_from = looked_from;
+        EditJob job(recipe, EditJobInput{made.scene, {}, model}, JobControl{});
+        job.locate();
+        DOCTEST_CHECK(job.found());
+        DOCTEST_REQUIRE(job.front_read());
+        return *job.front_read() / Degree;
+    };
+    DOCTEST_CHECK(front_of("mushroom", "120") == doctest::Approx(120));   // round, and alike from all sides
+    DOCTEST_CHECK(std::abs(front_of("mushroom", "") - 120) > 30);
+    DOCTEST_CHECK(std::abs(front_of("house", "120")) < 45);
+}
+
 DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and only that") {
     EditRecipe recipe = bear_recipe(false);
     recipe.request.prompt = "a blue bear on the grass";

@@ -89,8 +89,14 @@ DOCTEST_TEST_CASE("model settings: with another model, only what nobody changed 
     DOCTEST_CHECK(request.image_size == 512);
     DOCTEST_CHECK(request.iterations == 30);
     DOCTEST_CHECK(request.prompt == "a red bear");
-    DOCTEST_CHECK(changed_fields("request", request, wide.request) ==
-                  std::set<std::string>{"request.iterations", "request.prompt"});
+    EditRecipe chosen = wide;
+    chosen.request = request;
+    DOCTEST_CHECK(changed_settings(chosen, wide) == std::set<std::string>{"request.iterations", "request.prompt"});
+    chosen.job.threads += 1;
+    chosen.job.front = "90";   // of the scene, no setting
+    chosen.guidance.guidance_scale += 1;
+    DOCTEST_CHECK(changed_settings(chosen, wide) ==
+                  std::set<std::string>{"guidance.guidance_scale", "job.threads", "request.iterations", "request.prompt"});
     move_defaults(request, wide.request, small.request);
     DOCTEST_CHECK(request.image_size == small.request.image_size);
     DOCTEST_CHECK(request.iterations == 30);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "engine/math/framing.h"
 #include "engine/pipeline/views.h"
 #include "engine/synth/synth.h"
 
@@ -73,6 +74,9 @@ DOCTEST_TEST_CASE("a label remembers the azimuth of the camera that it was made 
             auto moved = camera;
             moved.translation = moved.translation + Vec3{1, 2, 3};
             DOCTEST_CHECK(pipeline::looked_from(moved, up) == degrees);
+            DOCTEST_CHECK(pipeline::turned_to(moved, up) == std::to_string(degrees));
         }
+        const Bounds box{{2, -2, 1}, {4, 0, 3}};
+        DOCTEST_CHECK(pipeline::turned_to(home_camera(orbit, box, 0.9, 64, 48), up).empty());   // nobody has chosen it
     }
 }

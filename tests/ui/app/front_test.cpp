@@ -1,0 +1,51 @@
+// The side that the artist turned to is what a search goes by where its pictures are not sure of a front.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <fmt/format.h>
+
+#include "engine/pipeline/views.h"
+#include "engine/scene/label_ops.h"
+#include "tests/ui/app/session.h"
+
+using namespace gse;
+using namespace gse::test;
+
+namespace {
+
+/// The scene from a side that it is not shown from first.
+Camera turned(const app::Application& app, double degrees) {
+    auto orbit = app.model().orbit;
+    return orbit_camera(orbit, degrees * pipeline::Degree, 320, 240);
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("a search takes the side that the scene was turned to with it, and looking at what it found begins no other") {
+    if (!networks()) return;
+    const Place place;
+    Session session;
+    session.open_bear();
+    auto& app = session.app;
+    auto request = app.model().request;
+    request.iterations = 2;
+    app.set_request(request);
+    const auto looked = [&] { return app.document().state().labels.at(0).looked_from; };
+    app.locate();
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK(looked().empty());   // nobody has turned to a side
+    app.set_camera(turned(app, 90));
+    app.locate();
+    DOCTEST_REQUIRE(session.settled());
+    DOCTEST_CHECK(looked() == "90");
+    DOCTEST_REQUIRE(app.model().search.front.has_value());
+    const double away = std::abs(std::remainder(*app.model().search.front, 360));
+    DOCTEST_CHECK(away < 45);   // the pictures of the bear are sure
+    const auto searches = app.model().search.number;
+    app.set_camera(turned(app, 200));
+    app.edit();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(app.model().result_waiting);
+    DOCTEST_CHECK(app.model().search.number == searches);
+    app.shut_down();
+}
