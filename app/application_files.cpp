@@ -46,11 +46,7 @@ std::vector<std::filesystem::path> files_of_folder(const std::filesystem::path& 
 
 void Application::open_recipe(const std::filesystem::path& picture) {
     try {
-        const auto text = read_png_text(picture);
-        const auto found = text.find("Recipe");
-        if (found == text.end())
-            throw Error(ErrorCode::InvalidArgument, "this picture carries no recipe", "drop a picture this program made", picture);
-        const auto json = parse_json<nlohmann::ordered_json>(found->second, "the recipe in this picture");
+        const auto json = read_recipe_json(picture);
         const EditRecipe recipe = recipe_from_json(json, picture.parent_path());
         const bool here = !document_.empty() && std::filesystem::path(recipe.job.scene) == scene_path_;
         take_recipe(recipe);

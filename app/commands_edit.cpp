@@ -39,7 +39,7 @@ struct EditOptions {
 void add_options(CLI::App& command, const std::shared_ptr<EditOptions>& options) {
     options->command = &command;
     command.add_option("--out", options->output, "Folder for the results");
-    command.add_option("--recipe", options->recipe_file, "Take every setting from this recipe.json; --out is still yours");
+    command.add_option("--recipe", options->recipe_file, "Take every setting from this recipe.json, or from a picture that an edit made; --out is still yours");
     command.add_flag("--demo", options->demo, "The bundled scene and sentence");
     command.add_flag("--headless", options->headless, "Work without a display (this version always does)");
     command.add_flag("--json", options->json, "Print the report as JSON");

@@ -203,12 +203,13 @@ void add_silhouette(const EvalSetting& setting, const edit::EditResult& result, 
     json["silhouette_precision"] = overlap.precision();
 }
 
-/// Share of the old thing's pixels that are still nearer to what they were than to what they should be; of those where the two
-/// differ clearly.
+/// Of the old thing's pixels that should be clearly another: the share that is still nearer to what it was than to what it should be (a
+/// white dot in another place of a mushroom's cap is nearer to gold than the green there), and the share that has not clearly changed.
 void add_old_left(const HeldOut& seen, Json& json) {
-    double left = 0, pixels = 0;
+    double left = 0, unchanged = 0, pixels = 0;
     for (std::size_t v = 0; v < seen.old.size(); ++v) {
         const Mask changes = evaluate::changed_pixels(seen.before[v], seen.truth[v], ClearChange);
+        const Mask changed = evaluate::changed_pixels(seen.before[v], seen.after[v], ClearChange);
         for (std::size_t p = 0; p < changes.data.size(); ++p) {
             if (changes.data[p] == 0 || seen.old[v].data[p] == 0) continue;
             double from_old = 0, from_true = 0;
@@ -218,9 +219,11 @@ void add_old_left(const HeldOut& seen, Json& json) {
             }
             pixels += 1;
             left += from_old < from_true ? 1 : 0;
+            unchanged += changed.data[p] == 0 ? 1 : 0;
         }
     }
     json["old_left"] = pixels > 0 ? left / pixels : 0;
+    json["old_unchanged"] = pixels > 0 ? unchanged / pixels : 0;
 }
 
 /// Share of the old thing's pixels that still mainly show splats of it: what the edit has overlooked, whatever the new thing covers.

@@ -163,6 +163,7 @@ void add_replacements(const Json& report, const Json& edits, Json& summary) {
     summary["replace_silhouette_iou"] = figure(mean(replaced, "silhouette_iou"), {">=", 0.8});
     summary["replace_l1_reduction"] = figure(mean(replaced, "l1_reduction"), {">=", 0.5});
     summary["replace_old_left"] = figure(mean(done, "old_left"), {"<=", 0.05});
+    summary["replace_old_unchanged"] = figure(mean(done, "old_unchanged"), {});
     summary["replace_old_shown"] = figure(mean(done, "old_shown"), {});
     summary["replace_success"] = figure(success_share(replaced, report), {">=", 0.8});
     summary["replace_psnr_outside_db"] = figure(mean(done, "psnr_outside_db"), {">=", 38});

@@ -7,6 +7,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/path_text.h"
+#include "engine/io/image_file.h"
 #include "engine/neural/lora_spec.h"
 
 namespace gse::pipeline {
@@ -75,15 +76,33 @@ EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::files
     return recipe;
 }
 
+namespace {
+
+constexpr const char* RecipeHint = "use the recipe.json of an edit, or a picture that this program made";
+
+}  // namespace
+
+nlohmann::ordered_json read_recipe_json(const std::filesystem::path& path) {
+    std::string text;
+    if (path.extension() == ".png") {
+        const auto chunks = read_png_text(path);
+        const auto found = chunks.find("Recipe");
+        if (found == chunks.end()) throw Error(ErrorCode::InvalidArgument, "this picture carries no recipe", RecipeHint, path);
+        text = found->second;
+    } else {
+        text = read_file(path);
+    }
+    auto json = try_parse_json<nlohmann::ordered_json>(text);
+    if (!json.is_object() || !json.contains("version")) throw Error(ErrorCode::Malformed, "this is not a recipe", RecipeHint, path);
+    return json;
+}
+
 EditRecipe read_recipe(const std::filesystem::path& path) {
-    const char* hint = "use the recipe.json of an edit";
-    const auto json = try_parse_json<nlohmann::ordered_json>(read_file(path));
-    if (!json.is_object() || !json.contains("version"))
-        throw Error(ErrorCode::Malformed, "this is not a recipe", hint, path);
+    const auto json = read_recipe_json(path);
     try {
         return recipe_from_json(json, path.parent_path());
     } catch (const Error& error) {
-        throw Error(ErrorCode::InvalidArgument, "in the recipe, " + error.message(), hint, path);
+        throw Error(ErrorCode::InvalidArgument, "in the recipe, " + error.message(), RecipeHint, path);
     }
 }
 

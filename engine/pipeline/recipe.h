@@ -96,6 +96,8 @@ struct EditRecipe {
 /// {"version", "job", "request", "guidance"}, "attention" where it is not as usual and "dreambooth" where it is used; reading
 /// throws Error for unknown or wrong entries. A relative scene path is taken relative to the recipe's folder.
 nlohmann::ordered_json recipe_to_json(const EditRecipe& recipe);
+/// A recipe.json, or what a picture (.png) of an edit carries. Throws Error (NotFound, Malformed, InvalidArgument).
+nlohmann::ordered_json read_recipe_json(const std::filesystem::path& path);
 EditRecipe read_recipe(const std::filesystem::path& path);
 /// The same of what was read already; relative files are those of `folder`.
 EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::filesystem::path& folder);

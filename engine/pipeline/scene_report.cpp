@@ -58,13 +58,18 @@ Json picture_report(const std::filesystem::path& path) {
     return json;
 }
 
+/// The recipe is for programs, and fills a screen.
+std::string for_people(const std::string& keyword, const std::string& text) {
+    return keyword == "Recipe" ? "all settings: edit --recipe takes them from this picture, --json prints them" : text;
+}
+
 /// A line for every line of a text.
 std::string picture_report_text(const Json& json) {
     std::string text = fmt::format("{}\n  size          {} x {}\n", printable(json["file"].get<std::string>()), json["width"].get<int>(),
                                    json["height"].get<int>());
     if (json["text"].empty()) text += "  text          none\n";
     for (const auto& [keyword, value] : json["text"].items()) {
-        std::istringstream lines(value.get<std::string>());
+        std::istringstream lines(for_people(keyword, value.get<std::string>()));
         std::string name = printable(keyword);
         for (std::string line; std::getline(lines, line); name.clear()) text += fmt::format("  {:<13} {}\n", name, printable(line));
     }

@@ -167,6 +167,7 @@ DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and siz
     const auto perfect = edited_figures(setting, plan, result, {painter});
     DOCTEST_CHECK(perfect["silhouette_iou"].get<double>() == doctest::Approx(1));
     DOCTEST_CHECK(perfect["old_left"].get<double>() == doctest::Approx(0));
+    DOCTEST_CHECK(perfect["old_unchanged"].get<double>() == 0);
     DOCTEST_CHECK(perfect["old_shown"].get<double>() == 0);
     DOCTEST_CHECK(perfect["l1_reduction"].get<double>() == doctest::Approx(1).epsilon(1e-3));
     const auto ground = rows_of(edited, synth::Part::Ground);   // what closes holes is no part of the thing
@@ -179,6 +180,7 @@ DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and siz
     const auto nothing = edited_figures(setting, plan, result, {painter});
     DOCTEST_CHECK(nothing["silhouette_iou"].get<double>() < 0.9);
     DOCTEST_CHECK(nothing["old_left"].get<double>() == doctest::Approx(1));
+    DOCTEST_CHECK(nothing["old_unchanged"].get<double>() == doctest::Approx(1));
     DOCTEST_CHECK(nothing["old_shown"].get<double>() == doctest::Approx(1));
     DOCTEST_CHECK(nothing["l1_reduction"].get<double>() == doctest::Approx(0));
 }
@@ -189,6 +191,7 @@ DOCTEST_TEST_CASE("what replaces has figures of its own and leaves the others as
     replaced["kind"] = "replace";
     replaced["silhouette_iou"] = 0.75;
     replaced["old_left"] = 0.125;
+    replaced["old_unchanged"] = 0.0625;
     replaced["old_shown"] = 0.03125;
     Json hat = changed_edit(2, 0, 0.5, 40);
     hat["kind"] = "add";
@@ -207,6 +210,7 @@ DOCTEST_TEST_CASE("what replaces has figures of its own and leaves the others as
     DOCTEST_CHECK(with["replace_silhouette_iou"]["met"] == false);
     DOCTEST_CHECK(with["replace_l1_reduction"]["value"] == doctest::Approx(0.25));
     DOCTEST_CHECK(with["replace_old_left"]["value"] == doctest::Approx(0.125));
+    DOCTEST_CHECK(with["replace_old_unchanged"]["value"] == doctest::Approx(0.0625));
     DOCTEST_CHECK(with["replace_old_shown"]["value"] == doctest::Approx(0.03125));
     const auto table = eval_summary(report_of(Json::array({hat, crown, failed})))["added_means"];
     DOCTEST_REQUIRE(table.size() == 2);

@@ -76,6 +76,14 @@ DOCTEST_TEST_CASE("a picture carries its parameters, and the report of it shows 
     DOCTEST_CHECK(shown.find("5 x 4") != std::string::npos);
     DOCTEST_CHECK(shown.find("wearing a \"top hat\"") != std::string::npos);
     DOCTEST_CHECK(shown.find("Seed: 42") != std::string::npos);
+    for (std::size_t begin = 0, end = 0; begin < shown.size(); begin = end + 1) {   // the recipe does not fill the screen
+        end = std::min(shown.find('\n', begin), shown.size());
+        DOCTEST_CHECK(end - begin < 300);
+    }
+    DOCTEST_CHECK(report.at("text").at("Recipe") == recipe_to_json(recipe).dump());
+    DOCTEST_CHECK(recipe_to_json(read_recipe(path)) == recipe_to_json(recipe));
+    write_png(scratch.path() / "plain.png", Image(5, 4, 3), {});
+    DOCTEST_CHECK_THROWS_WITH_AS(read_recipe(scratch.path() / "plain.png"), doctest::Contains("carries no recipe"), Error);
 }
 
 DOCTEST_TEST_CASE("the report of a picture lets no text through that a terminal would obey, and refuses what is no PNG") {
