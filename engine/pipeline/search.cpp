@@ -43,6 +43,7 @@ constexpr double CutRim = 1.0 / 7;       // of a picture's side: covered so far 
 constexpr double WholeShare = 0.5;       // of the views that may cut off what is seen whole
 constexpr double SameFraming = 0.05;     // of the distance: a nearer framing shows the same
 constexpr double SameFramingWorn = 0.12; // the same where something is drawn that is worn: every look costs as much as an edit does
+constexpr double SameThing = 0.2;   // IoU of what a glance found and of what is found from nearer
 constexpr double MostBack = 1.25;   // of the distance of a sure glance: what would be framed from farther off is no thing
 constexpr std::size_t FrontViews = 12;      // in which the front of a scene is looked for
 
@@ -68,6 +69,20 @@ bool is_cut_off(const edit::LocateResult& result, double share) {
         seen += 1, cut += is_cut(view.mask) ? 1 : 0;
     }
     return seen > 0 && cut >= share * seen;
+}
+
+const Label& thing_of(const edit::LocateResult& result) { return result.mode == edit::EditMode::Add ? result.source_label : result.label; }
+
+/// Whether two searches for one word found the same splats, roughly.
+bool same_thing(const edit::LocateResult& a, const edit::LocateResult& b) {
+    const auto &first = *thing_of(a).bits, &second = *thing_of(b).bits;
+    std::size_t both = 0, either = 0;
+    for (std::size_t row = 0; row < first.size(); ++row) {
+        both += first[row] != 0 && second[row] != 0 ? 1 : 0;
+        either += first[row] != 0 || second[row] != 0 ? 1 : 0;
+    }
+    log::debug("both searches: IoU {:.3f}", static_cast<double>(both) / static_cast<double>(std::max<std::size_t>(1, either)));
+    return static_cast<double>(both) >= SameThing * static_cast<double>(either);
 }
 
 /// From where a thing is seen as large, and as high in the picture, as figures that the starter learned from.
@@ -265,7 +280,7 @@ private:
         const bool frames = focused.radius < MostBack * glance.orbit.radius;   // a thing; a ground is seen as well from here
         const Views views = views_on(frames ? focused : glance.orbit, recipe_);
         Located near = framed_as_figure(mode) && frames ? moved_in(views, {}) : seen_from(faced(views));   // a glance tells a thing's size roughly
-        return near.found() || !frames ? near : seen_from_afar(glance, std::move(near));
+        return !frames || (near.found() && same_thing(near.result, glance.result)) ? near : seen_from_afar(glance, std::move(near));
     }
 
     Located seen_from(const Views& views) { return {views, recipe_, {}, look(recipe_, views, {}), target_read_, {}}; }
@@ -286,7 +301,7 @@ private:
         const Views views = by_hand.empty() ? framed_as_worn(faced(from)) : faced(from);
         Located located{views, recipe_, by_hand, look(recipe_, views, by_hand), target_read_, {}};
         const auto& result = located.result;
-        const auto& label = result.mode == edit::EditMode::Add ? result.source_label : result.label;
+        const auto& label = thing_of(result);
         if (!moves() || std::find(label.bits->begin(), label.bits->end(), std::uint8_t{1}) == label.bits->end()) return located;
         const auto focused = focused_on(label, result.mode, views.orbit, views.front);
         const bool as_figure = framed_as_figure(result.mode);

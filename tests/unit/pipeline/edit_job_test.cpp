@@ -272,6 +272,32 @@ DOCTEST_TEST_CASE("the side that the artist looks at is the front of what is sea
     DOCTEST_CHECK(std::abs(front_of("house", "120")) < 45);
 }
 
+DOCTEST_TEST_CASE("what is worn stays what it was found to be with its wearer around it, though from near by the model takes it for the wearer") {
+    const auto model = load_recipe_model({});
+    for (const std::uint64_t seed : {7, 8}) {
+        synth::SceneSpec spec;
+        spec.object = "dog";
+        spec.material = "stone";
+        spec.accessory = "hat";
+        spec.accessory_colour = "red";
+        spec.seed = seed;
+        const auto made = synth::without_ground(synth::generate(spec));
+        EditRecipe recipe;
+        recipe.request.source = "hat";
+        recipe.request.prompt = "a stone dog wearing a golden crown";
+        EditJob job(recipe, EditJobInput{made.scene, {}, model}, JobControl{});
+        job.locate();
+        DOCTEST_REQUIRE(job.found());
+        double both = 0, either = 0;
+        for (std::size_t row = 0; row < made.parts.size(); ++row) {
+            const bool hat = made.parts[row] == synth::Part::Accessory, labelled = (*job.located().label.bits)[row] != 0;
+            both += hat && labelled ? 1 : 0;
+            either += hat || labelled ? 1 : 0;
+        }
+        DOCTEST_CHECK(both > 0.8 * either);
+    }
+}
+
 DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and only that") {
     EditRecipe recipe = bear_recipe(false);
     recipe.request.prompt = "a blue bear on the grass";
