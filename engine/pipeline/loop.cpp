@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/log.h"
+#include "engine/edit/add_region.h"
 #include "engine/edit/instruction.h"
 #include "engine/edit/plain_ground.h"
 #include "engine/pipeline/neural_loader.h"
@@ -52,13 +53,26 @@ std::vector<Way> ways_to_draw(const neural::TextToImage& model, edit::EditMode m
     return ways;
 }
 
+/// Whether something that is worn is drawn in the place of what was: whoever wears it is there, and shown.
+bool takes_worn_place(const edit::EditPlan& plan, const EditRecipe& recipe) {
+    return plan.mode == edit::EditMode::Replace && edit::has_usual_place(recipe.request.target);
+}
+
 /// A plain ground under what changes, or under what something is added to; none where it stands on nothing, or is not asked for.
 std::optional<edit::GroundUnder> ground_under(Workplace& workplace, const GaussianSet& scene, const Located& located, const edit::EditPlan& plan, const EditRecipe& recipe) {
     if (!recipe.guidance.plain_ground || !edit::edits_by_views(recipe.request)) return std::nullopt;
+    if (takes_worn_place(plan, recipe)) {
+        const auto below = workplace.ground(recipe.request.prompt, located.views.views);
+        return below ? std::optional<edit::GroundUnder>({*below, true}) : std::nullopt;
+    }
     const bool adds = plan.mode == edit::EditMode::Add;
     if (adds && recipe.request.source == recipe.request.target) return std::nullopt;   // to all of the scene
     const auto& bits = adds ? *located.result.source_label.bits : plan.label;
     return edit::ground_under(recipe.request.prompt, scene, bits, located.views.orbit.up, located.views.front, workplace.painter().rasterizer());
+}
+
+edit::BeforePlain shown_before(const edit::EditPlan& plan, const EditRecipe& recipe) {
+    return plan.mode == edit::EditMode::Add || takes_worn_place(plan, recipe) ? edit::BeforePlain::Scene : edit::BeforePlain::Nothing;
 }
 
 /// What a way has drawn.
@@ -195,7 +209,7 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     tools.segmenter = by_views ? &workplace.segmenter() : &without_memory(workplace.segmenter());
     tools.word = dynamic_word(located, request);
     std::optional<edit::OnPlainGround> on_ground;
-    if (way.plain_ground && ground && views) on_ground.emplace(*views, ground->plain, plan.mode == edit::EditMode::Add ? edit::BeforePlain::Scene : edit::BeforePlain::Nothing);
+    if (way.plain_ground && ground && views) on_ground.emplace(*views, ground->plain, shown_before(plan, recipe));
     tools.views = on_ground ? &*on_ground : views.get();
     std::optional<Kept> kept;
     if (attempts.several() && views) tools.views = &kept.emplace(*tools.views, attempts.answers());
