@@ -74,4 +74,8 @@ Wearer wearer_of(const EditRequest& request, const GaussianSet& set, std::span<c
     return {{bits.begin(), bits.end()}, standing_of(set, bits, up, front)};
 }
 
+bool takes_worn_place(const EditRequest& request, EditMode mode) {
+    return mode == EditMode::Replace && has_usual_place(request.source) && has_usual_place(request.target);
+}
+
 }  // namespace gse::edit

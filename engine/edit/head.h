@@ -36,4 +36,7 @@ struct Wearer {
 /// shoulders, and suits his head where the figure is that.
 Wearer wearer_of(const EditRequest& request, const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn);
 
+/// Whether something that is worn takes the place of something else that is ("crown" of "hat"): whoever wears it stays, and is shown.
+bool takes_worn_place(const EditRequest& request, EditMode mode);
+
 }  // namespace gse::edit

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/base/log.h"
-#include "engine/edit/add_region.h"
+#include "engine/edit/head.h"
 #include "engine/edit/instruction.h"
 #include "engine/edit/plain_ground.h"
 #include "engine/pipeline/neural_loader.h"
@@ -53,15 +53,10 @@ std::vector<Way> ways_to_draw(const neural::TextToImage& model, edit::EditMode m
     return ways;
 }
 
-/// Whether something that is worn is drawn in the place of what was: whoever wears it is there, and shown.
-bool takes_worn_place(const edit::EditPlan& plan, const EditRecipe& recipe) {
-    return plan.mode == edit::EditMode::Replace && edit::has_usual_place(recipe.request.target);
-}
-
 /// A plain ground under what changes, or under what something is added to; none where it stands on nothing, or is not asked for.
 std::optional<edit::GroundUnder> ground_under(Workplace& workplace, const GaussianSet& scene, const Located& located, const edit::EditPlan& plan, const EditRecipe& recipe) {
     if (!recipe.guidance.plain_ground || !edit::edits_by_views(recipe.request)) return std::nullopt;
-    if (takes_worn_place(plan, recipe)) {
+    if (edit::takes_worn_place(recipe.request, plan.mode)) {
         const auto below = workplace.ground(recipe.request.prompt, located.views.views);
         return below ? std::optional<edit::GroundUnder>({*below, true}) : std::nullopt;
     }
@@ -72,7 +67,7 @@ std::optional<edit::GroundUnder> ground_under(Workplace& workplace, const Gaussi
 }
 
 edit::BeforePlain shown_before(const edit::EditPlan& plan, const EditRecipe& recipe) {
-    return plan.mode == edit::EditMode::Add || takes_worn_place(plan, recipe) ? edit::BeforePlain::Scene : edit::BeforePlain::Nothing;
+    return plan.mode == edit::EditMode::Add || edit::takes_worn_place(recipe.request, plan.mode) ? edit::BeforePlain::Scene : edit::BeforePlain::Nothing;
 }
 
 /// What a way has drawn.

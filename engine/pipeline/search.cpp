@@ -258,11 +258,20 @@ private:
         return mode == edit::EditMode::Replace || (edit::draws_place(recipe_.request, mode) && workplace_.model().knows_scene());
     }
 
+    /// Where all that is not labelled stands, or its head, in a scene that was cut out of its surroundings: that is who wears what is.
+    edit::Standing standing_of_rest(const Label& label, const Vec3& up, const Vec3& front) const {
+        if (!ground_shown(workplace_, recipe_, views_)) return {};
+        std::vector<std::uint8_t> rest(label.bits->size());
+        std::transform(label.bits->begin(), label.bits->end(), rest.begin(), [](std::uint8_t bit) { return bit == 0 ? 1 : 0; });
+        return edit::wearer_of(recipe_.request, workplace_.drawn(), rest, up, front, true).standing;
+    }
+
     /// The orbit that frames a label, with room where something is put beside it; `front`: of the scene.
     OrbitParameters focused_on(const Label& label, edit::EditMode mode, const OrbitParameters& orbit, const Vec3& front) const {
         if (framed_as_figure(mode)) {
             const auto standing = edit::wearer_of(recipe_.request, workplace_.drawn(), *label.bits, orbit.up, front, mode == edit::EditMode::Add).standing;
-            if (standing.found()) return framed_figure(standing, orbit);
+            const auto wearer = edit::takes_worn_place(recipe_.request, mode) ? standing_of_rest(label, orbit.up, front) : edit::Standing{};
+            if (standing.found()) return framed_figure(wearer.found() ? wearer : standing, orbit);
         }
         localize::FocusParameters framing;
         framing.head_room = HeadRoom;

@@ -127,3 +127,17 @@ DOCTEST_TEST_CASE("a person's hat is drawn around the head, and the film shows t
     }
 }
 #endif
+
+DOCTEST_TEST_CASE("only what is worn takes the place of something worn, and only where it replaces it") {
+    edit::EditRequest request;
+    request.source = "hat";
+    request.target = "crown";
+    DOCTEST_CHECK(edit::takes_worn_place(request, edit::EditMode::Replace));
+    DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Add));
+    DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Modify));
+    request.source = "ball";
+    DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Replace));   // a crown on the ground
+    request.source = "hat";
+    request.target = "ball";
+    DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Replace));
+}
