@@ -31,6 +31,7 @@ namespace {
 
 constexpr std::size_t RecognisedViews = 6;   // pictures that are compared with words
 constexpr int LeastViews = 3;                // fewer voting views cannot tell front from back
+constexpr std::size_t LeastSplats = 4;       // of a thing; what views at odds have in common by chance are one or two
 constexpr float GroundWeight = 0.5f;         // of tau: what ground under a thing keeps of its weight at most
 constexpr double LargestLabelShare = 0.97;   // of what the views see, where the sentence names other things too
 constexpr float LabelSeen = 0.5f;           // share of a pixel from which it shows the artist's label
@@ -340,9 +341,9 @@ private:
             log::debug("{} splats of the ground below \"{}\" are left to it", ground.size(), search.word);
             found.label = localize::label_from_weights(search.word, weights, request().tau, least);
         }
-        if (count_bits(found.label) == 0)
+        if (const auto labelled = count_bits(found.label); labelled < LeastSplats && labelled * 2 < input_.gaussians.size())
             return nothing(search, SearchProblem::NothingLabelled,
-                           fmt::format("the views agree on no splat for \"{}\"", search.word),
+                           fmt::format("the views agree on {} splat for \"{}\"", labelled == 0 ? "no" : "hardly a", search.word),
                            "name something the scene shows and the model knows, or lower tau");
         found.confidence = confidence_of(views, weights, found.label, recognised(search.word), ground_seen(views, seen_.grounds));
         // The sentence names other things, and nothing is left of the scene for them: it is only the word that is found everywhere.

@@ -259,6 +259,25 @@ DOCTEST_TEST_CASE("a search that is less sure than asked for is marked, with wha
     DOCTEST_CHECK(nowhere.seeds.size() == 0);
 }
 
+DOCTEST_TEST_CASE("one or two splats are no thing") {
+    const Quiet quiet;
+    Fixture fixture;
+    auto request = request_for("a blue ball", "blue");
+    request.label_smoothness = 0;
+    request.least_confidence = 0;
+    const auto whole = fixture.scene;
+    for (const std::size_t red : {2, 12}) {
+        auto keep = whole.first;
+        for (std::size_t row = 0, left = red; row < keep.size(); ++row) keep[row] = keep[row] == 0 || (left > 0 && left-- > 0) ? 1 : 0;
+        fixture.scene.set = whole.set.filtered(keep);
+        const auto found = edit::locate(fixture.input(request), fixture.tools());
+        const auto labelled = std::count(found.label.bits->begin(), found.label.bits->end(), std::uint8_t{1});
+        DOCTEST_CHECK((found.problem == edit::SearchProblem::None) == (red > 2));
+        DOCTEST_CHECK((labelled > 3) == (red > 2));
+        if (red == 2) DOCTEST_CHECK(found.problem == edit::SearchProblem::NothingLabelled);
+    }
+}
+
 DOCTEST_TEST_CASE("a word that is found in everything is not found where the sentence names other things too") {
     const Quiet quiet;
     Fixture fixture;
