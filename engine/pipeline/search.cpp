@@ -43,6 +43,7 @@ constexpr double CutRim = 1.0 / 7;       // of a picture's side: covered so far 
 constexpr double WholeShare = 0.5;       // of the views that may cut off what is seen whole
 constexpr double SameFraming = 0.05;     // of the distance: a nearer framing shows the same
 constexpr double SameFramingWorn = 0.12; // the same where something is drawn that is worn: every look costs as much as an edit does
+constexpr double WearerSize = 3;    // of what it wears: a hat is a third of a figure
 constexpr double SameThing = 0.2;   // IoU of what a glance found and of what is found from nearer
 constexpr double MostBack = 1.25;   // of the distance of a sure glance: what would be framed from farther off is no thing
 constexpr std::size_t FrontViews = 12;      // in which the front of a scene is looked for
@@ -258,19 +259,42 @@ private:
         return mode == edit::EditMode::Replace || (edit::draws_place(recipe_.request, mode) && workplace_.model().knows_scene());
     }
 
-    /// Where all that is not labelled stands, or its head, in a scene that was cut out of its surroundings: that is who wears what is.
-    edit::Standing standing_of_rest(const Label& label, const Vec3& up, const Vec3& front) const {
-        if (!ground_shown(workplace_, recipe_, views_)) return {};
-        std::vector<std::uint8_t> rest(label.bits->size());
-        std::transform(label.bits->begin(), label.bits->end(), rest.begin(), [](std::uint8_t bit) { return bit == 0 ? 1 : 0; });
-        return edit::wearer_of(recipe_.request, workplace_.drawn(), rest, up, front, true).standing;
+    /// Where the wearer of what is labelled stands, or its head.
+    edit::Standing standing_of_wearer(const Label& label, const OrbitParameters& orbit, const Vec3& front) {
+        if (!wearer_) wearer_ = wearer_of(label, orbit);
+        auto bits = *wearer_;
+        for (std::size_t row = 0; row < bits.size(); ++row) bits[row] &= (*label.bits)[row] == 0 ? 1 : 0;
+        if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) == bits.end()) return {};
+        return edit::wearer_of(recipe_.request, workplace_.drawn(), bits, orbit.up, front, true).standing;
+    }
+
+    /// All of a scene that was cut out of its surroundings; else what a few views around what is worn find for the first other thing of the
+    /// sentence. Empty where nothing is found.
+    std::vector<std::uint8_t> wearer_of(const Label& worn, const OrbitParameters& orbit) {
+        const std::size_t rows = workplace_.drawn().size();
+        if (ground_shown(workplace_, recipe_, views_)) return std::vector<std::uint8_t>(rows, 1);
+        EditRecipe scan = recipe_;
+        auto& request = scan.request;
+        const auto things = edit::things_named(request.prompt, {request.source, request.target});
+        const auto wearer = std::find_if(things.begin(), things.end(), [&](const auto& thing) {
+            return thing != request.source && thing != request.target && edit::knows(workplace_.model().known_words(), thing);
+        });
+        if (wearer == things.end()) return {};
+        request.source = *wearer;
+        request.mode = "modify";
+        request.views = std::min(request.views, ScanViews);
+        auto around = localize::focus_orbit(workplace_.drawn(), *worn.bits, orbit, {});
+        around.radius *= WearerSize;
+        const auto found = look(scan, views_on(around, scan), {});
+        log::debug("\"{}\", who wears \"{}\": confidence {:.2f}", *wearer, recipe_.request.source, found.confidence.value);
+        return found.problem == edit::SearchProblem::None ? *found.label.bits : std::vector<std::uint8_t>{};
     }
 
     /// The orbit that frames a label, with room where something is put beside it; `front`: of the scene.
-    OrbitParameters focused_on(const Label& label, edit::EditMode mode, const OrbitParameters& orbit, const Vec3& front) const {
+    OrbitParameters focused_on(const Label& label, edit::EditMode mode, const OrbitParameters& orbit, const Vec3& front) {
         if (framed_as_figure(mode)) {
             const auto standing = edit::wearer_of(recipe_.request, workplace_.drawn(), *label.bits, orbit.up, front, mode == edit::EditMode::Add).standing;
-            const auto wearer = edit::takes_worn_place(recipe_.request, mode) ? standing_of_rest(label, orbit.up, front) : edit::Standing{};
+            const auto wearer = edit::takes_worn_place(recipe_.request, mode) ? standing_of_wearer(label, orbit, front) : edit::Standing{};
             if (standing.found()) return framed_figure(wearer.found() ? wearer : standing, orbit);
         }
         localize::FocusParameters framing;
@@ -358,6 +382,7 @@ private:
     const JobControl& control_;
     std::vector<double> distances_;   // shares of the fitted orbit's radius that are tried
     bool target_read_ = false;
+    std::optional<std::vector<std::uint8_t>> wearer_;   // [N] of what is worn, once it was looked for
 };
 
 }  // namespace

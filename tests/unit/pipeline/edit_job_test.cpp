@@ -300,31 +300,34 @@ DOCTEST_TEST_CASE("what is worn stays what it was found to be with its wearer ar
 
 DOCTEST_TEST_CASE("what takes the place of something worn is drawn on its wearer, from where that is seen as a figure") {
     constexpr double Near = 0.09;   // as for things that are framed themselves
+    const auto model = load_recipe_model({});
     synth::SceneSpec spec;
     spec.object = "bear";
     spec.material = "blue";
     spec.accessory = "hat";
     spec.seed = 5;
-    const auto made = synth::without_ground(synth::generate(spec));
-    std::vector<std::uint8_t> hat;
-    double top = 0;
-    for (std::size_t row = 0; row < made.parts.size(); ++row) {
-        hat.push_back(made.parts[row] == synth::Part::Accessory ? 1 : 0);
-        if (made.parts[row] == synth::Part::Object) top = std::max(top, -double{made.scene.gaussians.position()[row * 3 + 1]});
-    }
-    EditRecipe recipe;
-    recipe.request.source = "hat";
-    recipe.request.prompt = "a blue bear wearing a crown";
-    recipe.request.views = 6;
-    recipe.job.use_label = true;
-    EditJob job(recipe, EditJobInput{made.scene, {}, load_recipe_model({}), hat}, JobControl{});
-    job.locate();
-    DOCTEST_REQUIRE(job.found());
-    DOCTEST_CHECK(job.located().mode == edit::EditMode::Replace);
-    for (const auto& view : job.views()) {
-        const Vec3 aim = view.camera.to_camera({0, -0.59 * top, 0});
-        DOCTEST_CHECK(std::abs(aim.y) < Near * top);
-        DOCTEST_CHECK(0.5 * view.camera.width / view.camera.fx * aim.z == doctest::Approx(0.87 * top).epsilon(2 * Near));
+    const auto whole = synth::generate(spec);
+    for (const auto& made : {synth::without_ground(whole), whole}) {
+        std::vector<std::uint8_t> hat;
+        double top = 0;
+        for (std::size_t row = 0; row < made.parts.size(); ++row) {
+            hat.push_back(made.parts[row] == synth::Part::Accessory ? 1 : 0);
+            if (made.parts[row] == synth::Part::Object) top = std::max(top, -double{made.scene.gaussians.position()[row * 3 + 1]});
+        }
+        EditRecipe recipe;
+        recipe.request.source = "hat";
+        recipe.request.prompt = "a blue bear wearing a crown on the grass";
+        recipe.request.views = 6;
+        recipe.job.use_label = true;
+        EditJob job(recipe, EditJobInput{made.scene, {}, model, hat}, JobControl{});
+        job.locate();
+        DOCTEST_REQUIRE(job.found());
+        DOCTEST_CHECK(job.located().mode == edit::EditMode::Replace);
+        for (const auto& view : job.views()) {
+            const Vec3 aim = view.camera.to_camera({0, -0.59 * top, 0});
+            DOCTEST_CHECK(std::abs(aim.y) < Near * top);
+            DOCTEST_CHECK(0.5 * view.camera.width / view.camera.fx * aim.z == doctest::Approx(0.87 * top).epsilon(2 * Near));
+        }
     }
 }
 
