@@ -44,7 +44,7 @@ constexpr double WholeShare = 0.5;       // of the views that may cut off what i
 constexpr double SameFraming = 0.05;     // of the distance: a nearer framing shows the same
 constexpr double SameFramingWorn = 0.12; // the same where something is drawn that is worn: every look costs as much as an edit does
 constexpr double WearerSize = 3;    // of what it wears: a hat is a third of a figure
-constexpr double SameThing = 0.2;   // IoU of what a glance found and of what is found from nearer
+constexpr double SameThing = 0.2;   // IoU of what a glance found and of what is found from nearer; share of a label among what was found
 constexpr double MostBack = 1.25;   // of the distance of a sure glance: what would be framed from farther off is no thing
 constexpr std::size_t FrontViews = 12;      // in which the front of a scene is looked for
 
@@ -84,6 +84,16 @@ bool same_thing(const edit::LocateResult& a, const edit::LocateResult& b) {
     }
     log::debug("both searches: IoU {:.3f}", static_cast<double>(both) / static_cast<double>(std::max<std::size_t>(1, either)));
     return static_cast<double>(both) >= SameThing * static_cast<double>(either);
+}
+
+/// Whether a fair share of what is labelled by hand is among what was found.
+bool holds_some(const Label& found, const std::vector<std::uint8_t>& by_hand) {
+    std::size_t both = 0, all = 0;
+    for (std::size_t row = 0; row < by_hand.size(); ++row) {
+        both += by_hand[row] != 0 && (*found.bits)[row] != 0 ? 1 : 0;
+        all += by_hand[row] != 0 ? 1 : 0;
+    }
+    return static_cast<double>(both) >= SameThing * static_cast<double>(all);
 }
 
 /// From where a thing is seen as large, and as high in the picture, as figures that the starter learned from.
@@ -148,8 +158,8 @@ public:
         read_scene(moves() && !by_label);
         if (by_label) return from_label();
         Located located = moves() ? from_all_distances() : moved_in(views_, {});
-        if (located.found() || hints_.label.empty()) return located;
-        log::info("{}; the label alone says what may change", located.result.message);
+        if (hints_.label.empty() || (located.found() && holds_some(thing_of(located.result), hints_.label))) return located;
+        log::info("{}; the label alone says what may change", located.found() ? "what the words find is not what is labelled" : located.result.message);
         return from_label();
     }
 

@@ -331,6 +331,31 @@ DOCTEST_TEST_CASE("what takes the place of something worn is drawn on its wearer
     }
 }
 
+DOCTEST_TEST_CASE("a label that is not what the words find is looked at itself; one that is a part of it corrects what they find") {
+    const auto model = load_recipe_model({});
+    synth::SceneSpec spec;
+    spec.object = "bear";
+    spec.material = "blue";
+    spec.accessory = "hat";
+    spec.seed = 5;
+    const auto made = synth::generate(spec);
+    const auto locate_with = [&](synth::Part part, double share) {
+        std::vector<std::uint8_t> label(made.parts.size());
+        for (std::size_t row = 0; row < label.size(); ++row)
+            label[row] = made.parts[row] == part && static_cast<double>(row % 10) < 10 * share ? 1 : 0;
+        EditRecipe recipe;
+        recipe.request.source = "bear";
+        recipe.request.prompt = "a golden bear wearing a hat on the grass";
+        recipe.request.views = 6;
+        EditJob job(recipe, EditJobInput{made.scene, {}, model, label}, JobControl{});
+        job.locate();
+        DOCTEST_REQUIRE(job.found());
+        return *job.located().label.bits == label;
+    };
+    DOCTEST_CHECK(locate_with(synth::Part::Accessory, 1));   // the words find the bear without its hat
+    DOCTEST_CHECK_FALSE(locate_with(synth::Part::Object, 0.5));
+}
+
 DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and only that") {
     EditRecipe recipe = bear_recipe(false);
     recipe.request.prompt = "a blue bear on the grass";
