@@ -91,6 +91,8 @@ double looked_from(const Camera& camera, const Vec3& up) {
 
 std::string turned_to(const Camera& camera, const Vec3& up) {
     constexpr double WholeDegrees = 1;   // what rounding may be off by
+    constexpr double FromAbove = 0.9;    // sine of 64 degrees: from there no side is looked at
+    if (std::abs(dot(camera.forward(), normalized(up))) > FromAbove) return {};
     const double degrees = looked_from(camera, up);
     return std::abs(std::remainder(degrees - HomeAzimuth / Degree, 360)) <= WholeDegrees ? std::string() : fmt::format("{:.0f}", degrees);
 }

@@ -63,7 +63,8 @@ std::optional<double> parse_front(const std::string& text, const std::string& op
 /// Azimuth, as orbit_camera() counts it, of an orbit's camera that looks the same way; degrees in [0,360), whole ones.
 double looked_from(const Camera& camera, const Vec3& up);
 
-/// The same of a camera that somebody turned, as a recipe has it; empty for the direction in which a scene is shown first.
+/// The same of a camera that somebody turned, as a recipe has it; empty for the direction in which a scene is shown first, and from
+/// far above or below.
 std::string turned_to(const Camera& camera, const Vec3& up);
 
 /// How views of a scene are rendered for a run.

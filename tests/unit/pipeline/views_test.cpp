@@ -76,6 +76,8 @@ DOCTEST_TEST_CASE("a label remembers the azimuth of the camera that it was made 
             DOCTEST_CHECK(pipeline::looked_from(moved, up) == degrees);
             DOCTEST_CHECK(pipeline::turned_to(moved, up) == std::to_string(degrees));
         }
+        orbit.elevation = 1.4;   // radians: from above no side is looked at
+        DOCTEST_CHECK(pipeline::turned_to(orbit_camera(orbit, 1, 64, 48), up).empty());
         const Bounds box{{2, -2, 1}, {4, 0, 3}};
         DOCTEST_CHECK(pipeline::turned_to(home_camera(orbit, box, 0.9, 64, 48), up).empty());   // nobody has chosen it
     }
