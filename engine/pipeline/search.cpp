@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <utility>
 
 #include "engine/base/check.h"
@@ -74,26 +76,22 @@ bool is_cut_off(const edit::LocateResult& result, double share) {
 
 const Label& thing_of(const edit::LocateResult& result) { return result.mode == edit::EditMode::Add ? result.source_label : result.label; }
 
+/// How many rows both have.
+double common(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& b) {
+    return static_cast<double>(std::inner_product(a.begin(), a.end(), b.begin(), std::size_t{0}, std::plus{},
+                                                  [](auto first, auto second) { return std::size_t{first != 0 && second != 0}; }));
+}
+
 /// Whether two searches for one word found the same splats, roughly.
 bool same_thing(const edit::LocateResult& a, const edit::LocateResult& b) {
     const auto &first = *thing_of(a).bits, &second = *thing_of(b).bits;
-    std::size_t both = 0, either = 0;
-    for (std::size_t row = 0; row < first.size(); ++row) {
-        both += first[row] != 0 && second[row] != 0 ? 1 : 0;
-        either += first[row] != 0 || second[row] != 0 ? 1 : 0;
-    }
-    log::debug("both searches: IoU {:.3f}", static_cast<double>(both) / static_cast<double>(std::max<std::size_t>(1, either)));
-    return static_cast<double>(both) >= SameThing * static_cast<double>(either);
+    const double both = common(first, second);
+    return both >= SameThing * (common(first, first) + common(second, second) - both);
 }
 
 /// Whether a fair share of what is labelled by hand is among what was found.
 bool holds_some(const Label& found, const std::vector<std::uint8_t>& by_hand) {
-    std::size_t both = 0, all = 0;
-    for (std::size_t row = 0; row < by_hand.size(); ++row) {
-        both += by_hand[row] != 0 && (*found.bits)[row] != 0 ? 1 : 0;
-        all += by_hand[row] != 0 ? 1 : 0;
-    }
-    return static_cast<double>(both) >= SameThing * static_cast<double>(all);
+    return common(*found.bits, by_hand) >= SameThing * common(by_hand, by_hand);
 }
 
 /// From where a thing is seen as large, and as high in the picture, as figures that the starter learned from.

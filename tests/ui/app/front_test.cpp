@@ -2,10 +2,9 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include <fmt/format.h>
+#include <cmath>
 
 #include "engine/pipeline/views.h"
-#include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 
 using namespace gse;
@@ -15,8 +14,7 @@ namespace {
 
 /// The scene from a side that it is not shown from first.
 Camera turned(const app::Application& app, double degrees) {
-    auto orbit = app.model().orbit;
-    return orbit_camera(orbit, degrees * pipeline::Degree, 320, 240);
+    return orbit_camera(app.model().orbit, degrees * pipeline::Degree, 320, 240);
 }
 
 }  // namespace
