@@ -78,4 +78,8 @@ bool takes_worn_place(const EditRequest& request, EditMode mode) {
     return mode == EditMode::Replace && has_usual_place(request.source) && has_usual_place(request.target);
 }
 
+bool moves_worn_place(const EditRequest& request, EditMode mode) {
+    return takes_worn_place(request, mode) && usual_place(request.source) != usual_place(request.target);
+}
+
 }  // namespace gse::edit

@@ -38,5 +38,7 @@ Wearer wearer_of(const EditRequest& request, const GaussianSet& set, std::span<c
 
 /// Whether something that is worn takes the place of something else that is ("crown" of "hat"): whoever wears it stays, and is shown.
 bool takes_worn_place(const EditRequest& request, EditMode mode);
+/// Whether it is worn elsewhere than that ("sunglasses" of "hat").
+bool moves_worn_place(const EditRequest& request, EditMode mode);
 
 }  // namespace gse::edit

@@ -94,6 +94,7 @@ struct LocateResult {
     Label source_label;              // rows of the source word
     AddRegion region;                // add mode: where the new thing goes
     GaussianData seeds;              // add mode: new rows
+    AddRegion room;                  // of what comes in the place of something else worn, elsewhere on its wearer (head.h); empty otherwise
     int failed_views = 0;
     std::size_t broken_attention = 0;   // values of the attention that were not finite, and count as none
     Confidence confidence;

@@ -44,7 +44,7 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
     const std::vector<float> values(plan.label.begin(), plan.label.end());
     const bool any = std::find(plan.label.begin(), plan.label.end(), std::uint8_t{1}) != plan.label.end();
     if (located.mode == EditMode::Replace)
-        plan.room = room_around(input.gaussians, plan.label, input.up, input.front, input.request.shape_room);
+        plan.room = !located.room.empty() ? located.room : room_around(input.gaussians, plan.label, input.up, input.front, input.request.shape_room);
     Image seen;
     for (std::size_t v = 0; v < input.views.size(); ++v) {
         const Camera& camera = input.views[v].camera;

@@ -19,6 +19,7 @@
 #include "engine/edit/place_drawing.h"
 #include "engine/edit/relation.h"
 #include "engine/edit/scene_reading.h"
+#include "engine/edit/shape_room.h"
 #include "engine/edit/standing.h"
 #include "engine/edit/view_vote.h"
 #include "engine/edit/vocabulary.h"
@@ -150,6 +151,13 @@ public:
         : workplace_(workplace), recipe_(std::move(recipe)), views_(views), hints_(hints), control_(control) {}
 
     Located run() {
+        Located located = searched();
+        located.result.room = room_on_wearer(located);
+        return located;
+    }
+
+private:
+    Located searched() {
         const bool by_label = !hints_.label.empty() && (recipe_.job.brings_label() || !edit::knows(workplace_.model().known_words(),
                                                                                                 recipe_.request.source));
         ground();   // as these views show it
@@ -161,7 +169,6 @@ public:
         return from_label();
     }
 
-private:
     bool moves() const { return views_.automatic && recipe_.request.focus; }
 
     std::optional<edit::PlainGround> ground() { return hints_.label.empty() ? ground_shown(workplace_, recipe_, views_) : std::nullopt; }
@@ -288,6 +295,8 @@ private:
             return thing != request.source && thing != request.target && edit::knows(workplace_.model().known_words(), thing);
         });
         if (wearer == things.end()) return {};
+        request.prompt = edit::sentence_before(recipe_.request);   // of what is new the scene shows nothing
+        request.target = recipe_.request.source;
         request.source = *wearer;
         request.mode = "modify";
         request.views = std::min(request.views, ScanViews);
@@ -296,6 +305,14 @@ private:
         const auto found = look(scan, views_on(around, scan), {});
         log::debug("\"{}\", who wears \"{}\": confidence {:.2f}", *wearer, recipe_.request.source, found.confidence.value);
         return found.problem == edit::SearchProblem::None ? *found.label.bits : std::vector<std::uint8_t>{};
+    }
+
+    /// Where something may be that is worn elsewhere than what it takes the place of.
+    edit::AddRegion room_on_wearer(const Located& located) {
+        const auto& result = located.result;
+        if (!located.found() || !edit::moves_worn_place(recipe_.request, result.mode)) return {};
+        const auto standing = standing_of_wearer(result.label, located.views.orbit, located.views.front);
+        return edit::room_above(standing, located.views.orbit.up, located.views.front, recipe_.request.add_room);
     }
 
     /// The orbit that frames a label, with room where something is put beside it; `front`: of the scene.
@@ -350,8 +367,9 @@ private:
             located.views = faced(views_on(focused, recipe_));
             located.result = look(recipe_, located.views, by_hand);
         }
+        const bool worn = result.mode == edit::EditMode::Add || edit::takes_worn_place(recipe_.request, result.mode);
         for (const double share : CutShares) {
-            if (result.mode != edit::EditMode::Add || !as_figure || !is_cut_off(result, share)) break;
+            if (!worn || !as_figure || !is_cut_off(result, share)) break;
             log::info("\"{}\" does not fit into the pictures; it is looked for from farther off", result.word);
             located.views = faced(views_on(nearer(located.views.orbit, StepBack), recipe_));
             located.result = look(recipe_, located.views, by_hand);
@@ -420,6 +438,7 @@ Located locate_again(Workplace& workplace, const Located& located, const EditRec
     Located again{located.views, recipe, located.label, {}, located.target_read, {}};
     const auto* label = again.by_label() ? &again.label : nullptr;
     again.result = look_from(workplace, again.views, recipe, label, control);
+    if (edit::moves_worn_place(recipe.request, again.result.mode)) again.result.room = located.result.room;
     return finished(std::move(again));
 }
 

@@ -331,6 +331,40 @@ DOCTEST_TEST_CASE("what takes the place of something worn is drawn on its wearer
     }
 }
 
+DOCTEST_TEST_CASE("what is worn elsewhere than what it takes the place of goes there, and that goes") {
+    synth::SceneSpec spec;
+    spec.object = "bear";
+    spec.material = "blue";
+    spec.accessory = "hat";
+    spec.seed = 5;
+    const auto made = synth::generate(spec);
+    EditRecipe recipe;
+    recipe.request.source = "hat";
+    recipe.request.prompt = "a blue bear wearing a yellow scarf on the grass";
+    recipe.job.use_label = true;
+    std::vector<std::uint8_t> hat;
+    double brim = 0;   // height of the hat's lowest splat
+    for (std::size_t row = 0; row < made.parts.size(); ++row) {
+        hat.push_back(made.parts[row] == synth::Part::Accessory ? 1 : 0);
+        const double height = -made.scene.gaussians.position()[row * 3 + 1];
+        if (hat.back() != 0) brim = brim == 0 ? height : std::min(brim, height);
+    }
+    EditJob job(recipe, EditJobInput{made.scene, {}, load_recipe_model({}), hat}, JobControl{});
+    job.locate();
+    DOCTEST_REQUIRE(job.found());
+    DOCTEST_CHECK(!job.located().room.empty());
+    job.run();
+    const auto& result = job.result();
+    double seen = 0, below = 0;
+    for (std::size_t row = 0; row < result.set.size(); ++row) {
+        if (result.label[row] == 0 || !(result.set.opacity_logit()[row] > 0)) continue;
+        seen += 1;
+        below += -result.set.position()[row * 3 + 1] < brim ? 1 : 0;
+    }
+    DOCTEST_CHECK(seen > 100);
+    DOCTEST_CHECK(below > 0.95 * seen);
+}
+
 DOCTEST_TEST_CASE("a label that is not what the words find is looked at itself; one that is a part of it corrects what they find") {
     const auto model = load_recipe_model({});
     synth::SceneSpec spec;

@@ -135,6 +135,10 @@ DOCTEST_TEST_CASE("only what is worn takes the place of something worn, and only
     DOCTEST_CHECK(edit::takes_worn_place(request, edit::EditMode::Replace));
     DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Add));
     DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Modify));
+    DOCTEST_CHECK_FALSE(edit::moves_worn_place(request, edit::EditMode::Replace));
+    request.target = "sunglasses";
+    DOCTEST_CHECK(edit::moves_worn_place(request, edit::EditMode::Replace));
+    DOCTEST_CHECK_FALSE(edit::moves_worn_place(request, edit::EditMode::Modify));
     request.source = "ball";
     DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Replace));   // a crown on the ground
     request.source = "hat";
