@@ -65,6 +65,7 @@ struct LiveEdit {
     std::vector<float> attention;     // of it, per splat
     bool relabel = false;             // what it found is the label now
     bool adds = false;                // known once the search is over
+    pipeline::Renamed renamed;        // the same
     std::string name, recipe, target; // of the edit, set before it starts
     int iterations = 0;
     bool wants_gate = false;

@@ -94,6 +94,8 @@ nlohmann::json Application::edit_json() const {
     if (!model_.losses.empty()) json["iteration"] = model_.losses.back().iteration;
     const std::lock_guard lock(live_->mutex);
     json["adds"] = whole ? whole->adds : live_->adds;
+    const auto& renamed = whole ? whole->renamed : live_->renamed;
+    json["source"] = renamed.from, json["becomes"] = renamed.to;
     return json;
 }
 

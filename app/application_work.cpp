@@ -276,6 +276,7 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
     {
         const std::lock_guard lock(live.mutex);
         live.adds = adds;
+        live.renamed = renamed_by(*job);
     }
     if (!attention.empty()) {   // from here on the loop leaves alone what the search found: it can be read
         const std::lock_guard lock(live.mutex);
@@ -343,8 +344,8 @@ void Application::apply_result() {
     node.id = next_edit_id_++;
     node.delta = std::make_shared<const SceneDelta>(
         make_delta(result.before, *before.row_ids, result.set, *result.base_to_new, node.id));
-    DocumentState state = with_edit(before, std::move(node), result.target, result.adds);
-    if (state.labels.size() > before.labels.size()) reach_choice_.reset();   // nobody has chosen the new label
+    DocumentState state = with_result(before, std::move(node), result);
+    if (state.labels.size() > before.labels.size() || !result.renamed.to.empty()) reach_choice_.reset();   // nobody has chosen the new label, or name
     document_.apply(fmt::format("Edit: {}", result.name), std::move(state));
     toast_step(fmt::format("The edit \"{}\" is kept.", result.name));
     model_.request.target.clear();   // it is done: the next sentence has news of its own

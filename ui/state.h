@@ -53,6 +53,7 @@ struct ViewportState {
     Comparison before_flip = Comparison::None;
     bool wipe_dragged = false;
     float bars_bottom = 0;  // lower edge of what floated at the top in the last frame
+    ImVec2 foot_low{};      // upper left corner of what floated at the foot; its y is that of `high` where nothing did
     double moved_at = -10;  // ImGui time of the last move
     int drag_button = -1;   // mouse button that navigates, -1 = none
 };

@@ -1,13 +1,25 @@
 // Names, proof and thumbnail of a result.
 #include "engine/pipeline/pending_result.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "engine/base/error.h"
 #include "engine/base/json.h"
 #include "engine/base/log.h"
+#include "engine/edit/words.h"
 #include "engine/pipeline/edit_output.h"
+#include "engine/pipeline/loop.h"
 #include "engine/scene/row_values.h"
+#include "engine/scene/stack_edits.h"
 
 namespace gse::pipeline {
+
+Renamed renamed_by(const EditJob& job) {
+    if (job.located().mode != edit::EditMode::Replace) return {};
+    const auto& request = job.recipe().request;
+    return {edit::as_told(request.source), edit::as_told(new_thing(request, edit::EditMode::Replace))};
+}
 
 void fill_pending(EditJob& job, PendingResult& pending) {
     const auto& result = job.result();
@@ -20,6 +32,7 @@ void fill_pending(EditJob& job, PendingResult& pending) {
     pending.target = job.recipe().request.target;
     pending.seed = job.recipe().request.seed;
     pending.adds = job.located().mode == edit::EditMode::Add;
+    pending.renamed = renamed_by(job);
     pending.recipe = json_text(recipe_to_json(job.recipe()), -1);
     for (const auto& [stage, seconds] : result.seconds) pending.seconds += seconds;
     pending.psnr_outside_db = report["psnr_outside_db"].get<double>();
@@ -40,6 +53,15 @@ EditNode node_of(const PendingResult& result) {
     return node;
 }
 
+DocumentState with_result(const DocumentState& before, EditNode node, const PendingResult& result) {
+    DocumentState state = with_edit(before, std::move(node), result.target, result.adds);
+    const auto called = [](const std::string& name) { return [&name](const NamedLabel& label) { return label.name == name; }; };
+    if (result.renamed.to.empty() || std::any_of(state.labels.begin(), state.labels.end(), called(result.renamed.to))) return state;
+    const auto label = std::find_if(state.labels.begin(), state.labels.end(), called(result.renamed.from));
+    if (label != state.labels.end()) label->name = result.renamed.to;
+    return state;
+}
+
 std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann::json& jobs) {
     try {
         const auto edit = jobs.find("edit");
@@ -58,6 +80,7 @@ std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann
         pending.target = edit->value("target", "");
         pending.seed = edit->value("seed", std::uint64_t{0});
         pending.adds = edit->value("adds", false);
+        pending.renamed = {edit->value("source", ""), edit->value("becomes", "")};
         pending.seconds = node.seconds;
         pending.psnr_outside_db = node.psnr_outside_db;
         pending.changed_outside_label = node.changed_outside_label;

@@ -14,6 +14,13 @@
 
 namespace gse::pipeline {
 
+/// What an edit made another thing of, and what that is; empty for other edits. Words as as_told() has them.
+struct Renamed {
+    std::string from, to;
+};
+/// Of a job that has located.
+Renamed renamed_by(const EditJob& job);
+
 /// What came of an edit that has not been applied yet.
 struct PendingResult {
     GaussianSet before, set;
@@ -21,6 +28,7 @@ struct PendingResult {
     std::string name, recipe, target;
     std::uint64_t seed = 0;
     bool adds = false;
+    Renamed renamed;
     double seconds = 0, psnr_outside_db = 0;
     std::size_t changed_outside_label = 0;
     std::shared_ptr<const Image> thumbnail;
@@ -31,6 +39,10 @@ void fill_pending(EditJob& job, PendingResult& pending);
 
 /// The edit of the stack that it becomes, without identity and delta.
 EditNode node_of(const PendingResult& result);
+
+/// The state with that edit, its node complete, on the stack (stack_edits.h). A label that bore the name of what became another thing bears the
+/// new thing's, where no other does.
+DocumentState with_result(const DocumentState& state, EditNode node, const PendingResult& result);
 
 /// The edit that was running or waiting when a project was kept (`jobs` of it) comes off the stack again and waits to be applied.
 std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann::json& jobs);

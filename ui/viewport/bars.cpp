@@ -1,4 +1,4 @@
-// What floats at the top of the picture: the result that waits, and work of another session that can be had back.
+// What floats at the picture's foot and top: the result that waits, and what is hidden, looked through or can be had back.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,13 +30,21 @@ void end_floating(Context& context) {
     ImGui::End();
 }
 
+/// The same at the foot.
+void end_foot(Context& context) {
+    ImVec2& low = context.state.viewport.foot_low;
+    const ImVec2 at = ImGui::GetWindowPos();
+    low = {std::min(low.x, at.x), std::min(low.y, at.y)};
+    ImGui::End();
+}
+
 constexpr float ResultEm = 3.4f;   // width of one of several results
 
-/// All that can be applied, small, at the picture's foot: a click shows one.
+/// All that can be applied, small, above its bar: a click shows one.
 void draw_results(Context& context) {
     const auto& results = context.model.results;
     const auto& state = context.state.viewport;
-    begin_floating("results", {(state.low.x + state.high.x) * 0.5f, state.high.y - context.em * 0.4f}, true);
+    begin_floating("results", {(state.low.x + state.high.x) * 0.5f, state.foot_low.y - context.em * 0.4f}, true);
     const float room = (state.high.x - state.low.x) / static_cast<float>(results.size()) - context.em;
     const float side = std::clamp(room, context.em, context.em * ResultEm);
     for (std::size_t i = 0; i < results.size(); ++i) {
@@ -55,11 +63,13 @@ void draw_results(Context& context) {
             list->AddRect(low, high, shown ? palette::Accent : palette::TextDim, context.em * 0.2f, 0, std::max(2.0f, context.em * 0.14f));
         ImGui::PopID();
     }
-    ImGui::End();
+    end_foot(context);
 }
 
-void draw_result_bar(Context& context, ImVec2 at) {
-    begin_floating("result bar", at);
+/// At the foot: what is worn is at the top.
+void draw_result_bar(Context& context) {
+    const auto& state = context.state.viewport;
+    begin_floating("result bar", {(state.low.x + state.high.x) * 0.5f, state.high.y - context.em * 0.4f}, true);
     const auto& model = context.model;
     const std::size_t changed = model.result_changed_outside;
     const auto time = fmt::format("Edit done in {}", duration_text(model.result_seconds));
@@ -95,7 +105,7 @@ void draw_result_bar(Context& context, ImVec2 at) {
     if (button(context,
                {.name = "result.discard", .text = "Discard", .tooltip = "Leave the scene as it was"}))
         context.actions.discard_result();
-    end_floating(context);
+    end_foot(context);
     if (model.results.size() > 1) draw_results(context);
 }
 
@@ -178,8 +188,9 @@ void draw_bars(Context& context) {
     auto& state = context.state.viewport;
     const float top = state.low.y + context.em * 2.6f, middle = (state.low.x + state.high.x) * 0.5f;
     state.bars_bottom = state.low.y;
+    state.foot_low = state.high;
     if (!context.scene_open()) return;
-    if (context.model.result_waiting) draw_result_bar(context, {middle, state.low.y + context.em * 0.3f});
+    if (context.model.result_waiting) draw_result_bar(context);
     if (context.model.hidden > 0) draw_hidden_bar(context, {middle, std::max(top, state.bars_bottom)});
     if (const auto* view = view_looked_through(context)) draw_evidence_bar(context, {middle, std::max(top, state.bars_bottom)}, *view);
     const auto& found = context.model.recoverable;

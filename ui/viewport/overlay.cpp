@@ -48,7 +48,8 @@ std::optional<ImVec2> project(const Context& context, const Vec3& world) {
 ImVec2 axes_centre(const Context& context) {
     const auto& state = context.state.viewport;
     const float away = context.em * AxesEm * 1.5f;
-    return {state.low.x + away, state.high.y - away};
+    const bool covered = state.foot_low.x < state.low.x + 2 * away;
+    return {state.low.x + away, (covered ? std::min(state.high.y, state.foot_low.y) : state.high.y) - away};
 }
 
 /// The world's axes in the lower left corner, turned as the camera is.
@@ -153,8 +154,7 @@ void draw_hud(Context& context, ImDrawList* list) {
         const std::string longer = text.empty() ? part : fmt::format("{}   {}", text, part);
         if (!part.empty() && ImGui::CalcTextSize(longer.c_str()).x < room) text = longer;
     }
-    const float below = model.result_waiting ? 3.2f : 0.5f;   // its bar lies at the very top, over as little of the scene as can be
-    shaded_text(context, list, {state.low.x + context.em * 0.5f, state.low.y + context.em * below}, text);
+    shaded_text(context, list, {state.low.x + context.em * 0.5f, state.low.y + context.em * 0.5f}, text);
 }
 
 void draw_wipe(Context& context, ImDrawList* list) {
@@ -168,7 +168,7 @@ void draw_wipe(Context& context, ImDrawList* list) {
     for (const float side : {-1.0f, 1.0f})
         list->AddTriangleFilled({x + side * r * 0.65f, middle}, {x + side * r * 0.2f, middle - r * 0.35f},
                                 {x + side * r * 0.2f, middle + r * 0.35f}, palette::Text);
-    const float y = state.high.y - context.em * 2.2f;
+    const float y = std::min(state.high.y, state.foot_low.y) - context.em * 2.2f;
     const bool chosen = context.model.compared_revision != 0;   // another step than usual
     const std::string left = chosen ? shortened(context.model.compared_name, context.em * 14) : "before";
     const float before = ImGui::CalcTextSize(left.c_str()).x + context.em * 1.2f;
@@ -180,7 +180,7 @@ void draw_wipe(Context& context, ImDrawList* list) {
 /// A line below the numbers: what the active tool does, and with which keys; as much as fits.
 void draw_hint(Context& context, ImDrawList* list) {
     const auto& state = context.state.viewport;
-    if (state.tool == Tool::Orbit || context.model.result_waiting) return;   // the bar of the result lies there
+    if (state.tool == Tool::Orbit) return;
     std::string text = state.tool == Tool::Brush       ? "Brush: drag to paint"
                        : state.tool == Tool::Rectangle ? "Rectangle: drag a box"
                        : state.tool == Tool::CutOut    ? "Cut out: drag a box around a thing"

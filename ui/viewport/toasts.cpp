@@ -23,10 +23,11 @@ Space space_of(const Context& context, float top) {
     const float em = context.em;
     Space space{state.low.x + em, state.high.x - em, top, state.high.y - em};
     if (!context.scene_open()) return space;
+    space.bottom = std::min(space.bottom, state.foot_low.y - em * 0.4f);
     const float beside_axes = space.right - (state.low.x + AxesCornerEm * em);
     if (context.view.show_axes && beside_axes < WidestEm * em) {
         if (beside_axes >= NarrowestEm * 2 * em) space.left = space.right - beside_axes;
-        else space.bottom = state.high.y - AxesCornerEm * em;
+        else space.bottom = std::min(space.bottom, state.foot_low.y) - AxesCornerEm * em;
     }
     if (context.model.comparison == Comparison::Wipe) {   // its handle stays free
         const float handle = state.low.x + context.view.wipe * (state.high.x - state.low.x);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/pipeline/waiting_results.h"
+#include "engine/scene/label_ops.h"
 
 using namespace gse;
 using namespace gse::pipeline;
@@ -66,4 +67,28 @@ DOCTEST_TEST_CASE("results that wait: the oldest go where there are too many") {
     DOCTEST_CHECK(results.all().size() == WaitingResults::Most);
     DOCTEST_CHECK(results.all().front().seed == 3);
     DOCTEST_CHECK(results->seed == WaitingResults::Most + 2);
+}
+
+DOCTEST_TEST_CASE("a label that has its thing's name takes that of what the thing became, where no other has it") {
+    const auto names_after = [](const std::vector<std::string>& names, const Renamed& renamed) {
+        GaussianData rows;
+        rows.resize(2);
+        Scene scene;
+        scene.gaussians = GaussianSet(rows);
+        DocumentState state = initial_state(scene, {});
+        for (const auto& name : names) state.labels.push_back(empty_label(name, rows.size()));
+        PendingResult result;
+        result.renamed = renamed;
+        EditNode node;
+        node.id = 1;
+        node.delta = std::make_shared<const SceneDelta>(make_delta(state.current, *state.row_ids, GaussianSet(rows), std::vector<std::int64_t>{0, 1}, node.id));
+        std::vector<std::string> after;
+        for (const auto& label : with_result(state, std::move(node), result).labels) after.push_back(label.name);
+        return after;
+    };
+    using Names = std::vector<std::string>;
+    DOCTEST_CHECK(names_after({"bear", "hat"}, {"hat", "crown"}) == Names{"bear", "crown"});
+    DOCTEST_CHECK(names_after({"my hat"}, {"hat", "crown"}) == Names{"my hat"});
+    DOCTEST_CHECK(names_after({"hat", "crown"}, {"hat", "crown"}) == Names{"hat", "crown"});
+    DOCTEST_CHECK(names_after({"hat"}, {}) == Names{"hat"});
 }
