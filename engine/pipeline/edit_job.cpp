@@ -295,6 +295,10 @@ OrbitParameters EditJob::film_orbit() const {
     return orbit;
 }
 
+double EditJob::film_front() const {
+    return views_->front_read ? *views_->front_read : parse_front(recipe_.job.front).value_or(0);
+}
+
 void EditJob::run(const EditObserver& observer) {
     times_.begin("edit");
     const double start = wall_seconds();

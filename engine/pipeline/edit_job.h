@@ -119,6 +119,8 @@ public:
     bool automatic_views() const { return views_->automatic; }
     /// Orbit around what was edited, for films.
     OrbitParameters film_orbit() const;
+    /// Azimuth on it, radians, from which the front is seen where one is known; 0 otherwise.
+    double film_front() const;
     neural::TextToImage& model() { return workplace_->model(); }
     Painter& painter() { return workplace_->painter(); }
     StageTimes& times() { return times_; }

@@ -106,8 +106,9 @@ void write_before_after(const fs::path& folder, EditJob& job) {
     const int side = job.recipe().job.turntable_size, frames = job.recipe().job.turntable_frames;
     raster::Settings settings = job.plan().settings;
     const OrbitParameters orbit = job.film_orbit();
+    const double front = job.film_front();   // what was edited faces the first picture
     const auto pair = [&](double azimuth) {
-        const Camera camera = orbit_camera(orbit, azimuth, side, side);
+        const Camera camera = orbit_camera(orbit, front + azimuth, side, side);
         const Image before = job.painter().paint(job.drawn().spans(), camera, settings).colour;
         return side_by_side(before, job.painter().paint(job.drawn_result().spans(), camera, settings).colour);
     };

@@ -38,7 +38,7 @@ void fill_pending(EditJob& job, PendingResult& pending) {
     pending.psnr_outside_db = report["psnr_outside_db"].get<double>();
     pending.changed_outside_label = result.changed_outside_label;
     constexpr int thumbnail_px = 96;
-    const Camera camera = orbit_camera(job.film_orbit(), 0.35, thumbnail_px, thumbnail_px);
+    const Camera camera = orbit_camera(job.film_orbit(), job.film_front() + 0.35, thumbnail_px, thumbnail_px);
     pending.thumbnail = std::make_shared<const Image>(job.painter().paint(job.drawn_result().spans(), camera, job.plan().settings).colour);
 }
 

@@ -265,6 +265,7 @@ DOCTEST_TEST_CASE("the side that the artist looks at is the front of what is sea
         job.locate();
         DOCTEST_CHECK(job.found());
         DOCTEST_REQUIRE(job.front_read());
+        DOCTEST_CHECK(job.film_front() == *job.front_read());   // films and thumbnails begin there
         return *job.front_read() / Degree;
     };
     DOCTEST_CHECK(front_of("mushroom", "120") == doctest::Approx(120));   // round, and alike from all sides
