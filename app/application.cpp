@@ -199,6 +199,8 @@ void Application::refresh_document() {
     refresh_reach();
     count_anew();
     refresh_picked();
+    if (adjusted_ && adjusted_->revision != document_.revision()) adjusted_.reset();
+    model_.adjusting = adjusted_.has_value();
     if (seconds_since(last_estimate_) > 0.5) {
         last_estimate_ = Clock::now();
         refresh_estimate();

@@ -144,6 +144,7 @@ public:
     void invert_label() override;
     void clear_label() override;
     void delete_labelled_splats() override;
+    void adjust_colours(const ColourAdjustment& adjustment) override;
     void pick_rows(const localize::RowChoice& choice) override;
     void drop_picked() override;
     void use_picked(ui::PickedUse use) override;
@@ -422,6 +423,11 @@ private:
         GaussianSet set;
         std::shared_ptr<const std::vector<RowId>> ids;
     } compared_;   // that comparisons show as before, where the artist chose a step
+    struct AdjustedColours {
+        DocumentState before;
+        std::uint64_t revision, id;   // of the step, and of its edit
+    };
+    std::optional<AdjustedColours> adjusted_;   // while that is the last step
     std::optional<localize::RowPicking> picking_;   // splats chosen by a property
     HiddenRows hidden_;
     struct SeenSet {

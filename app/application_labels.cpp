@@ -194,6 +194,18 @@ void Application::delete_labelled_splats() {
     if (label != nullptr && label->bits) delete_rows(*label->bits);
 }
 
+void Application::adjust_colours(const ColourAdjustment& adjustment) {
+    if (!require_scene() || work_.running() || pending_) return;
+    if (adjustment == ColourAdjustment{}) return adjusted_ ? undo() : void();
+    if (!adjusted_) adjusted_ = AdjustedColours{document_.state(), 0, next_edit_id_++};
+    const NamedLabel* label = active_label();
+    const bool some = label != nullptr && count_labelled(*label) > 0;
+    auto state = with_adjustment(adjusted_->before, some ? *label->bits : std::vector<std::uint8_t>(document_.state().current.size(), 1), adjustment, adjusted_->id);
+    const std::string name = state.stack.back().name;
+    document_.apply(name, std::move(state), fmt::format("colours{}", adjusted_->id));
+    adjusted_->revision = document_.revision();
+}
+
 void Application::undo() {
     if (document_.can_undo()) travel([&] { document_.undo(); });
 }

@@ -22,20 +22,7 @@ void Application::refresh_reading() {
 
 /// What the applied edits say of the scene, and what the label says of the edit.
 void Application::refresh_words() {
-    if (document_.empty()) return;
-    std::vector<edit::EditRequest> applied;
-    for (const auto& node : document_.state().stack) {
-        const auto json = try_parse_json<nlohmann::ordered_json>(node.recipe);
-        if (!node.enabled || !json.is_object() || !json.contains("request")) continue;
-        edit::EditRequest request;
-        try {
-            fields_from_json(request, json["request"]);
-        } catch (const Error&) {   // of another version: what it said is not known
-            continue;
-        }
-        applied.push_back(std::move(request));
-    }
-    model_.said_words = edit::words_said(applied);
+    if (!document_.empty()) model_.said_words = edit::words_said(applied_requests(document_.state().stack));
 }
 
 /// Null where there is none.

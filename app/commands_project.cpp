@@ -5,60 +5,15 @@
 #include <memory>
 
 #include "app/cli.h"
+#include "app/engine_names.h"
 #include "engine/base/error.h"
-#include "engine/base/json.h"
-#include "engine/base/path_text.h"
 #include "engine/base/print.h"
 #include "engine/io/project_file.h"
 #include "engine/io/scene_io.h"
+#include "engine/pipeline/project_report.h"
 
 namespace gse::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json edit_json(const EditNode& edit) {
-    Json recipe = try_parse_json<Json>(edit.recipe);
-    if (recipe.is_discarded()) recipe = edit.recipe;
-    return {{"id", edit.id},
-            {"name", edit.name},
-            {"enabled", edit.enabled},
-            {"strength", edit.strength},
-            {"seconds", edit.seconds},
-            {"psnr_outside_db", edit.psnr_outside_db},
-            {"changed_outside_label", edit.changed_outside_label},
-            {"recipe", std::move(recipe)}};
-}
-
-Json summary_json(const ProjectSummary& summary, const std::filesystem::path& path) {
-    Json json;
-    json["file"] = text_of_path(path.string());
-    json["program"] = summary.program;
-    json["scene"] = text_of_path(summary.scene.string());
-    json["scene_found"] = summary.scene_found;
-    json["splats"] = summary.splats;
-    json["edits"] = Json::array();
-    for (const EditNode& edit : summary.stack) json["edits"].push_back(edit_json(edit));
-    json["labels"] = Json::array();
-    for (const NamedLabel& label : summary.labels)
-        json["labels"].push_back({{"name", label.name}, {"threshold", label.threshold}});
-    json["active_label"] = summary.active_label;
-    json["views"] = summary.views.size();
-    return json;
-}
-
-void print_summary(const ProjectSummary& summary, const std::filesystem::path& path) {
-    print("{}\n", path.string());
-    print("  scene         {}{}\n",
-               summary.scene.empty() ? "inside the project" : summary.scene.string(),
-               summary.scene_found ? "" : " (not there)");
-    print("  splats        {}\n", summary.splats);
-    print("  views         {}\n", summary.views.size());
-    for (const EditNode& edit : summary.stack)
-        print("  edit {:<9}{}{}\n", edit.id, edit.name, edit.enabled ? "" : " (off)");
-    for (const NamedLabel& label : summary.labels)
-        print("  label         {} (threshold {:.3g})\n", label.name, label.threshold);
-}
 
 const NamedLabel& find_label(const ProjectData& project, const std::string& name) {
     for (const NamedLabel& label : project.state.labels)
@@ -119,10 +74,8 @@ void add_project_command(CLI::App& app, CommandContext&) {
                 return;
             }
         }
-        if (options->json)
-            print_json(summary_json(summary, options->input));
-        else
-            print_summary(summary, options->input);
+        if (options->json) print_json(project_json(summary, options->input));
+        else fmt::print("{}", project_text(summary, options->input));
     });
 }
 

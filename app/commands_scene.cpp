@@ -1,4 +1,4 @@
-// gseditpro info, convert, render, turntable, synth.
+// gseditpro info, convert, adjust, cameras, render, turntable, synth.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,6 +18,7 @@
 #include "engine/pipeline/film.h"
 #include "engine/pipeline/scene_report.h"
 #include "engine/pipeline/scene_tools.h"
+#include "engine/scene/colour_adjustment.h"
 #include "engine/synth/synth.h"
 
 namespace gse::app {
@@ -71,6 +72,16 @@ void add_info(CLI::App& app, CommandContext&) {
     });
 }
 
+bool has_room_for_labels(const std::filesystem::path& output) {
+    return output.extension() == ".ply" && output.stem().extension() != ".compressed";
+}
+
+void refuse_same_file(const std::filesystem::path& input, const std::filesystem::path& output) {
+    std::error_code ignored;
+    if (std::filesystem::equivalent(input, output, ignored))
+        throw Error(ErrorCode::InvalidArgument, "the output is the input itself", "choose another name", output);
+}
+
 std::string left_out_text(const SavedRows& rows) {
     return rows.left_out == 0 ? "" : fmt::format(" ({} that the format cannot hold are left out)", rows.left_out);
 }
@@ -98,9 +109,33 @@ void add_convert(CLI::App& app, CommandContext&) {
         if (options->labels && !scene.labels.labels.empty()) save.from_label = &scene.labels.labels.front();
         else if (!scene.labels.labels.empty())
             log::warning("the labels of the scene are not written; --labels keeps them in a .ply");
-        std::error_code ignored;
-        if (std::filesystem::equivalent(options->input, options->output, ignored))
-            throw Error(ErrorCode::InvalidArgument, "the output is the input itself", "choose another name", options->output);
+        refuse_same_file(options->input, options->output);
+        const SavedRows rows = save_scene(options->output, scene, save);
+        print("{} splats written to {}{}\n", rows.written, options->output.string(), left_out_text(rows));
+    });
+}
+
+void add_adjust(CLI::App& app, CommandContext&) {
+    struct AdjustOptions {
+        std::filesystem::path input, output;
+        ColourAdjustment colours;
+        bool use_label = false;
+    };
+    auto options = std::make_shared<AdjustOptions>();
+    auto* command = app.add_subcommand("adjust", "Write a scene with its colours adjusted");
+    command->add_option("input", options->input, "Scene file or folder")->required();
+    command->add_option("output", options->output, "New file: .ply, .compressed.ply, .splat, .spz or .sog")->required();
+    command->add_flag("--use-label", options->use_label, "Of what the scene's own label marks, not of all splats");
+    bind_fields(*command, options->colours, "Colours");
+    command->callback([options] {
+        Scene scene = load_scene(options->input);
+        const auto& labels = scene.labels.labels;
+        if (options->use_label && labels.empty())
+            throw Error(ErrorCode::InvalidArgument, "the scene has no label", "leave out --use-label, or save it with a label", options->input);
+        refuse_same_file(options->input, options->output);
+        scene.gaussians = adjusted(scene.gaussians, options->use_label ? *labels.front().bits : std::vector<std::uint8_t>(scene.gaussians.size(), 1), options->colours);
+        SaveOptions save;
+        if (!labels.empty() && has_room_for_labels(options->output)) save.from_label = &labels.front();
         const SavedRows rows = save_scene(options->output, scene, save);
         print("{} splats written to {}{}\n", rows.written, options->output.string(), left_out_text(rows));
     });
@@ -238,8 +273,7 @@ void add_synth(CLI::App& app, CommandContext&) {
         std::transform(result.parts.begin(), result.parts.end(), parts.begin(),
                        [](synth::Part part) { return part == synth::Part::Ground ? 0.0f : 1.0f; });
         SaveOptions save;
-        const auto is_ply = options->output.extension() == ".ply" && options->output.stem().extension() != ".compressed";
-        if (is_ply) {
+        if (has_room_for_labels(options->output)) {
             result.scene.labels.labels.push_back(make_label("part", std::move(parts), 0.5f));
             save.from_label = &result.scene.labels.labels.front();
         }
@@ -254,6 +288,7 @@ void add_synth(CLI::App& app, CommandContext&) {
 void add_scene_commands(CLI::App& app, CommandContext& context) {
     add_info(app, context);
     add_convert(app, context);
+    add_adjust(app, context);
     add_cameras(app, context);
     add_render(app, context);
     add_turntable(app, context);

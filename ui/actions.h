@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/localize/row_property.h"
+#include "engine/scene/colour_adjustment.h"
 #include "ui/view_model.h"
 
 namespace gse::ui {
@@ -71,6 +72,9 @@ public:
     virtual void invert_label() = 0;
     virtual void clear_label() = 0;
     virtual void delete_labelled_splats() = 0;
+    /// Colours of what is labelled, or of all splats where nothing is: of how they were before the first of several calls in a row, which
+    /// are one step of undo. As it is = as if there had been none.
+    virtual void adjust_colours(const ColourAdjustment& adjustment) = 0;
     /// Shows which splats a choice means, until they are dropped. Only use_picked() changes anything.
     virtual void pick_rows(const localize::RowChoice& choice) = 0;
     virtual void drop_picked() = 0;

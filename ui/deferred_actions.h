@@ -134,6 +134,9 @@ public:
     void clear_label() override {
         later([this] { target_->clear_label(); });
     }
+    void adjust_colours(const ColourAdjustment& adjustment) override {
+        later([this, adjustment] { target_->adjust_colours(adjustment); });
+    }
     void pick_rows(const localize::RowChoice& choice) override {
         later([this, choice] { target_->pick_rows(choice); });
     }

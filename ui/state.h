@@ -116,6 +116,13 @@ struct PickState {
     WeightHistogram histogram;
 };
 
+/// Colours adjusted by hand, as the controls stand.
+struct AdjustState {
+    ColourAdjustment values;
+    bool adjusting = false;   // in the last frame
+    int frames_to_bring = 0;  // as in PickState
+};
+
 struct ProgressState {
     bool logarithmic = true;
     std::array<bool, 3> losses{true, true, true};
@@ -145,6 +152,7 @@ struct UiState {
     AttentionState attention;
     LabelsState labels;
     PickState pick;
+    AdjustState adjust;
     ProgressState progress;
     TargetsState targets;
     LogState log;

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "engine/base/error.h"
+#include "engine/base/json.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/scene/label_ops.h"
 
@@ -21,6 +23,22 @@ bool corrected_by_hand(const NamedLabel& label) {
 
 bool is_label_of(const NamedLabel& label, const std::string& word) {
     return !word.empty() && (label.name == word || label.found_for == word);
+}
+
+std::vector<edit::EditRequest> applied_requests(const std::vector<EditNode>& stack) {
+    std::vector<edit::EditRequest> applied;
+    for (const auto& node : stack) {
+        const auto json = try_parse_json<nlohmann::ordered_json>(node.recipe);
+        if (!node.enabled || !json.is_object() || !json.contains("request")) continue;
+        edit::EditRequest request;
+        try {
+            fields_from_json(request, json["request"]);
+        } catch (const Error&) {   // of another version: what it said is not known
+            continue;
+        }
+        applied.push_back(std::move(request));
+    }
+    return applied;
 }
 
 FoundWith found_with(const DocumentState& state) {

@@ -31,6 +31,9 @@ bool is_label_of(const NamedLabel& label, const std::string& word);
 bool label_says(const NamedLabel& label, const edit::EditRequest& request, const std::vector<std::string>& known,
                 const std::optional<ReachChoice>& choice);
 
+/// What the edits of a stack that are switched on were asked for; those made by hand, or by another version, are passed over.
+std::vector<edit::EditRequest> applied_requests(const std::vector<EditNode>& stack);
+
 /// What the active label was found with: thresholds and views left out; a negative attention threshold = not by a search.
 struct FoundWith {
     std::string label;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "engine/base/check.h"
 #include "engine/scene/label_ops.h"
@@ -22,6 +23,25 @@ EditNode removal_of(const DocumentState& state, std::span<const std::uint8_t> ro
     node.name = fmt::format("Delete {} splats", delta.removed.size());
     node.delta = std::make_shared<const SceneDelta>(std::move(delta));
     return node;
+}
+
+DocumentState with_adjustment(const DocumentState& before, std::span<const std::uint8_t> rows, const ColourAdjustment& adjustment, std::uint64_t id) {
+    GSE_CHECK_EQ(rows.size(), before.current.size());
+    const GaussianSet some = before.current.filtered(rows);   // of a large scene little is adjusted
+    const GaussianSet after = adjusted(some, std::vector<std::uint8_t>(some.size(), 1), adjustment);
+    if (adjustment == ColourAdjustment{}) return before;
+    std::vector<RowId> ids;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] != 0) ids.push_back((*before.row_ids)[row]);
+    std::vector<std::int64_t> all(some.size());
+    std::iota(all.begin(), all.end(), std::int64_t{0});
+    EditNode node;
+    node.id = id;
+    node.name = fmt::format("Colours: {}", adjustment_text(adjustment));
+    node.delta = std::make_shared<const SceneDelta>(make_delta(some, ids, after, all, id));
+    auto stack = before.stack;
+    stack.push_back(std::move(node));
+    return with_stack(before, std::move(stack));
 }
 
 DocumentState with_edit(const DocumentState& before, EditNode node, const std::string& target, bool beside) {

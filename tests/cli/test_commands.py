@@ -12,7 +12,7 @@ from program import PROGRAM, SHARED, ProgramTest, grid_rows, ply_bytes, run
 class Commands(ProgramTest):
     def test_version_and_help(self):
         self.assertRegex(run("--version").stdout, r"gseditpro \d+\.\d+")
-        for command in ["info", "convert", "cameras", "render", "turntable", "locate", "edit", "synth", "train-starter", "bench"]:
+        for command in ["info", "convert", "adjust", "cameras", "render", "turntable", "locate", "edit", "synth", "train-starter", "bench"]:
             process = run(command, "--help")
             self.assertEqual(process.returncode, 0)
             lines = process.stdout.splitlines()
@@ -50,6 +50,20 @@ class Commands(ProgramTest):
         self.assertEqual(process.returncode, 0, process.stderr)
         body = lambda path: path.read_bytes().split(b"end_header\n", 1)[1]
         self.assertEqual(body(self.folder / "copy.ply"), body(source))
+
+    def test_adjusted_colours_are_of_all_splats_or_of_the_label(self):
+        source = self.write("scene.ply", ply_bytes(grid_rows()))
+        body = lambda path: path.read_bytes().split(b"end_header\n", 1)[1]
+        process = run("adjust", source, self.folder / "grey.ply", "--saturation", 0)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual(len(body(self.folder / "grey.ply")), len(body(source)))
+        self.assertNotEqual(body(self.folder / "grey.ply"), body(source))
+        self.assertEqual(run("adjust", source, self.folder / "same.ply").returncode, 0)
+        self.assertEqual(body(self.folder / "same.ply"), body(source))
+        self.assert_one_sentence(run("adjust", source, self.folder / "new.ply", "--use-label", "--hue", 20), "no label")
+        self.assertIn("--saturation", run("adjust", source, self.folder / "new.ply", "--saturation", 9).stderr)
+        self.assert_one_sentence(run("adjust", source, source, "--hue", 20), "input itself")
+        self.assertFalse((self.folder / "new.ply").exists())
 
     def test_spz_versions_are_written_as_asked(self):
         source = self.write("scene.ply", ply_bytes(grid_rows()))

@@ -79,7 +79,8 @@ void draw_threshold(Context& context, const NamedLabel& label) {
     auto& labels = context.state.labels;
     const std::size_t total = context.document().current.size();
     if (label.weight == nullptr || label.weight->empty()) {
-        dim_text("This label was made by hand: it has no weights, so there is no threshold.");
+        property(context, "Threshold", "none");
+        tooltip("A search gives every splat a weight; what was made by hand, or by an edit, has none.");
     } else {
         labels.histogram.update(label.weight);
         float threshold = labels.threshold >= 0 ? labels.threshold : label.threshold;
@@ -199,6 +200,7 @@ void draw_labels_panel(Context& context) {
     draw_tools(context, why);
     draw_operations(context, why);
     draw_pick(context);
+    draw_adjust(context);
 }
 
 }  // namespace gse::ui

@@ -20,7 +20,6 @@ constexpr std::array<const char*, 4> PropertyHelp{
     "By the mean distance to the 8 nearest splats, compared with the usual one: what floats alone in the air."};
 
 constexpr float HistogramEm = 3.5f;
-constexpr int FramesToBring = 3;   // until the panel knows how long it has become
 
 localize::RowChoice& choice_of(PickState& pick) { return pick.choices[static_cast<std::size_t>(pick.property)]; }
 

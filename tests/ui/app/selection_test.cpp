@@ -39,6 +39,39 @@ struct Labelled : Session {
 
 }  // namespace
 
+DOCTEST_TEST_CASE("colours adjusted by hand are one edit and one step of undo, of what is labelled, until something else is done") {
+    const Place place;
+    Labelled session;
+    auto& app = session.app;
+    const auto before = app.document().state().current;
+    const auto at = app.document().position();
+    for (const double hue : {20.0, 60.0, 90.0}) {
+        app.adjust_colours({hue});
+        app.update(session.preview);
+        DOCTEST_CHECK(app.model().adjusting);
+    }
+    DOCTEST_CHECK(app.document().position() == at + 1);
+    const auto& state = app.document().state();
+    DOCTEST_REQUIRE(state.stack.size() == 1);
+    DOCTEST_CHECK(state.stack[0].name == "Colours: hue 90");
+    std::size_t outside = 0;
+    for (std::size_t row = 0; row < before.size(); ++row)
+        outside += labelled(app)[row] == 0 && !same_row(before.spans(), row, state.current.spans(), row) ? 1 : 0;
+    DOCTEST_CHECK(outside == 0);
+    app.adjust_colours({});   // as it was
+    app.update(session.preview);
+    DOCTEST_CHECK(app.document().position() == at);
+    DOCTEST_CHECK_FALSE(app.model().adjusting);
+    app.adjust_colours({90});
+    app.clear_label();
+    app.update(session.preview);
+    DOCTEST_CHECK_FALSE(app.model().adjusting);
+    app.adjust_colours({0, 0});   // a second edit, of everything
+    app.update(session.preview);
+    DOCTEST_CHECK(app.document().state().stack.size() == 2);
+    DOCTEST_CHECK(app.document().state().stack[1].delta->changed.size() > app.document().state().stack[0].delta->changed.size());
+}
+
 DOCTEST_TEST_CASE("splats chosen by a property are shown, labelled, taken from a label and deleted; each is one step of undo") {
     const Place place;
     Session session;

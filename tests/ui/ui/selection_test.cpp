@@ -20,6 +20,29 @@ bool clicking_asks(Harness& harness, const std::string& widget, const std::strin
 
 }  // namespace
 
+DOCTEST_TEST_CASE("colours are adjusted while a slider moves, go back by its right click, and begin anew after another step") {
+    Harness harness({Wide, 2 * High, 1, Situation::Located, false});
+    harness.shell.show(ui::PanelId::Labels);
+    harness.frame(3);
+    harness.click("adjust.open");
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("adjust.reach") != nullptr);
+    DOCTEST_CHECK_FALSE(harness.rect("adjust.reset").enabled);
+    const auto slider = harness.rect("adjust.saturation");
+    harness.drag({slider.x + slider.width / 3, slider.y + slider.height / 2}, {slider.x + 3, slider.y + slider.height / 2});
+    DOCTEST_CHECK(harness.application.asked("adjust_colours saturation 0"));
+    DOCTEST_CHECK(clicking_asks(harness, "adjust.reset", "adjust_colours "));
+    harness.drag({slider.x + slider.width / 3, slider.y + slider.height / 2}, {slider.x + 3, slider.y + slider.height / 2});
+    harness.frame(2);
+    DOCTEST_CHECK(harness.shell.state().adjust.values.saturation < 0.1);
+    harness.application.model().adjusting = false;   // undone, or something else was done
+    harness.frame(2);
+    DOCTEST_CHECK(harness.shell.state().adjust.values == ColourAdjustment{});
+    harness.application.model().result_waiting = true;
+    harness.frame(3);
+    DOCTEST_CHECK(harness.find("adjust.saturation") == nullptr);
+}
+
 DOCTEST_TEST_CASE("select by property: seen while the section is open, used by its buttons, gone with it") {
     Harness harness({Wide, 2 * High, 1, Situation::Located, false});   // all of the panel is seen
     harness.shell.show(ui::PanelId::Labels);

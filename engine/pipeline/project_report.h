@@ -1,0 +1,16 @@
+// What a project file holds, as JSON and as text for a terminal.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "engine/io/project_file.h"
+
+namespace gse::pipeline {
+
+nlohmann::ordered_json project_json(const ProjectSummary& summary, const std::filesystem::path& path);
+/// A line each; what comes from the file is escaped.
+std::string project_text(const ProjectSummary& summary, const std::filesystem::path& path);
+
+}  // namespace gse::pipeline
