@@ -19,6 +19,7 @@
 #include "engine/pipeline/scene_loading.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/scene/framing.h"
+#include "engine/scene/stack_edits.h"
 #include "engine/scene/viewpoints.h"
 
 namespace gse::app {
@@ -302,17 +303,11 @@ void Application::stand_up() {
 void Application::repair_scene() {
     if (!require_scene()) return;
     const auto& state = document_.state();
-    const auto kept = usable_rows(state.current);
-    SceneDelta delta;
-    for (std::size_t row = 0; row < kept.size(); ++row)
-        if (kept[row] == 0) delta.removed.push_back((*state.row_ids)[row]);
-    if (delta.removed.empty()) return toast("There is nothing to repair.");
-    std::sort(delta.removed.begin(), delta.removed.end());
-    delta.changed_rows.sh_degree = delta.added_rows.sh_degree = state.current.sh_degree();
-    EditNode node;
-    node.id = next_edit_id_++;
-    node.name = fmt::format("Repair: {} splats that cannot be drawn removed", delta.removed.size());
-    node.delta = std::make_shared<const SceneDelta>(std::move(delta));
+    auto rows = usable_rows(state.current);
+    for (auto& row : rows) row = row == 0 ? 1 : 0;
+    EditNode node = removal_of(state, rows, next_edit_id_++);
+    if (node.delta->removed.empty()) return toast("There is nothing to repair.");
+    node.name = fmt::format("Repair: {} splats that cannot be drawn removed", node.delta->removed.size());
     change_stack("Repair scene", [&](std::vector<EditNode>& stack) { stack.push_back(node); });
 }
 

@@ -17,6 +17,7 @@
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/edit_job.h"
 #include "engine/pipeline/edit_output.h"
+#include "engine/pipeline/edit_project.h"
 #include "engine/pipeline/gate.h"
 #include "engine/pipeline/model_settings.h"
 #include "engine/pipeline/target_sheet.h"
@@ -139,9 +140,9 @@ void print_summary(const nlohmann::ordered_json& report, const std::filesystem::
     const auto count = [&](const char* name) { return networks[name].get<std::uint64_t>(); };
     print("{:.1f} s, {:.0f} MB at most; {}\n", report["seconds"]["total"].get<double>(), report["peak_rss_mb"].get<double>(),
           use_text({count("unet"), count("encoder"), count("decoder"), networks["tflop"].get<double>() * 1e12, networks.value("cached", std::uint64_t{0})}));
-    print("edited scene   {}/scene.ply\nbefore, labels {}/source.ply\nfilm           {}/before_after.mp4\n"
+    print("edited scene   {}/scene.ply\nproject        {}/edit.gsep\nbefore, labels {}/source.ply\nfilm           {}/before_after.mp4\n"
                "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
-               text, text, text, text, text, text, text);
+               text, text, text, text, text, text, text, text);
 }
 
 nlohmann::ordered_json locate_report(EditJob& job) {
@@ -178,7 +179,7 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
     complete(options);
     refuse_own_folder(options.recipe.job.scene, options.output);
     StagedFolder folder(options.output, {"report.json", {"scene.ply", "source.ply", "recipe.json", "report.json", "evidence",
-                                                         "before_after.mp4", "before_after.png", "lora.safetensors"}});
+                                                         "before_after.mp4", "before_after.png", "edit.gsep", "lora.safetensors"}});
     EditJob job(options.recipe, context.job(), options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
     folder.require_space(bytes_of_results(job));
     job.locate();
@@ -199,6 +200,8 @@ void run_edit_command(EditOptions& options, const CommandContext& context) {
     write_before_after(folder.path(), job);
     job.times().end();
     auto report = make_report(job);
+    if (job.result().iterations > 0)
+        write_file(folder.path() / "edit.gsep", ProjectWriter().pack(std::filesystem::absolute(options.output) / "edit.gsep", project_of(job, report)));
     add_optional_parts(report, folder.path(), job, gate);
     if (const auto& verdict = job.edited().verdict) report["gate"] = verdict_to_json(*verdict);
     report["files"] = folder.listing();

@@ -15,33 +15,21 @@
 namespace gse::app {
 namespace {
 
-const NamedLabel& find_label(const ProjectData& project, const std::string& name) {
-    for (const NamedLabel& label : project.state.labels)
-        if (label.name == name) return label;
+const Label& find_label(const LabelSet& set, const std::string& name) {
     std::string names;
-    for (const NamedLabel& label : project.state.labels) names += (names.empty() ? "" : ", ") + label.name;
+    for (const Label& label : set.labels) {
+        if (label.name == name) return label;
+        names += (names.empty() ? "" : ", ") + label.name;
+    }
     throw Error(ErrorCode::InvalidArgument, fmt::format("the project has no label \"{}\"", name),
                 names.empty() ? "it has none at all" : "choose from " + names);
 }
 
 /// The scene with the edits that are on; `label`, when named, as columns.
-std::size_t export_scene(const std::filesystem::path& project_path, const std::filesystem::path& output,
-                         const std::string& label) {
-    const ProjectData project = load_project(project_path);
-    Scene scene;
-    scene.gaussians = project.state.current;
-    scene.info = project.state.info;
-    Label columns;
+std::size_t export_scene(const std::filesystem::path& project, const std::filesystem::path& output, const std::string& label) {
+    const Scene scene = load_scene(project);
     SaveOptions save;
-    if (!label.empty()) {
-        const NamedLabel& chosen = find_label(project, label);
-        const std::vector<float> none(scene.gaussians.size(), 0.0f);
-        columns = {
-            chosen.name,
-            chosen.weight != nullptr ? chosen.weight : std::make_shared<const std::vector<float>>(none),
-            chosen.bits};
-        save.from_label = &columns;
-    }
+    if (!label.empty()) save.from_label = &find_label(scene.labels, label);
     return save_scene(output, scene, save).written;
 }
 

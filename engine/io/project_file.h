@@ -89,6 +89,9 @@ ProjectData load_project(const std::filesystem::path& path);
 /// The same from memory, for a project that holds its base or whose base is `base` (as its file gives it).
 ProjectData parse_project(std::span<const std::byte> bytes, const GaussianSet* base = nullptr);
 
+/// What a project shows, with the edits that are on: splats, and labels, the active one first.
+Scene scene_of_project(const ProjectData& project);
+
 ProjectSummary read_project_summary(const std::filesystem::path& path);
 
 /// True when the file looks like a project (by name, or by content).

@@ -15,6 +15,7 @@
 #include "engine/base/log.h"
 #include "engine/io/format_loss.h"
 #include "engine/io/formats.h"
+#include "engine/io/project_file.h"
 
 namespace gse {
 namespace {
@@ -131,6 +132,20 @@ void warn_of_losses(const std::string& name, const Scene& scene, const GaussianS
         log::warning("{} does not say which way is up in the scene; .ply and .compressed.ply do", name);
 }
 
+/// A project's own scene may be a project again.
+Scene load_project_scene(const std::filesystem::path& path) {
+    constexpr int Deepest = 8;
+    thread_local int depth = 0;
+    struct Deeper {
+        Deeper() { ++depth; }
+        ~Deeper() { --depth; }
+    } const deeper;
+    if (depth > Deepest) throw Error(ErrorCode::Malformed, "projects refer to each other as their scenes", "export the scene of one of them", path);
+    const ProjectData project = load_project(path);
+    for (const auto& warning : project.warnings) log::warning("{}: {}", path.filename().string(), warning);
+    return scene_of_project(project);
+}
+
 }  // namespace
 
 namespace io {
@@ -166,6 +181,7 @@ Scene parse_scene(std::span<const std::byte> bytes, std::string_view name) {
 }
 
 Scene load_scene(const std::filesystem::path& path) {
+    if (is_project_file(path)) return load_project_scene(path);
     Scene scene = with_path(path, [&] {
         std::error_code ignored;
         return std::filesystem::is_directory(path, ignored) ? load_folder(path) : load_file(path);

@@ -15,7 +15,7 @@ namespace gse {
 
 /// Reads a scene: 3DGS PLY, PlayCanvas compressed PLY, .splat, .spz (v1-v4), .sog (zip, folder or meta.json),
 /// lod-meta.json (finest level), an Inria output folder (highest iteration) or any folder with one scene file
-/// in it. Throws Error with one clear sentence. Infinite opacity logits that come from 8-bit 0 or 255 are clamped; values of PLY files are kept
+/// in it; of a project (.gsep) what it shows. Throws Error with one clear sentence. Infinite opacity logits that come from 8-bit 0 or 255 are clamped; values of PLY files are kept
 /// bit for bit.
 Scene load_scene(const std::filesystem::path& path);
 

@@ -21,10 +21,22 @@ Renamed renamed_by(const EditJob& job) {
     return {edit::as_told(request.source), edit::as_told(new_thing(request, edit::EditMode::Replace))};
 }
 
+namespace {
+
+void require_steps(const EditJob& job) {
+    if (job.result().iterations == 0) throw Error(ErrorCode::Cancelled, "the edit was stopped before its first step");
+}
+
+}  // namespace
+
 void fill_pending(EditJob& job, PendingResult& pending) {
+    require_steps(job);   // before the work of a report
+    fill_pending(job, make_report(job), pending);
+}
+
+void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingResult& pending) {
     const auto& result = job.result();
-    if (result.iterations == 0) throw Error(ErrorCode::Cancelled, "the edit was stopped before its first step");
-    const auto report = make_report(job);
+    require_steps(job);
     pending.before = job.scene().gaussians;
     pending.set = result.set;
     pending.base_to_new = std::make_shared<const std::vector<std::int64_t>>(result.base_to_new);

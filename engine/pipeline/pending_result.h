@@ -36,6 +36,8 @@ struct PendingResult {
 
 /// Takes what a finished run leaves. Throws Error (Cancelled) when it was stopped before its first step.
 void fill_pending(EditJob& job, PendingResult& pending);
+/// The same with its report (edit_output.h).
+void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingResult& pending);
 
 /// The edit of the stack that it becomes, without identity and delta.
 EditNode node_of(const PendingResult& result);

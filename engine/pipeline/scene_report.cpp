@@ -9,6 +9,7 @@
 #include "engine/base/path_text.h"
 #include "engine/base/print.h"
 #include "engine/io/image_file.h"
+#include "engine/io/project_file.h"
 #include "engine/io/scene_io.h"
 #include "engine/pipeline/scene_tools.h"
 
@@ -81,7 +82,10 @@ std::string picture_report_text(const Json& json) {
 Json scene_report(const std::filesystem::path& path) {
     if (path.extension() == ".png") return picture_report(path);
     const Scene scene = load_scene(path);
-    return report_of(scene, path, scene_cameras(path, "").size());
+    Json report = report_of(scene, path, scene_cameras(path, "").size());
+    if (is_project_file(path))
+        for (const auto& edit : read_project_summary(path).stack) report["edits"].push_back(edit.name + (edit.enabled ? "" : " (off)"));
+    return report;
 }
 
 std::string report_text(const Json& json) {
@@ -99,6 +103,8 @@ std::string report_text(const Json& json) {
     line("  up            {}{}\n", json["up"].dump(), json["up_known"].get<bool>() ? "" : " (assumed)");
     line("  lint          {} NaN, {} infinite, {} giant, {} invisible, {} zero quaternions\n", number("nan"),
          number("infinite"), number("giant"), number("invisible"), number("zero_quaternion"));
+    if (json.contains("edits"))
+        for (const auto& edit : json["edits"]) line("  edit          {}\n", edit.get<std::string>());
     for (const auto& label : json["labels"]) line("  label         {}\n", label.get<std::string>());
     for (const auto& warning : json["warnings"]) line("  warning       {}\n", warning.get<std::string>());
     return text;

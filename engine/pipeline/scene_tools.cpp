@@ -64,6 +64,7 @@ OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& paramete
 
 std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const std::string& cameras) {
     if (!cameras.empty()) return load_cameras(cameras, scene_path);
+    if (is_project_file(scene_path)) return read_project_summary(scene_path).views;
     const auto found = find_cameras(scene_path);
     return found ? load_cameras(*found, scene_path) : std::vector<View>{};
 }
@@ -71,20 +72,8 @@ std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const s
 std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit) {
     const bool project = is_project_file(path);
     const RenderParameters usual;
-    if (orbit > 0) {
-        Scene scene;
-        if (project) {
-            const ProjectData data = load_project(path);
-            scene.gaussians = data.state.current;
-            scene.info = data.state.info;
-        } else {
-            scene = load_scene(path);
-        }
-        return orbit_views(scene_orbit(scene, usual), orbit, usual.width, usual.height);
-    }
-    std::vector<View> views = project              ? read_project_summary(path).views
-                              : only_cameras(path) ? load_cameras(path)
-                                                   : scene_cameras(path, "");
+    if (orbit > 0) return orbit_views(scene_orbit(load_scene(path), usual), orbit, usual.width, usual.height);
+    std::vector<View> views = only_cameras(path) ? load_cameras(path) : scene_cameras(path, "");
     if (views.empty())
         throw Error(ErrorCode::NotFound, project ? "the project holds no viewpoints" : "there are no cameras beside the scene",
                     "--orbit 24 makes viewpoints around the scene", path);

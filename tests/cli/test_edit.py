@@ -39,7 +39,7 @@ class Edits(ProgramTest):
     def test_the_promised_files(self):
         out = self.folder / "out"
         self.edit(out)
-        for name in ["scene.ply", "source.ply", "report.json", "recipe.json", "before_after.mp4", "before_after.png",
+        for name in ["scene.ply", "source.ply", "report.json", "recipe.json", "before_after.mp4", "before_after.png", "edit.gsep",
                      "evidence/index.json", "evidence/view_000_attention.png", "evidence/view_000_points.png"]:
             self.assertTrue((out / name).is_file(), name)
         self.assertEqual([path.name for path in self.folder.iterdir()], ["out"])
@@ -53,6 +53,19 @@ class Edits(ProgramTest):
         self.assertNotIn("request.tau", [entry["field"] for entry in report["settings_from"]])
         self.assertEqual(self.info(out / "scene.ply")["splats"], report["splats"])
         self.check_unlabelled_rows(out)
+
+    def test_the_project_shows_the_edited_scene_and_its_label_is_edited_further(self):
+        out = self.folder / "out"
+        self.edit(out)
+        self.assertEqual(run("project", out / "edit.gsep", "--export", self.folder / "exported.ply").returncode, 0)
+        self.assertEqual((self.folder / "exported.ply").read_bytes(), (out / "scene.ply").read_bytes())
+        summary = json.loads(run("project", out / "edit.gsep", "--json").stdout)
+        self.assertEqual([edit["name"] for edit in summary["edits"]], ["a blue bear on the grass"])
+        self.assertEqual([label["name"] for label in summary["labels"]], ["bear"])
+        again = self.folder / "again"
+        self.edit(again, "--use-label", scene=out / "edit.gsep")
+        first, second = (json.loads((folder / "report.json").read_text()) for folder in (out, again))
+        self.assertEqual(second["labelled"], first["labelled"] + first["added"] - first["removed"])
 
     def test_bad_values_stay_and_count_nowhere(self):
         scene = SHARED / "data/hostile/bear_bad_values.ply"

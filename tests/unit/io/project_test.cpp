@@ -156,6 +156,27 @@ DOCTEST_TEST_CASE("a repaired base is kept as its rows, any other base as a whol
     DOCTEST_CHECK(difference(project.state, load_project(path).state) == "");
 }
 
+DOCTEST_TEST_CASE("a project is a scene, too: what it shows, its active label first; one that is its own scene is refused") {
+    const Quiet quiet;
+    const ScratchFolder folder;
+    const auto source = saved_source(folder.path() / "scene.ply", 100, 2);
+    const ProjectData project = random_project(source, 2);
+    const auto path = folder.path() / "work.gsep";
+    save_project(path, project);
+    const Scene scene = load_scene(path);
+    DOCTEST_CHECK(bits_equal(scene.gaussians, project.state.current));
+    const auto& labels = project.state.labels;
+    DOCTEST_REQUIRE(scene.labels.labels.size() == labels.size());
+    DOCTEST_REQUIRE(project.state.active_label >= 0);
+    const auto& active = labels[static_cast<std::size_t>(project.state.active_label)];
+    DOCTEST_CHECK(scene.labels.labels.front().name == active.name);
+    DOCTEST_CHECK(*scene.labels.labels.front().bits == *active.bits);
+    std::filesystem::copy_file(path, folder.path() / "scene.ply", std::filesystem::copy_options::overwrite_existing);
+    const auto own = error_of([&] { load_scene(path); });
+    DOCTEST_REQUIRE(own);
+    DOCTEST_CHECK(own->message().find("refer to each other") != std::string::npos);
+}
+
 DOCTEST_TEST_CASE("unknown fields are kept, absent ones have defaults, newer formats are refused") {
     const ScratchFolder folder;
     const ProjectData project = random_project({{}, 0, 0, random_set(80, 1, 5)}, 5);
