@@ -308,6 +308,11 @@ void Application::set_ui_scale(float scale) {
     save_settings();
 }
 
+void Application::set_keymap(const std::string& text) {
+    model_.keymap = text;
+    save_settings();
+}
+
 void Application::toggle_fullscreen() {
     if (options_.on_fullscreen) options_.on_fullscreen();
 }
@@ -316,6 +321,7 @@ void Application::save_settings() {
     nlohmann::json json;
     json["ui_scale"] = chosen_scale_;
     json["cache_mb"] = model_.cache_mb;
+    json["keys"] = model_.keymap;
     json["model"] = model_path_;
     json["loras"] = loras_;
     json["segmenter"] = segmenter_path_;
@@ -356,6 +362,7 @@ void Application::load_settings() {
     model_path_ = text("model");
     loras_ = texts_of(json, "loras");
     model_.segmenters = {ui::SegmenterView{segmenter_path_ = text("segmenter")}, ui::SegmenterView{text_segmenter_path_ = text("text_segmenter")}};
+    model_.keymap = text("keys");
     layout_ = text("layout");
     layout_loaded_ = !layout_.empty();
 }

@@ -186,6 +186,7 @@ public:
     void press_toast(std::size_t index) override;
     void toggle_fullscreen() override;
     void set_ui_scale(float scale) override;
+    void set_keymap(const std::string& text) override;
     void set_cache_mb(int most) override;
     void clear_cache() override;
     void quit() override { quit_ = true; }

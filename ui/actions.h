@@ -124,6 +124,7 @@ public:
     virtual void press_toast(std::size_t) {}                       // its button
     virtual void toggle_fullscreen() {}
     virtual void set_ui_scale(float scale) = 0;
+    virtual void set_keymap(const std::string&) {}   // Keymap::text()
     virtual void set_cache_mb(int) {}   // answers of the networks on the disk; 0 = none
     virtual void clear_cache() {}
     virtual void quit() = 0;

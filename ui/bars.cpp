@@ -24,7 +24,7 @@ void gap(Context& context) {
 void draw_tools(Context& context) {
     const std::string why = context.scene_open() ? "" : "Open a scene first";
     const Tool tool = context.state.viewport.tool;
-    const auto tool_button = [&](const char* name, Icon icon, Tool which, const char* text) {
+    const auto tool_button = [&](const char* name, Icon icon, Tool which, const std::string& text) {
         if (icon_button(
                 context,
                 {.name = name, .icon = icon, .tooltip = text, .active = tool == which, .why_off = why}) &&
@@ -32,16 +32,15 @@ void draw_tools(Context& context) {
             set_tool(context, which);
     };
     tool_button("tool.orbit", Icon::Pointer, Tool::Orbit, "Orbit: left drag turns the view (Esc)");
-    tool_button("tool.brush", Icon::Brush, Tool::Brush, "Brush: paint the label (B)");
-    tool_button("tool.rectangle", Icon::Rectangle, Tool::Rectangle, "Rectangle: label what is inside (R)");
-    tool_button("tool.lasso", Icon::Lasso, Tool::Lasso, "Lasso: label what is inside (L)");
-    tool_button("tool.cut_out", Icon::CutOut, Tool::CutOut, "Cut out: label the thing in a box, all its sides (C)");
+    tool_button("tool.brush", Icon::Brush, Tool::Brush, with_key(context, "Brush: paint the label", Command::Brush));
+    tool_button("tool.rectangle", Icon::Rectangle, Tool::Rectangle, with_key(context, "Rectangle: label what is inside", Command::Rectangle));
+    tool_button("tool.lasso", Icon::Lasso, Tool::Lasso, with_key(context, "Lasso: label what is inside", Command::Lasso));
+    tool_button("tool.cut_out", Icon::CutOut, Tool::CutOut, with_key(context, "Cut out: label the thing in a box, all its sides", Command::CutOut));
     gap(context);
     const bool front = context.view.front_only;
     if (icon_button(context, {.name = "tool.front",
                               .icon = front ? Icon::FrontOnly : Icon::Through,
-                              .tooltip = front ? "Front only: what is behind is not touched (N)"
-                                               : "All the way through (N)",
+                              .tooltip = with_key(context, front ? "Front only: what is behind is not touched" : "All the way through", Command::FrontOnly),
                               .active = front})) {
         context.view.front_only = !front;
         context.view_changed = true;
@@ -149,29 +148,29 @@ void draw_tool_bar(Context& context) {
     const std::string why = open ? "" : "Open a scene first";
     if (icon_button(context, {.name = "tool.frame",
                               .icon = Icon::Frame,
-                              .tooltip = "Frame what is labelled, else the scene (F)",
+                              .tooltip = with_key(context, "Frame what is labelled, else the scene", Command::Frame),
                               .why_off = why}))
         frame_selection(context);
     if (icon_button(context,
-                    {.name = "tool.home", .icon = Icon::Home, .tooltip = "Home (Home key)", .why_off = why}))
+                    {.name = "tool.home", .icon = Icon::Home, .tooltip = with_key(context, "All of the scene", Command::Home), .why_off = why}))
         go_home(context);
     gap(context);
     const bool undo = open && context.model.document->can_undo(),
                redo = open && context.model.document->can_redo();
     if (icon_button(context, {.name = "tool.undo",
                               .icon = Icon::Undo,
-                              .tooltip = "Undo (Ctrl + Z)",
+                              .tooltip = with_key(context, "Undo", Command::Undo),
                               .why_off = undo ? "" : "There is nothing to undo"}))
         context.actions.undo();
     if (icon_button(context, {.name = "tool.redo",
                               .icon = Icon::Redo,
-                              .tooltip = "Redo (Ctrl + Shift + Z)",
+                              .tooltip = with_key(context, "Redo", Command::Redo),
                               .why_off = redo ? "" : "There is nothing to redo"}))
         context.actions.redo();
     gap(context);
     if (icon_button(context, {.name = "tool.screenshot",
                               .icon = Icon::Camera,
-                              .tooltip = "Save screenshot (F12)",
+                              .tooltip = with_key(context, "Save screenshot", Command::Screenshot),
                               .why_off = why_not_export(context, context.exports.picture_path)}))
         context.actions.export_picture();
 }

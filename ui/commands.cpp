@@ -91,6 +91,13 @@ const std::vector<std::string>& film_extensions() {
     return Endings;
 }
 
+std::string keys_of(const Context& context, Command command) { return chord_text(context.state.keymap.of(command)); }
+
+std::string with_key(const Context& context, std::string text, Command command) {
+    const std::string keys = keys_of(context, command);
+    return keys.empty() ? text : fmt::format("{} ({})", text, keys);
+}
+
 std::string why_not_work(const Context& context) {
     if (!context.scene_open()) return "Open a scene first";
     if (!context.model.cannot_edit.empty()) return context.model.cannot_edit;

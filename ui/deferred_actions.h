@@ -260,6 +260,9 @@ public:
     void toggle_fullscreen() override {
         later([this] { target_->toggle_fullscreen(); });
     }
+    void set_keymap(const std::string& text) override {
+        later([this, text] { target_->set_keymap(text); });
+    }
     void set_ui_scale(float scale) override {
         later([this, scale] { target_->set_ui_scale(scale); });
     }

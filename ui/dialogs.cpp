@@ -1,4 +1,4 @@
-// Windows in the middle: all keys, about, and questions that wait for an answer.
+// Windows in the middle: about, and questions that wait for an answer.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include "ui/commands.h"
 #include "ui/keyboard.h"
 #include "ui/keys.h"
+#include "ui/keys_dialog.h"
 #include "ui/menu.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -14,50 +15,6 @@ namespace gse::ui {
 namespace {
 
 constexpr float AnswersEm = 30;   // a line of a question
-
-void centre_next(ImVec2 size) {
-    const ImVec2 screen = ImGui::GetIO().DisplaySize;
-    ImGui::SetNextWindowPos({screen.x * 0.5f, screen.y * 0.5f}, ImGuiCond_Always, {0.5f, 0.5f});
-    if (size.x > 0)
-        ImGui::SetNextWindowSize({std::min(size.x, screen.x * 0.96f), std::min(size.y, screen.y * 0.92f)});
-}
-
-void draw_group(Context& context, const char* group) {
-    heading(context, group);
-    if (!ImGui::BeginTable(group, 2)) return;
-    ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.45f);
-    ImGui::TableSetupColumn("what", ImGuiTableColumnFlags_WidthStretch, 0.55f);
-    for (const auto& line : KeyTable) {
-        if (std::string_view(line.group) != group) continue;
-        ImGui::TableNextRow();
-        ImGui::TableNextColumn();
-        wrapped_text(line.keys);
-        ImGui::TableNextColumn();
-        dim_text(line.what);
-    }
-    ImGui::EndTable();
-}
-
-void draw_help(Context& context) {
-    bool& open = context.state.help_open;
-    if (open && !ImGui::IsPopupOpen("Keys")) ImGui::OpenPopup("Keys");
-    if (!open) return;
-    centre_next({context.em * 62, context.em * 44});
-    if (!ImGui::BeginPopupModal("Keys", &open, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) return;
-    const bool wide = ImGui::GetContentRegionAvail().x > context.em * 48;
-    if (ImGui::BeginTable("columns", wide ? 2 : 1)) {
-        ImGui::TableNextColumn();
-        for (const char* group : {"Camera", "Labels", "Keyboard"}) draw_group(context, group);
-        ImGui::TableNextColumn();
-        for (const char* group : {"Show", "Work", "Files", "Numbers"}) draw_group(context, group);
-        ImGui::EndTable();
-    }
-    const bool escaped = ImGui::IsKeyPressed(key::Escape, false) ||
-                         (ImGui::IsKeyPressed(key::F1, false) && !ImGui::IsWindowAppearing());
-    if (escaped) open = false;
-    if (!open) ImGui::CloseCurrentPopup();
-    ImGui::EndPopup();
-}
 
 void draw_about(Context& context) {
     bool& open = context.state.about_open;
@@ -149,7 +106,7 @@ void draw_question(Context& context) {
 
 void draw_dialogs(Context& context) {
     context.state.files.draw(context);
-    draw_help(context);
+    draw_keys_dialog(context);
     draw_about(context);
     draw_question(context);
 }

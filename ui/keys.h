@@ -1,8 +1,9 @@
-// Key numbers as GLFW reports them (printable keys are their US-layout ASCII), and the fixed table of
-// shortcuts for Help.
+// Key numbers as GLFW reports them (printable keys are their US-layout ASCII), and the table of all keys: those of commands, which can be
+// chosen (keymap.h), and fixed ones.
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace gse::ui {
 
@@ -12,45 +13,55 @@ inline constexpr int Space = 32, LeftBracket = 91, RightBracket = 93, Grave = 96
                      Home = 268, End = 269, F1 = 290, F5 = 294, F6 = 295, F11 = 300, F12 = 301, KeypadEnter = 335;
 }  // namespace key
 
+/// What keys can be chosen for (keymap.h).
+enum class Command {
+    Frame, Home, Brush, Rectangle, Lasso, CutOut, FrontOnly, Invert, Clear, Hide, Isolate, ShowHidden, Delete, Evidence, Tint, Wipe, Panels, Fullscreen,
+    Prompt, Locate, Undo, Redo, Open, Save, SaveAs, Export, Screenshot, Turntable, Quit
+};
+inline constexpr std::size_t CommandCount = 29;
+inline constexpr Command NoCommand = static_cast<Command>(-1);
+
 /// One line of the list of keys.
 struct KeyHelp {
     const char* group;
-    const char* keys;
+    const char* keys;   // of a command: those that it has by default
     const char* what;
+    Command command = NoCommand;   // those without one are fixed
+    const char* name = nullptr;    // of the command, in the settings
 };
 
-/// The fixed set; what the shortcuts and the camera do must agree with it.
+/// All keys; what the shortcuts and the camera do must agree with it.
 inline constexpr std::array<KeyHelp, 52> KeyTable{{
     {"Camera", "Left drag (no tool), middle drag", "Orbit"},
     {"Camera", "Shift + middle drag, right drag", "Pan"},
     {"Camera", "Wheel", "Zoom to the cursor"},
     {"Camera", "Double click", "Turn around what is under the cursor"},
     {"Camera", "W A S D, E up, Q down", "Fly (Shift fast, Alt slow)"},
-    {"Camera", "F", "Frame what is labelled, else the scene"},
-    {"Camera", "Home", "Home"},
+    {"Camera", "F", "Frame what is labelled, else the scene", Command::Frame, "frame"},
+    {"Camera", "Home", "Home", Command::Home, "home"},
     {"Camera", "Left, Right (nothing has the focus)", "Previous, next view"},
-    {"Labels", "B", "Brush"},
-    {"Labels", "R", "Rectangle"},
-    {"Labels", "L", "Lasso"},
-    {"Labels", "C", "Cut out the thing in a box"},
+    {"Labels", "B", "Brush", Command::Brush, "brush"},
+    {"Labels", "R", "Rectangle", Command::Rectangle, "rectangle"},
+    {"Labels", "L", "Lasso", Command::Lasso, "lasso"},
+    {"Labels", "C", "Cut out the thing in a box", Command::CutOut, "cut_out"},
     {"Labels", "Shift", "Add"},
     {"Labels", "Ctrl", "Remove"},
     {"Labels", "Alt, Shift + Ctrl", "Intersect"},
     {"Labels", "[ ], Alt + wheel", "Brush size"},
-    {"Labels", "N", "Front only, or all the way through"},
-    {"Labels", "Ctrl + I", "Invert the label"},
-    {"Labels", "Ctrl + D", "Clear the label"},
+    {"Labels", "N", "Front only, or all the way through", Command::FrontOnly, "front_only"},
+    {"Labels", "Ctrl + I", "Invert the label", Command::Invert, "invert"},
+    {"Labels", "Ctrl + D", "Clear the label", Command::Clear, "clear"},
     {"Labels", "Ctrl + click on a view of the search", "Leave it out of the vote, or put it back"},
-    {"Labels", "H", "Hide what is labelled; the scene keeps it"},
-    {"Labels", "I", "Isolate what is labelled: hide all else"},
-    {"Labels", "Shift + H", "Show what is hidden"},
-    {"Labels", "Delete", "Delete the labelled splats"},
-    {"Show", "M", "Chosen view of the search: its attention, its mask, nothing"},
-    {"Show", "T", "Tint of what is labelled on, off"},
-    {"Show", "V", "Wipe between before and after"},
+    {"Labels", "H", "Hide what is labelled; the scene keeps it", Command::Hide, "hide"},
+    {"Labels", "I", "Isolate what is labelled: hide all else", Command::Isolate, "isolate"},
+    {"Labels", "Shift + H", "Show what is hidden", Command::ShowHidden, "show_hidden"},
+    {"Labels", "Delete", "Delete the labelled splats", Command::Delete, "delete"},
+    {"Show", "M", "Chosen view of the search: its attention, its mask, nothing", Command::Evidence, "evidence"},
+    {"Show", "T", "Tint of what is labelled on, off", Command::Tint, "tint"},
+    {"Show", "V", "Wipe between before and after", Command::Wipe, "wipe"},
     {"Show", "hold `", "Flip to the original"},
-    {"Show", "Ctrl + Space", "Hide the panels"},
-    {"Show", "F11", "Full screen"},
+    {"Show", "Ctrl + Space", "Hide the panels", Command::Panels, "panels"},
+    {"Show", "F11", "Full screen", Command::Fullscreen, "fullscreen"},
     {"Show", "Ctrl + +, Ctrl + -, Ctrl + 0", "Size of the interface"},
     {"Show", "F1", "This list"},
     {"Keyboard", "Tab, Shift + Tab", "Next, previous control"},
@@ -58,19 +69,19 @@ inline constexpr std::array<KeyHelp, 52> KeyTable{{
     {"Keyboard", "Space, Enter", "Press what has the focus; change a slider"},
     {"Keyboard", "F6, Shift + F6", "Next, previous panel"},
     {"Keyboard", "Alt", "Open the menus"},
-    {"Work", "P", "Type in the prompt"},
+    {"Work", "P", "Type in the prompt", Command::Prompt, "prompt"},
     {"Work", "Shift + Enter, Ctrl + Enter", "Edit"},
-    {"Work", "Ctrl + L", "Locate"},
+    {"Work", "Ctrl + L", "Locate", Command::Locate, "locate"},
     {"Work", "Esc", "Leave the control, the tool; cancel the job (asks after 30 s of work)"},
-    {"Work", "Ctrl + Z", "Undo"},
-    {"Work", "Ctrl + Shift + Z, Ctrl + Y", "Redo"},
-    {"Files", "Ctrl + O", "Open"},
-    {"Files", "Ctrl + S", "Save the project"},
-    {"Files", "Ctrl + Shift + S", "Save the project as"},
-    {"Files", "Ctrl + E", "Export the scene"},
-    {"Files", "F12", "Screenshot"},
-    {"Files", "Shift + F12", "Turntable"},
-    {"Files", "Ctrl + Q", "Quit"},
+    {"Work", "Ctrl + Z", "Undo", Command::Undo, "undo"},
+    {"Work", "Ctrl + Shift + Z", "Redo (Ctrl + Y, too, where that is free)", Command::Redo, "redo"},
+    {"Files", "Ctrl + O", "Open", Command::Open, "open"},
+    {"Files", "Ctrl + S", "Save the project", Command::Save, "save"},
+    {"Files", "Ctrl + Shift + S", "Save the project as", Command::SaveAs, "save_as"},
+    {"Files", "Ctrl + E", "Export the scene", Command::Export, "export"},
+    {"Files", "F12", "Screenshot", Command::Screenshot, "screenshot"},
+    {"Files", "Shift + F12", "Turntable", Command::Turntable, "turntable"},
+    {"Files", "Ctrl + Q", "Quit", Command::Quit, "quit"},
     {"Numbers", "Ctrl + click on a slider", "Type the number"},
     {"Numbers", "Right click on a setting", "Back to its default"},
 }};

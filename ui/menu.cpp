@@ -16,14 +16,14 @@ namespace {
 struct Item {
     const char* name;  // widget map
     const char* text;
-    const char* keys = "";
+    std::string keys = {};
     std::string why_off = {};
     bool checked = false;
 };
 
 bool item(Context& context, const Item& options) {
     const bool pressed =
-        ImGui::MenuItem(options.text, options.keys, options.checked, options.why_off.empty());
+        ImGui::MenuItem(options.text, options.keys.c_str(), options.checked, options.why_off.empty());
     note(context, options.name);
     tooltip(options.why_off);
     return pressed;
@@ -38,7 +38,7 @@ bool begin_menu(Context& context, const char* name) {
 
 void file_menu(Context& context) {
     const std::string why = why_not_save(context);
-    if (item(context, {"menu.open", "Open...", "Ctrl+O"})) ask_open(context);
+    if (item(context, {"menu.open", "Open...", keys_of(context, Command::Open)})) ask_open(context);
     if (item(context, {"menu.sample", "Open sample"})) open_sample(context);
     if (ImGui::BeginMenu("Open recent", !context.model.recent.empty())) {
         for (const auto& path : context.model.recent)
@@ -46,12 +46,12 @@ void file_menu(Context& context) {
         ImGui::EndMenu();
     }
     ImGui::Separator();
-    if (item(context, {"menu.save", "Save project", "Ctrl+S", why})) save(context);
-    if (item(context, {"menu.save_as", "Save project as...", "Ctrl+Shift+S", why})) save_as(context);
-    if (item(context, {"menu.export", "Export...", "Ctrl+E", why}))
+    if (item(context, {"menu.save", "Save project", keys_of(context, Command::Save), why})) save(context);
+    if (item(context, {"menu.save_as", "Save project as...", keys_of(context, Command::SaveAs), why})) save_as(context);
+    if (item(context, {"menu.export", "Export...", keys_of(context, Command::Export), why}))
         show_panel(context.state, PanelId::Export);
     ImGui::Separator();
-    if (item(context, {"menu.quit", "Quit", "Ctrl+Q"})) quit(context);
+    if (item(context, {"menu.quit", "Quit", keys_of(context, Command::Quit)})) quit(context);
 }
 
 void edit_menu(Context& context) {
@@ -66,15 +66,15 @@ void edit_menu(Context& context) {
                redo = document != nullptr && document->can_redo();
     const std::string undo_text = named("Undo", document != nullptr ? document->position() : 0, undo);
     const std::string redo_text = named("Redo", document != nullptr ? document->position() + 1 : 0, redo);
-    if (item(context, {"menu.undo", undo_text.c_str(), "Ctrl+Z", undo ? "" : "There is nothing to undo"}))
+    if (item(context, {"menu.undo", undo_text.c_str(), keys_of(context, Command::Undo), undo ? "" : "There is nothing to undo"}))
         context.actions.undo();
     if (item(context,
-             {"menu.redo", redo_text.c_str(), "Ctrl+Shift+Z", redo ? "" : "There is nothing to redo"}))
+             {"menu.redo", redo_text.c_str(), keys_of(context, Command::Redo), redo ? "" : "There is nothing to redo"}))
         context.actions.redo();
     ImGui::Separator();
     std::string why = why_not_label(context);
     if (why.empty() && label_count(context) == 0) why = "Nothing is labelled";
-    if (item(context, {"menu.delete", "Delete labelled splats", "Del", why}))
+    if (item(context, {"menu.delete", "Delete labelled splats", keys_of(context, Command::Delete), why}))
         context.actions.delete_labelled_splats();
     if (item(context, {"menu.repair", "Drop what cannot be drawn", "",
                        document != nullptr ? "" : "Open a scene first"}))
@@ -86,34 +86,34 @@ void edit_menu(Context& context) {
 void select_menu(Context& context) {
     const std::string open = why_not_save(context), label = why_not_label(context);
     const Tool tool = context.state.viewport.tool;
-    if (item(context, {"menu.brush", "Brush", "B", open, tool == Tool::Brush}))
+    if (item(context, {"menu.brush", "Brush", keys_of(context, Command::Brush), open, tool == Tool::Brush}))
         set_tool(context, Tool::Brush);
-    if (item(context, {"menu.rectangle", "Rectangle", "R", open, tool == Tool::Rectangle}))
+    if (item(context, {"menu.rectangle", "Rectangle", keys_of(context, Command::Rectangle), open, tool == Tool::Rectangle}))
         set_tool(context, Tool::Rectangle);
-    if (item(context, {"menu.lasso", "Lasso", "L", open, tool == Tool::Lasso}))
+    if (item(context, {"menu.lasso", "Lasso", keys_of(context, Command::Lasso), open, tool == Tool::Lasso}))
         set_tool(context, Tool::Lasso);
-    if (item(context, {"menu.cut_out", "Cut out", "C", open, tool == Tool::CutOut}))
+    if (item(context, {"menu.cut_out", "Cut out", keys_of(context, Command::CutOut), open, tool == Tool::CutOut}))
         set_tool(context, Tool::CutOut);
-    if (item(context, {"menu.front", "Front only", "N", "", context.view.front_only})) {
+    if (item(context, {"menu.front", "Front only", keys_of(context, Command::FrontOnly), "", context.view.front_only})) {
         context.view.front_only = !context.view.front_only;
         context.view_changed = true;
     }
     ImGui::Separator();
     if (item(context, {"menu.grow", "Grow", "", label})) context.actions.grow_label(1);
     if (item(context, {"menu.shrink", "Shrink", "", label})) context.actions.grow_label(-1);
-    if (item(context, {"menu.invert", "Invert", "Ctrl+I", label})) context.actions.invert_label();
-    if (item(context, {"menu.clear", "Clear", "Ctrl+D", label})) context.actions.clear_label();
+    if (item(context, {"menu.invert", "Invert", keys_of(context, Command::Invert), label})) context.actions.invert_label();
+    if (item(context, {"menu.clear", "Clear", keys_of(context, Command::Clear), label})) context.actions.clear_label();
     ImGui::Separator();
     const std::string shown = why_not_hide(context);
-    if (item(context, {"menu.hide_label", "Hide", "H", shown})) hide_label(context);
-    if (item(context, {"menu.isolate", "Isolate", "I", shown})) isolate_label(context);
-    if (item(context, {"menu.show_hidden", "Show all", "Shift+H", context.model.hidden > 0 ? "" : "Nothing is hidden"}))
+    if (item(context, {"menu.hide_label", "Hide", keys_of(context, Command::Hide), shown})) hide_label(context);
+    if (item(context, {"menu.isolate", "Isolate", keys_of(context, Command::Isolate), shown})) isolate_label(context);
+    if (item(context, {"menu.show_hidden", "Show all", keys_of(context, Command::ShowHidden), context.model.hidden > 0 ? "" : "Nothing is hidden"}))
         context.actions.show_hidden();
     ImGui::Separator();
     if (item(context, {"menu.new_label", "New label", "", open})) add_label(context);
 }
 
-void flag(Context& context, const char* name, const char* text, bool& value, const char* keys = "") {
+void flag(Context& context, const char* name, const char* text, bool& value, const std::string& keys = {}) {
     if (!item(context, {name, text, keys, "", value})) return;
     value = !value;
     context.view_changed = true;
@@ -147,9 +147,9 @@ void view_menu(Context& context) {
     if (item(context, {"menu.add_view", "Add this view", "", why})) context.actions.add_view();
     ImGui::Separator();
     if (item(context,
-             {"menu.wipe", "Wipe before and after", "V", why, context.model.comparison == Comparison::Wipe}))
+             {"menu.wipe", "Wipe before and after", keys_of(context, Command::Wipe), why, context.model.comparison == Comparison::Wipe}))
         toggle_wipe(context);
-    flag(context, "menu.tint", "Tint what is labelled", context.view.tint_labels, "T");
+    flag(context, "menu.tint", "Tint what is labelled", context.view.tint_labels, keys_of(context, Command::Tint));
     flag(context, "menu.axes", "Axes", context.view.show_axes);
     flag(context, "menu.bounds", "Bounds", context.view.show_bounds);
     flag(context, "menu.cameras", "Cameras", context.view.show_views);
@@ -159,8 +159,8 @@ void view_menu(Context& context) {
 void prompt_menu(Context& context) {
     const auto& job = context.model.job;
     const std::string why_waiting = context.model.result_waiting ? "" : "No finished edit waits";
-    if (item(context, {"menu.locate", "Locate", "Ctrl+L", why_not_locate(context)})) run_locate(context);
-    if (item(context, {"menu.edit", "Edit", "Shift+Enter", why_not_edit(context)})) run_edit(context);
+    if (item(context, {"menu.locate", "Locate", keys_of(context, Command::Locate), why_not_locate(context)})) run_locate(context);
+    if (item(context, {"menu.edit", "Edit", "Shift + Enter", why_not_edit(context)})) run_edit(context);
     ImGui::Separator();
     if (item(context, {"menu.pause", job.paused ? "Resume" : "Pause", "",
                        job.running && job.can_pause ? "" : "Nothing runs that can be paused"}))
@@ -178,10 +178,10 @@ void prompt_menu(Context& context) {
 }
 
 void render_menu(Context& context) {
-    if (item(context, {"menu.screenshot", "Save screenshot", "F12",
+    if (item(context, {"menu.screenshot", "Save screenshot", keys_of(context, Command::Screenshot),
                        why_not_export(context, context.exports.picture_path)}))
         context.actions.export_picture();
-    if (item(context, {"menu.turntable", "Write turntable", "Shift+F12",
+    if (item(context, {"menu.turntable", "Write turntable", keys_of(context, Command::Turntable),
                        why_not_export(context, context.exports.film_path)}))
         context.actions.export_turntable();
     if (item(context, {"menu.key", "Add a camera key", "", why_not_save(context)}))
@@ -205,11 +205,11 @@ void window_menu(Context& context) {
             show_panel(context.state, panel);
     }
     ImGui::Separator();
-    if (item(context, {"menu.hide", "Hide the panels", "Ctrl+Space", "", layout.panels_hidden}))
+    if (item(context, {"menu.hide", "Hide the panels", keys_of(context, Command::Panels), "", layout.panels_hidden}))
         layout.panels_hidden = !layout.panels_hidden;
-    if (item(context, {"menu.fullscreen", "Full screen", "F11"})) context.actions.toggle_fullscreen();
-    if (item(context, {"menu.larger", "Larger", "Ctrl++"})) scale_ui(context, 1.1f);
-    if (item(context, {"menu.smaller", "Smaller", "Ctrl+-"})) scale_ui(context, 1 / 1.1f);
+    if (item(context, {"menu.fullscreen", "Full screen", keys_of(context, Command::Fullscreen)})) context.actions.toggle_fullscreen();
+    if (item(context, {"menu.larger", "Larger", "Ctrl + +"})) scale_ui(context, 1.1f);
+    if (item(context, {"menu.smaller", "Smaller", "Ctrl + -"})) scale_ui(context, 1 / 1.1f);
     ImGui::Separator();
     if (item(context, {"menu.reset_layout", "Reset layout"})) {
         layout = Layout::standard();

@@ -308,6 +308,10 @@ void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
                     current_fonts(), em,         model.view, model.request, model.exports, model.model_settings};
     state_->animating = false;
     set_foreign_glyphs(&glyphs_);
+    if (model.keymap != state_->keys.read) {
+        state_->keymap = Keymap::parse(model.keymap);
+        state_->keys.read = model.keymap;
+    }
     begin_keyboard(context);
     update_sentence(context);
     show_failed_search(context);

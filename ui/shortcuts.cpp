@@ -1,4 +1,7 @@
-// The fixed set of keys (KeyTable lists them for Help).
+// What keys do: those of commands, as the keymap says, and fixed ones (KeyTable lists them for Help).
+#include <array>
+#include <utility>
+
 #include "ui/commands.h"
 #include "ui/keys.h"
 #include "ui/menu.h"
@@ -12,25 +15,51 @@ bool pressed(int index) { return ImGui::IsKeyPressed(index, false); }
 
 bool enter_pressed() { return pressed(key::Enter) || pressed(key::KeypadEnter); }
 
-/// Keys with Ctrl; they work while text is typed, but for those that text fields use themselves.
-void control_keys(Context& context, bool typing) {
-    const bool shift = ImGui::GetIO().KeyShift;
+/// Whether the keys of a command were pressed in this frame, with just these modifiers.
+bool hit(const Context& context, Command command) {
+    const Chord chord = context.state.keymap.of(command);
+    const auto& io = ImGui::GetIO();
+    return chord.key != 0 && io.KeyCtrl == chord.ctrl && io.KeyShift == chord.shift && io.KeyAlt == chord.alt && pressed(chord.key);
+}
+
+void export_shot(Context& context) {
+    if (why_not_export(context, context.exports.picture_path).empty()) context.actions.export_picture();
+}
+
+void export_turn(Context& context) {
+    if (why_not_export(context, context.exports.film_path).empty()) context.actions.export_turntable();
+}
+
+/// Those that do no harm to text that is typed, where their keys do not type.
+void file_keys(Context& context, bool typing) {
+    const auto free = [&](Command command) {
+        const Chord chord = context.state.keymap.of(command);
+        const bool types = !chord.ctrl && (chord.key < key::F1 || chord.key > key::F12);
+        return hit(context, command) && !(typing && types);
+    };
+    if (free(Command::Open)) ask_open(context);
+    if (free(Command::Save)) save(context);
+    if (free(Command::SaveAs)) save_as(context);
+    if (free(Command::Export)) show_panel(context.state, PanelId::Export);
+    if (free(Command::Locate)) run_locate(context);
+    if (free(Command::Quit)) quit(context);
+    if (free(Command::Fullscreen)) context.actions.toggle_fullscreen();
+    if (free(Command::Screenshot)) export_shot(context);
+    if (free(Command::Turntable)) export_turn(context);
+}
+
+/// Fixed ones; they work while text is typed.
+void control_keys(Context& context) {
     if (enter_pressed()) run_edit(context);
-    if (pressed('O')) ask_open(context);
-    if (pressed('S')) shift ? save_as(context) : save(context);
-    if (pressed('E')) show_panel(context.state, PanelId::Export);
-    if (pressed('L')) run_locate(context);
-    if (pressed('Q')) quit(context);
     if (pressed('=')) scale_ui(context, 1.1f);
     if (pressed('-')) scale_ui(context, 1 / 1.1f);
     if (pressed('0')) scale_ui(context, 0);
-    if (typing) return;
-    const bool labelled = context.active_label() != nullptr;
-    if (pressed('Z')) shift ? context.actions.redo() : context.actions.undo();
-    if (pressed('Y')) context.actions.redo();
-    if (pressed('I') && labelled) context.actions.invert_label();
-    if (pressed('D') && labelled) context.actions.clear_label();
-    if (pressed(key::Space)) context.state.layout.panels_hidden = !context.state.layout.panels_hidden;
+}
+
+bool redo_hit(const Context& context) {
+    const bool other = !context.state.keymap.user_of({'Y', true});
+    const auto& io = ImGui::GetIO();
+    return hit(context, Command::Redo) || (other && io.KeyCtrl && !io.KeyAlt && pressed('Y'));
 }
 
 void toggle(Context& context, bool ViewSettings::*member) {
@@ -57,31 +86,52 @@ void step_evidence(Context& context) {
     state.over = state.over == Over::Attention ? Over::Mask : Over::Nothing;
 }
 
-void plain_keys(Context& context) {
-    if (pressed('P')) {
+void tool_keys(Context& context) {
+    constexpr std::array<std::pair<Command, Tool>, 4> Tools{
+        {{Command::Brush, Tool::Brush}, {Command::Rectangle, Tool::Rectangle}, {Command::Lasso, Tool::Lasso}, {Command::CutOut, Tool::CutOut}}};
+    for (const auto& [command, tool] : Tools)
+        if (hit(context, command)) set_tool(context, tool);
+    if (ImGui::GetIO().KeyCtrl || ImGui::GetIO().KeyAlt) return;
+    if (ImGui::IsKeyPressed(key::LeftBracket)) resize_brush(context, 1 / 1.15f);
+    if (ImGui::IsKeyPressed(key::RightBracket)) resize_brush(context, 1.15f);
+}
+
+void label_keys(Context& context) {
+    const bool labelled = context.active_label() != nullptr;
+    if (hit(context, Command::Invert) && labelled) context.actions.invert_label();
+    if (hit(context, Command::Clear) && labelled) context.actions.clear_label();
+    if (hit(context, Command::Hide)) hide_label(context);
+    if (hit(context, Command::ShowHidden)) context.actions.show_hidden();
+    if (hit(context, Command::Isolate)) isolate_label(context);
+    if (hit(context, Command::Delete) && labelled && label_count(context) > 0) context.actions.delete_labelled_splats();
+}
+
+void view_keys(Context& context) {
+    if (hit(context, Command::Frame)) frame_selection(context);
+    if (hit(context, Command::Home)) go_home(context);
+    if (hit(context, Command::FrontOnly)) toggle(context, &ViewSettings::front_only);
+    if (hit(context, Command::Tint)) toggle(context, &ViewSettings::tint_labels);
+    if (hit(context, Command::Wipe)) toggle_wipe(context);
+    if (hit(context, Command::Evidence)) step_evidence(context);
+    const bool arrows_free = !context.state.keyboard.on || has_focus(context, "viewport");
+    if (ImGui::GetIO().KeyCtrl || ImGui::GetIO().KeyAlt) return;
+    if (arrows_free && pressed(key::Left)) step(context, -1);
+    if (arrows_free && pressed(key::Right)) step(context, 1);
+}
+
+/// Those that mean something else while text is typed.
+void free_keys(Context& context) {
+    if (hit(context, Command::Prompt)) {
         show_panel(context.state, PanelId::Prompt);
         context.state.focus = "prompt.sentence";
     }
+    if (hit(context, Command::Undo)) context.actions.undo();
+    if (redo_hit(context)) context.actions.redo();
+    if (hit(context, Command::Panels)) context.state.layout.panels_hidden = !context.state.layout.panels_hidden;
     if (!context.scene_open()) return;
-    if (pressed('B')) set_tool(context, Tool::Brush);
-    if (pressed('R')) set_tool(context, Tool::Rectangle);
-    if (pressed('L')) set_tool(context, Tool::Lasso);
-    if (pressed('C')) set_tool(context, Tool::CutOut);
-    if (pressed('F')) frame_selection(context);
-    if (pressed(key::Home)) go_home(context);
-    if (pressed('H')) ImGui::GetIO().KeyShift ? context.actions.show_hidden() : hide_label(context);
-    if (pressed('I')) isolate_label(context);
-    if (pressed('N')) toggle(context, &ViewSettings::front_only);
-    if (pressed('T')) toggle(context, &ViewSettings::tint_labels);
-    if (pressed('V')) toggle_wipe(context);
-    if (pressed('M')) step_evidence(context);
-    const bool arrows_free = !context.state.keyboard.on || has_focus(context, "viewport");
-    if (arrows_free && pressed(key::Left)) step(context, -1);
-    if (arrows_free && pressed(key::Right)) step(context, 1);
-    if (ImGui::IsKeyPressed(key::LeftBracket)) resize_brush(context, 1 / 1.15f);
-    if (ImGui::IsKeyPressed(key::RightBracket)) resize_brush(context, 1.15f);
-    if (pressed(key::Delete) && context.active_label() != nullptr && label_count(context) > 0)
-        context.actions.delete_labelled_splats();
+    tool_keys(context);
+    label_keys(context);
+    view_keys(context);
 }
 
 void hold_to_flip(Context& context, bool free) {
@@ -117,17 +167,12 @@ void handle_keys(Context& context) {
     hold_to_flip(context, !dialog && !typing && !io.KeyCtrl);
     if (dialog) return;
     if (pressed(key::F1)) context.state.help_open = true;
-    if (pressed(key::F11)) context.actions.toggle_fullscreen();
-    if (pressed(key::F12)) {
-        const auto& path = io.KeyShift ? context.exports.film_path : context.exports.picture_path;
-        if (why_not_export(context, path).empty())
-            io.KeyShift ? context.actions.export_turntable() : context.actions.export_picture();
-    }
-    if (io.KeyCtrl && !io.KeyAlt) return control_keys(context, typing);
-    if (io.KeyShift && enter_pressed()) return run_edit(context);
+    file_keys(context, typing);
+    if (io.KeyCtrl && !io.KeyAlt) control_keys(context);
+    if (io.KeyShift && !io.KeyCtrl && enter_pressed()) return run_edit(context);
     if (typing) return;
-    if (pressed(key::Escape) && !context.state.keyboard.escape_taken) escape(context);
-    if (!io.KeyAlt && !io.KeySuper) plain_keys(context);
+    if (pressed(key::Escape) && !io.KeyCtrl && !context.state.keyboard.escape_taken) escape(context);
+    if (!io.KeySuper) free_keys(context);
 }
 
 }  // namespace gse::ui

@@ -11,6 +11,7 @@
 #include "engine/localize/row_property.h"
 #include "ui/context.h"
 #include "ui/keyboard.h"
+#include "ui/keymap.h"
 #include "ui/layout.h"
 #include "ui/viewport/camera_control.h"
 #include "ui/widgets/chips.h"
@@ -123,6 +124,13 @@ struct AdjustState {
     int frames_to_bring = 0;  // as in PickState
 };
 
+/// Keys as the artist has them.
+struct KeysState {
+    std::string read;                    // ViewModel::keymap that `keymap` was read from
+    std::optional<Command> choosing;     // its next keys are those of this command
+    std::string note;                    // what came of the last choice
+};
+
 struct ProgressState {
     bool logarithmic = true;
     std::array<bool, 3> losses{true, true, true};
@@ -153,6 +161,8 @@ struct UiState {
     LabelsState labels;
     PickState pick;
     AdjustState adjust;
+    Keymap keymap;
+    KeysState keys;
     ProgressState progress;
     TargetsState targets;
     LogState log;

@@ -327,6 +327,7 @@ struct ViewModel {
     std::string read_target;                     // what a search of this very sentence saw to be new; empty = none has looked
     EditReach reach;
     PickedRows picked;
+    std::string keymap;       // Keymap::text(); empty = as it is by default
     bool adjusting = false;   // the last step is an adjustment of colours, which more of it changes
     bool labelled_by_hand = false;               // the active label says what may change, whatever the words find
     std::size_t words_read = 0;                  // of the sentence, by the text encoder; 0 = all, or not known

@@ -201,7 +201,7 @@ void draw_controls(Context& context, const AttentionView& view) {
     flow(button_width("Look through"));
     if (button(context, {.name = "attention.look",
                          .text = "Look through",
-                         .tooltip = "Puts the camera where this view is, with its map over the picture (M)"}))
+                         .tooltip = with_key(context, "Puts the camera where this view is, with its map over the picture", Command::Evidence)}))
         look_through_attention(context, state.chosen);
 }
 

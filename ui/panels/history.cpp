@@ -112,7 +112,7 @@ void draw_compare(Context& context, std::size_t at, float side) {
     ImGui::SameLine();
     if (icon_button(context, {.name = fmt::format("history.compare.{}", at),
                               .icon = Icon::Wipe,
-                              .tooltip = compared ? "Compare with the original again" : "Compare with this: wipe between this step and now (V)",
+                              .tooltip = compared ? "Compare with the original again" : with_key(context, "Compare with this: wipe between this step and now", Command::Wipe),
                               .active = compared,
                               .why_off = !compared && at == context.model.document->position() ? "This is what is shown" : "",
                               .size_em = side / context.em}))
@@ -126,13 +126,13 @@ void draw_steps(Context& context) {
     if (button(context, {.name = "history.undo",
                          .text = "Undo",
                          .why_off = document.can_undo() ? "" : "There is nothing to undo",
-                         .tooltip = "Ctrl + Z"}))
+                         .tooltip = keys_of(context, Command::Undo)}))
         context.actions.undo();
     flow(button_width("Redo"));
     if (button(context, {.name = "history.redo",
                          .text = "Redo",
                          .why_off = document.can_redo() ? "" : "There is nothing to redo",
-                         .tooltip = "Ctrl + Shift + Z"}))
+                         .tooltip = keys_of(context, Command::Redo)}))
         context.actions.redo();
     flow(context.em * 8);
     dim_text(bytes_text(static_cast<double>(document.undo_bytes())) + " held");

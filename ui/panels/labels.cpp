@@ -109,12 +109,12 @@ void draw_tools(Context& context, const std::string& why) {
     auto& viewport = context.state.viewport;
     constexpr std::array<Icon, 4> Icons{Icon::Brush, Icon::Rectangle, Icon::Lasso, Icon::CutOut};
     constexpr std::array<Tool, 4> Tools{Tool::Brush, Tool::Rectangle, Tool::Lasso, Tool::CutOut};
-    constexpr std::array<const char*, 4> Keys{"B", "R", "L", "C"};
+    constexpr std::array<Command, 4> Keys{Command::Brush, Command::Rectangle, Command::Lasso, Command::CutOut};
     for (std::size_t at = 0; at < Tools.size(); ++at) {
         if (at > 0) ImGui::SameLine();
         if (icon_button(context, {.name = fmt::format("labels.tool.{}", ToolNames[at]),
                                   .icon = Icons[at],
-                                  .tooltip = fmt::format("{} ({})", ToolNames[at], Keys[at]),
+                                  .tooltip = with_key(context, ToolNames[at], Keys[at]),
                                   .active = viewport.tool == Tools[at],
                                   .why_off = why}))
             set_tool(context, Tools[at]);
@@ -123,8 +123,7 @@ void draw_tools(Context& context, const std::string& why) {
     if (icon_button(context,
                     {.name = "labels.front",
                      .icon = context.view.front_only ? Icon::FrontOnly : Icon::Through,
-                     .tooltip = context.view.front_only ? "Front only: what is behind is not touched (N)"
-                                                        : "All the way through (N)",
+                     .tooltip = with_key(context, context.view.front_only ? "Front only: what is behind is not touched" : "All the way through", Command::FrontOnly),
                      .active = context.view.front_only})) {
         context.view.front_only = !context.view.front_only;
         context.view_changed = true;
@@ -143,7 +142,7 @@ void draw_tools(Context& context, const std::string& why) {
 }
 
 void draw_operations(Context& context, const std::string& why) {
-    const auto act = [&](const char* name, const char* text, const char* help) {
+    const auto act = [&](const char* name, const char* text, const std::string& help) {
         const bool pressed = button(context, {.name = name, .text = text, .why_off = why, .tooltip = help});
         return pressed;
     };
@@ -153,16 +152,16 @@ void draw_operations(Context& context, const std::string& why) {
     if (act("labels.shrink", "Shrink", "Drop the splats at its rim"))
         context.actions.grow_label(-context.state.labels.steps);
     flow(button_width("Invert"));
-    if (act("labels.invert", "Invert", "Ctrl + I")) context.actions.invert_label();
+    if (act("labels.invert", "Invert", keys_of(context, Command::Invert))) context.actions.invert_label();
     flow(button_width("Clear"));
-    if (act("labels.clear", "Clear", "Nothing is labelled any more (Ctrl + D)"))
+    if (act("labels.clear", "Clear", with_key(context, "Nothing is labelled any more", Command::Clear)))
         context.actions.clear_label();
     const std::string why_hide = why_not_hide(context);
     flow(button_width("Hide"));
-    if (button(context, {.name = "labels.hide", .text = "Hide", .why_off = why_hide, .tooltip = "Not seen and not picked until it is shown again; the scene keeps it (H)"}))
+    if (button(context, {.name = "labels.hide", .text = "Hide", .why_off = why_hide, .tooltip = with_key(context, "Not seen and not picked until it is shown again; the scene keeps it", Command::Hide)}))
         hide_label(context);
     flow(button_width("Isolate"));
-    if (button(context, {.name = "labels.isolate", .text = "Isolate", .why_off = why_hide, .tooltip = "Hides all else (I)"}))
+    if (button(context, {.name = "labels.isolate", .text = "Isolate", .why_off = why_hide, .tooltip = with_key(context, "Hides all else", Command::Isolate)}))
         isolate_label(context);
     flow(button_width("Delete splats"));
     std::string why_delete = why;
@@ -171,7 +170,7 @@ void draw_operations(Context& context, const std::string& why) {
                {.name = "labels.delete_splats",
                 .text = "Delete splats",
                 .why_off = why_delete,
-                .tooltip = "Removes the labelled splats from the scene (Delete; undo brings them back)",
+                .tooltip = with_key(context, "Removes the labelled splats from the scene; undo brings them back", Command::Delete),
                 .look = Look::Danger}))
         context.actions.delete_labelled_splats();
 }

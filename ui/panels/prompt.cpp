@@ -341,7 +341,7 @@ void draw_run(Context& context) {
     if (button(context, {.name = "prompt.locate",
                          .text = "Locate",
                          .why_off = why_locate,
-                         .tooltip = "Find the source in the scene and label it (Ctrl + L)",
+                         .tooltip = with_key(context, "Find the source in the scene and label it", Command::Locate),
                          .width = stacked ? -1 : width}))
         run_locate(context);
     if (!stacked) ImGui::SameLine();

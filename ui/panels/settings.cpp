@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "ui/commands.h"
-#include "ui/keys.h"
+#include "ui/keys_dialog.h"
 #include "ui/panels/panels.h"
 #include "ui/state.h"
 #include "ui/widgets/controls.h"
@@ -100,18 +100,9 @@ void draw_cache(Context& context) {
 }
 
 void draw_keys(Context& context) {
-    if (!folding(context, "settings.keys", "Keys")) return;
-    const char* group = "";
-    for (const auto& line : KeyTable) {
-        if (std::string_view(group) != line.group) {
-            group = line.group;
-            heading(context, group);
-        }
-        wrapped_text(line.keys);
-        ImGui::Indent(context.em);
-        dim_text(line.what);
-        ImGui::Unindent(context.em);
-    }
+    heading(context, "Keys");
+    draw_key_preset(context, "settings.preset");
+    if (button(context, {.name = "settings.keys", .text = "Choose keys...", .tooltip = "All keys, each to be chosen (F1)"})) context.state.help_open = true;
 }
 
 }  // namespace

@@ -90,7 +90,7 @@ void draw_result_bar(Context& context) {
     if (one_line) ImGui::SameLine();
     if (button(context, {.name = "result.compare",
                          .text = wipes ? "Stop comparing" : "Compare",
-                         .tooltip = "Wipe between before and after (V)"}))
+                         .tooltip = with_key(context, "Wipe between before and after", Command::Wipe)}))
         toggle_wipe(context);
     ImGui::SameLine();
     if (button(context, {.name = "result.another", .text = "Another", .tooltip = "The same once more with another seed; this result is kept beside it"}))
@@ -119,7 +119,7 @@ void draw_hidden_bar(Context& context, ImVec2 at) {
     note(context, "hidden.note");
     tooltip("They are still part of the scene: edits, saving and exports go on with them. Export has a choice to leave them out.");
     ImGui::SameLine();
-    if (button(context, {.name = "hidden.show", .text = "Show all", .tooltip = "Shift + H"})) context.actions.show_hidden();
+    if (button(context, {.name = "hidden.show", .text = "Show all", .tooltip = keys_of(context, Command::ShowHidden)})) context.actions.show_hidden();
     end_floating(context);
 }
 
@@ -136,7 +136,7 @@ void draw_evidence_bar(Context& context, ImVec2 at, const AttentionView& view) {
     ImGui::BeginGroup();
     if (segmented(context, "evidence.kind", Kinds, kind)) state.over = kind == 1 ? Over::Mask : Over::Attention;
     ImGui::EndGroup();
-    tooltip("What of this view lies over the picture (M)");
+    tooltip(with_key(context, "What of this view lies over the picture", Command::Evidence));
     ImGui::SameLine();
     draw_vote(context, "evidence.votes", state.chosen);
     ImGui::SameLine();

@@ -15,6 +15,7 @@ namespace {
 constexpr float ClickTravelEm = 0.3f;  // a press that moves less is a click
 constexpr float AxisBallEm = 0.55f;
 constexpr double FlyFast = 4, FlySlow = 0.2;
+constexpr float ZoomDragEm = 2;   // of a drag that zooms, per notch of a wheel
 
 struct Pixels {
     int width, height;
@@ -108,9 +109,13 @@ void drag(Context& context) {
     const auto& io = ImGui::GetIO();
     const ImVec2 delta = io.MouseDelta;
     if (delta.x == 0 && delta.y == 0) return;
-    const bool pans = state.drag_button == ImGuiMouseButton_Right ||
-                      (state.drag_button == ImGuiMouseButton_Middle && io.KeyShift);
-    if (pans) {
+    const bool alt = io.KeyAlt && context.state.keymap.alt_navigates();
+    const bool zooms = alt && state.drag_button == ImGuiMouseButton_Right;
+    const bool pans = state.drag_button == ImGuiMouseButton_Right || (state.drag_button == ImGuiMouseButton_Middle && (io.KeyShift || alt));
+    if (zooms) {
+        const ImVec2 middle((state.high.x - state.low.x) / 2, (state.high.y - state.low.y) / 2);
+        state.camera.zoom((delta.x - delta.y) / (context.em * ZoomDragEm), middle.x, middle.y, 0);
+    } else if (pans) {
         state.camera.pan(delta.x, delta.y);
     } else {
         state.camera.orbit(delta.x, delta.y);

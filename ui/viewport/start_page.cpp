@@ -107,7 +107,7 @@ void draw_start_page(Context& context) {
         "(.gsep); or a screenshot that this program saved.");
     ImGui::Spacing();
     if (button(context,
-               {.name = "start.open", .text = "Open...", .tooltip = "Ctrl + O", .look = Look::Primary}))
+               {.name = "start.open", .text = "Open...", .tooltip = keys_of(context, Command::Open), .look = Look::Primary}))
         ask_open(context);
     flow(button_width("Open sample"));
     if (button(context, {.name = "start.sample",

@@ -60,7 +60,7 @@ void begin_stroke(Context& context, ImVec2 mouse) {
     if (context.active_label() == nullptr) context.actions.add_label("label");
     show_labelled(context);
     state.stroke = true;
-    state.stroke_operation = operation_now(state);
+    state.stroke_operation = operation_now(context);
     state.stroke_start = mouse;
     state.path.assign(1, {mouse.x, mouse.y});
     if (state.tool == Tool::Brush && state.stroke_operation != SetOperation::Intersect)
@@ -158,19 +158,19 @@ void draw_stroke(Context& context, ImDrawList* list, ImVec2 mouse) {
 
 }  // namespace
 
-SetOperation operation_now(const ViewportState& state) {
+SetOperation operation_now(const Context& context) {
     const auto& io = ImGui::GetIO();
-    if (io.KeyAlt || (io.KeyShift && io.KeyCtrl)) return SetOperation::Intersect;
+    if ((io.KeyAlt && !context.state.keymap.alt_navigates()) || (io.KeyShift && io.KeyCtrl)) return SetOperation::Intersect;
     if (io.KeyShift) return SetOperation::Add;
     if (io.KeyCtrl) return SetOperation::Remove;
-    return state.operation;
+    return context.state.viewport.operation;
 }
 
 bool use_tool(Context& context, bool hovered) {
     auto& state = context.state.viewport;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (drag_wipe(context, hovered)) return true;
-    if (state.tool == Tool::Orbit) return false;
+    if (state.tool == Tool::Orbit || (!state.stroke && ImGui::GetIO().KeyAlt && context.state.keymap.alt_navigates())) return false;
     if (!state.stroke && hovered && ImGui::IsMouseClicked(0)) begin_stroke(context, mouse);
     if (!state.stroke) return true;
     if (!ImGui::IsMouseDown(0)) {
@@ -200,7 +200,7 @@ void draw_tool_cursor(Context& context, ImDrawList* list, bool hovered) {
     }
     const float away = reach * 0.72f + context.em * 0.6f;
     draw_badge(list, {mouse.x + away, mouse.y + away}, context.em,
-               state.stroke ? state.stroke_operation : operation_now(state));
+               state.stroke ? state.stroke_operation : operation_now(context));
 }
 
 }  // namespace gse::ui

@@ -52,7 +52,7 @@ void draw_view_list(Context& context) {
     ImGui::EndCombo();
 }
 
-void toggle(Context& context, const char* name, Icon icon, bool& value, const char* what) {
+void toggle(Context& context, const char* name, Icon icon, bool& value, const std::string& what) {
     flow(context.em * 1.75f);
     if (!icon_button(context, {.name = name, .icon = icon, .tooltip = what, .active = value})) return;
     value = !value;
@@ -66,7 +66,7 @@ void draw_header(Context& context) {
     flow(context.em * 1.75f);
     if (icon_button(context, {.name = "viewport.compare",
                               .icon = Icon::Wipe,
-                              .tooltip = "Wipe between before and after (V)",
+                              .tooltip = with_key(context, "Wipe between before and after", Command::Wipe),
                               .active = context.model.comparison == Comparison::Wipe,
                               .why_off = why}))
         toggle_wipe(context);
@@ -78,7 +78,7 @@ void draw_header(Context& context) {
                               .active = original,
                               .why_off = why}))
         context.actions.set_comparison(original ? Comparison::None : Comparison::Original);
-    toggle(context, "viewport.tint", Icon::Tag, context.view.tint_labels, "Tint what is labelled (T)");
+    toggle(context, "viewport.tint", Icon::Tag, context.view.tint_labels, with_key(context, "Tint what is labelled", Command::Tint));
     toggle(context, "viewport.axes", Icon::Axes, context.view.show_axes, "World axes");
     toggle(context, "viewport.bounds", Icon::Box, context.view.show_bounds, "Box around the scene");
     toggle(context, "viewport.cameras", Icon::Camera, context.view.show_views, "Cameras of the views");

@@ -20,7 +20,7 @@ void navigate(Context& context, bool hovered);
 /// Brush, rectangle and lasso. True when the left button belongs to a tool.
 bool use_tool(Context& context, bool hovered);
 /// Operation of the keys held now, else the chosen one.
-SetOperation operation_now(const ViewportState& state);
+SetOperation operation_now(const Context& context);
 
 /// The chosen view of the last search, where the picture is seen from there and something of it lies over it; else null.
 const AttentionView* view_looked_through(const Context& context);

@@ -82,6 +82,10 @@ public:
     void show_hidden() override { calls.push_back("show_hidden"); }
     void compare_with(std::size_t position) override { calls.push_back("compare_with " + std::to_string(position)); }
     void pick_rows(const localize::RowChoice& choice) override;
+    void set_keymap(const std::string& text) override {
+        calls.push_back("set_keymap " + text);
+        model_.keymap = text;
+    }
     void adjust_colours(const ColourAdjustment& adjustment) override {
         calls.push_back("adjust_colours " + adjustment_text(adjustment));
         model_.adjusting = !(adjustment == ColourAdjustment{});

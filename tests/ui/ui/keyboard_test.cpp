@@ -1,6 +1,7 @@
 // The window without a mouse: Tab, arrows, Enter, F6 and Alt reach and press everything.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <set>
 
@@ -203,6 +204,61 @@ DOCTEST_TEST_CASE("the label's threshold moves by arrows") {
     DOCTEST_CHECK(harness.shell.focused() == "labels.threshold");
     harness.key(key::Space);   // the mouse is somewhere else: nothing jumps there
     DOCTEST_CHECK(harness.application.document().state().labels[0].threshold == doctest::Approx(before + 0.01));
+}
+
+DOCTEST_TEST_CASE("keys are chosen in their list: the command that had them is told, and they act once it is closed") {
+    Harness harness({1920, 1080, 1, Situation::Located, false});
+    const auto tool = [&] { return harness.shell.state().viewport.tool; };
+    const auto choose = [&](const char* command, int code) {
+        harness.key(key::F1);
+        harness.frame(3);
+        harness.click(fmt::format("keys.{}", command));
+        harness.key(code);
+        harness.frame(2);
+    };
+    choose("brush", 'R');   // Rectangle's
+    DOCTEST_CHECK(harness.application.asked("set_keymap {\"preset\":\"Splat\",\"keys\":{\"brush\":\"R\",\"rectangle\":\"\"}}"));
+    DOCTEST_CHECK(harness.shell.state().keys.note == "R was \"Rectangle\", which has no key now");
+    harness.key(key::Escape);
+    DOCTEST_CHECK_FALSE(harness.shell.state().help_open);
+    DOCTEST_CHECK(tool() == ui::Tool::Orbit);   // it was no command
+    harness.key('R');
+    DOCTEST_CHECK(tool() == ui::Tool::Brush);
+    harness.key(key::Escape);
+    harness.key('B');
+    DOCTEST_CHECK(tool() == ui::Tool::Orbit);
+    choose("lasso", 'W');
+    DOCTEST_CHECK(harness.shell.state().keys.note == "W flies");
+    harness.key(key::Escape);   // leaves the choice, not the list
+    DOCTEST_CHECK(harness.shell.state().help_open);
+    DOCTEST_CHECK_FALSE(harness.shell.state().keys.choosing);
+    harness.click("keys.preset.Blender");
+    harness.key(key::Escape);
+    harness.key('L');
+    DOCTEST_CHECK(tool() == ui::Tool::Lasso);
+    harness.key('C');
+    DOCTEST_CHECK(tool() == ui::Tool::Brush);
+    harness.key('B');
+    DOCTEST_CHECK(tool() == ui::Tool::Rectangle);
+}
+
+DOCTEST_TEST_CASE("as in Maya, Alt moves the camera with a tool in hand, too") {
+    Harness harness({1280, 800, 1, Situation::Located, false});
+    const auto drag_with_alt = [&](const char* preset) {
+        harness.application.model().keymap = preset;
+        harness.frame(2);
+        harness.key('B');
+        harness.application.calls.clear();
+        const auto view = harness.rect("viewport");
+        harness.modifiers(false, false, true);
+        harness.drag({view.x + view.width * 0.4f, view.y + view.height * 0.4f}, {view.x + view.width * 0.6f, view.y + view.height * 0.5f});
+        harness.modifiers(false, false, false);
+        harness.frame(2);
+        harness.key(key::Escape);
+        return std::pair(harness.application.asked("set_camera"), harness.application.asked("select"));
+    };
+    DOCTEST_CHECK(drag_with_alt("{\"preset\":\"Maya\"}") == std::pair(true, false));
+    DOCTEST_CHECK(drag_with_alt("") == std::pair(false, true));
 }
 
 DOCTEST_TEST_CASE("the list of keys tells about all of it") {

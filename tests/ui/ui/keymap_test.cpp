@@ -1,0 +1,58 @@
+// Keys as text, conventions, and what cannot be chosen.
+#define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
+#include <doctest/doctest.h>
+
+#include <set>
+#include <string>
+
+#include "ui/keymap.h"
+
+namespace gse::test {
+
+using namespace ui;
+
+DOCTEST_TEST_CASE("every convention gives every command keys of its own that can be chosen") {
+    for (const auto preset : {KeyPreset::Splat, KeyPreset::Blender, KeyPreset::Maya}) {
+        const Keymap map(preset);
+        std::set<std::string> seen;
+        std::size_t commands = 0;
+        for (const auto& line : KeyTable) {
+            if (line.command == NoCommand) continue;
+            ++commands;
+            DOCTEST_REQUIRE(line.name != nullptr);
+            const std::string keys = chord_text(map.of(line.command));
+            DOCTEST_CHECK_MESSAGE(!keys.empty(), line.name);
+            DOCTEST_CHECK_MESSAGE(seen.insert(keys).second, keys);
+            DOCTEST_CHECK_MESSAGE(Keymap::why_not(map.of(line.command)).empty(), Keymap::why_not(map.of(line.command)));
+            DOCTEST_CHECK(parse_chord(keys) == map.of(line.command));
+            DOCTEST_CHECK(map.user_of(map.of(line.command)) == line.command);
+            if (preset == KeyPreset::Splat) DOCTEST_CHECK(keys == line.keys);   // what the table says
+        }
+        DOCTEST_CHECK(commands == CommandCount);
+    }
+}
+
+DOCTEST_TEST_CASE("a chosen key is taken from the command that had it, and comes back from text") {
+    Keymap map(KeyPreset::Blender);
+    DOCTEST_CHECK(map.bind(Command::Lasso, *parse_chord("Ctrl + Shift + K")) == std::nullopt);
+    DOCTEST_CHECK(map.bind(Command::Wipe, *parse_chord("B")) == Command::Rectangle);
+    DOCTEST_CHECK(map.of(Command::Rectangle) == Chord{});
+    const Keymap again = Keymap::parse(map.text());
+    DOCTEST_CHECK(again.preset() == KeyPreset::Blender);
+    for (const auto& line : KeyTable)
+        if (line.command != NoCommand) DOCTEST_CHECK(again.of(line.command) == map.of(line.command));
+}
+
+DOCTEST_TEST_CASE("text that is no keymap changes nothing; keys with a fixed meaning are refused by name") {
+    for (const char* text : {"", "{", "[]", "{\"preset\":7}", "{\"keys\":{\"brush\":\"Hyper + 9\",\"lasso\":\"W\",\"wipe\":3,\"what\":\"B\"}}"})
+        DOCTEST_CHECK(Keymap::parse(text).text() == Keymap().text());
+    for (const char* keys : {"W", "Shift + E", "Ctrl + -", "Esc", "Tab", "Left", "[", "F1", "`", "Space"}) {
+        DOCTEST_REQUIRE(parse_chord(keys));
+        DOCTEST_CHECK_MESSAGE(!Keymap::why_not(*parse_chord(keys)).empty(), keys);
+    }
+    DOCTEST_CHECK(Keymap::why_not(*parse_chord("Ctrl + W")).empty());
+    DOCTEST_CHECK_FALSE(parse_chord("Ctrl + "));
+    DOCTEST_CHECK(chord_text({}) == "");
+}
+
+}  // namespace gse::test

@@ -1,0 +1,54 @@
+// Which keys do what: one of a few conventions, and what the artist has chosen on top of it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "ui/keys.h"
+
+namespace gse::ui {
+
+/// A key with the modifiers that are held with it.
+struct Chord {
+    int key = 0;   // GLFW; 0 = none
+    bool ctrl = false, shift = false, alt = false;
+    bool operator==(const Chord&) const = default;
+};
+
+/// "Ctrl + Shift + Z", empty for none; and back, nothing for what is no chord.
+std::string chord_text(const Chord& chord);
+std::optional<Chord> parse_chord(const std::string& text);
+
+enum class KeyPreset { Splat, Blender, Maya };
+inline constexpr std::array<const char*, 3> KeyPresetNames{"Splat", "Blender", "Maya"};
+
+class Keymap {
+public:
+    explicit Keymap(KeyPreset preset = KeyPreset::Splat);
+    /// As text() wrote it; what cannot be read is left as it is by default.
+    static Keymap parse(const std::string& json);
+    /// The preset and what differs from it, JSON.
+    std::string text() const;
+
+    KeyPreset preset() const { return preset_; }
+    /// Alt with the left, middle and right button orbits, pans and zooms, with a tool in hand, too.
+    bool alt_navigates() const { return preset_ == KeyPreset::Maya; }
+    Chord of(Command command) const { return chords_[static_cast<std::size_t>(command)]; }
+    bool changed(Command command) const;
+    /// The command that has these keys.
+    std::optional<Command> user_of(const Chord& chord) const;
+    /// Gives a command its keys; the one that had them has none any more, and is returned. Keys with a fixed meaning are refused: `why_not`.
+    std::optional<Command> bind(Command command, const Chord& chord);
+    /// Why these keys cannot be chosen: "W flies"; empty = they can.
+    static std::string why_not(const Chord& chord);
+
+private:
+    KeyPreset preset_;
+    std::array<Chord, CommandCount> chords_{};
+};
+
+/// The line of KeyTable of a command.
+const KeyHelp& help_of(Command command);
+
+}  // namespace gse::ui

@@ -1,0 +1,17 @@
+// All keys in a window in the middle, where those of commands are chosen.
+#pragma once
+
+#include "ui/context.h"
+
+namespace gse::ui {
+
+/// The next window comes to the middle of the screen, at most that large; a width of 0 = as large as what is in it.
+void centre_next(ImVec2 size);
+
+/// While UiState::help_open.
+void draw_keys_dialog(Context& context);
+
+/// A row to choose a convention with; `name` is its place in the widget map.
+void draw_key_preset(Context& context, const char* name);
+
+}  // namespace gse::ui
