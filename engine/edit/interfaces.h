@@ -105,7 +105,8 @@ struct AttentionQuery {
 };
 
 /// Cross-attention of a text-to-image model (GSEditPro 3.2). Returns one single-channel image per word, at the size of
-/// the input image, non-negative, divided by its own maximum (all zero if the word drew no attention at all).
+/// the input image, non-negative, on the same scale for all pictures (all zero if the word drew no attention at all): where a word draws much
+/// less than in others, what it means is not there.
 class AttentionSource {
 public:
     virtual ~AttentionSource() = default;

@@ -145,6 +145,7 @@ private:
 
     std::vector<ViewEvidence> look(const Search& search) {
         std::vector<ViewEvidence> views;
+        peaks_.assign(input_.views.size(), 0.0f);
         std::vector<std::size_t> all(input_.views.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
         for (std::size_t v = 0; v < input_.views.size(); ++v) {
@@ -156,9 +157,22 @@ private:
                               static_cast<int>(input_.views.size()));
         }
         make_masks(search, views);
+        if (!search.absent) hide_faint(views);
         if (tools_.seen)
             for (std::size_t v = 0; v < views.size(); ++v) tools_.seen(v, views[v]);
         return views;
+    }
+
+    /// Where a word draws much less attention than elsewhere, its map, scaled to its maximum, is noise.
+    void hide_faint(std::vector<ViewEvidence>& views) const {
+        for (const auto v : faint_views(peaks_)) {
+            auto& view = views[v];
+            if (view.failed) continue;
+            view.mask = view.region = Mask(view.render.width, view.render.height);
+            view.points.clear();
+            view.step = ViewStep::Faint;
+            view.failed = true;
+        }
     }
 
     /// Views have nothing to do with each other here.
@@ -213,6 +227,7 @@ private:
         GSE_CHECK_EQ(maps.size(), query.words.size());
         for (auto& map : maps) {
             GSE_CHECK(map.width == seen_.renders[v].width && map.height == seen_.renders[v].height);
+            if (&map == &maps.front()) peaks_[v] = largest_value(map);
             broken_ += normalise_maximum(map);
         }
         return maps;
@@ -559,6 +574,7 @@ private:
     const LocateTools& tools_;
     ViewRenders seen_;
     std::vector<std::size_t> left_out_;
+    std::vector<float> peaks_;   // per view: the most attention that the word of the last search drew there
     std::size_t broken_ = 0;   // values of the attention so far
 };
 

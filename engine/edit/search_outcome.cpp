@@ -23,6 +23,7 @@ std::string step_text(ViewStep step) {
         case ViewStep::TooLittle: return "what is above the attention threshold is too small or too scattered";
         case ViewStep::Everything: return "nearly the whole picture is above the attention threshold";
         case ViewStep::Hidden: return "the place of the new thing is out of sight";
+        case ViewStep::Faint: return "the word draws much more attention in other views: what it means is out of sight here";
         case ViewStep::LeftOut: return "it was left out by hand";
     }
     return {};
@@ -32,6 +33,7 @@ std::string step_remedy(ViewStep step) {
     switch (step) {
         case ViewStep::Found:
         case ViewStep::Hidden:
+        case ViewStep::Faint:
         case ViewStep::LeftOut: return {};
         case ViewStep::NoAttention: return "use another word";
         case ViewStep::TooLittle: return "lower the attention threshold";

@@ -22,6 +22,7 @@ enum class ViewStep {
     TooLittle,     // too small or scattered above the threshold
     Everything,    // nearly the whole picture is above the threshold
     Hidden,        // the place of a new thing is out of sight
+    Faint,         // the word draws much more elsewhere: what it means is out of sight here
     LeftOut        // by the artist
 };
 

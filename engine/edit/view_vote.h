@@ -18,6 +18,13 @@ Image vote_of(const ViewEvidence& view, double threshold);
 /// more of, those of the sentence only count in vote_of(): the attention of a wide ground is strong under the feet of what stands on it.
 void compete(ViewEvidence& view, const std::vector<Image>& maps, bool strict);
 
+/// The largest of its values; those that are not finite do not count.
+float largest_value(const Image& map);
+
+/// Views, by their number, in which what a word means is out of sight, by the most attention that it draws in each of them: much less than
+/// in most. At most half of them.
+std::vector<std::size_t> faint_views(const std::vector<float>& peaks);
+
 /// Throws Error (InvalidArgument) for a view that is none of `count`.
 void require_views(const std::vector<std::size_t>& left_out, std::size_t count);
 

@@ -49,12 +49,11 @@ std::vector<double> levels_in(const std::string& text) {
     return levels;
 }
 
-/// Mean over the word's tokens [k,s,s], at the image's size, divided by its maximum.
+/// Mean over the word's tokens [k,s,s], at the image's size.
 Image word_map(const torch::Tensor& tokens, int width, int height) {
     auto map = tokens.mean(0).unsqueeze(0).unsqueeze(0);
     map = torch::upsample_bicubic2d(map, {height, width}, false).clamp_min(0);
-    const float highest = map.max().item<float>();
-    return to_image(highest > 0 ? map / highest : map);
+    return to_image(map);
 }
 
 /// What a model that takes a picture is shown beside the noisy one: the same picture.

@@ -8,6 +8,8 @@
 #include "engine/base/thread_pool.h"
 #include "engine/edit/left_out.h"
 #include "engine/edit/locate.h"
+#include "engine/edit/search_outcome.h"
+#include "engine/edit/view_vote.h"
 #include "tests/unit/edit/edit_scenes.h"
 
 using namespace gse;
@@ -28,7 +30,7 @@ public:
             for (int y = 0; y < map.height && word == 0; ++y)
                 for (int x = 0; x < map.width; ++x) {
                     const float lead = query.image.at(x, y, 0) - query.image.at(x, y, 1);
-                    map.at(x, y, 0) = std::max(0.0f, misled ? -lead : lead);
+                    map.at(x, y, 0) = std::max(0.0f, misled ? scale * -lead : lead);
                 }
             maps.push_back(std::move(map));
         }
@@ -36,6 +38,7 @@ public:
     }
     int image_size() const override { return Side; }
     Image wrong;
+    float scale = 1;   // of what it draws in that view
 };
 
 struct Search {
@@ -110,6 +113,29 @@ DOCTEST_TEST_CASE("so many views can be left out that too few are left, and a vi
     DOCTEST_CHECK(few.message.find("2 of 2 views") != std::string::npos);
     search.request.left_out = "10";
     DOCTEST_CHECK_THROWS_WITH_AS(search.run(), doctest::Contains("view 10 is to be left out, but the last one is 9"), Error);
+}
+
+DOCTEST_TEST_CASE("a view in which the word draws much less attention than in the others has no say, and tells why") {
+    Search search;
+    search.request.left_out = std::to_string(Wrong);
+    const auto without = search.run();
+    search.request.left_out.clear();
+    search.attention.scale = 0.3f;
+    const auto faint = search.run();
+    for (std::size_t v = 0; v < faint.views.size(); ++v) DOCTEST_CHECK((faint.views[v].step == edit::ViewStep::Faint) == (v == Wrong));
+    DOCTEST_CHECK(faint.views[Wrong].failed);
+    DOCTEST_CHECK(faint.views[Wrong].mask.count() == 0);
+    DOCTEST_CHECK(*faint.label.bits == *without.label.bits);
+    DOCTEST_CHECK(edit::step_text(edit::ViewStep::Faint).find("out of sight") != std::string::npos);
+}
+
+DOCTEST_TEST_CASE("faint is what is far below most, in at most half of the views") {
+    DOCTEST_CHECK(edit::faint_views({}).empty());
+    DOCTEST_CHECK(edit::faint_views({0.5f, 0.4f, 0.45f, 0.5f}).empty());
+    DOCTEST_CHECK(edit::faint_views({0.5f, 0.1f, 0.45f, 0.5f}) == std::vector<std::size_t>{1});
+    DOCTEST_CHECK(edit::faint_views({0.1f, 0.1f, 0.1f, 0.5f}).empty());   // most are so
+    DOCTEST_CHECK(edit::faint_views({0.1f, 0.12f, 0.45f, 0.5f, 0.5f}).size() == 2);
+    DOCTEST_CHECK(edit::faint_views(std::vector<float>(5, 0.0f)).empty());
 }
 
 DOCTEST_TEST_CASE("something new is not put where only a view says that was left out") {

@@ -40,7 +40,7 @@ edit::GuidanceInput input_at(const Image& image, const View& view, int iteration
 }  // namespace
 
 DOCTEST_TEST_CASE(
-    "attention source: one map per word, at the image's size, divided by its maximum, repeatable") {
+    "attention source: one map per word, at the image's size, repeatable, and of one scale for all pictures") {
     const TinyModel model;
     const Image image = gradient_image(50, 40);
     for (const char* method : {"probes", "img2img"}) {
@@ -57,7 +57,8 @@ DOCTEST_TEST_CASE(
             DOCTEST_CHECK(map.width == image.width);
             DOCTEST_CHECK(map.height == image.height);
             DOCTEST_CHECK(*std::min_element(map.data.begin(), map.data.end()) >= 0.0f);
-            DOCTEST_CHECK(*std::max_element(map.data.begin(), map.data.end()) == doctest::Approx(1.0f));
+            DOCTEST_CHECK(*std::max_element(map.data.begin(), map.data.end()) > 0.0f);
+            DOCTEST_CHECK(*std::max_element(map.data.begin(), map.data.end()) != 1.0f);   // not divided by its own maximum
         }
         DOCTEST_CHECK(source.locate(query)[0].data == maps[0].data);
         query.seed = 1;
