@@ -24,6 +24,7 @@ constexpr double LeastChroma = 0.1;         // of views of which it can be said 
 constexpr double LeastKept = 0.7;
 constexpr double TrustedDistance = 0.15, LeastTrust = 0.1;   // views.md 8.7
 constexpr double MostAtRim = 0.35;          // recolours and materials of `eval --seed 57` have 0.12 to 0.27 without being cut
+constexpr double MoreThanElsewhere = 1.1;   // what turns a thin thing red evenly is not cut off
 constexpr double RimCells = 2, CellsPerSide = 64;   // of Stable Diffusion's latents; the same share of smaller pictures
 
 /// Pixel of a view that shows the point, or -1.
@@ -106,7 +107,7 @@ Mask inverse(Mask mask) {
 
 struct Change {
     double all = 0, at_rim = 0;
-    std::size_t pixels = 0;
+    std::size_t pixels = 0, rim_pixels = 0;
 };
 
 Change change_of(const RoundView& view, const Image& picture) {
@@ -116,7 +117,7 @@ Change change_of(const RoundView& view, const Image& picture) {
         if (view.mask.data[i] == 0) continue;
         const double here = change_at(view, picture, i);
         change.all += here;
-        if (near_rim.data[i] != 0) change.at_rim += here;
+        if (near_rim.data[i] != 0) change.at_rim += here, ++change.rim_pixels;
         ++change.pixels;
     }
     return change;
@@ -133,15 +134,18 @@ ViewAgreement view_agreement(const std::vector<RoundView>& views, const std::vec
     ViewAgreement agreement;
     if (views.empty()) return agreement;
     double all = 0, at_rim = 0;
-    std::size_t unchanged = 0;
+    std::size_t unchanged = 0, pixels = 0, rim_pixels = 0;
     for (std::size_t v = 0; v < views.size(); ++v) {
         const auto change = change_of(views[v], pictures[v]);
         all += change.all;
         at_rim += change.at_rim;
+        pixels += change.pixels;
+        rim_pixels += change.rim_pixels;
         unchanged += change.all <= HardlyAnything * static_cast<double>(change.pixels) ? 1 : 0;
     }
     agreement.unchanged = static_cast<double>(unchanged) / static_cast<double>(views.size());
     agreement.at_rim = all > 0 ? at_rim / all : 0;
+    agreement.rim_share = pixels > 0 ? static_cast<double>(rim_pixels) / static_cast<double>(pixels) : 0;
     agreement.disagreement = disagreement_of(views, pictures);
     return agreement;
 }
@@ -203,7 +207,7 @@ std::vector<std::string> warnings_of(const ViewAgreement& agreement, bool anew) 
         warnings.push_back(fmt::format("the redrawn views disagree (by {:.2f} of the colour range): drop those that differ in the panel "
                                        "Targets, or try another seed",
                                        agreement.disagreement));
-    if (!anew && agreement.at_rim > MostAtRim)
+    if (!anew && agreement.at_rim > std::max(MostAtRim, MoreThanElsewhere * agreement.rim_share))
         warnings.push_back(fmt::format("{:.0f} % of the change lies at the mask's rim, which may cut it off: let the mask grow more (dilate_px), "
                                        "or replace the thing (mode replace) where it gets another shape",
                                        100 * agreement.at_rim));

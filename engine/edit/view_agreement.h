@@ -17,6 +17,7 @@ struct ViewAgreement {
     double disagreement = 0;
     double unchanged = 0;    // share of the views that differ from the unedited scene by hardly anything inside the mask
     double at_rim = 0;       // share of the change that lies within two cells of a latent of the mask's rim
+    double rim_share = 0;    // share of the masks' pixels that lie there: of thin things most
     std::map<std::string, double> scalars() const;
 };
 

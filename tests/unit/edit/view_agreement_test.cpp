@@ -95,6 +95,13 @@ DOCTEST_TEST_CASE("a change at the mask's rim is told from one in its middle") {
     cut_off.at_rim = 0.5;
     DOCTEST_CHECK(edit::warnings_of(cut_off, false).size() == 1);
     DOCTEST_CHECK(edit::warnings_of(cut_off, true).empty());   // it has room of its own
+    for (auto& view : middle)   // a thin thing is all rim: what turns it red evenly is not cut off
+        for (int y = 23; y < 48; ++y)
+            for (int x = 0; x < 48; ++x) view.mask.data[static_cast<std::size_t>(y * 48 + x)] = 0;
+    const auto thin = edit::view_agreement(middle, pictures);
+    DOCTEST_CHECK(thin.at_rim > 0.5);
+    DOCTEST_CHECK(thin.rim_share > 0.5);
+    DOCTEST_CHECK(edit::warnings_of(thin, false).empty());
 }
 
 DOCTEST_TEST_CASE("an artist is told when the model left the views as they were") {
