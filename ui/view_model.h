@@ -39,7 +39,7 @@ enum class DisplayMode { Beauty, Centres, Rings, Ellipsoids, Depth, Opacity, Lab
 constexpr std::array<const char*, 10> DisplayModeNames{"Beauty",  "Centres", "Rings",        "Ellipsoids", "Depth",
                                                        "Opacity", "Labels",  "Label weight", "Attention",  "Changed"};
 
-enum class Tool { Orbit, Brush, Rectangle, Lasso, CutOut };
+enum class Tool { Orbit, Brush, Rectangle, Lasso, CutOut, PickColour };
 enum class SetOperation { Add, Remove, Intersect, Replace };
 enum class Comparison { None, Wipe, Original };
 

@@ -29,6 +29,10 @@ void draw_colour(Context& context, localize::RowChoice& choice, bool& changed) {
     changed |= ImGui::ColorEdit3("##pick.colour", choice.colour.data(), ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoInputs);
     note(context, "pick.colour");
     ImGui::SameLine();
+    auto& tool = context.state.viewport.tool;
+    if (button(context, {.name = "pick.colour.drop", .text = "From the picture", .tooltip = "Click where the colour is to be seen"}))
+        tool = tool == Tool::PickColour ? Tool::Orbit : Tool::PickColour;
+    flow(button_width("That of the label"));
     std::string why = why_not_label(context);
     if (why.empty() && label_count(context) == 0) why = "Nothing is labelled";
     if (button(context, {.name = "pick.colour.label", .text = "That of the label", .why_off = why, .tooltip = "The mean base colour of what is labelled"})) {
@@ -77,6 +81,8 @@ void draw_pick(Context& context) {
     auto& pick = context.state.pick;
     pick.seen = folding(context, "pick.open", "Select by property");
     tooltip("Splats by opacity, size, colour, or how alone they are: seen while you choose, then labelled or deleted");
+    auto& tool = context.state.viewport.tool;
+    if (tool == Tool::PickColour && (!pick.seen || choice_of(pick).property != RowProperty::Colour)) tool = Tool::Orbit;
     if (!pick.seen) {
         pick.frames_to_bring = FramesToBring;
         return;

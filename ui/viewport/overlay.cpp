@@ -181,6 +181,9 @@ void draw_wipe(Context& context, ImDrawList* list) {
 void draw_hint(Context& context, ImDrawList* list) {
     const auto& state = context.state.viewport;
     if (state.tool == Tool::Orbit) return;
+    const float below = context.view.show_hud ? 2.3f : 0.5f;
+    const ImVec2 corner{state.low.x + context.em * 0.5f, state.low.y + context.em * below};
+    if (state.tool == Tool::PickColour) return shaded_text(context, list, corner, "Click a colour   Esc leaves");
     std::string text = state.tool == Tool::Brush       ? "Brush: drag to paint"
                        : state.tool == Tool::Rectangle ? "Rectangle: drag a box"
                        : state.tool == Tool::CutOut    ? "Cut out: drag a box around a thing"
@@ -195,8 +198,7 @@ void draw_hint(Context& context, ImDrawList* list) {
         const std::string longer = fmt::format("{}   {}", text, part);
         if (*part != 0 && ImGui::CalcTextSize(longer.c_str()).x < room) text = longer;
     }
-    const float below = context.view.show_hud ? 2.3f : 0.5f;
-    shaded_text(context, list, {state.low.x + context.em * 0.5f, state.low.y + context.em * below}, text);
+    shaded_text(context, list, corner, text);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/scene/label_ops.h"
 #include "ui/commands.h"
 #include "ui/state.h"
 #include "ui/viewport/viewport.h"
@@ -85,6 +86,25 @@ void end_stroke(Context& context, ImVec2 mouse) {
     for (const auto& point : state.path) region.polygon.push_back(to_texture(context, point));
     if (state.tool == Tool::CutOut) return context.actions.cut_out(region, state.stroke_operation);
     context.actions.select(region, state.stroke_operation, true);
+}
+
+/// The base colour of what is seen there, for "Select by property"; the nearest that there is a few pixels around.
+void pick_colour(Context& context, ImVec2 mouse) {
+    constexpr float first_px = 2, most_px = 60;
+    const auto& set = context.document().current;
+    const auto depth = context.model.viewport_depth;   // stays alive for the call
+    PickOptions options;
+    options.depth = depth.get();
+    ScreenArea area;
+    area.circles.push_back(to_texture(context, {mouse.x, mouse.y}));
+    for (area.radius_px = first_px * texture_scale(context); area.radius_px < most_px; area.radius_px *= 2) {
+        const auto rows = rows_in_area(set, context.model.camera, area, options);
+        if (std::find(rows.begin(), rows.end(), std::uint8_t{1}) == rows.end()) continue;
+        auto& pick = context.state.pick;
+        auto& choice = pick.choices[static_cast<std::size_t>(localize::RowProperty::Colour)];
+        choice.colour = localize::mean_colour(set, rows);
+        return context.actions.pick_rows(choice);
+    }
 }
 
 /// True while the handle of the wipe is dragged or would be by a press.
@@ -171,6 +191,12 @@ bool use_tool(Context& context, bool hovered) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (drag_wipe(context, hovered)) return true;
     if (state.tool == Tool::Orbit || (!state.stroke && ImGui::GetIO().KeyAlt && context.state.keymap.alt_navigates())) return false;
+    if (state.tool == Tool::PickColour) {
+        if (!hovered || !ImGui::IsMouseClicked(0)) return true;
+        pick_colour(context, mouse);
+        state.tool = Tool::Orbit;
+        return true;
+    }
     if (!state.stroke && hovered && ImGui::IsMouseClicked(0)) begin_stroke(context, mouse);
     if (!state.stroke) return true;
     if (!ImGui::IsMouseDown(0)) {
@@ -190,6 +216,11 @@ void draw_tool_cursor(Context& context, ImDrawList* list, bool hovered) {
     if (state.tool == Tool::Orbit || state.wipe_dragged) return;
     if (state.stroke) draw_stroke(context, list, mouse);
     if (!hovered) return;
+    if (state.tool == Tool::PickColour) {
+        for (const auto& [radius, colour] : {std::pair{0.55f, IM_COL32(0, 0, 0, 160)}, std::pair{0.45f, IM_COL32(255, 255, 255, 220)}})
+            list->AddCircle(mouse, context.em * radius, colour, 0, std::max(1.0f, context.em * 0.1f));
+        return;
+    }
     float reach = context.em * 0.5f;
     if (state.tool == Tool::Brush) {
         ImGui::SetMouseCursor(ImGuiMouseCursor_None);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/localize/row_property.h"
+#include "engine/scene/framing.h"
 #include "tests/ui/support/harness.h"
 #include "ui/keys.h"
 #include "ui/state.h"
@@ -390,6 +392,40 @@ DOCTEST_TEST_CASE("a click on an axis looks along it, a second one from the othe
         harness.frame(90);
         DOCTEST_CHECK(dot(camera.forward(), axis) > 0.99);
     }
+}
+
+DOCTEST_TEST_CASE("select by property takes a colour from the picture") {
+    Harness harness({1280, 1440, 1, Situation::Located, true});
+    harness.shell.show(ui::PanelId::Labels);
+    harness.frame(3);
+    harness.click("pick.open");
+    harness.frame(3);
+    harness.click("pick.property.Colour");
+    harness.frame(3);
+    const auto& state = harness.application.document().state();
+    const auto mean = localize::mean_colour(state.current, *state.labels.at(0).bits);
+    const auto away = [&](float x, float y) {   // of the colour clicked at from that of the thing
+        harness.click("pick.colour.drop");
+        harness.frame(2);
+        DOCTEST_REQUIRE(harness.shell.state().viewport.tool == ui::Tool::PickColour);
+        harness.application.calls.clear();
+        const auto at = in_viewport(harness, x, y);
+        harness.drag(at, at, 0);
+        harness.frame(2);
+        DOCTEST_CHECK(harness.application.asked("pick_rows colour"));
+        DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
+        const auto& colour = harness.shell.state().pick.choices[static_cast<std::size_t>(localize::RowProperty::Colour)].colour;
+        double sum = 0;
+        for (std::size_t c = 0; c < 3; ++c) sum += std::abs(static_cast<double>(colour[c]) - mean[c]);
+        return sum;
+    };
+    const Vec3 thing = pixel(harness.application.model().camera, framing_bounds(state.current, *state.labels.at(0).bits).centre());
+    DOCTEST_CHECK(away(static_cast<float>(thing.x), static_cast<float>(thing.y)) < away(0.5f, 0.8f));
+    harness.click("pick.colour.drop");
+    harness.frame(2);
+    harness.click("pick.property.Opacity");   // its button is gone
+    harness.frame(2);
+    DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
 }
 
 }  // namespace gse::test
