@@ -200,7 +200,7 @@ FilmRequest film_request(const FilmOptions& options) {
     film.transparent = options.transparent;
     film.fps = turn.fps;
     film.cameras = options.path.empty()
-                       ? turn_cameras(scene_orbit(scene, render), turn, render.azimuth, render.width, render.height)
+                       ? turn_cameras(whole_orbit(scene, render), turn, render.azimuth, render.width, render.height)
                        : path_cameras(load_camera_path(options.path, render.width, render.height), turn.fps, render.width, render.height);
     return film;
 }

@@ -13,13 +13,9 @@
 #include "engine/io/image_file.h"
 #include "engine/io/project_file.h"
 #include "engine/io/scene_io.h"
+#include "engine/math/framing.h"
 
 namespace gse::pipeline {
-namespace {
-
-
-}  // namespace
-
 std::array<float, 3> parse_colour(const std::string& text) {
     if (text == "black") return {0, 0, 0};
     if (text == "white") return {1, 1, 1};
@@ -52,13 +48,35 @@ raster::Settings raster_settings(const RenderParameters& parameters, const Scene
     return settings;
 }
 
-OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& parameters) {
-    OrbitParameters orbit = fit_orbit(compute_statistics(scene.gaussians), parse_up(parameters.up, scene.info));
+namespace {
+
+OrbitParameters fitted(const SceneStatistics& statistics, const SceneInfo& info, const RenderParameters& parameters) {
+    OrbitParameters orbit = fit_orbit(statistics, parse_up(parameters.up, info));
     // fit_orbit assumes its own field of view; keep what is framed when another one is asked for.
     const double fov = parameters.fov * Degree;
     orbit.radius *= std::tan(orbit.fov_x / 2) / std::tan(fov / 2) / parameters.zoom;
     orbit.fov_x = fov;
     orbit.elevation = parameters.elevation * Degree;
+    return orbit;
+}
+
+}  // namespace
+
+OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& parameters) {
+    return fitted(compute_statistics(scene.gaussians), scene.info, parameters);
+}
+
+OrbitParameters whole_orbit(const Scene& scene, const RenderParameters& parameters) {
+    constexpr int sides = 16;
+    const auto statistics = compute_statistics(scene.gaussians);
+    OrbitParameters orbit = fitted(statistics, scene.info, parameters);
+    const Bounds bounds{statistics.robust_low, statistics.robust_high};
+    double fitting = 0;
+    for (int side = 0; side < sides; ++side) {
+        const auto camera = orbit_camera(orbit, 2 * std::numbers::pi * side / sides, parameters.width, parameters.height);
+        fitting = std::max(fitting, fitting_distance(bounds, camera.rotation, orbit.fov_x, parameters.width, parameters.height));
+    }
+    orbit.radius = std::max(orbit.radius, fitting / parameters.zoom);
     return orbit;
 }
 

@@ -61,6 +61,8 @@ raster::Settings raster_settings(const RenderParameters& parameters, const Scene
 
 /// The orbit fitted to the scene under these parameters.
 OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& parameters);
+/// The same, stepped back where a picture of that shape would cut off the top or the bottom of what stands tall, from some side.
+OrbitParameters whole_orbit(const Scene& scene, const RenderParameters& parameters);
 
 /// The cameras named, or those found beside the scene; none when there are none.
 std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const std::string& cameras);

@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/pipeline/film.h"
+#include "engine/scene/scene.h"
 #include "tests/test_paths.h"
 
 using namespace gse;
@@ -92,4 +93,34 @@ DOCTEST_TEST_CASE("easing is walked as the file says, kept, and refused where it
     DOCTEST_CHECK(back.at(0).easing == Easing::Out);
     DOCTEST_CHECK(back.at(1).easing == Easing::Linear);
     DOCTEST_CHECK(length(back.at(1).camera.centre() - keys.at(1).camera.centre()) < 1e-12);
+}
+
+DOCTEST_TEST_CASE("what stands tall is whole in a turn around it") {
+    GaussianData data;
+    data.resize(200);
+    for (std::size_t row = 0; row < 200; ++row) {
+        data.position[row * 3 + 1] = static_cast<float>(row) / 20;   // a pole of ten units
+        for (std::size_t axis = 0; axis < 3; ++axis) data.log_scale[row * 3 + axis] = -4;
+        data.rotation[row * 4] = 1;
+        data.opacity_logit[row] = 4;
+    }
+    Scene scene;
+    scene.gaussians = GaussianSet(std::move(data));
+    pipeline::RenderParameters render;
+    render.width = 160;
+    render.height = 90;
+    const auto cut_off = [&](const OrbitParameters& orbit) {
+        int count = 0;
+        for (const auto& camera : pipeline::turn_cameras(orbit, {}, 0, render.width, render.height))
+            for (const double end : {0.0, 9.95}) {
+                const Vec3 at = camera.to_camera({0, end, 0});
+                const double y = camera.fy * at.y / at.z + camera.cy;
+                count += at.z <= 0 || y < 0 || y > render.height ? 1 : 0;
+            }
+        return count;
+    };
+    DOCTEST_CHECK(cut_off(pipeline::scene_orbit(scene, render)) > 0);
+    DOCTEST_CHECK(cut_off(pipeline::whole_orbit(scene, render)) == 0);
+    render.height = 160;   // where it fits, nothing moves
+    DOCTEST_CHECK(pipeline::whole_orbit(scene, render).radius == doctest::Approx(pipeline::scene_orbit(scene, render).radius));
 }
