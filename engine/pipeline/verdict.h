@@ -10,6 +10,7 @@
 #include "engine/edit/request.h"
 #include "engine/edit/view_targets.h"
 #include "engine/neural/api.h"
+#include "engine/pipeline/told.h"
 
 namespace gse::pipeline {
 
@@ -23,12 +24,12 @@ struct Verdict {
 /// A picture before and after.
 using PicturePair = std::pair<const Image*, const Image*>;
 
-/// Of a validated request; `told`: the sentence as the model is told it. Pictures [H,W,3] in [0,1].
-Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
+/// Of a validated request, of which the model was told `told`. Pictures [H,W,3] in [0,1].
+Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request, const Told& told,
               const std::vector<PicturePair>& pictures);
 
 /// Of the redrawn views of a round that the fit uses, against the scene as they were drawn from.
-Verdict judge_targets(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
+Verdict judge_targets(const neural::TextToImage& model, const edit::EditRequest& request, const Told& told,
                       const edit::ViewTargets& round);
 
 /// {"score", "verdict", "warns"}.
