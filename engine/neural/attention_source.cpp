@@ -268,7 +268,7 @@ std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& que
 }
 
 std::vector<Image> BundleAttentionSource::maps_of(const edit::AttentionQuery& query) {
-    const auto prompt = with_view_words(query.prompt, query.view_words);
+    const auto prompt = bundle_->told(with_view_words(query.prompt, query.view_words));
     std::vector<std::vector<std::int64_t>> columns;
     AttentionCapture capture = make_capture();
     for (const auto& word : query.words) {

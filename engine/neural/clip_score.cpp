@@ -9,6 +9,7 @@
 #include "engine/base/error.h"
 #include "engine/neural/images.h"
 #include "engine/neural/safetensors.h"
+#include "engine/neural/known_sentence.h"
 #include "engine/neural/tokenizer.h"
 #include "engine/neural/torch_errors.h"
 #include "engine/neural/viewpoint_model.h"
@@ -89,27 +90,6 @@ bool has_clip(const std::filesystem::path& folder) {
 
 std::unique_ptr<edit::TextImageScore> load_clip_score(const ClipFolder& folder) {
     return guard_torch("loading the image-text encoder", [&] { return std::make_unique<ClipScore>(folder); });
-}
-
-std::string known_part(const std::string& sentence, const std::vector<std::string>& known) {
-    std::string result, word;
-    const auto end_word = [&] {
-        if (std::find(known.begin(), known.end(), word) != known.end()) {
-            if (!result.empty()) result += ' ';
-            result += word;
-        }
-        word.clear();
-    };
-    for (const char letter : sentence + ' ') {
-        if (std::isalnum(static_cast<unsigned char>(letter)) != 0) {
-            word += static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-            continue;
-        }
-        end_word();
-        if (letter == ',' && !result.empty() && result.back() != ',') result += ',';
-    }
-    if (!result.empty() && result.back() == ',') result.pop_back();
-    return result;
 }
 
 }  // namespace gse::neural

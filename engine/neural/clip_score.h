@@ -23,7 +23,4 @@ bool has_clip(const std::filesystem::path& folder);
 /// Vectors are of unit length. Throws Error (NotFound, Malformed, Model) with one sentence.
 std::unique_ptr<edit::TextImageScore> load_clip_score(const ClipFolder& folder);
 
-/// The sentence without words that are not in `known` (lower case), its punctuation reduced to commas.
-std::string known_part(const std::string& sentence, const std::vector<std::string>& known);
-
 }  // namespace gse::neural

@@ -233,7 +233,7 @@ LoadPlan single_file_text_plan(const TextEncoderConfig& config, SingleFileText l
 }
 
 bool is_single_file(const SafetensorsFile& file) {
-    return file.contains(std::string(UNetPrefix) + "input_blocks.0.0.weight");
+    return file.contains(fmt::format("{}input_blocks.0.0.weight", UNetPrefix));
 }
 
 SingleFileText single_file_text_layout(const SafetensorsFile& file) {

@@ -11,7 +11,9 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/memory.h"
+#include "engine/edit/words.h"
 #include "engine/neural/key_map.h"
+#include "engine/neural/known_sentence.h"
 #include "engine/neural/precision.h"
 #include "engine/neural/torch_errors.h"
 
@@ -290,10 +292,14 @@ std::int64_t ModelBundle::token_count() const {
     return std::min(tokenizer.max_length(), text_encoder->config().max_position_embeddings);
 }
 
+std::string ModelBundle::told(const std::string& sentence) const {
+    return facts.vocabulary.empty() ? sentence : known_part(sentence, facts.vocabulary, edit::Identifier);
+}
+
 torch::Tensor ModelBundle::token_ids(const std::vector<std::string>& prompts) const {
     std::vector<torch::Tensor> rows;
     for (const auto& prompt : prompts) {
-        const auto encoding = tokenizer.encode(prompt, token_count());
+        const auto encoding = tokenizer.encode(told(prompt), token_count());
         rows.push_back(torch::tensor(encoding.ids, torch::kInt64));
     }
     return torch::stack(rows).to(device);

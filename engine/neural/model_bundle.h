@@ -88,6 +88,9 @@ struct ModelBundle {
     std::int64_t image_size() const { return facts.image_size; }
     std::int64_t latent_size() const { return facts.image_size / vae->config().factor(); }
     double scaling_factor() const { return vae->config().scaling_factor; }
+    /// The sentence as the text encoder is given it: without words that a model of a fixed vocabulary was not trained on. In pieces of letters
+    /// that mean nothing to it they disturb all others: "a shiny blue bear" was not blue.
+    std::string told(const std::string& sentence) const;
     /// Token ids [B,T] and conditioning [B,T,D] of some prompts, without a graph.
     torch::Tensor token_ids(const std::vector<std::string>& prompts) const;
     torch::Tensor encode_prompts(const std::vector<std::string>& prompts) const;

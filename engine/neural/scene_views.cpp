@@ -60,7 +60,7 @@ UNet with_inputs(const UNet& plain, bool inpaint, bool outline) {
     draw_weights<Conv2dImpl>(unet, Outline);
     for (auto& [name, weight] : scene_input_weights(unet)) {
         if (name.starts_with(Inpaint) || name.find("_2.") != std::string::npos) weight.zero_();   // the last layers say nothing
-        if (name == std::string(Outline) + "conv_2.bias") weight.fill_(FirstOutline);
+        if (name.starts_with(Outline) && name.ends_with("conv_2.bias")) weight.fill_(FirstOutline);
     }
     return unet;
 }

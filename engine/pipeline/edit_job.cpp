@@ -11,7 +11,6 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/log_quiet.h"
-#include "engine/base/spelling.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/localize/focus.h"
 #include "engine/pipeline/neural_loader.h"
@@ -69,9 +68,9 @@ void warn_unknown_words(const std::vector<std::string>& words, const std::vector
     if (known.empty()) return;
     for (const auto& word : words) {
         if (std::find(known.begin(), known.end(), word) != known.end()) continue;
-        const auto nearest = nearest_word(word, known);
-        if (nearest.empty()) log::warning("the model does not know the word \"{}\"", word);
-        else log::warning("the model does not know the word \"{}\"; the nearest it knows is \"{}\"", word, nearest);
+        const auto nearest = edit::nearest_words(word, known, 1);
+        if (nearest.empty()) log::warning("the model does not know the word \"{}\" and leaves it out", word);
+        else log::warning("the model does not know the word \"{}\" and leaves it out; the nearest it knows is \"{}\"", word, nearest.front());
     }
 }
 

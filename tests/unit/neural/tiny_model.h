@@ -59,6 +59,11 @@ neural::NamedTensors tensors_of(const Holder& module) {
     return tensors;
 }
 
+/// What the tiny model says it knows: the words of the tests' sentences.
+inline std::vector<std::string> tiny_words() {
+    return {"bear", "hat", "dog", "square", "a", "of", "photo", "red", "blue", "sks", "make", "it", "front", "side", "back", "left", "right", "view"};
+}
+
 struct TinyModel {
     explicit TinyModel(const std::string& prediction = "epsilon", const neural::UNetConfig& unet_config = tiny_unet_config(),
                        const std::string& scheduler_class = "DDIMScheduler") {
@@ -79,7 +84,7 @@ struct TinyModel {
         write_file(root / "tokenizer/tokenizer_config.json", "{\"model_max_length\": 24}");
         write_file(root / "model_index.json", "{}");
         write_file(root / "gseditpro.json",
-                   R"({"name": "tiny", "attention_sizes": [8], "vocabulary": ["bear", "hat"]})");
+                   R"({"name": "tiny", "attention_sizes": [8], "vocabulary": )" + nlohmann::json(tiny_words()).dump() + "}");
     }
     void write_weights() const {
         neural::write_safetensors(path() / "unet/diffusion_pytorch_model.safetensors", unet);
