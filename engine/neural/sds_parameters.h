@@ -25,7 +25,6 @@ struct SdsParameters {
     bool view_words = true;
     std::string negative_prompt;
     std::string before_prompt;
-    std::string stand_in;
     double delta = 0.5;
 
     template <class Self, class F>
@@ -61,9 +60,6 @@ struct SdsParameters {
         f("negative_prompt", self.negative_prompt, "What the picture should not show.");
         f("before_prompt", self.before_prompt,
           "What the scene shows before the edit; worked out from the prompt when empty.");
-        f("stand_in", self.stand_in,
-          "Noun that the model is told in the source's place where it does not know that word and the thing keeps its shape; empty = the "
-          "word as it is.");
         f("delta", self.delta,
           "Share of the pull on the unedited scene under its own sentence that is taken off: what the model would "
           "change anyway, and its noise; 0 = plain score distillation, at half the cost.",

@@ -136,9 +136,6 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
     parse_front(recipe_.job.front);
     parse_front(recipe_.job.looked_from, "--looked-from");
     raster::require_rasterizer(recipe_.job.rasterizer);
-    if (const auto& noun = recipe_.guidance.stand_in; !edit::as_told(noun).empty() && !edit::knows(known, noun))
-        throw Error(ErrorCode::InvalidArgument, fmt::format("the model does not know the word \"{}\" of --stand-in", noun),
-                    fmt::format("use {}", edit::words_to_use(noun, known)));
 }
 
 /// The text encoder has so many places; what stands behind them has no effect.
@@ -170,6 +167,8 @@ void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Seg
     edited_ = std::make_shared<const Edited>();
 }
 
+std::string EditJob::model_prompt() const { return edit::as_told(recipe_.request.prompt); }
+
 std::vector<Image> EditJob::instance_pictures() {
     const Views& chosen = *views_;
     std::vector<View> views = farthest_views(chosen.views, InstanceViews);
@@ -187,7 +186,7 @@ std::vector<Image> EditJob::instance_pictures() {
 void EditJob::tune() {
     times_.begin("dreambooth");
     auto tuned = model().tune(recipe_.dreambooth, instance_pictures(), edit::instance_sentence(recipe_.request),
-                              edit::without_identifier(edit::as_told(recipe_.request.prompt)), control_);
+                              edit::without_identifier(model_prompt()), control_);
     workplace_->take_model(std::move(tuned.model));
     tuning_ = std::move(tuned.report);
     times_.end();

@@ -103,6 +103,8 @@ public:
     std::optional<double> front_read() const { return views_->front_read; }
     /// How views are rendered.
     raster::Settings render_settings() const { return pipeline::render_settings(scene(), recipe_.request); }
+    /// The recipe's prompt as the model is told it.
+    std::string model_prompt() const;
     /// Pictures that the search has asked the networks about so far.
     std::size_t questions() const { return workplace_->questions(); }
     /// What drawing the place of an added thing took of that.

@@ -52,7 +52,6 @@ Gate look_through_gate(EditJob& job, const GateParameters& parameters) {
     job.times().begin("gate");
     Gate gate;
     const auto& views = job.views();
-    const auto told = told_to(job.model(), job.recipe(), job.located().mode);
     const std::size_t count = std::min(views.size(), static_cast<std::size_t>(std::max(1, parameters.views)));
     for (std::size_t i = 0; i < count; ++i) {
         if (job.control().stop_requested()) throw Error(ErrorCode::Cancelled, "the pictures before the edit were stopped");
@@ -61,7 +60,7 @@ Gate look_through_gate(EditJob& job, const GateParameters& parameters) {
         const Image before =
             job.painter().paint(job.drawn().spans(), camera, job.render_settings()).colour;
         neural::SampleRequest request;
-        request.prompt = told.after;
+        request.prompt = job.model_prompt();
         if (!job.view_words().empty()) request.prompt += ", " + job.view_words()[view];
         request.steps = parameters.steps;
         request.guidance_scale = parameters.guidance_scale;
@@ -73,7 +72,7 @@ Gate look_through_gate(EditJob& job, const GateParameters& parameters) {
     }
     std::vector<PicturePair> pairs;
     for (const auto& picture : gate.pictures) pairs.emplace_back(&picture.before, &picture.after);
-    static_cast<Verdict&>(gate) = judge(job.model(), job.recipe().request, told, pairs);
+    static_cast<Verdict&>(gate) = judge(job.model(), job.recipe().request, job.model_prompt(), pairs);
     if (gate.warns) log::warning("{}", gate.verdict);
     job.times().end();
     return gate;

@@ -149,13 +149,9 @@ struct AnotherWay {};
 
 }  // namespace
 
-neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const Told& told) {
-    if (guidance.before_prompt.empty()) guidance.before_prompt = told.before;
+neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request) {
+    if (guidance.before_prompt.empty()) guidance.before_prompt = edit::sentence_before(request);
     return guidance;
-}
-
-Told told_to(const neural::TextToImage& model, const EditRecipe& recipe, edit::EditMode mode) {
-    return told_of(recipe.request, mode, model.known_words(), recipe.use_dreambooth ? "" : recipe.guidance.stand_in);
 }
 
 std::string new_thing(const edit::EditRequest& request, edit::EditMode mode) {
@@ -191,9 +187,8 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     const auto& model = workplace.model();
     const auto& request = recipe.request;
     const bool editor = model.kind() == neural::BundleKind::InstructPix2Pix;
-    const auto told = told_to(model, recipe, plan.mode);
-    const auto prompt = editor ? told_to_editor(request) : told.after;
-    auto settings = with_sentence_before(recipe.guidance, told);
+    const auto prompt = editor ? told_to_editor(request) : edit::as_told(request.prompt);
+    auto settings = with_sentence_before(recipe.guidance, request);
     settings.restyle = way.restyle;
     const bool by_views = edit::edits_by_views(request);
     const auto guidance = model.guidance(prompt, by_views ? neural::polishing(settings) : settings);
@@ -216,11 +211,9 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     tools.known = model.known_words();
     tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings).dump() + (on_ground ? "plain ground" : "");
     Edited edited;
-    tools.targets = [&](const edit::ViewTargets& drawn) {
-        auto sheet = drawn;
-        if (told.stands_in && sheet.sentence.empty()) sheet.sentence = told.after;
+    tools.targets = [&](const edit::ViewTargets& sheet) {
         if (!edited.verdict) {
-            const auto verdict = judge_targets(model, request, told, sheet);
+            const auto verdict = judge_targets(model, request, edit::as_told(request.prompt), sheet);
             if (attempts.goes_on(verdict)) {
                 log::info("the first views hardly show \"{}\" (score {:.2f}); they are drawn another way", request.prompt, *verdict.score);
                 throw AnotherWay{};
@@ -245,8 +238,6 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
 Edited edit_scene(Workplace& workplace, const GaussianSet& scene, const Located& located, const edit::EditPlan& plan,
                   const EditRecipe& recipe, const EditObserver& observer, const JobControl& control) {
     const auto use_before = network_use();
-    if (const auto told = told_to(workplace.model(), recipe, plan.mode); told.stands_in)
-        log::info("the model does not know \"{}\": it is told \"{}\"", recipe.request.source, told.after);
     const auto ground = ground_under(workplace, scene, located, plan, recipe);
     auto ways = ways_to_draw(workplace.model(), plan.mode, recipe, ground);
     Attempts attempts(std::move(ways));

@@ -35,10 +35,8 @@ struct Edited {
     double seconds = 0;        // that it took, with what the artist was waited for
 };
 
-/// The guidance's settings with the sentence before the edit, where none is given.
-neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const Told& told);
-/// What the model is told of an edit with these settings. A tuned model has learned the scene by the source's own word.
-Told told_to(const neural::TextToImage& model, const EditRecipe& recipe, edit::EditMode mode);
+/// The guidance's settings with the sentence before the edit, worked out from the request where none is given.
+neural::SdsParameters with_sentence_before(neural::SdsParameters guidance, const edit::EditRequest& request);
 
 /// What has a shape of its own after an edit of that mode: what takes the source's place, or is added. The words of a validated
 /// request.

@@ -14,13 +14,13 @@ constexpr double LeastScore = 0.25;
 
 }  // namespace
 
-Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request, const Told& told,
+Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
               const std::vector<PicturePair>& pictures) {
     Verdict result;
     const auto encoder = model.text_image_score();
     if (!encoder || pictures.empty()) return result;
-    const auto words_before = encoder->text(told.before);
-    const auto words_after = encoder->text(told.after);
+    const auto words_before = encoder->text(edit::sentence_before(request));
+    const auto words_after = encoder->text(told);
     if (words_before == words_after) return result;   // nothing the encoder knows is new
     double sum = 0;
     for (const auto& [before, after] : pictures)
@@ -28,12 +28,12 @@ Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request
     result.score = sum / static_cast<double>(pictures.size());
     result.warns = *result.score < LeastScore;
     result.verdict = result.warns ? fmt::format("The model's pictures hardly show \"{}\" (score {:.2f}): the edit may not either.",
-                                                edit::as_told(request.prompt), *result.score)
+                                                told, *result.score)
                                   : fmt::format("The model's pictures show the edit (score {:.2f}).", *result.score);
     return result;
 }
 
-Verdict judge_targets(const neural::TextToImage& model, const edit::EditRequest& request, const Told& told,
+Verdict judge_targets(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
                       const edit::ViewTargets& round) {
     std::vector<PicturePair> pictures;
     for (const auto& view : round.views)

@@ -10,7 +10,6 @@
 #include "engine/edit/request.h"
 #include "engine/edit/view_targets.h"
 #include "engine/neural/api.h"
-#include "engine/pipeline/told.h"
 
 namespace gse::pipeline {
 
@@ -24,12 +23,12 @@ struct Verdict {
 /// A picture before and after.
 using PicturePair = std::pair<const Image*, const Image*>;
 
-/// Of a validated request, of which the model was told `told`. Pictures [H,W,3] in [0,1].
-Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request, const Told& told,
+/// Of a validated request; `told`: the sentence as the model is told it. Pictures [H,W,3] in [0,1].
+Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
               const std::vector<PicturePair>& pictures);
 
 /// Of the redrawn views of a round that the fit uses, against the scene as they were drawn from.
-Verdict judge_targets(const neural::TextToImage& model, const edit::EditRequest& request, const Told& told,
+Verdict judge_targets(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
                       const edit::ViewTargets& round);
 
 /// {"score", "verdict", "warns"}.

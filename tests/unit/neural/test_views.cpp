@@ -111,7 +111,6 @@ DOCTEST_TEST_CASE("redrawn views: settings of the guidance that are said to have
         if (std::string_view(name) == "image_guidance_scale") return;   // counts with models that are told what to do
         if (std::string_view(name).starts_with("restyle")) return;   // with those that restyle
         if (std::string_view(name) == "plain_ground") return;         // with what the views are shown
-        if (std::string_view(name) == "stand_in") return;             // with the sentence
         input.anew = std::string_view(name) == "shape_guidance_scale";
         const auto plain = drawn();
         const Value kept = value;
