@@ -161,7 +161,7 @@ std::string summary(const TargetRound& round) {
     std::string text = fmt::format("Round {} of {}: {} views redrawn", round.round + 1, round.rounds, round.targets.size());
     if (dropped > 0) text += fmt::format(", {} dropped", dropped);
     text += ". Left the scene, right what it is fitted to.";
-    if (!round.sentence.empty()) text += fmt::format(" The model was told \"{}\".", round.sentence);
+    if (!round.sentence.empty()) text += fmt::format(" Your sentence names no colour: drawn as \"{}\".", round.sentence);
     return text;
 }
 
