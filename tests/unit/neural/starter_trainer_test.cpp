@@ -439,9 +439,9 @@ DOCTEST_TEST_CASE("training lowers every loss on the toy world") {
     const ToySource source;
     const gse::test::ScratchFolder scratch;
     auto parameters = toy_parameters();
-    parameters.vae_steps = 150;
-    parameters.unet_steps = 200;
-    parameters.vae_batch = parameters.unet_batch = 8;
+    parameters.vae_steps = 100;
+    parameters.unet_steps = 150;
+    parameters.vae_batch = parameters.unet_batch = 4;
     parameters.clip_steps = 100;
     parameters.clip_batch = 8;
     train_starter(parameters, source, scratch.path() / "work", scratch.path() / "model", {});
