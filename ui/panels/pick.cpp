@@ -30,7 +30,8 @@ void draw_colour(Context& context, localize::RowChoice& choice, bool& changed) {
     note(context, "pick.colour");
     ImGui::SameLine();
     auto& tool = context.state.viewport.tool;
-    if (button(context, {.name = "pick.colour.drop", .text = "From the picture", .tooltip = "Click where the colour is to be seen"}))
+    const std::string why_no_drop = context.model.result_waiting ? "The picture shows an edit that is not applied yet" : "";
+    if (button(context, {.name = "pick.colour.drop", .text = "From the picture", .why_off = why_no_drop, .tooltip = "Click where the colour is to be seen"}))
         tool = tool == Tool::PickColour ? Tool::Orbit : Tool::PickColour;
     flow(button_width("That of the label"));
     std::string why = why_not_label(context);
