@@ -8,6 +8,8 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/log.h"
+#include "engine/edit/vocabulary.h"
+#include "engine/edit/words.h"
 #ifdef GSE_NEURAL
 #include "engine/neural/prompt_reader.h"
 #endif
@@ -42,7 +44,17 @@ std::shared_ptr<const neural::PromptReader> reader_of(const fs::path& model) {
 
 std::size_t words_read(const fs::path& model, const std::vector<std::string>& words) {
     const auto reader = reader_of(model);
-    return reader ? reader->words_read(words) : words.size();
+    if (!reader) return words.size();
+    const auto known = model_words(model);
+    std::vector<std::string> told;
+    std::vector<std::size_t> places;   // of what is told, in the sentence
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (words[i] != edit::Identifier && !edit::knows(known, words[i])) continue;
+        told.push_back(words[i]);
+        places.push_back(i);
+    }
+    const auto read = reader->words_read(told);
+    return read < told.size() ? places[read] : words.size();
 }
 #else
 std::size_t words_read(const fs::path&, const std::vector<std::string>& words) { return words.size(); }

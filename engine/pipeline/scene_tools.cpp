@@ -16,6 +16,7 @@
 #include "engine/math/framing.h"
 
 namespace gse::pipeline {
+
 std::array<float, 3> parse_colour(const std::string& text) {
     if (text == "black") return {0, 0, 0};
     if (text == "white") return {1, 1, 1};

@@ -83,7 +83,8 @@ void draw_pick(Context& context) {
     pick.seen = folding(context, "pick.open", "Select by property");
     tooltip("Splats by opacity, size, colour, or how alone they are: seen while you choose, then labelled or deleted");
     auto& tool = context.state.viewport.tool;
-    if (tool == Tool::PickColour && (!pick.seen || choice_of(pick).property != RowProperty::Colour)) tool = Tool::Orbit;
+    const bool to_drop = pick.seen && choice_of(pick).property == RowProperty::Colour && !context.model.result_waiting;
+    if (tool == Tool::PickColour && !to_drop) tool = Tool::Orbit;
     if (!pick.seen) {
         pick.frames_to_bring = FramesToBring;
         return;

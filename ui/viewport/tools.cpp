@@ -100,8 +100,7 @@ void pick_colour(Context& context, ImVec2 mouse) {
     for (area.radius_px = first_px * texture_scale(context); area.radius_px < most_px; area.radius_px *= 2) {
         const auto rows = rows_in_area(set, context.model.camera, area, options);
         if (std::find(rows.begin(), rows.end(), std::uint8_t{1}) == rows.end()) continue;
-        auto& pick = context.state.pick;
-        auto& choice = pick.choices[static_cast<std::size_t>(localize::RowProperty::Colour)];
+        auto& choice = context.state.pick.choices[static_cast<std::size_t>(localize::RowProperty::Colour)];
         choice.colour = localize::mean_colour(set, rows);
         return context.actions.pick_rows(choice);
     }

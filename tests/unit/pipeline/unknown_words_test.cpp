@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "engine/edit/words.h"
 #include "engine/io/scene_io.h"
 #include "engine/math/sh.h"
 #include "engine/pipeline/edit_job.h"
 #include "engine/pipeline/installed.h"
+#include "engine/pipeline/model_words.h"
 #include "engine/pipeline/neural_loader.h"
 #include "tests/test_paths.h"
 
@@ -44,6 +46,18 @@ double blueness(const GaussianSet& set, const std::vector<std::uint8_t>& bits) {
 }
 
 }  // namespace
+
+DOCTEST_TEST_CASE("words that the model is not told take no room in what it reads") {
+    if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
+    const auto read = [](const std::vector<std::string>& words) { return words_read(starter_model_path(), words); };
+    const auto long_sentence = edit::words_of("a wonderful magnificent extraordinary little bear wearing a blue hat on the grass");
+    DOCTEST_CHECK(read(long_sentence) == long_sentence.size());
+    std::vector<std::string> bears(40, "bear");
+    const auto most = read(bears);
+    DOCTEST_CHECK(most < bears.size());
+    bears.insert(bears.begin(), "wonderful");
+    DOCTEST_CHECK(read(bears) == most + 1);
+}
 
 DOCTEST_TEST_CASE("words that the model does not know change neither what is found nor what comes of it") {
     if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
