@@ -131,6 +131,7 @@ struct StarterTrainParameters {
     bool shapes = false;
     int shape_rank = 32;
     double restyled_share = 0;
+    double more_share = 0;
     bool bf16 = false;
     std::string device = "cpu";
     std::uint64_t seed = 1;
@@ -185,6 +186,9 @@ struct StarterTrainParameters {
         f("shape_rank", self.shape_rank, "Rank of that LoRA.", Range{1, 1024});
         f("restyled_share", self.restyled_share,
           "Share of the scenes drawn with --pictures-only in which nothing new comes: the thing, its ground or what it wears gets another look.",
+          Range{0, 1});
+        f("more_share", self.more_share,
+          "Share of the scenes drawn with --pictures-only that have things, materials, accessories or grounds which what finds things is not trained on.",
           Range{0, 1});
         f("bf16", self.bf16, "Convolutions and matrix products of text encoder and UNet in bfloat16, norms and losses in float.");
         f("device", self.device, "cpu or cuda.");

@@ -208,8 +208,16 @@ ShapeList make_accessory(const std::string& word, const Anchor& anchor, Random r
     if (word == "sunglasses") return make_sunglasses(anchor, random);
     if (word == "scarf") return make_scarf(anchor, random);
     if (word == "flames") return make_flames(anchor, random);
-    GSE_CHECK(word == "wings");
-    return make_wings(anchor, random);
+    if (word == "wings") return make_wings(anchor, random);
+    if (word == "cape") return make_cape(anchor, random);
+    if (word == "beard") return make_beard(anchor, random);
+    if (word == "horns") return make_horns(anchor, random);
+    if (word == "helmet") return make_helmet(anchor, random);
+    if (word == "halo") return make_halo(anchor, random);
+    if (word == "backpack") return make_backpack(anchor, random);
+    if (word == "headphones") return make_headphones(anchor, random);
+    GSE_CHECK(word == "necklace");
+    return make_necklace(anchor, random);
 }
 
 }  // namespace gse::synth

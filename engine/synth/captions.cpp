@@ -53,7 +53,7 @@ private:
 
 bool plural(const std::string& accessory) {
     return accessory == "sunglasses" || accessory == "glasses" || accessory == "flames" ||
-           accessory == "wings";
+           accessory == "wings" || accessory == "horns" || accessory == "headphones";
 }
 
 /// A noun with its adjective ("" = none) and article.
@@ -67,13 +67,12 @@ bool chance(Random& random, double probability) { return random.uniform() < prob
 
 /// The object in one of several ways: "a wooden chair", "a chair made of wood", "the red bear".
 void object_phrase(CaptionWriter& writer, const SceneSpec& spec, bool with_material, Random& random) {
-    const bool substance = spec.material == "wooden" || spec.material == "stone" || spec.material == "golden";
+    static const std::vector<std::string> substances{"wooden", "stone", "golden", "silver", "bronze", "marble", "brick", "lava"};
+    const bool substance = contains(substances, spec.material);
     if (with_material && substance && chance(random, 0.25)) {
         noun_phrase(writer, "", spec.object, Part::Object);
         writer.say("made of");
-        const std::string name = spec.material == "wooden"   ? "wood"
-                                 : spec.material == "golden" ? "gold"
-                                                             : "stone";
+        const std::string name = spec.material == "wooden" ? "wood" : spec.material == "golden" ? "gold" : spec.material;
         writer.name(name, Part::Object);
         return;
     }

@@ -147,7 +147,7 @@ SynthScene generate(const SceneSpec& spec) {
     const auto share = [&](double fraction) {
         return static_cast<int>(fraction * std::clamp(spec.gaussian_budget, SmallestBudget, LargestBudget));
     };
-    const std::uint64_t object_index = word_index(object_words(), spec.object);
+    const std::uint64_t object_index = word_index(object_words(), more_object_words(), spec.object);
     const Light light = make_light(stream(LightStream));
     const Pose pose = make_pose(stream(PoseStream), spec);
     const Model model = make_object(spec.object, stream(ObjectStream + object_index));
@@ -158,13 +158,13 @@ SynthScene generate(const SceneSpec& spec) {
     auto placed = own;
     place(placed, pose);
     const GroundSample ground = make_ground(spec.ground, share(GroundShare), placed, light,
-                                            stream(GroundStream + word_index(ground_words(), spec.ground)));
+                                            stream(GroundStream + word_index(ground_words(), more_ground_words(), spec.ground)));
     Writer writer(result);
     writer.add(ground.points, ground.colours, Part::Ground, stream(OpacityStream));
     writer.add(placed, colours_of(own, placed, model.shapes, material, light), Part::Object,
                stream(OpacityStream + 1));
     if (!spec.accessory.empty()) {
-        const std::uint64_t index = word_index(accessory_words(), spec.accessory);
+        const std::uint64_t index = word_index(accessory_words(), more_accessory_words(), spec.accessory);
         const auto shapes = make_accessory(spec.accessory, model.anchor, stream(AccessoryStream + index));
         const Material dye = make_material(accessory_material(spec), stream(AccessoryStream + 50));
         const auto own_worn =

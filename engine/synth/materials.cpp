@@ -80,6 +80,19 @@ Vec3 gold(const Material& material, const Light& light, const SurfacePoint& poin
     return colour;
 }
 
+/// Gold's reflections in another metal's tones.
+Vec3 metal(const Material& material, const Light& light, const SurfacePoint& point) {
+    const Vec3 colour = gold(material, light, point);
+    if (material.texture == Material::Texture::Gold) return colour;
+    const double bright = std::clamp((colour.x - 0.3) / 0.7, 0.0, 1.0);
+    if (material.texture == Material::Texture::Silver) return mix({0.12, 0.13, 0.16}, {0.97, 0.98, 1.0}, std::pow(bright, 1.35));
+    return mix({0.14, 0.06, 0.03}, {0.93, 0.62, 0.40}, std::pow(bright, 1.3));
+}
+
+bool is_metal(Material::Texture texture) {
+    return texture == Material::Texture::Gold || texture == Material::Texture::Silver || texture == Material::Texture::Bronze;
+}
+
 }  // namespace
 
 Vec3 mix(const Vec3& a, const Vec3& b, double t) { return a * (1 - t) + b * t; }
@@ -125,6 +138,10 @@ Material make_material(const std::string& word, Random random) {
         material.texture = Material::Texture::Gold;
         return material;
     }
+    if (make_more_material(word, random, material)) {
+        if (material.texture == Material::Texture::Plain) material.base = clamp01(material.base + tint);
+        return material;
+    }
     const auto found = std::find_if(PlainColours.begin(), PlainColours.end(),
                                     [&](const PlainColour& plain) { return word == plain.word; });
     GSE_CHECK(found != PlainColours.end());
@@ -147,7 +164,7 @@ Vec3 shade(const Paint& paint, const Material& material, const Light& light, con
     if (paint.slot == Slot::Glow) return paint.colour;
     const bool plain = material.texture == Material::Texture::Plain;
     const bool own = paint.slot == Slot::Fixed || (paint.slot == Slot::Trim && plain);
-    const bool metal = !own && material.texture == Material::Texture::Gold;
+    const bool polished = !own && is_metal(material.texture);
     Vec3 colour = paint.colour;
     if (!own) {
         switch (material.texture) {
@@ -161,15 +178,19 @@ Vec3 shade(const Paint& paint, const Material& material, const Light& light, con
                 colour = stone(material, point.position);
                 break;
             case Material::Texture::Gold:
-                colour = gold(material, light, point);
+            case Material::Texture::Silver:
+            case Material::Texture::Bronze:
+                colour = metal(material, light, point);
                 break;
+            default:
+                colour = pattern_colour(material, point.position);
         }
         const double brightness = (colour.x + colour.y + colour.z) / 3;
         if (paint.slot == Slot::Pale)
             colour = brightness > 0.9 ? colour * 0.72
                                       : mix(colour, {1, 1, 1},
                                             plain   ? 0.5
-                                            : metal ? 0.08
+                                            : polished ? 0.08
                                                     : 0.25);
         if (paint.slot == Slot::Deep)
             colour = brightness < 0.12 ? mix(colour, {1, 1, 1}, 0.25) : colour * 0.58;
@@ -179,8 +200,8 @@ Vec3 shade(const Paint& paint, const Material& material, const Light& light, con
     const double fill = 0.12 * std::max(0.0, -dot(point.normal, Vec3{light.key.x, 0, light.key.z}));
     const double near_ground = 0.72 + 0.28 * smooth_step(-0.05, 0.18, point.position.y);
     const double lit = (sky + key + fill) * near_ground;
-    colour = colour * (metal ? 0.45 + 0.55 * lit : lit);
-    if (!metal) {
+    colour = colour * (polished ? 0.45 + 0.55 * lit : lit);
+    if (!polished) {
         const double gloss = plain || own ? 0.22 : 0.05;
         colour = colour + Vec3{1, 1, 1} * (gloss * bell(dot(point.normal, light.key), 1.0, 0.09));
     }

@@ -15,13 +15,20 @@ double layered_noise(const Vec3& p);
 
 /// A material as one scene shows it (`offset` moves the texture, `tint` varies a plain colour a little).
 struct Material {
-    enum class Texture : std::uint8_t { Plain, Wood, Stone, Gold };
+    enum class Texture : std::uint8_t { Plain, Wood, Stone, Gold, Silver, Bronze, Marble, Brick, Striped, Spotted, Checkered, Rainbow, Rusty, Lava, Mossy };
     Texture texture = Texture::Plain;
     Vec3 base{};
+    Vec3 second{};   // of stripes, spots and squares
     Vec3 offset{};
 };
 
-/// Material of a word of material_words(); `random` varies tint and texture.
+/// Colour of the textures of more_material_words() (not of metals) at a point of model space.
+Vec3 pattern_colour(const Material& material, const Vec3& p);
+
+/// Makes `material` one of more_material_words(); false for another word.
+bool make_more_material(const std::string& word, Random& random, Material& material);
+
+/// Material of a word of material_words() or more_material_words(); `random` varies tint and texture.
 Material make_material(const std::string& word, Random random);
 
 /// One directional key light, a weak opposite one, sky light. Model space (y up).

@@ -32,8 +32,11 @@ struct Model {
     Anchor anchor;
 };
 
-/// Model of a word of object_words(), with random proportions.
+/// Model of a word of object_words() or more_object_words(), with random proportions.
 Model make_object(const std::string& word, Random random);
+
+/// Two big eyes, white with a black pupil, looking to -z.
+void add_eyes(ShapeList& shapes, const Vec3& middle, double half, double radius);
 
 Model make_bear(Random& random);
 Model make_dog(Random& random);
@@ -48,7 +51,35 @@ Model make_car(Random& random);
 Model make_house(Random& random);
 Model make_tree(Random& random);
 
-/// Shapes of a word of accessory_words() at its place on an object.
+Model make_rabbit(Random& random);
+Model make_horse(Random& random);
+Model make_elephant(Random& random);
+Model make_pig(Random& random);
+Model make_lion(Random& random);
+Model make_penguin(Random& random);
+Model make_owl(Random& random);
+Model make_frog(Random& random);
+Model make_turtle(Random& random);
+Model make_dinosaur(Random& random);
+Model make_snowman(Random& random);
+Model make_robot(Random& random);
+Model make_pumpkin(Random& random);
+Model make_cactus(Random& random);
+Model make_teapot(Random& random);
+Model make_rocket(Random& random);
+Model make_castle(Random& random);
+Model make_lamp(Random& random);
+
+/// Shapes of a word of accessory_words() or more_accessory_words() at its place on an object.
 ShapeList make_accessory(const std::string& word, const Anchor& anchor, Random random);
+
+ShapeList make_cape(const Anchor& anchor, Random& random);
+ShapeList make_beard(const Anchor& anchor, Random& random);
+ShapeList make_horns(const Anchor& anchor, Random& random);
+ShapeList make_helmet(const Anchor& anchor, Random& random);
+ShapeList make_halo(const Anchor& anchor, Random& random);
+ShapeList make_backpack(const Anchor& anchor, Random& random);
+ShapeList make_headphones(const Anchor& anchor, Random& random);
+ShapeList make_necklace(const Anchor& anchor, Random& random);
 
 }  // namespace gse::synth

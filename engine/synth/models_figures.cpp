@@ -9,7 +9,14 @@ namespace {
 constexpr Paint EyeWhite{Slot::Fixed, {0.97, 0.97, 0.95}};
 constexpr Paint Ink{Slot::Fixed, {0.03, 0.03, 0.04}};
 
-/// Two big eyes, white with a black pupil, looking to -z.
+Shape nose(const Vec3& centre, double size) {
+    Shape shape = ellipsoid(centre, {size, size * 0.8, size * 0.7}, Ink);
+    shape.density = 3;
+    return shape;
+}
+
+}  // namespace
+
 void add_eyes(ShapeList& shapes, const Vec3& middle, double half, double radius) {
     for (const double side : {-1.0, 1.0}) {
         Shape white =
@@ -22,14 +29,6 @@ void add_eyes(ShapeList& shapes, const Vec3& middle, double half, double radius)
         shapes.push_back(pupil);
     }
 }
-
-Shape nose(const Vec3& centre, double size) {
-    Shape shape = ellipsoid(centre, {size, size * 0.8, size * 0.7}, Ink);
-    shape.density = 3;
-    return shape;
-}
-
-}  // namespace
 
 Model make_bear(Random& random) {
     const double girth = random.uniform(0.9, 1.12);

@@ -311,18 +311,15 @@ Model make_object(const std::string& word, Random random) {
         const char* word;
         Model (*make)(Random&);
     };
-    static constexpr std::array<Maker, 12> Makers{{{"bear", make_bear},
-                                                   {"dog", make_dog},
-                                                   {"cat", make_cat},
-                                                   {"duck", make_duck},
-                                                   {"statue", make_statue},
-                                                   {"ball", make_ball},
-                                                   {"vase", make_vase},
-                                                   {"mushroom", make_mushroom},
-                                                   {"chair", make_chair},
-                                                   {"car", make_car},
-                                                   {"house", make_house},
-                                                   {"tree", make_tree}}};
+    static constexpr Maker Makers[] = {
+        {"bear", make_bear},         {"dog", make_dog},         {"cat", make_cat},         {"duck", make_duck},
+        {"statue", make_statue},     {"ball", make_ball},       {"vase", make_vase},       {"mushroom", make_mushroom},
+        {"chair", make_chair},       {"car", make_car},         {"house", make_house},     {"tree", make_tree},
+        {"rabbit", make_rabbit},     {"horse", make_horse},     {"elephant", make_elephant}, {"pig", make_pig},
+        {"lion", make_lion},         {"penguin", make_penguin}, {"owl", make_owl},         {"frog", make_frog},
+        {"turtle", make_turtle},     {"dinosaur", make_dinosaur}, {"snowman", make_snowman}, {"robot", make_robot},
+        {"pumpkin", make_pumpkin},   {"cactus", make_cactus},   {"teapot", make_teapot},   {"rocket", make_rocket},
+        {"castle", make_castle},     {"lamp", make_lamp}};
     for (const auto& maker : Makers)
         if (word == maker.word) return maker.make(random);
     GSE_CHECK(false);

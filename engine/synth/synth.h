@@ -41,12 +41,22 @@ const std::vector<std::string>& material_words();   // at least 8
 const std::vector<std::string>& accessory_words();  // at least 5: hat crown sunglasses scarf flames ...
 const std::vector<std::string>& ground_words();     // at least 4
 
+/// More words of each list, which generate() knows, too. What looks for things was not trained on them, only what draws
+/// (`drawn_vocabulary()`): random specs, suites and edit sentences keep to the lists above.
+const std::vector<std::string>& more_object_words();
+const std::vector<std::string>& more_material_words();
+const std::vector<std::string>& more_accessory_words();
+const std::vector<std::string>& more_ground_words();
+
 /// Colours an accessory is made in (random specs choose among them); empty when it has its natural look only.
 const std::vector<std::string>& accessory_colour_words(const std::string& accessory);
 
 /// Every word of any caption and every word apply_edit() understands, without punctuation (captions use
 /// commas).
 const std::vector<std::string>& vocabulary();
+
+/// vocabulary(), then every word that only captions of more_*_words() have.
+const std::vector<std::string>& drawn_vocabulary();
 
 /// The scene of a spec. Ground, object and accessory come from random streams of their own: taking the
 /// accessory away leaves the other rows bit-identical, another material or colour changes nothing but
@@ -62,6 +72,9 @@ SceneSpec random_spec(Random& random, double with_accessory = 0.5);
 SceneSpec training_spec(Random& random, double with_accessory = 0.5);
 /// The same, always held out.
 SceneSpec held_out_spec(Random& random, double with_accessory = 0.5);
+
+/// The same with at least one of more_*_words(), never held out.
+SceneSpec training_spec_of_more(Random& random, double with_accessory = 0.5);
 
 /// Radians by which the scene's thing is turned about the vertical: the camera at this azimuth sees its front.
 double turn_of(const SceneSpec& spec);

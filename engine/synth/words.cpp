@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "engine/base/check.h"
@@ -14,10 +15,11 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-void require_known(const Words& words, const std::string& word, const char* what) {
-    if (contains(words, word)) return;
+void require_known(const Words& words, const Words& more, const std::string& word, const char* what) {
+    if (contains(words, word) || contains(more, word)) return;
     std::string hint = "known words:";
-    for (const auto& known : words) hint += " " + known;
+    for (const auto& list : {words, more})
+        for (const auto& known : list) hint += " " + known;
     throw Error(ErrorCode::NotFound, "the synthetic world has no " + std::string(what) + " \"" + word + "\"",
                 hint);
 }
@@ -79,7 +81,7 @@ const Words& accessory_colour_words(const std::string& accessory) {
     if (accessory == "crown") return crown;
     if (accessory == "sunglasses") return glasses;
     if (accessory == "wings") return wings;
-    return none;
+    return contains(more_accessory_words(), accessory) ? more_accessory_colour_words(accessory) : none;
 }
 
 const std::vector<Synonym>& synonyms() {
@@ -103,25 +105,28 @@ const Words& vocabulary() {
 }
 
 void require_known_words(const SceneSpec& spec) {
-    require_known(object_words(), spec.object, "object");
-    require_known(material_words(), spec.material, "material");
-    require_known(ground_words(), spec.ground, "ground");
-    if (!spec.accessory.empty()) require_known(accessory_words(), spec.accessory, "accessory");
-    if (!spec.accessory_colour.empty()) require_known(material_words(), spec.accessory_colour, "colour");
+    require_known(object_words(), more_object_words(), spec.object, "object");
+    require_known(material_words(), more_material_words(), spec.material, "material");
+    require_known(ground_words(), more_ground_words(), spec.ground, "ground");
+    if (!spec.accessory.empty()) require_known(accessory_words(), more_accessory_words(), spec.accessory, "accessory");
+    if (!spec.accessory_colour.empty()) require_known(material_words(), more_material_words(), spec.accessory_colour, "colour");
 }
 
-std::uint64_t word_index(const Words& words, const std::string& word) {
+std::uint64_t word_index(const Words& words, const Words& more, const std::string& word) {
     const auto found = std::find(words.begin(), words.end(), word);
-    GSE_CHECK(found != words.end());
-    return static_cast<std::uint64_t>(found - words.begin());
+    if (found != words.end()) return static_cast<std::uint64_t>(found - words.begin());
+    const auto other = std::find(more.begin(), more.end(), word);
+    GSE_CHECK(other != more.end());
+    return words.size() + static_cast<std::uint64_t>(other - more.begin());
 }
 
 std::string accessory_material(const SceneSpec& spec) {
     if (!spec.accessory_colour.empty()) return spec.accessory_colour;
-    if (spec.accessory == "crown") return "golden";
-    if (spec.accessory == "scarf") return "red";
-    if (spec.accessory == "wings") return "white";
-    return "black";
+    static const std::map<std::string, std::string> natural{{"crown", "golden"}, {"scarf", "red"},    {"wings", "white"},    {"cape", "red"},
+                                                            {"beard", "white"},  {"horns", "white"},  {"helmet", "silver"},  {"halo", "golden"},
+                                                            {"backpack", "brown"}, {"necklace", "golden"}};
+    const auto found = natural.find(spec.accessory);
+    return found == natural.end() ? "black" : found->second;
 }
 
 std::string canonical_word(const std::string& typed) {

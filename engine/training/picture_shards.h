@@ -24,7 +24,7 @@ inline constexpr int ShardWords = 30;     // W words of a caption; 255 = none
 /// [N,2], shares of the next side's sentence [N,K], and the azimuths at which the things show their fronts [N]. Throws Error when it cannot be written or a caption is too long.
 void write_picture_shard(const neural::StarterSource& source, const ShardRange& range, const std::filesystem::path& path, ThreadPool& pool);
 
-/// All pictures of new shapes that a run of these parameters trains on (its seed, size, restyled_share, number rounded up to whole files, threads):
+/// All pictures of new shapes that a run of these parameters trains on (its seed, size, restyled_share, more_share, number rounded up to whole files, threads):
 /// FOLDER/vocabulary.json (the words, a comma last) and FOLDER/shard-0.bin, shard-1.bin, ... of `per_file` pictures each. Files that are
 /// there already stay. Throws Error as above, and (Cancelled).
 void write_picture_shards(const neural::StarterTrainParameters& parameters, const std::filesystem::path& folder, const JobControl& job,

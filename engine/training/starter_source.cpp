@@ -29,6 +29,7 @@ struct Shot {
     double close_share = 0;   // of the picture that the accessory takes; 0 = the whole thing is in the picture
     Vec3 aside;               // of its middle, in its diagonals
     std::optional<synth::Part> restyled;   // the part that the edit gives another look
+    bool more = false;        // of synth::more_object_words() and so on
     double squeeze = 1;       // of pictures: what is restyled may have other proportions than all that there is to learn from
 };
 
@@ -164,12 +165,20 @@ std::string other_word(const std::vector<std::string>& words, const std::string&
     return others.empty() ? word : others[random.below(others.size())];
 }
 
+/// The list, with its `more` words where those are asked for.
+std::vector<std::string> words_of(std::vector<std::string> words, const std::vector<std::string>& more, bool wanted) {
+    if (wanted) words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
 /// The scene before `part` got the look that it has; never one that is kept out of training.
-synth::SceneSpec before_restyling(const synth::SceneSpec& after, synth::Part part, Random& random) {
+synth::SceneSpec before_restyling(const synth::SceneSpec& after, synth::Part part, bool more, Random& random) {
+    const auto grounds = words_of(synth::ground_words(), synth::more_ground_words(), more);
+    const auto materials = words_of(synth::material_words(), synth::more_material_words(), more);
     synth::SceneSpec before = after;
     do {
-        if (part == synth::Part::Ground) before.ground = other_word(synth::ground_words(), after.ground, random);
-        if (part == synth::Part::Object) before.material = other_word(synth::material_words(), after.material, random);
+        if (part == synth::Part::Ground) before.ground = other_word(grounds, after.ground, random);
+        if (part == synth::Part::Object) before.material = other_word(materials, after.material, random);
         if (part == synth::Part::Accessory)
             before.accessory_colour = other_word(synth::accessory_colour_words(after.accessory), after.accessory_colour, random);
     } while (synth::held_out(before));
@@ -180,9 +189,7 @@ synth::SceneSpec before_restyling(const synth::SceneSpec& after, synth::Part par
 bool tells_look(const synth::Caption& caption, const synth::SceneSpec& spec, synth::Part part) {
     const auto is_look = [&](const synth::Caption::Grounding& grounding) {
         if (grounding.part != part) return false;
-        const auto& colours = synth::accessory_colour_words(spec.accessory);
-        return part == synth::Part::Ground || (part == synth::Part::Object && grounding.word != spec.object) ||
-               std::find(colours.begin(), colours.end(), grounding.word) != colours.end();
+        return part == synth::Part::Ground || (part == synth::Part::Object && grounding.word != spec.object) || grounding.word == spec.accessory_colour;
     };
     return std::any_of(caption.groundings.begin(), caption.groundings.end(), is_look);
 }
@@ -195,14 +202,15 @@ struct SceneBefore {
     Room room;                          // of the thing that is gone, or that the accessory belongs to
     double share = 0;                   // by which it is larger
 
-    SceneBefore(synth::SceneSpec spec, std::optional<synth::Part> restyled, Random random) {
+    SceneBefore(synth::SceneSpec spec, std::optional<synth::Part> restyled, bool more, Random random) {
         if (restyled) {
-            scene = synth::generate(before_restyling(spec, *restyled, random));
+            scene = synth::generate(before_restyling(spec, *restyled, more, random));
             return;
         }
+        const auto objects = words_of(synth::object_words(), synth::more_object_words(), more);
         constexpr float Nothing = -20;
         const bool replaced = spec.accessory.empty();
-        if (replaced) spec.object = synth::object_words()[random.below(synth::object_words().size())];
+        if (replaced) spec.object = objects[random.below(objects.size())];
         spec.accessory.clear(), spec.accessory_colour.clear();
         scene = synth::generate(spec);
         const auto given = scene.scene.gaussians.opacity_logit();
@@ -221,12 +229,17 @@ struct SceneBefore {
     }
 };
 
+/// "gray" is "grey", too.
+void spell_grey(std::string& text) {
+    for (auto at = text.find("gray"); at != std::string::npos; at = text.find("gray", at)) text.replace(at, 4, "grey");
+}
+
 /// Some views of every scene, with the accessory that it has, from any side; half of the accessories from close by.
 class ShapeSource : public neural::StarterSource {
 public:
     /// `edited`: with what is new in it; else as it was before.
-    explicit ShapeSource(std::uint64_t seed, double restyled, bool edited = true) : seed_(seed), restyled_(restyled), edited_(edited) {
-        if (edited) before_ = std::make_unique<ShapeSource>(seed, restyled, false);
+    ShapeSource(std::uint64_t seed, double restyled, double more, bool edited = true) : seed_(seed), restyled_(restyled), more_(more), edited_(edited) {
+        if (edited) before_ = std::make_unique<ShapeSource>(seed, restyled, more, false);
     }
 
     neural::StarterPicture picture(std::uint64_t index, int size) const override {
@@ -237,7 +250,7 @@ public:
         const Shot shot = shot_of(index);
         if (const std::pair wanted{identity(), index / Views}; known != wanted) {
             scene = synth::generate(shot.spec);
-            if (!edited_) before.emplace(shot.spec, shot.restyled, Random::stream(seed_ + 1, index / Views));
+            if (!edited_) before.emplace(shot.spec, shot.restyled, shot.more, Random::stream(seed_ + 1, index / Views));
             known = wanted;
         }
         auto camera = shot.close_share > 0 ? close_camera(scene, shot, size)
@@ -257,12 +270,13 @@ public:
         Random random(seed);
         auto caption = random.uniform() < Plain ? synth::full_caption(shot.spec) : synth::random_caption(shot.spec, random);
         if (shot.restyled && !tells_look(caption, shot.spec, *shot.restyled)) caption = synth::full_caption(shot.spec);
-        const auto& text = caption.text;
+        std::string text = caption.text;
+        if (shot.more && random.uniform() < 0.5) spell_grey(text);
         if (random.uniform() < AnySide) return {text, {}};
         const auto side = synth::side_blend(shot.azimuth);
         return {text + ", " + side.words, {}, text + ", " + side.next_words, side.share};
     }
-    std::vector<std::string> vocabulary() const override { return synth::vocabulary(); }
+    std::vector<std::string> vocabulary() const override { return more_ > 0 ? synth::drawn_vocabulary() : synth::vocabulary(); }
     int views_of_scene() const override { return Views; }
     neural::StarterCamera camera(std::uint64_t index) const override {
         const Shot shot = shot_of(index);
@@ -275,7 +289,8 @@ public:
     }
     bool has_outlines() const override { return edited_; }
     std::string identity() const override {
-        return fmt::format("synthetic shapes 6 {}{}{}", edited_ ? "" : "before ", seed_, restyled_ > 0 ? fmt::format(" restyled {}", restyled_) : "");
+        return fmt::format("synthetic shapes 6 {}{}{}", edited_ ? "" : "before ", seed_, restyled_ > 0 ? fmt::format(" restyled {}", restyled_) : "") +
+               (more_ > 0 ? fmt::format(" more {}", more_) : "");
     }
 
 private:
@@ -285,7 +300,8 @@ private:
     Shot shot_of(std::uint64_t index) const {
         Random random = Random::stream(seed_, index / Views);
         Shot shot;
-        shot.spec = synth::training_spec(random, WithAccessory);
+        shot.more = more_ > 0 && Random::stream(seed_ + 3, index / Views).uniform() < more_;
+        shot.spec = shot.more ? synth::training_spec_of_more(random, WithAccessory) : synth::training_spec(random, WithAccessory);
         const double zoom = random.uniform(0.8, 1.6);
         shot.background = random_background(random);
         if (!shot.spec.accessory.empty() && random.uniform() < 0.5) {
@@ -313,6 +329,7 @@ private:
     }
     std::uint64_t seed_;
     double restyled_;   // share of the scenes
+    double more_;       // share of the scenes, of words that only what draws is trained on
     bool edited_;
     std::unique_ptr<ShapeSource> before_;
 };
@@ -393,8 +410,8 @@ std::vector<std::uint8_t> to_bytes(const Image& image) {
     return bytes;
 }
 
-std::unique_ptr<neural::StarterSource> make_shape_source(std::uint64_t seed, double restyled) {
-    return std::make_unique<ShapeSource>(seed, restyled);
+std::unique_ptr<neural::StarterSource> make_shape_source(std::uint64_t seed, double restyled, double more) {
+    return std::make_unique<ShapeSource>(seed, restyled, more);
 }
 
 std::unique_ptr<neural::StarterSource> make_starter_source(std::uint64_t seed) {

@@ -11,6 +11,7 @@ import torch
 import torch.nn.functional as F
 
 import weights
+import words
 from frozen import TextEncoder, Vae
 from pictures import TIMESTEPS, TOGETHER, VIEWS, Draw, Pictures, ShardReader, make_batch
 from unet import UNet
@@ -59,7 +60,9 @@ class Trainer:
         self.vae = Vae(config).to(self.device)
         self.vae.load_state_dict(weights.load(f"{model}/vae/diffusion_pytorch_model.safetensors"))
         heads = json.load(open(f"{model}/text_encoder/config.json"))["num_attention_heads"]
-        self.text = TextEncoder(weights.load(f"{model}/text_encoder/model.safetensors"), heads).to(self.device)
+        self.tokenizer = words.Tokenizer(model, json.load(open(f"{options.pictures}/vocabulary.json")))
+        self.text_weights = self.tokenizer.extended(weights.load(f"{model}/text_encoder/model.safetensors"))
+        self.text = TextEncoder(self.text_weights, heads, self.tokenizer.fresh).to(self.device)
         self.scale = config["scaling_factor"]
         self.config, known = weights.initial(model)
         grows = options.layers > self.config["layers_per_block"]
@@ -73,13 +76,13 @@ class Trainer:
         self.pictures = Pictures(options.capacity, self.device, self.encode, self.tokens(), 100000 if options.decoder_seconds > 0 else 0)
         while self.pictures.count < min(options.start, options.capacity):
             self.pictures.add(self.reader.ready.get())
+        say(f"{len(self.tokenizer.new_words)} new words, {self.tokenizer.fresh} new tokens")
         say(f"{sum(p.numel() for p in self.unet.parameters()) / 1e6:.2f} M parameters, {self.pictures.count} pictures")
 
     def tokens(self):
-        words = json.load(open(f"{self.options.pictures}/vocabulary.json"))
-        ids = json.load(open(f"{self.options.model}/tokenizer/vocab.json"))
+        ids = self.tokenizer.ids
         table = torch.full((256,), ids["<|endoftext|>"])
-        for i, word in enumerate(words):
+        for i, word in enumerate(self.tokenizer.words):
             table[i] = ids[word + "</w>"]
         return table, ids["<|startoftext|>"], ids["<|endoftext|>"]
 
@@ -97,9 +100,8 @@ class Trainer:
         noisy = signal * batch["latents"] + sigma * batch["noise"]
         velocity = signal * batch["noise"] - sigma * batch["latents"]
         with self.mixed():
-            with torch.no_grad():
-                sentence, other = self.text(batch["ids"]).chunk(2)
-                context = torch.lerp(sentence, other, batch["share"])
+            sentence, other = self.text(batch["ids"]).chunk(2)
+            context = torch.lerp(sentence, other, batch["share"])
             predicted, outline = self.unet(noisy, batch["timesteps"], context, together, batch["cameras"], batch["inpaint"])
         squared = (predicted - velocity).square()
         counts = batch["outlined"] * alpha
@@ -117,7 +119,7 @@ class Trainer:
         return make_batch(self.pictures, self.options.groups, TOGETHER, (HELD_OUT, self.pictures.count // VIEWS), self.draw)
 
     def prepare(self):
-        self.parameters = list(self.unet.parameters())
+        self.parameters = list(self.unet.parameters()) + ([self.text.fresh] if self.tokenizer.fresh else [])
         self.averaged = [p.detach().clone() for p in self.parameters]
         self.rate, self.decay = torch.zeros((), device=self.device), torch.zeros((), device=self.device)
         self.logged = torch.zeros(3, device=self.device)
@@ -242,6 +244,7 @@ class Trainer:
         os.makedirs(f"{out}/shapes", exist_ok=True)
         weights.save(f"{out}/shapes/diffusion_pytorch_model.safetensors", weights.quantized(self.unet.state_dict()))
         json.dump(self.config, open(f"{out}/shapes/config.json", "w"), indent=2)
+        self.tokenizer.write(out, facts, self.text_weights, self.text.fresh.detach().cpu() * self.text.SPEED)
         weights.save(f"{out}/vae/diffusion_pytorch_model.safetensors", {name: tensor.half() for name, tensor in self.vae.state_dict().items()})
         for path in (facts.pop(key) for key in ("shape_lora", "shape_cameras") if key in facts):
             if os.path.exists(f"{out}/{path}"):
