@@ -47,6 +47,7 @@ void Application::list_models() {
         row.problem = found->second;
     }
     model_.known_words = model_words(model_in_use());
+    model_.drawn_words = drawn_words(model_in_use());
 }
 
 /// The row says why; what was in use stays.

@@ -25,6 +25,8 @@ bool unread(const std::string& sentence, const std::string& phrase, const Senten
 }
 
 std::string unknown_source(const std::string& source, const SentenceGround& ground) {
+    if (edit::knows(edit::words_to_say(ground.known, ground.drawn), source))
+        return fmt::format("The model can draw \"{}\" but not find it: label it by hand instead", source);
     return fmt::format("The model does not know the word \"{}\" and cannot find it: label it by hand instead",
                        edit::unknown_word(ground.known, source));
 }
@@ -54,7 +56,7 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
     if (!facts.source_known && !ground.labelled_by_hand)   // the words to use stand beside the source already
         return unknown_source(valid.source, ground);
     try {
-        edit::require_known_words(valid, ground.known, ground.labelled_by_hand);
+        edit::require_known_words(valid, ground.known, request.method == "sds" ? std::vector<std::string>{} : ground.drawn, ground.labelled_by_hand);
     } catch (const Error& error) {
         // The words it knows stand beside the source already.
         const bool source = !facts.source_known && !ground.labelled_by_hand;
@@ -84,12 +86,13 @@ edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::
 
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground) {
     SentenceFacts facts;
+    const auto say = edit::words_to_say(ground.known, ground.drawn);
     for (const auto& word : edit::words_of(request.prompt)) {
         Chip chip;
         chip.text = word;
-        chip.known = edit::knows(ground.known, word);
+        chip.known = edit::knows(say, word);
         if (!chip.known) {
-            const auto near = edit::nearest_words(word, ground.known, 1);
+            const auto near = edit::nearest_words(word, say, 1);
             if (!near.empty()) chip.suggestion = near.front();
         }
         chip.source = within(request.prompt, request.source, facts.chips.size());

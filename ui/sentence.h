@@ -17,6 +17,7 @@ struct SentenceGround {
     bool labelled_by_hand = false;   // the label says where: nothing has to be found
     std::size_t words_read = 0;      // of the sentence, by the text encoder; 0 = not known, all of them
     std::string read_target = {};    // the word that a search of this sentence saw to be new; empty = none has looked
+    std::vector<std::string> drawn = {};   // words that the model draws besides and does not look for
 };
 
 struct SentenceFacts {

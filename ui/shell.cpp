@@ -48,13 +48,13 @@ void update_sentence(Context& context) {
     auto& prompt = context.state.prompt;
     const auto& request = context.request;
     const auto& model = context.model;
-    std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.source, request.prompt, request.target,
-                                  request.mode, model.known_words.size(), model.labelled_by_hand, model.words_read, model.read_target);
+    std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.source, request.prompt, request.target,
+                                  request.mode, model.known_words.size(), model.labelled_by_hand, model.words_read, model.read_target, model.drawn_words.size());
     for (const auto& word : model.said_words) key += "\n" + word;
     if (key == prompt.key) return;
     prompt.key = std::move(key);
     SentenceFacts facts =
-        facts_of(request, {model.known_words, model.said_words, model.labelled_by_hand, model.words_read, model.read_target});
+        facts_of(request, {model.known_words, model.said_words, model.labelled_by_hand, model.words_read, model.read_target, model.drawn_words});
     prompt.chips = std::move(facts.chips);
     prompt.problem = std::move(facts.problem);
     prompt.locate_problem = std::move(facts.locate_problem);

@@ -322,6 +322,7 @@ struct ViewModel {
     edit::EditRequest request;                   // as edited by the panel, echoed by the application
     edit::EditRequest request_defaults;          // what suits the model in use
     std::vector<std::string> known_words;        // of the chosen model; empty = open vocabulary
+    std::vector<std::string> drawn_words;        // that it draws besides and does not look for
     bool words_known = false;                    // known_words has been read
     std::vector<std::string> said_words;         // what the applied edits say of the scene: no news any more
     std::string read_target;                     // what a search of this very sentence saw to be new; empty = none has looked

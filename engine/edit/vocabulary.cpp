@@ -67,16 +67,25 @@ std::string words_to_use(const std::string& word, const std::vector<std::string>
     return fmt::format("a word it knows: {}", all);
 }
 
-void require_known_words(const EditRequest& request, const std::vector<std::string>& known, bool labelled_by_hand) {
-    const auto source = unknown_word(known, request.source), target = unknown_word(known, request.target);
+std::vector<std::string> words_to_say(const std::vector<std::string>& known, const std::vector<std::string>& drawn) {
+    auto words = known;
+    if (!known.empty()) words.insert(words.end(), drawn.begin(), drawn.end());
+    return words;
+}
+
+void require_known_words(const EditRequest& request, const std::vector<std::string>& known, const std::vector<std::string>& drawn,
+                         bool labelled_by_hand) {
+    const auto say = words_to_say(known, drawn);
+    const auto source = unknown_word(known, request.source), target = unknown_word(say, request.target);
     if (!labelled_by_hand && !source.empty())
         throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("the model does not know the word \"{}\" and cannot find it", source),
+                    knows(say, source) ? fmt::format("the model can draw \"{}\" but not find it", source)
+                                       : fmt::format("the model does not know the word \"{}\" and cannot find it", source),
                     fmt::format("label it by hand instead, or use {}", words_to_use(source, known)));
     if (!target.empty())
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("the model does not know the word \"{}\" and cannot make it", target),
-                    fmt::format("use {}", words_to_use(target, known)));
+                    fmt::format("use {}", words_to_use(target, say)));
 }
 
 }  // namespace gse::edit

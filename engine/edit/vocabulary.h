@@ -22,8 +22,12 @@ std::vector<std::string> nearest_words(const std::string& word, const std::vecto
 /// describe things.
 std::string words_to_use(const std::string& word, const std::vector<std::string>& known);
 
-/// Throws Error (InvalidArgument) with the nearest known words when the source or the target of a validated request is not
-/// known. With a label made by hand the source may be anything: nothing is looked for.
-void require_known_words(const EditRequest& request, const std::vector<std::string>& known, bool labelled_by_hand);
+/// `known`, with `drawn` behind it: what a sentence may be made of for a model that draws more than it finds. Empty where `known` is.
+std::vector<std::string> words_to_say(const std::vector<std::string>& known, const std::vector<std::string>& drawn);
+
+/// Throws Error (InvalidArgument) with the nearest known words when the source of a validated request is not in `known`, or its target neither
+/// there nor in `drawn`, which can be made and not found. With a label made by hand the source may be anything: nothing is looked for.
+void require_known_words(const EditRequest& request, const std::vector<std::string>& known, const std::vector<std::string>& drawn,
+                         bool labelled_by_hand);
 
 }  // namespace gse::edit

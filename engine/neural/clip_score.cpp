@@ -37,7 +37,7 @@ public:
                                         folder.path / "config.json")),
           preprocessing_(ClipPreprocessing::read(config_, folder.path)),
           tokenizer_(std::filesystem::exists(folder.path / "merges.txt") ? folder.path : folder.tokenizer) {
-        if (tokenizer_.vocabulary_size() > config_.text.vocab_size)
+        if (folder_.known_words.empty() && tokenizer_.vocabulary_size() > config_.text.vocab_size)   // else it is told nothing else
             throw Error(ErrorCode::Model,
                         fmt::format("the tokenizer has {} tokens but the image-text encoder only {}",
                                     tokenizer_.vocabulary_size(), config_.text.vocab_size),

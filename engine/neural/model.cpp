@@ -75,6 +75,9 @@ public:
     /// What was tuned draws by itself: the network beside it knows nothing of that.
     bool restyles() const override { return bundle_ == loaded_ && loaded_->facts.shape_restyles && !loaded_->facts.shape_unet.empty() && knows_scene(); }
     std::vector<std::string> known_words() const override { return bundle_->facts.vocabulary; }
+    std::vector<std::string> drawn_words() const override {
+        return restyles() && !loaded_->facts.vocabulary.empty() ? loaded_->facts.drawn_vocabulary : std::vector<std::string>{};
+    }
     int image_size() const override { return static_cast<int>(bundle_->image_size()); }
     std::string name() const override { return bundle_->facts.name; }
     BundleKind kind() const override { return bundle_->kind; }
@@ -145,6 +148,8 @@ private:
     }
     ModelBundle with_shape_unet() const {
         auto bundle = *bundle_;
+        const auto drawn = drawn_words();
+        bundle.facts.vocabulary.insert(bundle.facts.vocabulary.end(), drawn.begin(), drawn.end());
         bundle.unet = load_shape_unet(loaded_->path / loaded_->facts.shape_unet);
         bundle.unet->to(bundle.device);
         return bundle;

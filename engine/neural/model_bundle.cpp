@@ -273,6 +273,7 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
     get("attention_timesteps", facts.attention_timesteps);
     get("attention_absent_timesteps", facts.attention_absent_timesteps);
     get("vocabulary", facts.vocabulary);
+    get("drawn_vocabulary", facts.drawn_vocabulary);
     get("kind", facts.kind);
     get("taesd", facts.taesd);
     get("shape_lora", facts.shape_lora);

@@ -34,6 +34,8 @@ struct ModelFacts {
     std::vector<double> attention_absent_timesteps;
     /// Words the model was trained on; empty = an open vocabulary.
     std::vector<std::string> vocabulary;
+    /// Words that only the network of `shape_unet` was trained on besides: it is told them where it draws, nothing else is.
+    std::vector<std::string> drawn_vocabulary;
     /// "plain", "lcm", "tcd" or "turbo" where the configurations do not tell; see bundle_kind().
     std::string kind;
     /// Folder of the tiny autoencoder, relative to the model's; "none" = the one beside it is not used.

@@ -132,6 +132,7 @@ struct StarterTrainParameters {
     int shape_rank = 32;
     double restyled_share = 0;
     double more_share = 0;
+    bool more_looks = false;
     bool bf16 = false;
     std::string device = "cpu";
     std::uint64_t seed = 1;
@@ -190,6 +191,7 @@ struct StarterTrainParameters {
         f("more_share", self.more_share,
           "Share of the scenes drawn with --pictures-only that have things, materials, accessories or grounds which what finds things is not trained on.",
           Range{0, 1});
+        f("more_looks", self.more_looks, "Of these only materials, colours and grounds.");
         f("bf16", self.bf16, "Convolutions and matrix products of text encoder and UNet in bfloat16, norms and losses in float.");
         f("device", self.device, "cpu or cuda.");
         f("seed", self.seed, "Seed of pictures, weights, wording and noise.");

@@ -105,11 +105,11 @@ DiffusionViews::DiffusionViews(std::shared_ptr<const ModelBundle> bundle, std::s
       restyles_(restyles && shapes_ != nullptr),
       apart_(is_small(bundle_->unet->config()) && bundle_->device.is_cpu()) {}
 
-/// `exact`: the model knows every azimuth by the mixture of the sentences for the two sides beside it.
+/// `exact`: for what draws new things, which knows every azimuth by the mixture of the sentences for the two sides beside it.
 torch::Tensor DiffusionViews::contexts(const std::vector<edit::RoundView>& views, const std::string& prompt, bool exact) {
     const auto encoded = [&](const std::string& sentence) {
-        auto& known = encoded_[sentence];
-        if (!known.defined()) known = bundle_->encode_prompts({sentence});
+        auto& known = encoded_[{exact, sentence}];
+        if (!known.defined()) known = (exact ? shapes_ : bundle_)->encode_prompts({sentence});
         return known;
     };
     std::vector<torch::Tensor> rows;

@@ -55,7 +55,7 @@ private:
     SdsParameters parameters_;
     const bool restyles_;
     const bool apart_;   // views are shared out among threads, not operations
-    std::map<std::string, torch::Tensor> encoded_;   // [1,T,D], one per sentence
+    std::map<std::pair<bool, std::string>, torch::Tensor> encoded_;   // [1,T,D], one per sentence and network
     KeptLatents originals_;                          // of the unedited views: the same in every round
 };
 

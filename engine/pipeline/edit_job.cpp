@@ -11,6 +11,7 @@
 #include "engine/base/error.h"
 #include "engine/base/log.h"
 #include "engine/base/log_quiet.h"
+#include "engine/edit/dye.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/localize/focus.h"
 #include "engine/pipeline/neural_loader.h"
@@ -129,7 +130,10 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
     check_fields(recipe_.attention);
     check_fields(recipe_.dreambooth);
     const auto known = model != nullptr ? model->known_words() : model_words(model_path(recipe_.job));
-    edit::require_known_words(recipe_.request, known, recipe_.job.brings_label() || !hints_.label.empty());
+    const auto drawn = !edit::edits_by_views(recipe_.request) ? std::vector<std::string>{}
+                       : model != nullptr                     ? edit::with_dyes(model->drawn_words(), known)
+                                                              : drawn_words(model_path(recipe_.job));
+    edit::require_known_words(recipe_.request, known, drawn, recipe_.job.brings_label() || !hints_.label.empty());
     check_length();
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});
@@ -159,7 +163,8 @@ void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Seg
     for (auto& word : edit::words_of(recipe_.request.source)) words.push_back(std::move(word));
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());
-    warn_unknown_words(words, workplace_->model().known_words());
+    const auto known = workplace_->model().known_words();
+    warn_unknown_words(words, edit::edits_by_views(recipe_.request) ? edit::words_to_say(known, edit::with_dyes(workplace_->model().drawn_words(), known)) : known);
     views_ = std::make_shared<const Views>(choose_views(workplace_->scene(), recipe_, given));
     if (views_->automatic && !given.cameras.empty())
         log::info("{} stored views are too few to search from: an orbit around the scene is used", given.cameras.size());

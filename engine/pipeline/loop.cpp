@@ -5,9 +5,11 @@
 #include <utility>
 
 #include "engine/base/log.h"
+#include "engine/edit/dye.h"
 #include "engine/edit/head.h"
 #include "engine/edit/instruction.h"
 #include "engine/edit/plain_ground.h"
+#include "engine/edit/vocabulary.h"
 #include "engine/pipeline/neural_loader.h"
 #include "engine/pipeline/recipe_model.h"
 #include "engine/pipeline/segmenters.h"
@@ -187,12 +189,16 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     const auto& model = workplace.model();
     const auto& request = recipe.request;
     const bool editor = model.kind() == neural::BundleKind::InstructPix2Pix;
+    const bool by_views = edit::edits_by_views(request);
+    const auto dye = by_views && !editor ? edit::dye_of(request, edit::words_to_say(model.known_words(), model.drawn_words())) : std::nullopt;
     const auto prompt = editor ? told_to_editor(request) : edit::as_told(request.prompt);
     auto settings = with_sentence_before(recipe.guidance, request);
     settings.restyle = way.restyle;
-    const bool by_views = edit::edits_by_views(request);
     const auto guidance = model.guidance(prompt, by_views ? neural::polishing(settings) : settings);
-    const auto views = by_views ? model.views(prompt, settings) : nullptr;
+    const auto drawn = by_views ? model.views(dye ? edit::told_with(*dye, prompt) : prompt, settings) : nullptr;
+    std::optional<edit::DyedViews> dyed;
+    if (dye) dyed.emplace(*drawn, *dye);
+    edit::ViewGuidance* const views = dyed ? &*dyed : drawn.get();
     edit::EditTools tools{workplace.painter().rasterizer(), *guidance, observer.snapshot, control, observer.iteration};
     tools.snapshot_seconds = observer.snapshot_seconds;
     tools.new_label = observer.new_label;
@@ -205,11 +211,11 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     tools.word = dynamic_word(located, request);
     std::optional<edit::OnPlainGround> on_ground;
     if (way.plain_ground && ground && views) on_ground.emplace(*views, ground->plain, shown_before(plan, recipe));
-    tools.views = on_ground ? &*on_ground : views.get();
+    tools.views = on_ground ? &*on_ground : views;
     std::optional<Kept> kept;
     if (attempts.several() && views) tools.views = &kept.emplace(*tools.views, attempts.answers());
     tools.known = model.known_words();
-    tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings).dump() + (on_ground ? "plain ground" : "");
+    tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings).dump() + (on_ground ? "plain ground" : "") + (dye ? edit::joined(dye->words) : "");
     Edited edited;
     tools.targets = [&](const edit::ViewTargets& sheet) {
         if (!edited.verdict) {

@@ -10,7 +10,7 @@
 namespace gse::pipeline {
 
 /// Raised when an answer changes that stays the same by files and settings: what is kept of earlier versions is not found then.
-constexpr int AnswersVersion = 3;
+constexpr int AnswersVersion = 4;
 
 /// Changes with the contents of weights, configurations, vocabularies, LoRAs, the tiny autoencoder and the networks' library, with
 /// device, precision and processor, and with `version`; of names, only the model's own counts. The contents of a file are read

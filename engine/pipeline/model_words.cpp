@@ -8,6 +8,7 @@
 #include "engine/base/file.h"
 #include "engine/base/json.h"
 #include "engine/base/log.h"
+#include "engine/edit/dye.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/edit/words.h"
 #ifdef GSE_NEURAL
@@ -45,7 +46,7 @@ std::shared_ptr<const neural::PromptReader> reader_of(const fs::path& model) {
 std::size_t words_read(const fs::path& model, const std::vector<std::string>& words) {
     const auto reader = reader_of(model);
     if (!reader) return words.size();
-    const auto known = model_words(model);
+    const auto known = edit::words_to_say(model_words(model), drawn_words(model));
     std::vector<std::string> told;
     std::vector<std::size_t> places;   // of what is told, in the sentence
     for (std::size_t i = 0; i < words.size(); ++i) {
@@ -64,13 +65,24 @@ nlohmann::json model_json(const fs::path& path) {
     return fs::exists(path) ? try_parse_json(read_start(path, LongestHeader)) : nlohmann::json();
 }
 
-std::vector<std::string> model_words(const fs::path& folder) {
+namespace {
+
+std::vector<std::string> word_list(const fs::path& folder, const char* key) {
     std::vector<std::string> words;
     const auto own = model_json(folder / "gseditpro.json");
-    if (!own.is_object() || !own.contains("vocabulary") || !own["vocabulary"].is_array()) return words;
-    for (const auto& word : own["vocabulary"])
+    if (!own.is_object() || !own.contains(key) || !own[key].is_array()) return words;
+    for (const auto& word : own[key])
         if (word.is_string()) words.push_back(word.get<std::string>());
     return words;
+}
+
+}  // namespace
+
+std::vector<std::string> model_words(const fs::path& folder) { return word_list(folder, "vocabulary"); }
+
+std::vector<std::string> drawn_words(const fs::path& folder) {
+    const auto known = model_words(folder);
+    return known.empty() ? known : edit::with_dyes(word_list(folder, "drawn_vocabulary"), known);
 }
 
 }  // namespace gse::pipeline

@@ -356,6 +356,7 @@ std::optional<RememberingModel::Facts> RememberingModel::kept_facts() const {
     try {
         Facts facts;
         facts.words = json.at("words").get<std::vector<std::string>>();
+        facts.drawn_words = json.at("drawn_words").get<std::vector<std::string>>();
         facts.image_size = json.at("image_size").get<int>();
         facts.name = json.at("name").get<std::string>();
         facts.kind = static_cast<neural::BundleKind>(json.at("kind").get<int>());
@@ -379,11 +380,11 @@ bool RememberingModel::known() const {
 const RememberingModel::Facts& RememberingModel::facts() const {
     if (known()) return *facts_;
     const auto& model = real();
-    Facts facts{model.known_words(), model.image_size(), model.name(), model.kind(), model.text_image_score() != nullptr, model.knows_scene(), model.restyles(), 0.5, 0};
+    Facts facts{model.known_words(), model.drawn_words(), model.image_size(), model.name(), model.kind(), model.text_image_score() != nullptr, model.knows_scene(), model.restyles(), 0.5, 0};
     const auto attention = model.attention();
     facts.threshold = attention->threshold();
     facts.attention_size = attention->image_size();
-    const nlohmann::json json{{"words", facts.words},   {"image_size", facts.image_size}, {"name", facts.name},
+    const nlohmann::json json{{"words", facts.words},   {"drawn_words", facts.drawn_words}, {"image_size", facts.image_size}, {"name", facts.name},
                               {"kind", facts.kind},     {"scores", facts.scores},         {"knows_scene", facts.knows_scene},
                               {"restyles", facts.restyles},   {"threshold", facts.threshold},     {"attention_size", facts.attention_size}};
     cache_->keep("facts of " + identity_, json_text(json));

@@ -33,6 +33,7 @@ public:
     bool knows_scene() const override { return facts().knows_scene; }
     bool restyles() const override { return facts().restyles; }
     std::vector<std::string> known_words() const override { return facts().words; }
+    std::vector<std::string> drawn_words() const override { return facts().drawn_words; }
     int image_size() const override { return facts().image_size; }
     std::string name() const override { return facts().name; }
     neural::BundleKind kind() const override { return facts().kind; }
@@ -59,7 +60,7 @@ public:
 private:
     /// What can be said of a model without loading it, once it was loaded.
     struct Facts {
-        std::vector<std::string> words;
+        std::vector<std::string> words, drawn_words;
         int image_size = 0;
         std::string name;
         neural::BundleKind kind = neural::BundleKind::Plain;

@@ -8,11 +8,11 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-const std::string& pick(const Words& words, Random& random) { return words[random.below(words.size())]; }
+const std::string& one_of(const Words& words, Random& random) { return words[random.below(words.size())]; }
 
 /// One of `more` with probability `share`, else one of `words`.
-const std::string& pick(const Words& words, const Words& more, double share, Random& random) {
-    return pick(random.uniform() < share ? more : words, random);
+const std::string& one_of(const Words& words, const Words& more, double share, Random& random) {
+    return one_of(random.uniform() < share ? more : words, random);
 }
 
 }  // namespace
@@ -65,7 +65,7 @@ const Words& drawn_vocabulary() {
     return words;
 }
 
-SceneSpec training_spec_of_more(Random& random, double with_accessory) {
+SceneSpec training_spec_of_more(Random& random, double with_accessory, bool looks) {
     constexpr double NewObject = 0.5, NewMaterial = 0.45, NewAccessory = 0.5, NewGround = 0.2, Natural = 0.15, MoreColour = 0.35;
     static const Words more_colours{"pink", "brown", "gray", "turquoise", "silver", "striped", "spotted", "checkered", "rainbow"};
     const auto is_more = [](const SceneSpec& spec) {
@@ -75,12 +75,12 @@ SceneSpec training_spec_of_more(Random& random, double with_accessory) {
     SceneSpec spec;
     do {
         spec = random_spec(random, with_accessory);
-        spec.object = pick({spec.object}, more_object_words(), NewObject, random);
-        spec.material = pick({spec.material}, more_material_words(), NewMaterial, random);
-        spec.ground = pick({spec.ground}, more_ground_words(), NewGround, random);
+        spec.object = one_of({spec.object}, more_object_words(), looks ? 0 : NewObject, random);
+        spec.material = one_of({spec.material}, more_material_words(), NewMaterial, random);
+        spec.ground = one_of({spec.ground}, more_ground_words(), NewGround, random);
         if (spec.accessory.empty()) continue;
-        if (random.uniform() < NewAccessory) {
-            spec.accessory = pick(more_accessory_words(), random);
+        if (random.uniform() < (looks ? 0 : NewAccessory)) {
+            spec.accessory = one_of(more_accessory_words(), random);
             spec.accessory_colour.clear();
         }
         const auto& colours = accessory_colour_words(spec.accessory);
@@ -89,7 +89,7 @@ SceneSpec training_spec_of_more(Random& random, double with_accessory) {
             continue;
         }
         do {
-            spec.accessory_colour = pick(colours, more_colours, MoreColour, random);
+            spec.accessory_colour = one_of(colours, more_colours, MoreColour, random);
         } while (spec.accessory_colour == spec.material);
     } while (held_out(spec) || !is_more(spec));
     return spec;

@@ -73,8 +73,8 @@ SceneSpec training_spec(Random& random, double with_accessory = 0.5);
 /// The same, always held out.
 SceneSpec held_out_spec(Random& random, double with_accessory = 0.5);
 
-/// The same with at least one of more_*_words(), never held out.
-SceneSpec training_spec_of_more(Random& random, double with_accessory = 0.5);
+/// The same with at least one of more_*_words(), never held out. `looks`: of these only materials, colours and grounds.
+SceneSpec training_spec_of_more(Random& random, double with_accessory = 0.5, bool looks = false);
 
 /// Radians by which the scene's thing is turned about the vertical: the camera at this azimuth sees its front.
 double turn_of(const SceneSpec& spec);

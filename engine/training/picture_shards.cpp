@@ -134,7 +134,7 @@ void write_picture_shard(const neural::StarterSource& source, const ShardRange& 
 
 void write_picture_shards(const neural::StarterTrainParameters& parameters, const std::filesystem::path& folder, const JobControl& job,
                           std::uint64_t per_file) {
-    const auto source = make_shape_source(parameters.seed, parameters.restyled_share, parameters.more_share);
+    const auto source = make_shape_source(parameters.seed, {parameters.restyled_share, parameters.more_share, parameters.more_looks});
     const auto views = static_cast<std::uint64_t>(source->views_of_scene()), count = static_cast<std::uint64_t>(parameters.pictures);
     const std::uint64_t each = std::max<std::uint64_t>(1, (per_file + views - 1) / views) * views, files = (count + each - 1) / each;
     auto words = source->vocabulary();

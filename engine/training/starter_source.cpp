@@ -238,8 +238,8 @@ void spell_grey(std::string& text) {
 class ShapeSource : public neural::StarterSource {
 public:
     /// `edited`: with what is new in it; else as it was before.
-    ShapeSource(std::uint64_t seed, double restyled, double more, bool edited = true) : seed_(seed), restyled_(restyled), more_(more), edited_(edited) {
-        if (edited) before_ = std::make_unique<ShapeSource>(seed, restyled, more, false);
+    ShapeSource(std::uint64_t seed, const ShapeMix& mix, bool edited = true) : seed_(seed), mix_(mix), edited_(edited) {
+        if (edited) before_ = std::make_unique<ShapeSource>(seed, mix, false);
     }
 
     neural::StarterPicture picture(std::uint64_t index, int size) const override {
@@ -276,7 +276,7 @@ public:
         const auto side = synth::side_blend(shot.azimuth);
         return {text + ", " + side.words, {}, text + ", " + side.next_words, side.share};
     }
-    std::vector<std::string> vocabulary() const override { return more_ > 0 ? synth::drawn_vocabulary() : synth::vocabulary(); }
+    std::vector<std::string> vocabulary() const override { return mix_.more > 0 ? synth::drawn_vocabulary() : synth::vocabulary(); }
     int views_of_scene() const override { return Views; }
     neural::StarterCamera camera(std::uint64_t index) const override {
         const Shot shot = shot_of(index);
@@ -289,8 +289,8 @@ public:
     }
     bool has_outlines() const override { return edited_; }
     std::string identity() const override {
-        return fmt::format("synthetic shapes 6 {}{}{}", edited_ ? "" : "before ", seed_, restyled_ > 0 ? fmt::format(" restyled {}", restyled_) : "") +
-               (more_ > 0 ? fmt::format(" more {}", more_) : "");
+        return fmt::format("synthetic shapes 6 {}{}{}", edited_ ? "" : "before ", seed_, mix_.restyled > 0 ? fmt::format(" restyled {}", mix_.restyled) : "") +
+               (mix_.more > 0 ? fmt::format(" more {}{}", mix_.more, mix_.more_looks ? " looks" : "") : "");
     }
 
 private:
@@ -300,8 +300,8 @@ private:
     Shot shot_of(std::uint64_t index) const {
         Random random = Random::stream(seed_, index / Views);
         Shot shot;
-        shot.more = more_ > 0 && Random::stream(seed_ + 3, index / Views).uniform() < more_;
-        shot.spec = shot.more ? synth::training_spec_of_more(random, WithAccessory) : synth::training_spec(random, WithAccessory);
+        shot.more = mix_.more > 0 && Random::stream(seed_ + 3, index / Views).uniform() < mix_.more;
+        shot.spec = shot.more ? synth::training_spec_of_more(random, WithAccessory, mix_.more_looks) : synth::training_spec(random, WithAccessory);
         const double zoom = random.uniform(0.8, 1.6);
         shot.background = random_background(random);
         if (!shot.spec.accessory.empty() && random.uniform() < 0.5) {
@@ -317,7 +317,7 @@ private:
     }
     void restyle(Shot& shot, Random random) const {
         constexpr double Accessory = 0.25, Ground = 0.3, Squeezed = 0.5, MostSqueezed = 0.3;   // shares; of the logarithm
-        if (!(random.uniform() < restyled_)) return;
+        if (!(random.uniform() < mix_.restyled)) return;
         const bool coloured = synth::accessory_colour_words(shot.spec.accessory).size() > 1;
         if (coloured && random.uniform() < Accessory) {
             shot.restyled = synth::Part::Accessory;
@@ -328,8 +328,7 @@ private:
         if (random.uniform() < Squeezed) shot.squeeze = std::exp(random.uniform(-MostSqueezed, MostSqueezed));
     }
     std::uint64_t seed_;
-    double restyled_;   // share of the scenes
-    double more_;       // share of the scenes, of words that only what draws is trained on
+    ShapeMix mix_;
     bool edited_;
     std::unique_ptr<ShapeSource> before_;
 };
@@ -410,8 +409,8 @@ std::vector<std::uint8_t> to_bytes(const Image& image) {
     return bytes;
 }
 
-std::unique_ptr<neural::StarterSource> make_shape_source(std::uint64_t seed, double restyled, double more) {
-    return std::make_unique<ShapeSource>(seed, restyled, more);
+std::unique_ptr<neural::StarterSource> make_shape_source(std::uint64_t seed, const ShapeMix& mix) {
+    return std::make_unique<ShapeSource>(seed, mix);
 }
 
 std::unique_ptr<neural::StarterSource> make_starter_source(std::uint64_t seed) {

@@ -40,6 +40,8 @@ def arguments():
     add("--start", type=int, default=81920, help="pictures to wait for")
     add("--consume", action="store_true", help="remove every file of pictures once it is read: drawing and training may go on on a small disk")
     add("--save-every", type=float, default=0, help="seconds between two writings of what there is so far; 0 = only at the end")
+    add("--words-only", action="store_true", help="the network stays as it is: only the embeddings of new words are learned, those in --words")
+    add("--words", default="", help="of the new words only these; empty = all")
     add("--check", action="store_true", help="only say the loss of what the model has")
     return parser.parse_args()
 
@@ -60,7 +62,7 @@ class Trainer:
         self.vae = Vae(config).to(self.device)
         self.vae.load_state_dict(weights.load(f"{model}/vae/diffusion_pytorch_model.safetensors"))
         heads = json.load(open(f"{model}/text_encoder/config.json"))["num_attention_heads"]
-        self.tokenizer = words.Tokenizer(model, json.load(open(f"{options.pictures}/vocabulary.json")))
+        self.tokenizer = words.Tokenizer(model, json.load(open(f"{options.pictures}/vocabulary.json")), options.words.split())
         self.text_weights = self.tokenizer.extended(weights.load(f"{model}/text_encoder/model.safetensors"))
         self.text = TextEncoder(self.text_weights, heads, self.tokenizer.fresh).to(self.device)
         self.scale = config["scaling_factor"]
@@ -83,7 +85,7 @@ class Trainer:
         ids = self.tokenizer.ids
         table = torch.full((256,), ids["<|endoftext|>"])
         for i, word in enumerate(self.tokenizer.words):
-            table[i] = ids[word + "</w>"]
+            table[i] = ids.get(word + "</w>", ids["<|endoftext|>"])
         return table, ids["<|startoftext|>"], ids["<|endoftext|>"]
 
     def encode(self, pictures):
@@ -119,7 +121,11 @@ class Trainer:
         return make_batch(self.pictures, self.options.groups, TOGETHER, (HELD_OUT, self.pictures.count // VIEWS), self.draw)
 
     def prepare(self):
-        self.parameters = list(self.unet.parameters()) + ([self.text.fresh] if self.tokenizer.fresh else [])
+        for parameter in self.unet.parameters():
+            parameter.requires_grad_(not self.options.words_only)
+        self.parameters = [] if self.options.words_only else list(self.unet.parameters())
+        if self.tokenizer.fresh:
+            self.parameters.append(self.text.fresh)
         self.averaged = [p.detach().clone() for p in self.parameters]
         self.rate, self.decay = torch.zeros((), device=self.device), torch.zeros((), device=self.device)
         self.logged = torch.zeros(3, device=self.device)
@@ -168,9 +174,9 @@ class Trainer:
         log = open(f"{self.options.out}/log/shapes.tsv", "w")
         log.write("step\tseconds\tlearning_rate\tpictures\tloss\tdiffusion\toutline\n")
         while time.time() - begin < seconds:
-            rate = self.options.lr * min(1, (step + 1) / 300) * 0.5 * (1 + math.cos(math.pi * (time.time() - begin) / seconds))
+            rate = self.options.lr * min(1, (step + 1) / (10 if self.options.words_only else 300)) * 0.5 * (1 + math.cos(math.pi * (time.time() - begin) / seconds))
             self.rate.fill_(rate)
-            self.decay.fill_(max(1 / (step + 2), 0.0006))
+            self.decay.fill_(max(1 / (step + 2), 0.02 if self.options.words_only else 0.0006))
             if not self.cuda:
                 self.optimizer.param_groups[0]["lr"] = rate
             step_on(self.batch())
@@ -241,10 +247,13 @@ class Trainer:
     def write(self):
         """The model with a network of its own for new things in place of a LoRA."""
         out, facts = self.options.out, json.load(open(f"{self.options.model}/gseditpro.json"))
+        self.tokenizer.write(out, facts, self.text_weights, self.text.fresh.detach().cpu() * self.text.SPEED)
+        if self.options.words_only:
+            json.dump(facts, open(f"{out}/gseditpro.json", "w"), indent=2)
+            return
         os.makedirs(f"{out}/shapes", exist_ok=True)
         weights.save(f"{out}/shapes/diffusion_pytorch_model.safetensors", weights.quantized(self.unet.state_dict()))
         json.dump(self.config, open(f"{out}/shapes/config.json", "w"), indent=2)
-        self.tokenizer.write(out, facts, self.text_weights, self.text.fresh.detach().cpu() * self.text.SPEED)
         weights.save(f"{out}/vae/diffusion_pytorch_model.safetensors", {name: tensor.half() for name, tensor in self.vae.state_dict().items()})
         for path in (facts.pop(key) for key in ("shape_lora", "shape_cameras") if key in facts):
             if os.path.exists(f"{out}/{path}"):

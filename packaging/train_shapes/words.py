@@ -4,6 +4,15 @@ import json
 import torch
 
 
+# Known words whose mean a new word begins from.
+BEGINNINGS = {
+    "pink": "red white", "brown": "wooden black", "gray": "stone", "grey": "stone", "turquoise": "blue green", "silver": "golden white",
+    "bronze": "golden orange", "marble": "stone white", "brick": "red stone", "striped": "white purple", "spotted": "white purple",
+    "checkered": "black white", "rainbow": "yellow purple green", "rusty": "orange stone", "lava": "black orange", "mossy": "green stone",
+    "leaves": "sand orange", "mud": "sand wood", "gravel": "stone sand", "ice": "snow water",
+}
+
+
 def pieces(word, ranks):
     """Byte-pair encoding of an ASCII word (Sennrich et al. 2016, as CLIP's tokenizer has it)."""
     parts = list(word[:-1]) + [word[-1] + "</w>"]
@@ -18,13 +27,14 @@ def pieces(word, ranks):
 class Tokenizer:
     """The tokenizer of a starter folder, in which each of `words` is one token."""
 
-    def __init__(self, model, words):
+    def __init__(self, model, words, chosen=()):
+        """`chosen`: of the words that are new to the model only these become tokens; none = all."""
         self.words = words
         self.ids = json.load(open(f"{model}/tokenizer/vocab.json"))
         self.merges = open(f"{model}/tokenizer/merges.txt").read().splitlines()
         self.size = len(self.ids)
         ranks = {tuple(line.split(" ")): i for i, line in enumerate(self.merges[1:])}
-        self.new_words = [word for word in words if word + "</w>" not in self.ids]
+        self.new_words = [word for word in words if word + "</w>" not in self.ids and (not chosen or word in chosen)]
         for word in self.new_words:
             parts = pieces(word, ranks)
             while len(parts) > 1:   # from the front on: what other words' merges leave is merged in its order
@@ -33,7 +43,7 @@ class Tokenizer:
                 self.ids.setdefault("".join(pair), len(self.ids))
                 parts[0:2] = ["".join(pair)]
         self.merges = self.merges[:1] + [" ".join(pair) for pair in sorted(ranks, key=ranks.get)]
-        wrong = [word for word in words if len(pieces(word, ranks)) != 1]
+        wrong = [word for word in words if len(pieces(word, ranks)) != 1 and (word in self.new_words or word + "</w>" in self.ids)]
         if wrong:
             raise SystemExit(f"these words cannot be made one token each: {', '.join(wrong)}")
         self.fresh = len(self.ids) - self.size
@@ -46,6 +56,10 @@ class Tokenizer:
             return text
         used = rows[rows.std(1) > 0]
         fresh = used.mean(0) + used.std() * torch.randn(self.fresh, rows.shape[1], generator=torch.Generator().manual_seed(17))
+        for word in self.new_words:
+            like = [rows[self.ids[known + "</w>"]] for known in BEGINNINGS.get(word, "").split()]
+            if like:
+                fresh[self.ids[word + "</w>"] - self.size] = torch.stack(like).mean(0)
         return {**text, name: torch.cat([rows, fresh])}
 
     def write(self, out, facts, text, fresh):

@@ -171,6 +171,13 @@ void draw_segmenter(Context& context, const SegmenterTexts& texts) {
     if (button(context, {.name = name + ".browse", .text = "Browse..."})) ask_segmenter(context, texts);
 }
 
+void draw_words(const std::vector<std::string>& words) {
+    for (const auto& word : words) {
+        if (&word != &words.front()) flow(ImGui::CalcTextSize(word.c_str()).x);
+        ImGui::TextUnformatted(word.c_str());
+    }
+}
+
 }  // namespace
 
 void draw_models_panel(Context& context) {
@@ -183,9 +190,10 @@ void draw_models_panel(Context& context) {
         dim_text(words.empty() ? "The chosen model takes any word."
                                : fmt::format("The chosen model knows {} words.", words.size()));
     if (!words.empty() && folding(context, "models.words", "Words it knows")) {
-        for (const auto& word : words) {
-            if (&word != &words.front()) flow(ImGui::CalcTextSize(word.c_str()).x);
-            ImGui::TextUnformatted(word.c_str());
+        draw_words(words);
+        if (!context.model.drawn_words.empty()) {
+            dim_text("It draws these besides, but does not find them:");
+            draw_words(context.model.drawn_words);
         }
     }
     draw_loras(context);

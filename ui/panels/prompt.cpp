@@ -53,7 +53,9 @@ void draw_unknown_source(Context& context) {
         dim_text(fmt::format("The model does not know \"{}\": your label says where it is.", word));
         return;
     }
-    coloured_text(palette::Warning, fmt::format("The model does not know \"{}\" and cannot find it.", word));
+    coloured_text(palette::Warning, edit::knows(context.model.drawn_words, word) && !context.model.drawn_words.empty()
+                                        ? fmt::format("The model can draw \"{}\" but not find it.", word)
+                                        : fmt::format("The model does not know \"{}\" and cannot find it.", word));
     for (std::size_t i = 0; i < prompt.source_suggestions.size(); ++i) {
         const auto& suggestion = prompt.source_suggestions[i];
         const std::string text = fmt::format("Use \"{}\"", suggestion);

@@ -6,6 +6,8 @@
 #include "tests/agree/raster/cuda_cases.h"
 #include "tests/test_paths.h"
 
+namespace device_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -35,3 +37,5 @@ DOCTEST_TEST_CASE("a CUDA device agrees with the plain version and with the emul
         DOCTEST_CHECK(found.image.pairs == test::run(*emulated, data, camera, c.settings).image.pairs);
     }
 }
+
+}  // namespace device_test

@@ -13,6 +13,8 @@
 #include "engine/scene/delta.h"
 #include "engine/synth/synth.h"
 
+namespace oracle_edits_test {
+
 namespace {
 
 using namespace gse;
@@ -250,3 +252,5 @@ DOCTEST_TEST_CASE("every position of the strength gives more of the edit than th
     request.strength = 0;
     DOCTEST_CHECK(same_sets(edit_of(oracle, request, *rasterizer).set, base));
 }
+
+}  // namespace oracle_edits_test

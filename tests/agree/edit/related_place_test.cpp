@@ -10,6 +10,8 @@
 #include "engine/localize/clusters.h"
 #include "engine/synth/synth.h"
 
+namespace related_place_test {
+
 namespace {
 
 using namespace gse;
@@ -172,3 +174,5 @@ DOCTEST_TEST_CASE("attention is followed on the right side of the source, and no
     }
     log::set_level(log::Level::Info);
 }
+
+}  // namespace related_place_test

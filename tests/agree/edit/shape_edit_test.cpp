@@ -17,6 +17,8 @@
 #include "engine/raster/rasterizer.h"
 #include "engine/synth/synth.h"
 
+namespace shape_edit_test {
+
 namespace {
 
 using namespace gse;
@@ -318,3 +320,5 @@ DOCTEST_TEST_CASE("a colour that the sentence leaves open is the one that the fi
     run.run();
     for (const auto& input : run.views.inputs) DOCTEST_CHECK(input.sentence.empty());
 }
+
+}  // namespace shape_edit_test

@@ -10,6 +10,8 @@
 #include "engine/synth/synth.h"
 #include "tests/agree/raster/scenes.h"
 
+namespace view_session_edit_test {
+
 namespace {
 
 using namespace gse;
@@ -107,3 +109,5 @@ DOCTEST_TEST_CASE("an edit gives the same bytes with and without memory for its 
                 }
         }
 }
+
+}  // namespace view_session_edit_test

@@ -9,6 +9,8 @@
 #include "tests/agree/preview/device.h"
 #include "tests/agree/raster/scenes.h"
 
+namespace pictures_test {
+
 using namespace gse;
 
 namespace {
@@ -208,3 +210,5 @@ DOCTEST_TEST_CASE("display modes look the same on the device and on the CPU") {
         }
     DOCTEST_CHECK(shared->instance->message_count() == 0);
 }
+
+}  // namespace pictures_test

@@ -8,6 +8,8 @@
 #include "tests/agree/preview/device.h"
 #include "tests/agree/raster/scenes.h"
 
+namespace renderer_test {
+
 using namespace gse;
 
 namespace {
@@ -276,3 +278,5 @@ DOCTEST_TEST_CASE("many splats that fill the picture are all binned") {
     DOCTEST_CHECK(worst < 2e-3);
     DOCTEST_CHECK(other < 2e-3);
 }
+
+}  // namespace renderer_test

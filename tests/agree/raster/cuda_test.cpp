@@ -9,6 +9,8 @@
 #include "engine/raster/cuda/self_check.h"
 #include "tests/agree/raster/cuda_cases.h"
 
+namespace cuda_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -103,3 +105,5 @@ DOCTEST_TEST_CASE("the self-check passes on the processor's stand-in") {
         DOCTEST_CHECK(check.passed());
     }
 }
+
+}  // namespace cuda_test

@@ -9,6 +9,8 @@
 #include "engine/raster/fast_frame.h"
 #include "tests/agree/raster/scenes.h"
 
+namespace exactness_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -168,3 +170,5 @@ DOCTEST_TEST_CASE("GSE_CPU forces an instruction set and refuses what it does no
     DOCTEST_CHECK(name_under("") == raster::usable_kernels().front());  // the best is the default
     DOCTEST_CHECK_THROWS_AS(name_under("sse9"), Error);
 }
+
+}  // namespace exactness_test

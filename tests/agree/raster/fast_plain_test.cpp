@@ -5,6 +5,8 @@
 #include "engine/raster/cuda/emulated_device.h"
 #include "tests/agree/raster/cases.h"
 
+namespace fast_plain_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -87,3 +89,5 @@ DOCTEST_TEST_CASE("contributions equal the gradient of a constant colour, and ad
         DOCTEST_CHECK(test::relative_l2(ones.data, image.alpha.data) < test::ContributionTolerance);
     }
 }
+
+}  // namespace fast_plain_test

@@ -8,6 +8,8 @@
 #include "engine/scene/scene.h"
 #include "tests/agree/raster/scenes.h"
 
+namespace scale_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -118,3 +120,5 @@ DOCTEST_TEST_CASE("a plane that is given stays where it is") {
         DOCTEST_CHECK(seen_rows > 20);
     }
 }
+
+}  // namespace scale_test

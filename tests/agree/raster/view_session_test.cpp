@@ -8,6 +8,8 @@
 #include "engine/raster/view_session.h"
 #include "tests/agree/raster/scenes.h"
 
+namespace view_session_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -283,3 +285,5 @@ DOCTEST_TEST_CASE("a view session agrees with the plain version rendered in full
         DOCTEST_CHECK(truth->work().full == 3);
     }
 }
+
+}  // namespace view_session_test

@@ -6,6 +6,8 @@
 #include "engine/raster/cuda/emulated_device.h"
 #include "tests/golden/raster/golden_case.h"
 
+namespace fast_golden_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -53,3 +55,5 @@ DOCTEST_TEST_CASE("fast rasterizer equals the goldens") {
 }
 
 DOCTEST_TEST_CASE("the CUDA kernels equal the goldens") { equal_goldens(*cuda::make_emulated_cuda_rasterizer()); }
+
+}  // namespace fast_golden_test

@@ -5,6 +5,8 @@
 
 #include "tests/golden/raster/golden_case.h"
 
+namespace plain_golden_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -96,3 +98,5 @@ DOCTEST_TEST_CASE("plain rasterizer equals the goldens") {
         DOCTEST_CHECK(test::relative_l2(raw.sh, t["g_sh"]) < GradientTolerance);
     }
 }
+
+}  // namespace plain_golden_test

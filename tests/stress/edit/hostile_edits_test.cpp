@@ -10,6 +10,8 @@
 #include "engine/base/log.h"
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace hostile_edits_test {
+
 namespace {
 
 using namespace gse;
@@ -315,3 +317,5 @@ DOCTEST_TEST_CASE("far and tiny worlds") {
         check_sane(edit::run_edit(scene.set, plan, hostile_request(), {*rasterizer, guidance, {}, {}}));
     }
 }
+
+}  // namespace hostile_edits_test

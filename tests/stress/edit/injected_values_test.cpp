@@ -11,6 +11,8 @@
 #include "engine/scene/delta.h"
 #include "tests/unit/edit/view_oracle.h"
 
+namespace injected_values_test {
+
 namespace {
 
 using namespace gse;
@@ -298,3 +300,5 @@ DOCTEST_TEST_CASE("a search whose attention is broken in places finds what it fi
         DOCTEST_CHECK(others <= few);
     }
 }
+
+}  // namespace injected_values_test

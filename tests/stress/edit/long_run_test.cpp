@@ -10,6 +10,8 @@
 #include "engine/scene/delta.h"
 #include "tests/unit/edit/view_oracle.h"
 
+namespace long_run_test {
+
 namespace {
 
 using namespace gse;
@@ -123,3 +125,5 @@ DOCTEST_TEST_CASE("a long run of redrawn views: the same, round after round") {
     check_falls(result, [](const auto& record) { return record.preservation; });
     check_memory(memory, result);
 }
+
+}  // namespace long_run_test

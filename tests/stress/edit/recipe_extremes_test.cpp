@@ -10,6 +10,8 @@
 #include "engine/edit/oracle_guidance.h"
 #include "tests/unit/edit/view_oracle.h"
 
+namespace recipe_extremes_test {
+
 namespace {
 
 using namespace gse;
@@ -209,3 +211,5 @@ DOCTEST_TEST_CASE("every field of a search at each end of its range") {
         }
     DOCTEST_CHECK(found > searches.size());
 }
+
+}  // namespace recipe_extremes_test

@@ -8,6 +8,8 @@
 #include "engine/edit/working_set.h"
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace snapshots_test {
+
 namespace {
 
 using namespace gse;
@@ -162,3 +164,5 @@ DOCTEST_TEST_CASE("snapshots are thinned out by their number and by what they ho
     DOCTEST_CHECK(heavy.size() == 2);
     DOCTEST_CHECK(heavy.back().iteration == 19);
 }
+
+}  // namespace snapshots_test

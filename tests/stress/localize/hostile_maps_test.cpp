@@ -8,6 +8,8 @@
 #include "engine/localize/clusters.h"
 #include "engine/localize/points.h"
 
+namespace hostile_maps_test {
+
 namespace {
 
 using namespace gse;
@@ -56,3 +58,5 @@ DOCTEST_TEST_CASE("a label of a scene that nobody sees is empty") {
     for (const auto bit : *label.bits) DOCTEST_CHECK(bit == 0);
     for (const float weight : *label.weight) DOCTEST_CHECK(weight == 0);
 }
+
+}  // namespace hostile_maps_test

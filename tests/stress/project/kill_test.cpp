@@ -12,6 +12,8 @@
 #include "engine/io/autosave.h"
 #include "tests/unit/io/project_helpers.h"
 
+namespace kill_test {
+
 using namespace gse;
 using namespace gse::test;
 namespace fs = std::filesystem;
@@ -170,3 +172,5 @@ DOCTEST_TEST_CASE("kill -9 at random moments loses nothing that was said to be s
     DOCTEST_CHECK(in_flight > 0);  // else the moments prove nothing
     log::set_level(log::Level::Info);
 }
+
+}  // namespace kill_test

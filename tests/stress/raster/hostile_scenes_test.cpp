@@ -7,6 +7,8 @@
 #include "engine/raster/cuda/emulated_device.h"
 #include "tests/agree/raster/scenes.h"
 
+namespace hostile_scenes_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -201,3 +203,5 @@ DOCTEST_TEST_CASE("places where numbers get large or coincide") {
     }
     survive(h);
 }
+
+}  // namespace hostile_scenes_test

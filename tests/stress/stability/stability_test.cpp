@@ -11,6 +11,8 @@
 #include "engine/raster/cuda/emulated_device.h"
 #include "engine/raster/rasterizer.h"
 
+namespace stability_test {
+
 using namespace gse;
 using namespace gse::bench;
 
@@ -184,3 +186,5 @@ DOCTEST_TEST_CASE("decades of error, and causes that there are not") {
     DOCTEST_CHECK_THROWS_AS(hostile_scene("weather", 1), Error);
     DOCTEST_CHECK(measured("needles, camera inside", 1, 1).size() == 2 * raster::usable_kernels().size());
 }
+
+}  // namespace stability_test

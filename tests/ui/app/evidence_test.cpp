@@ -3,6 +3,8 @@
 
 #include "tests/ui/app/session.h"
 
+namespace evidence_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -85,3 +87,5 @@ DOCTEST_TEST_CASE("a search that is stopped gives back the views of the one befo
     DOCTEST_CHECK(app.model().attention[1].map->data == map.data);
     DOCTEST_CHECK(app.model().job.error.empty());
 }
+
+}  // namespace evidence_test

@@ -8,6 +8,8 @@
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 
+namespace exports_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -157,3 +159,5 @@ DOCTEST_TEST_CASE("the camera path is work of the project: saved, loaded, and no
     DOCTEST_CHECK(app.model().camera_keys.empty());
     app.shut_down();
 }
+
+}  // namespace exports_test

@@ -6,6 +6,8 @@
 
 #include "ui/foreign_fonts.h"
 
+namespace foreign_fonts_test {
+
 DOCTEST_TEST_CASE("a character that some font has is painted at its size, one that none has is not") {
     gse::ui::ForeignFonts fonts;
     for (const float size_px : {13.0f, 15.0f, 30.0f}) {
@@ -22,3 +24,5 @@ DOCTEST_TEST_CASE("a character that some font has is painted at its size, one th
     const auto space = fonts.paint(0x2003, 15);   // an em wide, nothing to be seen
     DOCTEST_CHECK((!space.has_value() || (space->width == 0 && space->advance > 5)));
 }
+
+}  // namespace foreign_fonts_test

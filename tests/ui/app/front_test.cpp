@@ -7,6 +7,8 @@
 #include "engine/pipeline/views.h"
 #include "tests/ui/app/session.h"
 
+namespace front_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -47,3 +49,5 @@ DOCTEST_TEST_CASE("a search takes the side that the scene was turned to with it,
     DOCTEST_CHECK(app.model().search.number == searches);
     app.shut_down();
 }
+
+}  // namespace front_test

@@ -9,6 +9,8 @@
 #include "engine/base/safetensors_header.h"
 #include "tests/ui/app/session.h"
 
+namespace lora_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -101,3 +103,5 @@ DOCTEST_TEST_CASE("LoRAs: added, weighed, taken off; a bad one leaves the model 
     DOCTEST_CHECK(last.app.model().loras.empty());
     DOCTEST_CHECK(last.app.model().toasts.back().text.find("without them") != std::string::npos);
 }
+
+}  // namespace lora_test

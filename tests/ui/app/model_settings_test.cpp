@@ -8,6 +8,8 @@
 #include "tests/ui/app/session.h"
 #include "ui/model_settings.h"
 
+namespace model_settings_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -149,3 +151,5 @@ DOCTEST_TEST_CASE("a scene is learned once for the same words and settings, and 
     search(true, [](auto& request) { request.views = 6; });
     DOCTEST_CHECK(tunings() == 2);
 }
+
+}  // namespace model_settings_test

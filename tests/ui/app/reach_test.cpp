@@ -6,6 +6,8 @@
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 
+namespace reach_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -142,3 +144,5 @@ DOCTEST_TEST_CASE("who paints a label means it, until another source is edited; 
     DOCTEST_CHECK(app.model().reach.label.empty());
     app.shut_down();
 }
+
+}  // namespace reach_test

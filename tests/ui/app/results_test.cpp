@@ -5,6 +5,8 @@
 #include "app/application.h"
 #include "tests/ui/app/session.h"
 
+namespace results_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -82,3 +84,5 @@ DOCTEST_TEST_CASE("one more result, and all of them discarded: the scene and wha
     DOCTEST_CHECK(app.model().view.tint_labels);
     DOCTEST_CHECK(app.document().state().current.shares_all_with(base));
 }
+
+}  // namespace results_test

@@ -9,6 +9,8 @@
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 
+namespace segmenter_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -91,3 +93,5 @@ DOCTEST_TEST_CASE("a thing in a box is cut out in the background, one step of un
     for (const auto& toast : app.model().toasts) DOCTEST_CHECK_FALSE(toast.is_error);   // it was the artist's wish
     app.shut_down();
 }
+
+}  // namespace segmenter_test

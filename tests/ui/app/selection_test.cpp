@@ -5,6 +5,8 @@
 #include "engine/io/scene_io.h"
 #include "tests/ui/app/session.h"
 
+namespace selection_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -249,3 +251,5 @@ DOCTEST_TEST_CASE("toasts of steps take them back, but not what came after") {
     app.press_toast(undo_button());
     DOCTEST_CHECK(app.document().revision() == revision);   // History leads back
 }
+
+}  // namespace selection_test

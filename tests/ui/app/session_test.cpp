@@ -18,6 +18,8 @@
 #include "engine/scene/label_ops.h"
 #include "tests/ui/app/session.h"
 
+namespace session_test {
+
 using namespace gse;
 using namespace gse::test;
 using namespace std::chrono_literals;
@@ -571,3 +573,5 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     DOCTEST_CHECK(session.app.model().toasts.back().is_error);
     DOCTEST_CHECK(session.app.model().document != nullptr);  // the open scene stays
 }
+
+}  // namespace session_test

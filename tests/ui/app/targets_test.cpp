@@ -7,6 +7,8 @@
 #include "engine/base/process_memory.h"
 #include "tests/ui/app/session.h"
 
+namespace targets_test {
+
 using namespace gse;
 using namespace gse::test;
 using edit::TargetChoice;
@@ -159,3 +161,5 @@ DOCTEST_TEST_CASE("what an edit is estimated to take after the search, beside wh
         app.discard_result();
     }
 }
+
+}  // namespace targets_test

@@ -11,6 +11,8 @@
 #include "engine/pipeline/scene_tools.h"
 #include "tests/ui/app/session.h"
 
+namespace unsaved_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -358,3 +360,5 @@ DOCTEST_TEST_CASE("one piece of news makes one toast") {
         for (std::size_t b = 0; b < toasts.size(); ++b)
             if (a != b) DOCTEST_CHECK(toasts[a].text.find(toasts[b].text) == std::string::npos);
 }
+
+}  // namespace unsaved_test

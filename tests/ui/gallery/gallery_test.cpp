@@ -12,7 +12,7 @@
 #include "tests/ui/support/harness.h"
 #include "ui/keys.h"
 
-namespace gse::test {
+namespace gse::test::gallery_test {
 namespace {
 
 std::filesystem::path gallery_folder() {
@@ -112,4 +112,4 @@ DOCTEST_TEST_CASE("the window in every state") {
     }
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::gallery_test

@@ -8,7 +8,7 @@
 #include "ui/keys.h"
 #include "ui/state.h"
 
-namespace gse::test {
+namespace gse::test::actions_test {
 namespace {
 
 namespace key = ui::key;
@@ -594,4 +594,4 @@ DOCTEST_TEST_CASE("toasts are closed and pressed") {
     DOCTEST_CHECK(asks(harness, "toast.0.close", "dismiss_toast 0"));
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::actions_test

@@ -8,7 +8,7 @@
 #include "engine/base/random.h"
 #include "ui/viewport/camera_control.h"
 
-namespace gse::ui {
+namespace gse::ui::camera_test {
 namespace {
 
 constexpr double Rounding = 1e-9;       // of doubles through a few rotations
@@ -264,4 +264,4 @@ DOCTEST_TEST_CASE("cameras that come back late are ours, others are not") {
     DOCTEST_CHECK(!sent.is_foreign(cameras[9]));
 }
 
-}  // namespace gse::ui
+}  // namespace gse::ui::camera_test

@@ -6,7 +6,7 @@
 #include "ui/glyphs.h"
 #include "ui/theme.h"
 
-namespace gse::test {
+namespace gse::test::glyphs_test {
 namespace {
 
 constexpr const char* Mixed = "b\xC3\xA4r \xE7\x86\x8A \xF0\x9F\x90\xBB";  // bär, the Chinese bear, the emoji bear
@@ -66,4 +66,4 @@ DOCTEST_TEST_CASE("a prompt with an emoji keeps it while it is edited") {
     DOCTEST_CHECK(harness.application.model().request.prompt == std::string(Mixed) + "!");
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::glyphs_test

@@ -9,7 +9,7 @@
 #include "ui/keys.h"
 #include "ui/state.h"
 
-namespace gse::test {
+namespace gse::test::keyboard_test {
 namespace {
 
 namespace key = ui::key;
@@ -268,4 +268,4 @@ DOCTEST_TEST_CASE("the list of keys tells about all of it") {
         DOCTEST_CHECK_MESSAGE(all.find(wanted) != std::string::npos, std::string(wanted));
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::keyboard_test

@@ -7,7 +7,7 @@
 
 #include "ui/keymap.h"
 
-namespace gse::test {
+namespace gse::test::keymap_test {
 
 using namespace ui;
 
@@ -55,4 +55,4 @@ DOCTEST_TEST_CASE("text that is no keymap changes nothing; keys with a fixed mea
     DOCTEST_CHECK(chord_text({}) == "");
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::keymap_test

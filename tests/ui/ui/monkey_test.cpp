@@ -10,7 +10,7 @@
 #include "tests/ui/support/harness.h"
 #include "ui/keys.h"
 
-namespace gse::test {
+namespace gse::test::monkey_test {
 namespace {
 
 namespace key = ui::key;
@@ -111,4 +111,4 @@ DOCTEST_TEST_CASE("nonsense from mouse and keyboard is survived") {
         }
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::monkey_test

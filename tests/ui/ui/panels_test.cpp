@@ -8,7 +8,7 @@
 
 #include "tests/ui/support/harness.h"
 
-namespace gse::test {
+namespace gse::test::panels_test {
 namespace {
 
 constexpr std::array<Situation, 6> Situations{Situation::Nothing,       Situation::Scene,
@@ -149,4 +149,4 @@ DOCTEST_TEST_CASE("nothing is sent while nobody does anything") {
     }
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::panels_test

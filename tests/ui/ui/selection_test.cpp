@@ -6,7 +6,7 @@
 #include "ui/keys.h"
 #include "ui/state.h"
 
-namespace gse::test {
+namespace gse::test::selection_test {
 namespace {
 
 constexpr int Wide = 1920, High = 1080;
@@ -133,4 +133,4 @@ DOCTEST_TEST_CASE("history: any step but the one that is shown can be compared w
     DOCTEST_CHECK(clicking_asks(harness, "history.compare.0", "compare_with 0"));   // takes it back
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::selection_test

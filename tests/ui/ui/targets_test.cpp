@@ -7,7 +7,7 @@
 #include "ui/keys.h"
 #include "ui/state.h"
 
-namespace gse::test {
+namespace gse::test::targets_test {
 namespace {
 
 constexpr int Wide = 1920, High = 1080;
@@ -146,4 +146,4 @@ DOCTEST_TEST_CASE("what the job has asked of the networks stands beside its time
     DOCTEST_CHECK(harness.find("progress.networks") != nullptr);
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::targets_test

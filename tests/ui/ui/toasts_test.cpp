@@ -6,7 +6,7 @@
 
 #include "tests/ui/support/harness.h"
 
-namespace gse::test {
+namespace gse::test::toasts_test {
 namespace {
 
 struct Screen {
@@ -93,4 +93,4 @@ DOCTEST_TEST_CASE("a dialog lies above the toasts") {
     DOCTEST_CHECK(harness.application.asked("quit"));
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::toasts_test

@@ -8,7 +8,7 @@
 #include "ui/keys.h"
 #include "ui/state.h"
 
-namespace gse::test {
+namespace gse::test::unsaved_test {
 namespace {
 
 constexpr int Wide = 1600, High = 900;
@@ -200,4 +200,4 @@ DOCTEST_TEST_CASE("a question of the application is shown once and answered once
     DOCTEST_CHECK(count_calls(harness, "answer 2") == 1);
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::unsaved_test

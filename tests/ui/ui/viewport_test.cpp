@@ -11,7 +11,7 @@
 #include "ui/keys.h"
 #include "ui/state.h"
 
-namespace gse::test {
+namespace gse::test::viewport_test {
 namespace {
 
 namespace key = ui::key;
@@ -428,4 +428,4 @@ DOCTEST_TEST_CASE("select by property takes a colour from the picture") {
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::viewport_test

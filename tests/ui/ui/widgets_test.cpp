@@ -17,7 +17,7 @@
 #include "ui/threshold_picture.h"
 #include "ui/widgets/controls.h"
 
-namespace gse::test {
+namespace gse::test::widgets_test {
 
 DOCTEST_TEST_CASE("the histogram counts what is above, to a bin") {
     Random random(2);
@@ -309,4 +309,4 @@ DOCTEST_TEST_CASE("long text breaks at spaces only, and nothing of it is lost") 
     DOCTEST_CHECK(ui::broken_at_spaces("", 10).empty());
 }
 
-}  // namespace gse::test
+}  // namespace gse::test::widgets_test

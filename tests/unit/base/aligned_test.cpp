@@ -7,6 +7,8 @@
 
 #include "engine/base/aligned.h"
 
+namespace aligned_test {
+
 using namespace gse;
 
 DOCTEST_TEST_CASE("arrays of lines begin at a line, small and large, and keep what is in them when they grow") {
@@ -23,3 +25,5 @@ DOCTEST_TEST_CASE("arrays of lines begin at a line, small and large, and keep wh
     const LineFloats copy = values;
     DOCTEST_CHECK(copy == values);
 }
+
+}  // namespace aligned_test

@@ -6,6 +6,8 @@
 
 #include "tests/test_paths.h"
 
+namespace assets_test {
+
 using namespace gse;
 
 DOCTEST_TEST_CASE("an installed program takes the files installed with it, another one those of its checkout") {
@@ -17,3 +19,5 @@ DOCTEST_TEST_CASE("an installed program takes the files installed with it, anoth
     DOCTEST_CHECK(assets_beside(program, "/checkout/assets") == scratch.path() / "usr/share/gseditpro");
     DOCTEST_CHECK(assets_folder(test::source_folder() / "assets") == test::source_folder() / "assets");
 }
+
+}  // namespace assets_test

@@ -18,6 +18,8 @@
 #include "engine/base/thread_pool.h"
 #include "tests/test_paths.h"
 
+namespace base_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -210,3 +212,5 @@ DOCTEST_TEST_CASE("images and masks index by row, then column") {
     DOCTEST_CHECK(mask.data[9] == 1);
     DOCTEST_CHECK(mask.count() == 1);
 }
+
+}  // namespace base_test

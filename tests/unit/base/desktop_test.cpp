@@ -11,6 +11,8 @@
 #include "engine/base/desktop.h"
 #include "engine/base/error.h"
 
+namespace desktop_test {
+
 using namespace gse;
 
 DOCTEST_TEST_CASE("the folder of a file is shown by xdg-open; without it, or without the folder, an error says so") {
@@ -34,3 +36,5 @@ DOCTEST_TEST_CASE("the folder of a file is shown by xdg-open; without it, or wit
     setenv("PATH", path.c_str(), 1);
     std::filesystem::remove_all(folder);
 }
+
+}  // namespace desktop_test

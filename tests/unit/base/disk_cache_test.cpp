@@ -16,6 +16,8 @@
 #include "engine/base/file.h"
 #include "tests/test_paths.h"
 
+namespace disk_cache_test {
+
 namespace {
 
 using namespace gse;
@@ -216,3 +218,5 @@ DOCTEST_TEST_CASE("digest: every byte, its place and the borders between texts c
     of_wide.image(wide), of_tall.image(tall);
     DOCTEST_CHECK(of_wide.value() != of_tall.value());
 }
+
+}  // namespace disk_cache_test

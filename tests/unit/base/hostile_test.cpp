@@ -17,6 +17,8 @@
 #include "engine/base/printable.h"
 #include "tests/test_paths.h"
 
+namespace hostile_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -163,3 +165,5 @@ DOCTEST_TEST_CASE("more memory than there is: the sentence says what is needed a
     DOCTEST_CHECK(says(out_of_memory().what(), {"3 GB more were needed", "are free"}));
     DOCTEST_CHECK(says(out_of_memory().what(), {"there is not enough memory; ", "are free"}));   // told once
 }
+
+}  // namespace hostile_test

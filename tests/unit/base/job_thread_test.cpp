@@ -12,6 +12,8 @@
 #include "engine/base/job_thread.h"
 #include "engine/base/log.h"
 
+namespace job_thread_test {
+
 namespace {
 
 using namespace gse;
@@ -156,3 +158,5 @@ DOCTEST_TEST_CASE("patient jobs and the threads they start leave the processor t
     DOCTEST_CHECK(normal == getpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid))));
     DOCTEST_CHECK((nice_of(JobThread::Priority::Patient) > normal || normal >= 10));
 }
+
+}  // namespace job_thread_test

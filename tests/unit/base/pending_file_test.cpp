@@ -17,6 +17,8 @@
 #include "engine/base/pending_file.h"
 #include "tests/test_paths.h"
 
+namespace pending_file_test {
+
 using namespace gse;
 namespace fs = std::filesystem;
 
@@ -160,3 +162,5 @@ DOCTEST_TEST_CASE("names that are not UTF-8 go through JSON and back") {
     DOCTEST_CHECK(path_of_text("file:/a%zz%4") == "/a%zz%4");
     DOCTEST_CHECK(is_utf8(json_text(nlohmann::ordered_json{{"a", "b\xff"}}, -1)));
 }
+
+}  // namespace pending_file_test

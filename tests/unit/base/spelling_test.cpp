@@ -4,6 +4,8 @@
 
 #include "engine/base/spelling.h"
 
+namespace spelling_test {
+
 DOCTEST_TEST_CASE("the nearest word is the one that shares most letters") {
     const std::vector<std::string> known{"an", "bear", "golden", "statue", "hat"};
     DOCTEST_CHECK(gse::nearest_word("baer", known) == "bear");
@@ -19,3 +21,5 @@ DOCTEST_TEST_CASE("spelling distance is a metric between 0 and 1") {
     DOCTEST_CHECK(gse::spelling_distance("abc", "xyz") == 1);
     DOCTEST_CHECK(gse::spelling_distance("cat", "car") == gse::spelling_distance("car", "cat"));
 }
+
+}  // namespace spelling_test

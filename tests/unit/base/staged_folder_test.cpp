@@ -21,6 +21,8 @@
 #include "engine/base/staged_folder.h"
 #include "tests/test_paths.h"
 
+namespace staged_folder_test {
+
 using namespace gse;
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
@@ -298,3 +300,5 @@ DOCTEST_TEST_CASE("too little room is said before the work") {
     DOCTEST_CHECK_NOTHROW(folder.require_space(1));
     DOCTEST_CHECK_THROWS_WITH_AS(folder.require_space(~std::uint64_t{0}), doctest::Contains("free"), Error);
 }
+
+}  // namespace staged_folder_test

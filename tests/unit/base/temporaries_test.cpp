@@ -10,6 +10,8 @@
 #include "engine/base/file.h"
 #include "tests/test_paths.h"
 
+namespace temporaries_test {
+
 using namespace gse;
 
 DOCTEST_TEST_CASE("temporary files of dead writers are removed once they are old") {
@@ -38,3 +40,5 @@ DOCTEST_TEST_CASE("temporary files of dead writers are removed once they are old
     for (const auto& path : {recent, alive, other, strange, longer})
         DOCTEST_CHECK(std::filesystem::exists(path));
 }
+
+}  // namespace temporaries_test

@@ -10,6 +10,8 @@
 #include "engine/io/image_file.h"
 #include "tests/test_paths.h"
 
+namespace chart_test {
+
 using namespace gse;
 using namespace gse::bench;
 
@@ -133,3 +135,5 @@ DOCTEST_TEST_CASE("what the axes cannot show is left out, and an axis of one poi
         for (const float value : with({{2, 0.5, "one"}}).data) DOCTEST_REQUIRE((value >= 0 && value <= 1));
     }
 }
+
+}  // namespace chart_test

@@ -9,6 +9,8 @@
 #include "engine/pipeline/neural_loader.h"
 #include "tests/test_paths.h"
 
+namespace clip_bench_test {
+
 namespace {
 
 using namespace gse;
@@ -73,3 +75,5 @@ DOCTEST_TEST_CASE("the shipped encoder tells held-out scenes and changes apart")
     DOCTEST_CHECK(report["direction"]["accessory"]["positive"].get<double>() >= ClearMajority);
     DOCTEST_CHECK(report["direction"]["wrong: opposite recolouring"]["mean"].get<double>() < 0);
 }
+
+}  // namespace clip_bench_test

@@ -16,6 +16,8 @@
 #include "engine/bench/eval_summary.h"
 #include "tests/test_paths.h"
 
+namespace eval_test {
+
 namespace {
 
 using namespace gse;
@@ -279,3 +281,5 @@ DOCTEST_TEST_CASE("a real scene names its edit, or gets one") {
     DOCTEST_CHECK_THROWS_AS(parse_real_edit("/no/such/scene.ply", known), Error);
     DOCTEST_CHECK_THROWS_AS(parse_real_edit(path + ":a:b:c:d", known), Error);
 }
+
+}  // namespace eval_test

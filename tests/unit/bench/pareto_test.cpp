@@ -9,6 +9,8 @@
 #include "engine/io/image_file.h"
 #include "tests/test_paths.h"
 
+namespace pareto_test {
+
 using namespace gse;
 using namespace gse::bench;
 
@@ -73,3 +75,5 @@ DOCTEST_TEST_CASE("a picture of nothing, or of points that cannot be drawn, is a
     chart.panels[1].curves.clear();
     DOCTEST_CHECK(draw_chart(chart).width == ChartWidth);
 }
+
+}  // namespace pareto_test

@@ -5,6 +5,8 @@
 #include "engine/edit/plain_ground.h"
 #include "engine/synth/without_ground.h"
 
+namespace scene_ground_test {
+
 using namespace gse;
 
 DOCTEST_TEST_CASE("drawn scenes stand on their own ground, and without it in nothing") {
@@ -20,3 +22,5 @@ DOCTEST_TEST_CASE("drawn scenes stand on their own ground, and without it in not
         DOCTEST_CHECK(edit::ground_below("a cat", synth::without_ground(scene).scene.gaussians, views, scene.scene.info.up, *rasterizer).has_value());
     }
 }
+
+}  // namespace scene_ground_test

@@ -22,6 +22,8 @@
 #include "engine/raster/rasterizer.h"
 #include "tests/test_paths.h"
 
+namespace subject_test {
+
 using namespace gse;
 using namespace gse::bench;
 
@@ -239,3 +241,5 @@ DOCTEST_TEST_CASE("all of one subject: the page is complete, and a subject that 
     for (const auto& [name, value] : machine.items()) DOCTEST_CHECK(html.find(name) != std::string::npos);
     DOCTEST_CHECK(std::filesystem::exists(folder / "all.json"));
 }
+
+}  // namespace subject_test

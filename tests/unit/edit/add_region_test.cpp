@@ -4,6 +4,8 @@
 
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace add_region_test {
+
 namespace {
 
 using namespace gse;
@@ -270,3 +272,5 @@ DOCTEST_TEST_CASE("beside is the side with room, under is below what floats and 
     DOCTEST_REQUIRE_FALSE(rug.empty());
     for (const auto& cell : rug.centres) DOCTEST_CHECK(std::abs(cell.y - 0.4) < 0.08);
 }
+
+}  // namespace add_region_test

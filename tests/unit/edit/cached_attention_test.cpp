@@ -4,6 +4,8 @@
 
 #include "engine/edit/cached_attention.h"
 
+namespace cached_attention_test {
+
 namespace {
 
 using namespace gse;
@@ -41,3 +43,5 @@ DOCTEST_TEST_CASE("the same question is answered from memory, another one is not
     DOCTEST_CHECK(attention.locate(query)[0].data[0] == 1);
     DOCTEST_CHECK(attention.asked() == 4);
 }
+
+}  // namespace cached_attention_test

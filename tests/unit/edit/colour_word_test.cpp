@@ -9,6 +9,8 @@
 
 #include "engine/edit/colour_word.h"
 
+namespace colour_word_test {
+
 namespace {
 
 using namespace gse;
@@ -90,3 +92,5 @@ DOCTEST_TEST_CASE("the colour stands before the thing, and the article follows i
     DOCTEST_CHECK(edit::described_as("a bear with a top hat", "top hat", "black") == "a bear with a black top hat");
     DOCTEST_CHECK(edit::described_as("the cat", "cat", "") == "the cat");
 }
+
+}  // namespace colour_word_test

@@ -6,6 +6,8 @@
 #include "engine/edit/common_colour.h"
 #include "engine/math/sh.h"
 
+namespace common_colour_test {
+
 namespace {
 
 using namespace gse;
@@ -160,3 +162,5 @@ DOCTEST_TEST_CASE("black, one colour and one row stay finite") {
         DOCTEST_CHECK(mean_difference(reached, goal) < 0.5 * mean_difference(birth, goal));
     }
 }
+
+}  // namespace common_colour_test

@@ -6,6 +6,8 @@
 #include "engine/edit/dynamic_mask.h"
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace dynamic_mask_test {
+
 namespace {
 
 using namespace gse;
@@ -208,3 +210,5 @@ DOCTEST_TEST_CASE("new splats outside of where the new thing is seen go, unless 
     for (int x = 0; x < 24; ++x) attention.where.at(x, 0) = 1;   // far from all of them
     DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 20});
 }
+
+}  // namespace dynamic_mask_test

@@ -8,6 +8,8 @@
 
 #include "engine/edit/front_reading.h"
 
+namespace front_reading_test {
+
 using namespace gse;
 using namespace gse::edit;
 
@@ -155,3 +157,5 @@ DOCTEST_TEST_CASE("the side that was looked at is the front, unless the pictures
     DOCTEST_CHECK_FALSE(chosen_front(std::nullopt, std::nullopt).has_value());
     DOCTEST_CHECK_FALSE(chosen_front(FrontReading{}, std::nullopt).has_value());
 }
+
+}  // namespace front_reading_test

@@ -7,6 +7,8 @@
 #include "engine/edit/ground_rows.h"
 #include "tests/unit/edit/box_rows.h"
 
+namespace ground_rows_test {
+
 namespace {
 
 using namespace gse;
@@ -60,3 +62,5 @@ DOCTEST_TEST_CASE("a ground that is a label of its own, a thing without ground a
     nothing.box(2, -0.005, 0.005, Green, 300, false);
     DOCTEST_CHECK(nothing.ground().empty());
 }
+
+}  // namespace ground_rows_test

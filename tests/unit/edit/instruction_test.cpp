@@ -4,6 +4,8 @@
 
 #include "engine/edit/instruction.h"
 
+namespace instruction_test {
+
 using namespace gse::edit;
 
 namespace {
@@ -26,3 +28,5 @@ DOCTEST_TEST_CASE("instruction: what the artist says, else the source is turned 
     DOCTEST_CHECK(instruction_of(asked("", "a snowy garden")) == "make it snowy garden");
     DOCTEST_CHECK(instruction_of(asked("bear", "andalusian bear")) == "turn the bear into andalusian bear");   // no article
 }
+
+}  // namespace instruction_test

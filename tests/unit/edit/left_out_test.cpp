@@ -12,6 +12,8 @@
 #include "engine/edit/view_vote.h"
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace left_out_test {
+
 using namespace gse;
 
 namespace {
@@ -164,3 +166,5 @@ DOCTEST_TEST_CASE("a search tells of every view as it is attended, then with its
     DOCTEST_CHECK(order[1] == 1);   // one by one, not all at the end
     for (const auto& [view, times] : masked) DOCTEST_CHECK(times == 1);
 }
+
+}  // namespace left_out_test

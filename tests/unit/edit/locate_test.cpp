@@ -8,6 +8,7 @@
 #include "engine/edit/grabcut_segmenter.h"
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace locate_test {
 namespace {
 
 using namespace gse;
@@ -38,8 +39,7 @@ public:
                 const int source = query.absent ? y + hat_shift : y;  // absent things are drawn above the red
                 if (source < map.height) map.at(x, y, 0) = redness(query.image, x, source);
             }
-        std::vector<Image> maps{
-            localize::resize_image(localize::resize_image(map, 16, 16), map.width, map.height)};
+        std::vector<Image> maps{localize::resize_image(localize::resize_image(map, 16, 16), map.width, map.height)};
         for (std::size_t rival = 1; rival < query.words.size(); ++rival) {  // all other words: the lower half
             maps.emplace_back(map.width, map.height, 1);
             for (int y = map.height / 2; y < map.height; ++y)
@@ -139,7 +139,6 @@ struct Quiet {
     Quiet() { log::set_level(log::Level::Off); }
     ~Quiet() { log::set_level(log::Level::Info); }
 };
-
 }  // namespace
 
 DOCTEST_TEST_CASE("an object word labels its splats, with every segmenter and without") {
@@ -598,3 +597,4 @@ DOCTEST_TEST_CASE("networks see a ground that is no part of the scene, and the v
     DOCTEST_CHECK(before_plain.confidence.agreement > before_black.confidence.agreement);
     DOCTEST_CHECK(before_plain.confidence.share < before_black.confidence.share);
 }
+}  // namespace locate_test

@@ -10,6 +10,8 @@
 #include "engine/edit/preservation.h"
 #include "engine/edit/working_set.h"
 
+namespace losses_test {
+
 namespace {
 
 using namespace gse;
@@ -200,3 +202,5 @@ DOCTEST_TEST_CASE("trust scales what a pixel's absolute difference counts") {
     DOCTEST_CHECK(trusted == doctest::Approx(expected).epsilon(1e-5));
     DOCTEST_CHECK(trusted < loss);
 }
+
+}  // namespace losses_test

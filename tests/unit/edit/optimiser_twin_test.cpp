@@ -10,6 +10,8 @@
 #include "tests/unit/edit/edit_scenes.h"
 #include "tests/unit/edit/row_gradients.h"
 
+namespace optimiser_twin_test {
+
 namespace {
 
 using namespace gse;
@@ -253,3 +255,5 @@ DOCTEST_TEST_CASE("the structural loss and its gradient are those of the twin: f
         DOCTEST_CHECK(worst < SsimGradientError * largest);
     }
 }
+
+}  // namespace optimiser_twin_test

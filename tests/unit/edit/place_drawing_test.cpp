@@ -11,6 +11,8 @@
 #include "engine/edit/place_drawing.h"
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace place_drawing_test {
+
 namespace {
 
 using namespace gse;
@@ -272,3 +274,5 @@ DOCTEST_TEST_CASE("what is not drawn, or has a place that the sentence names, is
     off.locate(&off.scene.first);
     DOCTEST_CHECK(off.painter.asked.empty());
 }
+
+}  // namespace place_drawing_test

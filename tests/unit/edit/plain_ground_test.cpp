@@ -9,6 +9,8 @@
 #include "engine/edit/ground_cover.h"
 #include "engine/edit/plain_ground.h"
 
+namespace plain_ground_test {
+
 namespace {
 
 using namespace gse;
@@ -236,3 +238,5 @@ DOCTEST_TEST_CASE("a picture is moved before the plain ground by what it covers 
         for (std::size_t i = 0; i < shown.data.size(); ++i) DOCTEST_CHECK(shown.data[i] == doctest::Approx(alpha * red[i % 3] + (1 - alpha) * behind.data[i]));
     }
 }
+
+}  // namespace plain_ground_test

@@ -9,6 +9,8 @@
 #include "engine/edit/view_round.h"
 #include "tests/unit/edit/view_oracle.h"
 
+namespace polish_test {
+
 namespace {
 
 using namespace gse;
@@ -171,3 +173,5 @@ DOCTEST_TEST_CASE("held-out views show enough, are not redrawn, and lie farthest
     DOCTEST_CHECK(edit::views_to_hold_out(views, covered, {0, 1, 2, 3, 5, 6, 7}, 2).empty());
     DOCTEST_CHECK(edit::views_to_hold_out(views, covered, {0, 1, 2, 3, 5, 6}, 2).size() == 1);
 }
+
+}  // namespace polish_test

@@ -8,6 +8,8 @@
 #include "engine/edit/relation.h"
 #include "engine/edit/request.h"
 
+namespace relation_test {
+
 namespace {
 
 using namespace gse;
@@ -80,3 +82,5 @@ DOCTEST_TEST_CASE("compound prepositions name no things") {
     DOCTEST_CHECK(edit::things_named("a bear next to a ball") == Things{"bear", "ball"});
     DOCTEST_CHECK(edit::things_named("a bear in front of a tree to the left of a ball") == Things{"bear", "tree", "ball"});
 }
+
+}  // namespace relation_test

@@ -14,6 +14,8 @@
 #include "engine/edit/view_round.h"
 #include "engine/edit/vocabulary.h"
 
+namespace request_test {
+
 namespace {
 
 using namespace gse;
@@ -316,7 +318,7 @@ DOCTEST_TEST_CASE("source and target must be known to a model with a fixed vocab
     const std::vector<std::string> known{"a", "in", "the", "on", "bear", "pear", "hat", "golden", "grass"};
     const auto refused = [&](const EditRequest& request, bool by_hand) {
         try {
-            edit::require_known_words(edit::validated(request), known, by_hand);
+            edit::require_known_words(edit::validated(request), known, {}, by_hand);
             return std::string();
         } catch (const Error& error) {
             DOCTEST_CHECK(error.code() == ErrorCode::InvalidArgument);
@@ -335,7 +337,7 @@ DOCTEST_TEST_CASE("source and target must be known to a model with a fixed vocab
     DOCTEST_CHECK(edit::nearest_words("bears", known) == std::vector<std::string>{"bear", "pear"});
     DOCTEST_CHECK(edit::nearest_words("hta", known) == std::vector<std::string>{"hat"});
     DOCTEST_CHECK(edit::nearest_words("sign", known).empty());
-    edit::require_known_words(edit::validated(bear("sign", "a jade sign", "jade")), {}, false);   // an open vocabulary
+    edit::require_known_words(edit::validated(bear("sign", "a jade sign", "jade")), {}, {}, false);   // an open vocabulary
 }
 
 DOCTEST_TEST_CASE("room for what is new: by its size where something is added, by pixels where something changes") {
@@ -350,3 +352,5 @@ DOCTEST_TEST_CASE("room for what is new: by its size where something is added, b
     DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, mask) == 16);     // never less than twice the pixels
     DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, Mask(256, 256)) == 16);
 }
+
+}  // namespace request_test

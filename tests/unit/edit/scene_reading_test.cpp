@@ -8,6 +8,8 @@
 #include "engine/edit/scene_reading.h"
 #include "engine/edit/words.h"
 
+namespace scene_reading_test {
+
 namespace {
 
 using namespace gse;
@@ -75,3 +77,5 @@ DOCTEST_TEST_CASE("distances whose pictures fit nearly as well as the best are k
     DOCTEST_CHECK(reading.fit == doctest::Approx(1));
     DOCTEST_CHECK(reading.distances == std::vector<std::size_t>{1, 2});
 }
+
+}  // namespace scene_reading_test

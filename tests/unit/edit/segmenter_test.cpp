@@ -8,6 +8,8 @@
 #include "engine/edit/grabcut_segmenter.h"
 #include "engine/localize/clusters.h"
 
+namespace segmenter_test {
+
 namespace {
 
 using namespace gse;
@@ -90,3 +92,5 @@ DOCTEST_TEST_CASE("the threshold segmenter follows hint, clicks and box") {
     DOCTEST_CHECK(segmenter->segment(picture.image, {}, edit::BoxPrompt{10, 10, 20, 30}, {}).count() == 200);
     DOCTEST_CHECK_FALSE(segmenter->name().empty());
 }
+
+}  // namespace segmenter_test

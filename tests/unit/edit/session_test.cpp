@@ -13,6 +13,8 @@
 #include "engine/base/log.h"
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace session_test {
+
 namespace {
 
 using namespace gse;
@@ -421,3 +423,5 @@ DOCTEST_TEST_CASE("a run goes on from a snapshot: its rows, its iteration, and n
     const auto smaller = edit::run_edit(scene.set, half, request, tools);
     DOCTEST_CHECK(smaller.changed_outside_label == 0);
 }
+
+}  // namespace session_test

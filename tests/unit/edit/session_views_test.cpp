@@ -8,6 +8,8 @@
 #include "engine/edit/add_region.h"
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace session_views_test {
+
 namespace {
 
 using namespace gse;
@@ -145,3 +147,5 @@ DOCTEST_TEST_CASE("looking again for what is new does not delay the rest") {
     DOCTEST_CHECK(looked.iterations == plain.iterations);
     DOCTEST_CHECK(test::same_bytes(looked.set, plain.set));
 }
+
+}  // namespace session_views_test

@@ -12,6 +12,8 @@
 #include "engine/math/unproject.h"
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace shape_room_test {
+
 namespace {
 
 using namespace gse;
@@ -174,3 +176,5 @@ DOCTEST_TEST_CASE("the ground that a thing hid is put back as one flat layer, an
     for (auto& view : views) view.backdrop.filled = {};
     DOCTEST_CHECK(edit::hidden_surface(views, 0).size() == 0);
 }
+
+}  // namespace shape_room_test

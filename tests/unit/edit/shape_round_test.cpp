@@ -9,6 +9,8 @@
 #include "engine/edit/shape_round.h"
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace shape_round_test {
+
 namespace {
 
 using namespace gse;
@@ -146,3 +148,5 @@ DOCTEST_TEST_CASE("a thing of the backdrop's colour is where the word is seen cl
     for (const double threshold : {0.85, 0.95, 0.99})   // however high: something of it is left
         DOCTEST_CHECK(outline_radius(threshold, Image(Side, Side, 3, 0.5f), 0.5f) > Core - 2);
 }
+
+}  // namespace shape_round_test

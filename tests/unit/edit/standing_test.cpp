@@ -11,6 +11,8 @@
 #include "engine/edit/standing.h"
 #include "tests/unit/edit/box_rows.h"
 
+namespace standing_test {
+
 namespace {
 
 using namespace gse;
@@ -102,3 +104,5 @@ DOCTEST_TEST_CASE("rows that cannot be seen and rows that are nowhere do not cou
     flat.box(-0.5, 0.5, 0, 0, -0.5, 0.5, 300, true);
     DOCTEST_CHECK_FALSE(flat.standing().found());
 }
+
+}  // namespace standing_test

@@ -5,6 +5,8 @@
 #include "engine/edit/view_agreement.h"
 #include "tests/unit/edit/view_oracle.h"
 
+namespace view_agreement_test {
+
 using namespace gse;
 
 namespace {
@@ -156,3 +158,5 @@ DOCTEST_TEST_CASE("a view that differs from all others counts less in the fit, w
     for (const auto& weights : edit::trust_weights(two, painted(two, {0.1f, 0.9f})))
         DOCTEST_CHECK(std::all_of(weights.data.begin(), weights.data.end(), [](float w) { return w == 1.0f; }));
 }
+
+}  // namespace view_agreement_test

@@ -11,6 +11,8 @@
 #include "tests/unit/edit/edit_scenes.h"
 #include "tests/unit/edit/view_oracle.h"
 
+namespace view_orders_test {
+
 using namespace gse;
 using namespace gse::test;
 using edit::TargetChoice;
@@ -315,3 +317,5 @@ DOCTEST_TEST_CASE("large pictures are shown smaller") {
     DOCTEST_CHECK(artist.last(0).before->width == edit::ShownSide);
     DOCTEST_CHECK(artist.last(0).after->height == edit::ShownSide);
 }
+
+}  // namespace view_orders_test

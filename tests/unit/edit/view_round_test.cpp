@@ -10,6 +10,8 @@
 #include "tests/unit/edit/edit_scenes.h"
 #include "tests/unit/edit/view_oracle.h"
 
+namespace view_round_test {
+
 namespace {
 
 using namespace gse;
@@ -223,3 +225,5 @@ DOCTEST_TEST_CASE("quality scales views and steps of a round, whatever they are 
     request.quality = "best";
     DOCTEST_CHECK_THROWS_AS(edit::validated(request), Error);
 }
+
+}  // namespace view_round_test

@@ -4,6 +4,8 @@
 #include "engine/base/random.h"
 #include "engine/edit/view_section.h"
 
+namespace view_section_test {
+
 using namespace gse;
 using namespace gse::edit;
 
@@ -78,3 +80,5 @@ DOCTEST_TEST_CASE("a section shows what the view shows there, and goes back to w
             DOCTEST_CHECK(replaced.at(x, y, 0) == (inside ? 0.0f : view.rendered.at(x, y, 0)));
         }
 }
+
+}  // namespace view_section_test

@@ -12,6 +12,8 @@
 #include "engine/raster/rasterizer.h"
 #include "tests/unit/edit/edit_scenes.h"
 
+namespace visual_hull_test {
+
 namespace {
 
 using namespace gse;
@@ -251,3 +253,5 @@ DOCTEST_TEST_CASE("seeds fill the outlines and have the colour of the side they 
         }
     }
 }
+
+}  // namespace visual_hull_test

@@ -10,6 +10,8 @@
 #include "engine/edit/request.h"
 #include "engine/edit/vocabulary.h"
 
+namespace words_test {
+
 namespace {
 
 using namespace gse;
@@ -121,7 +123,7 @@ DOCTEST_TEST_CASE("every word of a phrase must be known to a model with a fixed 
     DOCTEST_CHECK(edit::unknown_word(known, "top hat") == "top");
     const auto refused = [&](const EditRequest& request) {
         try {
-            edit::require_known_words(request, known, false);
+            edit::require_known_words(request, known, {}, false);
             return std::string();
         } catch (const Error& error) {
             return error.message();
@@ -145,3 +147,5 @@ DOCTEST_TEST_CASE("a phrase goes where its last word usually goes") {
     DOCTEST_CHECK(edit::has_usual_place("top hat"));
     DOCTEST_CHECK(!edit::has_usual_place("hat stand"));
 }
+
+}  // namespace words_test

@@ -9,6 +9,8 @@
 #include "tests/unit/edit/edit_scenes.h"
 #include "tests/unit/edit/row_gradients.h"
 
+namespace working_set_test {
+
 namespace {
 
 using namespace gse;
@@ -204,3 +206,5 @@ DOCTEST_TEST_CASE("a corrected label changes nothing of what is remembered of ro
         },
         before, rest);
 }
+
+}  // namespace working_set_test

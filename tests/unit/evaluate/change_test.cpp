@@ -9,6 +9,8 @@
 #include "engine/evaluate/consistency.h"
 #include "engine/evaluate/direction.h"
 
+namespace change_test {
+
 namespace {
 
 using namespace gse;
@@ -93,3 +95,5 @@ DOCTEST_TEST_CASE("pictures that do not show the edit are no neighbours") {
     for (auto& mask : path.masks) mask = Mask(8, 6);
     DOCTEST_CHECK(path.value() == 0);
 }
+
+}  // namespace change_test

@@ -8,6 +8,8 @@
 #include "engine/base/random.h"
 #include "engine/evaluate/metrics.h"
 
+namespace metrics_test {
+
 namespace {
 
 using namespace gse;
@@ -142,3 +144,5 @@ DOCTEST_TEST_CASE("drift follows the rows through an edit that removes and adds 
     DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 1, 0, 0}) == 1);
     DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 1, 0, 1}) == 0);
 }
+
+}  // namespace metrics_test

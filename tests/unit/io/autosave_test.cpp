@@ -9,6 +9,8 @@
 #include "engine/io/user_files.h"
 #include "tests/unit/io/project_helpers.h"
 
+namespace autosave_test {
+
 using namespace gse;
 using namespace gse::test;
 namespace fs = std::filesystem;
@@ -153,3 +155,5 @@ DOCTEST_TEST_CASE("settings keep keys they do not know, damage sets the file asi
     DOCTEST_CHECK(load_recent().empty());
     unsetenv("GSE_CONFIG_DIR");
 }
+
+}  // namespace autosave_test

@@ -6,6 +6,8 @@
 #include "engine/io/encoding.h"
 #include "tests/unit/io/io_helpers.h"
 
+namespace cameras_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -358,3 +360,5 @@ DOCTEST_TEST_CASE("cameras are found beside a scene and above an Inria output fo
     DOCTEST_CHECK(error_of([&] { load_cameras(scratch.path() / "nothing"); }));
     DOCTEST_CHECK(error_of([&] { load_cameras(scene); }));
 }
+
+}  // namespace cameras_test

@@ -7,6 +7,8 @@
 
 #include "tests/unit/io/io_helpers.h"
 
+namespace codebook_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -131,3 +133,5 @@ DOCTEST_TEST_CASE("a palette reads its vectors out of larger rows") {
     DOCTEST_CHECK(palette_error(rows, palette) == 0);
     DOCTEST_CHECK(*std::max_element(palette.entries.begin(), palette.entries.end()) < 1000);
 }
+
+}  // namespace codebook_test

@@ -8,6 +8,8 @@
 #include "engine/io/video.h"
 #include "tests/unit/io/io_helpers.h"
 
+namespace film_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -88,3 +90,5 @@ DOCTEST_TEST_CASE("a film is written where a link leads") {
     DOCTEST_CHECK(io::film_is_whole(as_bytes(read_file(scratch.path() / "disk/real.mp4"))));
 }
 #endif
+
+}  // namespace film_test

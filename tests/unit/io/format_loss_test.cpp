@@ -6,6 +6,8 @@
 #include "engine/io/encoding.h"
 #include "tests/unit/io/io_helpers.h"
 
+namespace format_loss_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -137,3 +139,5 @@ DOCTEST_TEST_CASE("flat, spherical and unrotated splats give no false alarm") {
     DOCTEST_CHECK(said.find("rotations") == std::string::npos);
     DOCTEST_CHECK(said.find("nan") == std::string::npos);
 }
+
+}  // namespace format_loss_test

@@ -7,6 +7,8 @@
 #include "engine/io/inflate.h"
 #include "tests/unit/io/io_helpers.h"
 
+namespace formats_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -292,3 +294,5 @@ DOCTEST_TEST_CASE("unknown formats and names are refused before anything is writ
     DOCTEST_REQUIRE(unwritable.has_value());
     DOCTEST_CHECK(unwritable->code() == ErrorCode::Unwritable);
 }
+
+}  // namespace formats_test

@@ -6,6 +6,8 @@
 #include "engine/io/video.h"
 #include "tests/unit/io/io_helpers.h"
 
+namespace image_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -136,3 +138,5 @@ DOCTEST_TEST_CASE("the same frames give the same film") {
     }
     DOCTEST_CHECK(read_file(scratch.path() / "a.mp4") == read_file(scratch.path() / "b.mp4"));
 }
+
+}  // namespace image_test

@@ -5,6 +5,8 @@
 #include "engine/io/user_files.h"
 #include "tests/unit/io/project_helpers.h"
 
+namespace names_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -45,3 +47,5 @@ DOCTEST_TEST_CASE("projects, autosaves and recent files keep names that are not 
     DOCTEST_REQUIRE(recent.size() == 1);
     DOCTEST_CHECK(recent[0] == scene_path);
 }
+
+}  // namespace names_test

@@ -9,6 +9,8 @@
 #include "engine/io/formats.h"
 #include "tests/unit/io/io_helpers.h"
 
+namespace ply_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -351,3 +353,5 @@ DOCTEST_TEST_CASE("headers that cannot be right are refused") {
     DOCTEST_CHECK(refused(good, "element vertex 2\n", "element vertex 2\nproperty float f_rest_4000000000\n")
                       .find("f_rest") != std::string::npos);
 }
+
+}  // namespace ply_test

@@ -7,6 +7,8 @@
 #include "engine/io/zip_archive.h"
 #include "tests/unit/io/project_helpers.h"
 
+namespace project_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -345,3 +347,5 @@ DOCTEST_TEST_CASE("what is no project is told apart") {
     save_project(folder.path() / "renamed.zip", random_project({{}, 0, 0, random_set(10, 0, 1)}, 1));
     DOCTEST_CHECK(is_project_file(folder.path() / "renamed.zip"));
 }
+
+}  // namespace project_test

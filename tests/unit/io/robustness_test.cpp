@@ -12,6 +12,8 @@
 #include "engine/io/zip_archive.h"
 #include "tests/unit/io/io_helpers.h"
 
+namespace robustness_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -274,3 +276,5 @@ DOCTEST_TEST_CASE("a folder with one scene file is that scene, with several it i
     DOCTEST_CHECK(load_scene(folder).gaussians.size() == 13);
     DOCTEST_CHECK(scenes_in_folder(folder).empty());
 }
+
+}  // namespace robustness_test

@@ -4,6 +4,8 @@
 #include "engine/io/formats.h"
 #include "tests/unit/io/io_helpers.h"
 
+namespace shared_files_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -215,3 +217,5 @@ DOCTEST_TEST_CASE("the four minimal SPZ envelopes hold splats of one layout") {
     const GaussianSet v4 = load_scene(folder / "minimal-v4.spz").gaussians;
     DOCTEST_CHECK(same_bits(v3, v4));
 }
+
+}  // namespace shared_files_test

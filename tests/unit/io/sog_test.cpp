@@ -10,6 +10,8 @@
 #include "engine/scene/morton.h"
 #include "tests/unit/io/io_helpers.h"
 
+namespace sog_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -188,3 +190,5 @@ DOCTEST_TEST_CASE("a texture comes back byte for byte, under transparent texels 
     DOCTEST_CHECK(again.rgba == texture.rgba);
     DOCTEST_CHECK(io::encode_webp(texture) == bytes);
 }
+
+}  // namespace sog_test

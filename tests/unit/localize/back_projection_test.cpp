@@ -9,6 +9,8 @@
 #include "engine/base/random.h"
 #include "engine/localize/back_projection.h"
 
+namespace back_projection_test {
+
 namespace {
 
 using namespace gse;
@@ -138,3 +140,5 @@ DOCTEST_TEST_CASE("rows nobody sees are not labelled") {
     DOCTEST_CHECK(*label.bits == std::vector<std::uint8_t>{0, 1, 0, 1});
     DOCTEST_CHECK((*label.weight)[0] == 1);
 }
+
+}  // namespace back_projection_test

@@ -11,6 +11,8 @@
 #include "engine/base/random.h"
 #include "engine/localize/clusters.h"
 
+namespace clusters_test {
+
 namespace {
 
 using gse::Image;
@@ -197,3 +199,5 @@ DOCTEST_TEST_CASE("bounds: the smallest box that holds all set pixels, none wher
     const auto box = gse::localize::bounds_of(mask);
     DOCTEST_CHECK((box.left == 3 && box.top == 2 && box.width == 6 && box.height == 5));
 }
+
+}  // namespace clusters_test

@@ -7,6 +7,8 @@
 
 #include "engine/localize/focus.h"
 
+namespace focus_test {
+
 namespace {
 
 /// A wide floor of 400 rows and a small ball of 100 labelled rows at (2, -0.5, 1) with radius 0.4.
@@ -82,3 +84,5 @@ DOCTEST_TEST_CASE("without a label, or with everything labelled already in frame
     const auto focused = gse::localize::focus_orbit(set, all, base);
     DOCTEST_CHECK_FALSE(gse::localize::worth_refocusing(focused, gse::localize::focus_orbit(set, all, focused)));
 }
+
+}  // namespace focus_test

@@ -11,6 +11,8 @@
 #include "engine/localize/graph_cut.h"
 #include "engine/localize/spread.h"
 
+namespace graph_cut_test {
+
 #ifdef GSE_HAVE_OPENCV
 
 namespace {
@@ -183,3 +185,5 @@ DOCTEST_TEST_CASE("rows without a place, a colour or a view keep their weight; n
 }
 
 #endif
+
+}  // namespace graph_cut_test

@@ -9,6 +9,8 @@
 #include "engine/localize/clusters.h"
 #include "engine/localize/points.h"
 
+namespace points_test {
+
 namespace {
 
 using namespace gse;
@@ -116,3 +118,5 @@ DOCTEST_TEST_CASE("captured mass is the share of the region's attention") {
     DOCTEST_CHECK(localize::captured_mass(map, region, mask) == doctest::Approx(3.0 / 8));
     DOCTEST_CHECK(localize::captured_mass(map, Mask(4, 1), mask) == 0);
 }
+
+}  // namespace points_test

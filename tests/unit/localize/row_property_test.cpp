@@ -9,6 +9,8 @@
 #include "engine/localize/row_property.h"
 #include "engine/math/sh.h"
 
+namespace row_property_test {
+
 using namespace gse;
 using localize::RowProperty;
 
@@ -168,3 +170,5 @@ DOCTEST_TEST_CASE("picking measures once for each property, and chooses anew onl
     DOCTEST_CHECK(picking.wants_values(set));   // differences are to another colour now
     DOCTEST_CHECK(localize::choice_text(choice) == "colour within 70");
 }
+
+}  // namespace row_property_test

@@ -11,6 +11,8 @@
 #include "engine/base/random.h"
 #include "engine/localize/spread.h"
 
+namespace spread_test {
+
 namespace {
 
 using namespace gse;
@@ -117,3 +119,5 @@ DOCTEST_TEST_CASE("without a labelled or without a seen row nothing changes") {
     localize::spread_to_unseen(spans(balls.data), {}, balls.weights);
     DOCTEST_CHECK(balls.weights.weight == before);
 }
+
+}  // namespace spread_test

@@ -5,6 +5,8 @@
 #include "engine/base/random.h"
 #include "engine/math/eigen.h"
 
+namespace eigen_test {
+
 namespace {
 
 using namespace gse;
@@ -48,3 +50,5 @@ DOCTEST_TEST_CASE("flat, round and empty matrices") {
     check(Mat3::from_rows({2, 0, 0, 0, 5, 0, 0, 0, 3}));                     // in the wrong order
     check(Mat3::from_rows({1, 1e-14, 0, 1e-14, 1, 1e-300, 0, 1e-300, 1}));   // nearly round
 }
+
+}  // namespace eigen_test

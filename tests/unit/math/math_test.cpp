@@ -13,6 +13,8 @@
 #include "engine/math/sh.h"
 #include "engine/math/vec.h"
 
+namespace math_test {
+
 using namespace gse;
 
 namespace {
@@ -150,3 +152,5 @@ DOCTEST_TEST_CASE("spherical harmonics: counts and base colours") {
     for (const double colour : {0.0, 0.25, 1.0})
         DOCTEST_CHECK(colour_from_sh(sh_from_colour(colour)) == doctest::Approx(colour));
 }
+
+}  // namespace math_test

@@ -12,6 +12,8 @@
 #include "engine/pipeline/scene_tools.h"
 #include "engine/synth/synth.h"
 
+namespace cut_out_test {
+
 namespace {
 
 using namespace gse;
@@ -199,3 +201,5 @@ DOCTEST_TEST_CASE("a box in words is the one in the picture that the render comm
                               "0,0,1,1,0,95,1", "0,0,1,1,0,0,0", "0 0 1 1"})
         DOCTEST_CHECK_THROWS_AS(cut_out_request(wrong, scene, "auto"), Error);
 }
+
+}  // namespace cut_out_test

@@ -11,6 +11,8 @@
 #include "engine/pipeline/installed.h"
 #include "engine/synth/without_ground.h"
 
+namespace edit_job_test {
+
 #ifdef GSE_NEURAL
 namespace {
 
@@ -430,3 +432,5 @@ DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and 
     DOCTEST_CHECK(!std::equal(other.result.set.sh().begin(), other.result.set.sh().end(), edited.result.set.sh().begin()));
 }
 #endif
+
+}  // namespace edit_job_test

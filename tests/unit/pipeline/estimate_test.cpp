@@ -8,6 +8,8 @@
 #include "engine/pipeline/estimate.h"
 #include "engine/pipeline/probe.h"
 
+namespace estimate_test {
+
 namespace {
 
 using namespace gse;
@@ -263,3 +265,5 @@ DOCTEST_TEST_CASE("a large scene is thinned out for its time: shares and labels 
     const auto lonely = pipeline::probe_scene(scene, plan, 10);
     DOCTEST_CHECK(std::count(lonely.plan.label.begin(), lonely.plan.label.end(), 1) == 1);
 }
+
+}  // namespace estimate_test

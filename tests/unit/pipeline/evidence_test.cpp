@@ -6,6 +6,8 @@
 
 #include "engine/pipeline/evidence_pictures.h"
 
+namespace evidence_test {
+
 using namespace gse;
 using pipeline::ArrivingViews;
 
@@ -84,3 +86,5 @@ DOCTEST_TEST_CASE("several threads may tell of views at once") {
     DOCTEST_CHECK(here(views) == static_cast<std::ptrdiff_t>(count));
     for (std::size_t v = 0; v < count; ++v) DOCTEST_CHECK(views[v].camera.translation.x == static_cast<double>(v));
 }
+
+}  // namespace evidence_test

@@ -10,6 +10,8 @@
 #include "engine/scene/scene.h"
 #include "tests/test_paths.h"
 
+namespace film_test {
+
 using namespace gse;
 
 namespace {
@@ -124,3 +126,5 @@ DOCTEST_TEST_CASE("what stands tall is whole in a turn around it") {
     render.height = 160;   // where it fits, nothing moves
     DOCTEST_CHECK(pipeline::whole_orbit(scene, render).radius == doctest::Approx(pipeline::scene_orbit(scene, render).radius));
 }
+
+}  // namespace film_test

@@ -14,6 +14,8 @@
 #include "engine/synth/synth.h"
 #include "tests/unit/edit/box_rows.h"
 
+namespace head_test {
+
 namespace {
 
 using namespace gse;
@@ -145,3 +147,5 @@ DOCTEST_TEST_CASE("only what is worn takes the place of something worn, and only
     request.target = "ball";
     DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Replace));
 }
+
+}  // namespace head_test

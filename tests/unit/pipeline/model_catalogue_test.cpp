@@ -11,6 +11,8 @@
 #include "engine/pipeline/model_catalogue.h"
 #include "tests/test_paths.h"
 
+namespace model_catalogue_test {
+
 namespace {
 
 using namespace gse;
@@ -97,3 +99,5 @@ DOCTEST_TEST_CASE("model catalogue: a folder names itself and the parts that it 
     for (const char* part : {"vae", "tokenizer"}) fs::create_directories(model / part);
     DOCTEST_CHECK(found_at(find_models({model.string()}), model).usable);
 }
+
+}  // namespace model_catalogue_test

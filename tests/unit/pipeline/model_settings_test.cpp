@@ -6,6 +6,8 @@
 #include "engine/base/file.h"
 #include "tests/test_paths.h"
 
+namespace model_settings_test {
+
 namespace {
 
 using namespace gse;
@@ -101,3 +103,5 @@ DOCTEST_TEST_CASE("model settings: with another model, only what nobody changed 
     DOCTEST_CHECK(request.image_size == small.request.image_size);
     DOCTEST_CHECK(request.iterations == 30);
 }
+
+}  // namespace model_settings_test

@@ -15,6 +15,8 @@
 #include "engine/pipeline/scene_tools.h"
 #include "tests/test_paths.h"
 
+namespace picture_text_test {
+
 using namespace gse;
 using namespace gse::pipeline;
 using namespace gse::test;
@@ -125,3 +127,5 @@ DOCTEST_TEST_CASE("viewpoints come from a camera file, from beside a scene, or f
     DOCTEST_CHECK(report.at("cameras") == 7);
     DOCTEST_CHECK(report_text(report).find("cameras       7") != std::string::npos);
 }
+
+}  // namespace picture_text_test

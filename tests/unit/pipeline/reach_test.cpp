@@ -5,6 +5,8 @@
 #include "engine/pipeline/reach.h"
 #include "engine/scene/label_ops.h"
 
+namespace reach_test {
+
 namespace {
 
 using namespace gse;
@@ -58,3 +60,5 @@ DOCTEST_TEST_CASE("a label that was found belongs to its word under any name") {
     DOCTEST_CHECK(label_says(found("Bruno", "bear"), about("bear", "golden"), Known, {}));
     DOCTEST_CHECK_FALSE(label_says(found("Bruno", "bear"), about("grass", "golden"), Known, {}));
 }
+
+}  // namespace reach_test

@@ -9,6 +9,8 @@
 #include "engine/pipeline/recipe.h"
 #include "tests/test_paths.h"
 
+namespace recipe_test {
+
 namespace {
 
 using namespace gse;
@@ -115,3 +117,5 @@ DOCTEST_TEST_CASE("a target that is left to be guessed is the one that was guess
     recipe.request = edit::validated(recipe.request);
     DOCTEST_CHECK(pipeline::search_key(recipe) == guessed);
 }
+
+}  // namespace recipe_test

@@ -21,6 +21,8 @@
 #include "engine/pipeline/remembering_model.h"
 #include "tests/test_paths.h"
 
+namespace remembering_model_test {
+
 namespace {
 
 using namespace gse;
@@ -447,3 +449,5 @@ DOCTEST_TEST_CASE("cache: a tuning is learned once; another one from the same cl
     }
 }
 #endif
+
+}  // namespace remembering_model_test

@@ -16,6 +16,8 @@
 #include "engine/pipeline/neural_loader.h"
 #include "tests/test_paths.h"
 
+namespace restyle_test {
+
 namespace {
 
 using namespace gse;
@@ -195,3 +197,5 @@ DOCTEST_TEST_CASE("a thing that the model cannot draw into the scene is drawn on
     DOCTEST_REQUIRE(warned.judged.size() == 1);
     DOCTEST_CHECK(warned.judged[0].warns);
 }
+
+}  // namespace restyle_test

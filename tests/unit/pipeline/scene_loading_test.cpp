@@ -10,6 +10,8 @@
 #include "engine/synth/synth.h"
 #include "tests/test_paths.h"
 
+namespace scene_loading_test {
+
 namespace {
 
 using namespace gse;
@@ -69,3 +71,5 @@ DOCTEST_TEST_CASE("cameras that look elsewhere are left out, with a word, and sa
     DOCTEST_CHECK(loaded.notes[0].find("elsewhere") != std::string::npos);
     DOCTEST_CHECK(loaded.scene.info.up.y < -0.99);
 }
+
+}  // namespace scene_loading_test

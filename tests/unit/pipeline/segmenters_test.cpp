@@ -14,6 +14,8 @@
 #include "engine/pipeline/segmenters.h"
 #include "tests/test_paths.h"
 
+namespace segmenters_test {
+
 namespace {
 
 using namespace gse;
@@ -212,3 +214,5 @@ DOCTEST_TEST_CASE("a word's mask is sharpened where both mean the same thing") {
     DOCTEST_CHECK(unsure.first.data == own.data);
     DOCTEST_CHECK(sharpened(sure, nullptr) == sure);
 }
+
+}  // namespace segmenters_test

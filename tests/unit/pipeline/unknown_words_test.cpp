@@ -15,6 +15,8 @@
 #include "engine/pipeline/neural_loader.h"
 #include "tests/test_paths.h"
 
+namespace unknown_words_test {
+
 namespace {
 
 using namespace gse;
@@ -88,3 +90,5 @@ DOCTEST_TEST_CASE("words that the model does not know change neither what is fou
     DOCTEST_CHECK(after > before + 0.3);   // of the range: plainly blue, which the bear is not
     DOCTEST_CHECK(named.result().changed_outside_label == 0);
 }
+
+}  // namespace unknown_words_test

@@ -8,6 +8,8 @@
 #include "engine/pipeline/views.h"
 #include "engine/synth/synth.h"
 
+namespace views_test {
+
 DOCTEST_TEST_CASE("one or two bookmarks do not take the place of the automatic views, three cameras do") {
     using namespace gse;
     Scene scene = synth::generate({}).scene;
@@ -82,3 +84,5 @@ DOCTEST_TEST_CASE("a label remembers the azimuth of the camera that it was made 
         DOCTEST_CHECK(pipeline::turned_to(home_camera(orbit, box, 0.9, 64, 48), up).empty());   // nobody has chosen it
     }
 }
+
+}  // namespace views_test

@@ -7,6 +7,8 @@
 #include "engine/pipeline/waiting_results.h"
 #include "engine/scene/label_ops.h"
 
+namespace waiting_results_test {
+
 using namespace gse;
 using namespace gse::pipeline;
 
@@ -92,3 +94,5 @@ DOCTEST_TEST_CASE("a label that has its thing's name takes that of what the thin
     DOCTEST_CHECK(names_after({"hat", "crown"}, {"hat", "crown"}) == Names{"hat", "crown"});
     DOCTEST_CHECK(names_after({"hat"}, {}) == Names{"hat"});
 }
+
+}  // namespace waiting_results_test

@@ -6,6 +6,8 @@
 
 #include <set>
 
+namespace moving_scale_test {
+
 using gse::preview::MovingScale;
 
 namespace {
@@ -59,3 +61,5 @@ DOCTEST_TEST_CASE("a picture at rest that was slow lowers the first one that mov
     scale.learn(-5, 1);
     DOCTEST_CHECK(scale.scale() == before);
 }
+
+}  // namespace moving_scale_test

@@ -11,6 +11,8 @@
 #include "engine/preview/packing.h"
 #include "engine/preview/resolve.h"
 
+namespace packing_test {
+
 using namespace gse;
 
 namespace {
@@ -88,3 +90,5 @@ DOCTEST_TEST_CASE("labels tint in proportion, and what is transparent keeps its 
     DOCTEST_CHECK(none[0] == doctest::Approx(0.5));
     DOCTEST_CHECK(none[3] == doctest::Approx(0.8));
 }
+
+}  // namespace packing_test

@@ -7,6 +7,8 @@
 #include "engine/raster/skip_bench.h"
 #include "tests/agree/raster/scenes.h"
 
+namespace bench_test {
+
 using namespace gse;
 
 DOCTEST_TEST_CASE("the raster bench measures time and error") {
@@ -109,3 +111,5 @@ DOCTEST_TEST_CASE("the bench of the skips compares what it times, and the skips 
     DOCTEST_CHECK(benches[1].pairs == benches[1].full_pairs);   // nothing stays: rendered in full
     DOCTEST_CHECK(benches[1].kept_mib == 0);
 }
+
+}  // namespace bench_test

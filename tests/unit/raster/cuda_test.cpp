@@ -17,6 +17,8 @@
 #include "tests/agree/raster/scenes.h"
 #include "tests/test_paths.h"
 
+namespace cuda_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -199,3 +201,5 @@ DOCTEST_TEST_CASE("sums on the device stop at the largest number instead of begi
     array.upload(std::vector<std::uint32_t>(5000, 1u << 20));
     DOCTEST_CHECK(scan.total(array.data(), array.data(), 5000) == cuda::Saturated);
 }
+
+}  // namespace cuda_test

@@ -4,3 +4,5 @@ target_link_libraries(fake_cuda_driver PRIVATE gse_raster_emulated)
 add_dependencies(${test_target} fake_cuda_driver)
 target_compile_definitions(${test_target} PRIVATE "GSE_FAKE_CUDA_DRIVER=\"$<TARGET_FILE:fake_cuda_driver>\"")
 target_link_libraries(${test_target} PRIVATE gse_raster_emulated ${CMAKE_DL_LIBS})
+# It replaces what allocates memory in the whole program.
+set_source_files_properties(unit/raster/allocation_test.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

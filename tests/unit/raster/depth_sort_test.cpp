@@ -7,6 +7,8 @@
 #include "engine/base/random.h"
 #include "engine/raster/depth_sort.h"
 
+namespace depth_sort_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -35,3 +37,5 @@ DOCTEST_TEST_CASE("depth sort is stable and right") {
         }
     }
 }
+
+}  // namespace depth_sort_test

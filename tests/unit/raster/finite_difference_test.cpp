@@ -5,6 +5,8 @@
 #include "engine/raster/cuda/emulated_device.h"
 #include "tests/agree/raster/scenes.h"
 
+namespace finite_difference_test {
+
 using namespace gse;
 using namespace gse::raster;
 
@@ -169,3 +171,5 @@ DOCTEST_TEST_CASE("the clamp of dark colours lets through the slope that was ask
         DOCTEST_CHECK(soft.sh[1] == strict.sh[1]);
     }
 }
+
+}  // namespace finite_difference_test

@@ -10,6 +10,8 @@
 #include "engine/scene/colour_adjustment.h"
 #include "engine/scene/stack_edits.h"
 
+namespace colour_adjustment_test {
+
 using namespace gse;
 
 namespace {
@@ -150,3 +152,5 @@ DOCTEST_TEST_CASE("an adjustment is an edit of the stack: it can be switched off
     DOCTEST_CHECK(with_stack(after, off).current.shares_all_with(state.current));
     DOCTEST_CHECK(with_adjustment(state, rows, {}, 4).stack.empty());
 }
+
+}  // namespace colour_adjustment_test

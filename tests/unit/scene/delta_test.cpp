@@ -7,6 +7,8 @@
 
 #include "tests/unit/scene/random_sets.h"
 
+namespace delta_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -121,3 +123,5 @@ DOCTEST_TEST_CASE("SH degrees are widened with zeros, in the set and in the delt
     DOCTEST_REQUIRE(down.sh_degree() == 2);
     for (std::size_t row = 0; row < 20; ++row) DOCTEST_CHECK(same_row(down.spans(), row, flat.spans(), row));
 }
+
+}  // namespace delta_test

@@ -12,6 +12,8 @@
 #include "engine/scene/label_ops.h"
 #include "engine/scene/scene.h"
 
+namespace depth_range_test {
+
 using namespace gse;
 
 namespace {
@@ -130,3 +132,5 @@ DOCTEST_TEST_CASE("a splat alone is framed by its own size") {
     DOCTEST_CHECK(framing_bounds(GaussianSet(data)).radius() == doctest::Approx(0.02 * std::sqrt(3.0)));
     DOCTEST_CHECK(fit_orbit(s, {0, -1, 0}).radius < 0.2);
 }
+
+}  // namespace depth_range_test

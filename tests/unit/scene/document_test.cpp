@@ -7,6 +7,8 @@
 
 #include "tests/unit/scene/random_sets.h"
 
+namespace document_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -236,3 +238,5 @@ DOCTEST_TEST_CASE("steps of one stroke become one; revisions tell what is unsave
     DOCTEST_CHECK(document.names().size() == 3);
     DOCTEST_CHECK(Document().empty());
 }
+
+}  // namespace document_test

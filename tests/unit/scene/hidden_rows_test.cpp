@@ -5,6 +5,8 @@
 
 #include "engine/scene/hidden_rows.h"
 
+namespace hidden_rows_test {
+
 using namespace gse;
 
 namespace {
@@ -66,3 +68,5 @@ DOCTEST_TEST_CASE("what is hidden is invisible and nothing else of the set chang
     DOCTEST_CHECK(rest.opacity_logit()[1] == 0.5f);
     DOCTEST_CHECK(seen_values(std::vector<float>{7, 8, 9}, Bits{0, 1, 0}) == std::vector<float>{7, 9});
 }
+
+}  // namespace hidden_rows_test

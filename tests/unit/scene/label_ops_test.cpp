@@ -9,6 +9,8 @@
 
 #include "tests/unit/scene/random_sets.h"
 
+namespace label_ops_test {
+
 using namespace gse;
 using namespace gse::test;
 
@@ -229,3 +231,5 @@ DOCTEST_TEST_CASE("the histogram counts every finite weight once") {
     DOCTEST_CHECK(histogram.bins[0] == 1);
     DOCTEST_CHECK(histogram.highest == 2);
 }
+
+}  // namespace label_ops_test

@@ -11,6 +11,8 @@
 #include "engine/base/random.h"
 #include "engine/scene/morton.h"
 
+namespace scene_test {
+
 using namespace gse;
 
 namespace {
@@ -196,3 +198,5 @@ DOCTEST_TEST_CASE("the Morton order has every point once, cell by cell, broken p
     for (std::size_t i = 8; i < order.size(); ++i) DOCTEST_CHECK(octant(i) == static_cast<int>(i / 8));
     DOCTEST_CHECK(gse::morton_order({}).empty());
 }
+
+}  // namespace scene_test

@@ -6,6 +6,8 @@
 #include "engine/scene/label_ops.h"
 #include "engine/scene/stack_edits.h"
 
+namespace stack_edits_test {
+
 using namespace gse;
 
 namespace {
@@ -74,3 +76,5 @@ DOCTEST_TEST_CASE("what an edit added belongs to the active label, or to one of 
     DOCTEST_CHECK(only_less.labels.size() == 1);   // nothing was added
     DOCTEST_CHECK(only_less.current.size() == 3);
 }
+
+}  // namespace stack_edits_test

@@ -8,6 +8,8 @@
 #include "engine/scene/delta.h"
 #include "engine/scene/strength.h"
 
+namespace strength_test {
+
 namespace {
 
 using namespace gse;
@@ -123,3 +125,5 @@ DOCTEST_TEST_CASE("a weaker edit over rows that an earlier one no longer brings 
     DOCTEST_CHECK(same_row(set.spans(), 1, some.spans(), 1));
     DOCTEST_CHECK(!same_row(set.spans(), 0, some.spans(), 0));
 }
+
+}  // namespace strength_test

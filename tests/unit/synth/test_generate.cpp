@@ -8,6 +8,8 @@
 #include "engine/base/error.h"
 #include "engine/synth/synth.h"
 
+namespace test_generate {
+
 using namespace gse;
 using namespace gse::synth;
 
@@ -315,3 +317,5 @@ DOCTEST_TEST_CASE("a thing shows its front to the azimuth at which it is turned 
         }
     }
 }
+
+}  // namespace test_generate

@@ -7,6 +7,8 @@
 
 #include "engine/synth/timing_scene.h"
 
+namespace test_timing_scene {
+
 using namespace gse;
 
 namespace {
@@ -69,3 +71,5 @@ DOCTEST_TEST_CASE("timing cameras: a circle that looks at the middle") {
         DOCTEST_CHECK(camera.fx == doctest::Approx(256 / std::tan(std::acos(-1.0) / 6)));
     }
 }
+
+}  // namespace test_timing_scene

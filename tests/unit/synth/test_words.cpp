@@ -9,6 +9,8 @@
 #include "engine/base/error.h"
 #include "engine/synth/synth.h"
 
+namespace test_words {
+
 using namespace gse;
 using namespace gse::synth;
 
@@ -240,3 +242,5 @@ DOCTEST_TEST_CASE("a sentence without a known word is an error") {
     DOCTEST_CHECK_THROWS_AS(apply_edit({}, ""), Error);
     DOCTEST_CHECK_THROWS_AS(apply_edit({}, "turn it into a"), Error);
 }
+
+}  // namespace test_words

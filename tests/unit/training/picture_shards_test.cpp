@@ -11,6 +11,8 @@
 #include "engine/training/starter_source.h"
 #include "tests/test_paths.h"
 
+namespace picture_shards_test {
+
 namespace {
 
 constexpr int Size = 32, Cells = Size / gse::training::LatentCell;
@@ -40,7 +42,7 @@ Bytes part(const Bytes& all, std::size_t index, std::size_t count) {
 DOCTEST_TEST_CASE("a file of training pictures holds what the source draws, with its words and cameras") {
     const gse::test::ScratchFolder scratch;
     const auto path = scratch.path() / "shard.bin";
-    const auto source = gse::training::make_shape_source(7, 0.5);
+    const auto source = gse::training::make_shape_source(7, {.restyled = 0.5});
     gse::ThreadPool pool(2);
     gse::training::ShardRange range;
     range.first = 16;
@@ -105,3 +107,5 @@ DOCTEST_TEST_CASE("files of training pictures that are there stay, and a source 
     gse::ThreadPool pool(1);
     DOCTEST_CHECK_THROWS_AS(gse::training::write_picture_shard(*source->before(), {}, scratch.path() / "none.bin", pool), gse::Error);
 }
+
+}  // namespace picture_shards_test

@@ -12,6 +12,8 @@
 #include "engine/synth/synth.h"
 #include "engine/training/starter_source.h"
 
+namespace shape_source_test {
+
 namespace {
 
 constexpr int Size = 32;
@@ -94,7 +96,7 @@ DOCTEST_TEST_CASE("a view of before lacks what the caption's edit brings, and no
 }
 
 DOCTEST_TEST_CASE("what is restyled looked different before, where it is and nowhere else, and the caption tells its look") {
-    const auto source = gse::training::make_shape_source(6, 1), plain = gse::training::make_shape_source(6);
+    const auto source = gse::training::make_shape_source(6, {.restyled = 1}), plain = gse::training::make_shape_source(6);
     const auto views = static_cast<std::uint64_t>(source->views_of_scene());
     DOCTEST_CHECK_FALSE(plain->restyled(0).has_value());
     DOCTEST_CHECK(source->identity() != plain->identity());
@@ -142,3 +144,5 @@ DOCTEST_TEST_CASE("what is restyled looked different before, where it is and now
     source->before()->picture(0, Size);
     DOCTEST_CHECK(plain->before()->picture(0, Size).rgb == alone);
 }
+
+}  // namespace shape_source_test

@@ -7,6 +7,8 @@
 #include "engine/edit/words.h"
 #include "engine/training/starter_twins.h"
 
+namespace twins_test {
+
 using namespace gse;
 
 DOCTEST_TEST_CASE("false sentences of a twin differ from its true one, and are of its wording") {
@@ -30,3 +32,5 @@ DOCTEST_TEST_CASE("false sentences of a twin differ from its true one, and are o
     }
     DOCTEST_CHECK(told > 120);   // an object at least, of every picture but where the pair is held out
 }
+
+}  // namespace twins_test

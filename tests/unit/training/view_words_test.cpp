@@ -4,6 +4,8 @@
 #include "engine/edit/front_reading.h"
 #include "engine/synth/synth.h"
 
+namespace view_words_test {
+
 DOCTEST_TEST_CASE("between two sides, captions and the editor mix the same words")  {
     for (double azimuth = -7; azimuth < 7; azimuth += 0.1) {
         const auto here = gse::synth::side_blend(azimuth);
@@ -22,3 +24,5 @@ DOCTEST_TEST_CASE("captions and the editor call the eight sides of a thing by th
     for (double azimuth = -7; azimuth < 7; azimuth += 0.1)
         DOCTEST_CHECK_EQ(gse::synth::sided_view_words(azimuth), gse::edit::view_words(azimuth, true));
 }
+
+}  // namespace view_words_test

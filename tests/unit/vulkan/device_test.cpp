@@ -8,6 +8,8 @@
 #include "engine/vulkan/resources.h"
 #include "tests/agree/preview/device.h"
 
+namespace device_test {
+
 using namespace gse;
 
 DOCTEST_TEST_CASE("bytes go to the device and come back") {
@@ -89,3 +91,5 @@ DOCTEST_TEST_CASE("the validation layers are listened to") {
         std::printf("[skip] %s\n", error.what());
     }
 }
+
+}  // namespace device_test

@@ -6,6 +6,8 @@
 
 #include "engine/window/input_queue.h"
 
+namespace input_queue_test {
+
 namespace {
 
 using gse::window::InputQueue;
@@ -135,3 +137,5 @@ DOCTEST_TEST_CASE("keys that are held together are seen together") {
     release(queue, 'D');
     DOCTEST_CHECK(queue.next_frame().size() == 2);
 }
+
+}  // namespace input_queue_test

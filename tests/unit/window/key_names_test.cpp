@@ -4,6 +4,8 @@
 
 #include "engine/window/key_names.h"
 
+namespace key_names_test {
+
 using gse::window::written_key;
 
 DOCTEST_TEST_CASE("a letter is the key that it is written on") {
@@ -22,3 +24,5 @@ DOCTEST_TEST_CASE("what has no name, or another one than a letter, stays where i
     DOCTEST_CHECK(written_key('B', "\xD0\xB8") == 'B');   // и: Cyrillic keyboards have no other B
     DOCTEST_CHECK(written_key('1', "&") == '1');          // AZERTY's digits are shifted
 }
+
+}  // namespace key_names_test

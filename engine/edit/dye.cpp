@@ -1,0 +1,193 @@
+// Names of colours, and pixels of one colour in another.
+#include "engine/edit/dye.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/check.h"
+#include "engine/edit/vocabulary.h"
+#include "engine/edit/words.h"
+
+namespace gse::edit {
+namespace {
+
+using Rgb = std::array<float, 3>;
+
+struct Name {
+    const char* word;
+    unsigned rgb;
+};
+
+// Single words of CSS Color 4 (W3C), some of them as painters mean them, and painters' own.
+constexpr Name Names[] = {
+    {"red", 0xd91212},       {"blue", 0x1a38e0},       {"green", 0x088c29},      {"yellow", 0xfce014},     {"purple", 0x851fb8},    {"orange", 0xfa780a},
+    {"black", 0x17171a},     {"white", 0xf2f2f0},      {"pink", 0xfa73ad},       {"brown", 0x663314},      {"gray", 0x78787a},      {"grey", 0x78787a},
+    {"turquoise", 0x0fc2bd}, {"teal", 0x008080},       {"cyan", 0x00d5e0},       {"aqua", 0x20d8d8},       {"aquamarine", 0x70e8c4}, {"azure", 0x3f9fe8},
+    {"navy", 0x10185c},      {"indigo", 0x3c1a82},     {"violet", 0x8a4fe0},     {"magenta", 0xe0189c},    {"fuchsia", 0xf030b0},   {"crimson", 0xbe1236},
+    {"scarlet", 0xf0280c},   {"maroon", 0x6c1020},     {"burgundy", 0x6a0f2c},   {"coral", 0xff7050},      {"salmon", 0xfa8a78},    {"peach", 0xffbe98},
+    {"apricot", 0xfba860},   {"tan", 0xcaa472},        {"beige", 0xe6d8b8},      {"ivory", 0xf8f2da},      {"cream", 0xfaeec2},     {"khaki", 0xb4a468},
+    {"olive", 0x6c7018},     {"lime", 0x8ee010},       {"mint", 0x96ecbe},       {"emerald", 0x0c9c5e},    {"jade", 0x24a878},      {"lavender", 0xb8a4ec},
+    {"lilac", 0xc8a0d8},     {"plum", 0x80306c},       {"orchid", 0xd86cd0},     {"mauve", 0xb884b0},      {"rose", 0xf05480},      {"ruby", 0xb80c40},
+    {"sapphire", 0x1040a8},  {"amber", 0xfaac10},      {"mustard", 0xd2a41c},    {"ochre", 0xc07c24},      {"chocolate", 0x4a240e}, {"coffee", 0x58381f},
+    {"caramel", 0xb8702c},   {"chestnut", 0x803a20},   {"sienna", 0x984824},     {"umber", 0x644a34},      {"charcoal", 0x38393e},  {"slate", 0x5c6a78},
+    {"ebony", 0x241c1a},     {"cobalt", 0x0c44ac},     {"ultramarine", 0x2018a0}, {"denim", 0x2c5c90},     {"chartreuse", 0xa8e810}, {"lemon", 0xfaf050},
+    {"cherry", 0xc01030},    {"raspberry", 0xc81c5c},  {"tomato", 0xf04c30},     {"rust", 0xa0441a},       {"vermilion", 0xe64022}, {"periwinkle", 0x8c94ee}};
+
+struct Metal {
+    const char* word;
+    unsigned lit, shade;
+};
+
+constexpr Metal Metals[] = {{"silver", 0xf6f9ff, 0x1f2129}, {"bronze", 0xea9e66, 0x240f08}, {"copper", 0xfa9468, 0x34100a}, {"brass", 0xf2dc7c, 0x3a2a08},
+                            {"chrome", 0xffffff, 0x101216}, {"steel", 0xc8d0dc, 0x22272e},  {"platinum", 0xf4f2ec, 0x34342f}, {"pewter", 0xa8acac, 0x26282a},
+                            {"gold", 0xf8dc78, 0x3c2004},   {"golden", 0xf8dc78, 0x3c2004}};
+
+/// What "dark" and the like make of a colour: its share, and that of white.
+struct Modifier {
+    const char* word;
+    float own, white;
+};
+
+constexpr Modifier Modifiers[] = {{"dark", 0.45f, 0}, {"light", 0.6f, 0.4f}, {"pale", 0.45f, 0.52f}, {"deep", 0.65f, 0}};
+
+constexpr const char* PlainBase = "white";
+constexpr const char* MetalBase = "golden";
+constexpr float WhiteSurface = 0.9f;   // of a white thing where light falls on it
+// Saturation, the channels' difference over the largest: below the first a pixel is the base, above the second it has a colour of its own.
+constexpr float Colourless = 0.2f, Coloured = 0.45f;
+// Of gold the largest channel is red: what it is in its darkest and its brightest reflections.
+constexpr float GoldShade = 0.25f, GoldLit = 0.98f;
+
+Rgb rgb_of(unsigned value) {
+    return {static_cast<float>(value >> 16 & 255) / 255, static_cast<float>(value >> 8 & 255) / 255, static_cast<float>(value & 255) / 255};
+}
+
+template <class List>
+auto find_word(const List& list, const std::string& word) {
+    return std::find_if(std::begin(list), std::end(list), [&](const auto& entry) { return word == entry.word; });
+}
+
+template <class List>
+bool has(const List& list, const std::string& word) {
+    return find_word(list, word) != std::end(list);
+}
+
+bool contains(const std::vector<std::string>& words, const std::string& word) { return std::find(words.begin(), words.end(), word) != words.end(); }
+
+std::optional<Dye> dye_named(const std::string& word, const std::vector<std::string>& known) {
+    Dye dye{{word}, PlainBase, {}, {}, false};
+    if (const auto name = find_word(Names, word); name != std::end(Names)) {
+        dye.colour = rgb_of(name->rgb);
+    } else if (const auto metal = find_word(Metals, word); metal != std::end(Metals) && contains(known, MetalBase)) {
+        dye.base = MetalBase, dye.metal = true;
+        dye.colour = rgb_of(metal->lit), dye.shade = rgb_of(metal->shade);
+    } else {
+        return std::nullopt;
+    }
+    return dye;
+}
+
+void modify(const Modifier& modifier, Dye& dye) {
+    for (auto* colour : {&dye.colour, &dye.shade})
+        for (auto& channel : *colour) channel = modifier.own * channel + modifier.white;
+}
+
+/// Where the noun phrase begins of which the word at `index` is a part.
+std::size_t phrase_begin(const std::vector<std::string>& words, std::size_t index) {
+    static const std::vector<std::string> articles{"a", "an", "the", "its", "his", "her", "their", "some", "this", "that"};
+    while (index > 0 && !ends_phrase(words[index - 1]) && !contains(articles, words[index - 1])) --index;
+    return index;
+}
+
+/// How much of a pixel is of the base's colour, by its saturation: gold is the other way round, and dark pixels are neither.
+float own_share(const float* pixel, bool metal) {
+    const auto [low, high] = std::minmax({pixel[0], pixel[1], pixel[2]});
+    const float saturation = high > 0.02f ? (high - low) / high : 0;
+    const float coloured = std::clamp((saturation - Colourless) / (Coloured - Colourless), 0.0f, 1.0f);
+    if (!metal) return 1 - coloured;
+    return pixel[0] >= pixel[2] ? std::max(coloured, std::clamp((high - 0.8f) / 0.15f, 0.0f, 1.0f)) : 0;   // its highlights are pale
+}
+
+}  // namespace
+
+std::vector<std::string> dye_words(const std::vector<std::string>& known) {
+    std::vector<std::string> words;
+    if (!contains(known, PlainBase)) return words;
+    const auto add = [&](const auto& list) {
+        for (const auto& entry : list)
+            if (!contains(known, entry.word)) words.emplace_back(entry.word);
+    };
+    add(Names);
+    if (contains(known, MetalBase)) add(Metals);
+    add(Modifiers);
+    return words;
+}
+
+std::vector<std::string> with_dyes(std::vector<std::string> drawn, const std::vector<std::string>& known) {
+    const auto dyes = dye_words(words_to_say(known, drawn));
+    drawn.insert(drawn.end(), dyes.begin(), dyes.end());
+    return drawn;
+}
+
+std::optional<Dye> dye_of(const EditRequest& request, const std::vector<std::string>& known) {
+    if (!contains(known, PlainBase)) return std::nullopt;
+    const auto words = words_of(request.prompt);
+    const std::size_t target = first_word(request.prompt, request.target);
+    if (target >= words.size()) return std::nullopt;
+    const std::size_t begin = phrase_begin(words, target), end = target + words_of(request.target).size();
+    for (std::size_t i = end; i-- > begin;) {
+        auto dye = dye_named(words[i], known);
+        if (!dye) continue;
+        const auto modifier = i > begin ? find_word(Modifiers, words[i - 1]) : std::end(Modifiers);
+        if (modifier != std::end(Modifiers)) {
+            modify(*modifier, *dye);
+            dye->words.insert(dye->words.begin(), words[i - 1]);
+        } else if (contains(known, words[i])) {
+            return std::nullopt;   // the model's own word
+        }
+        return dye;
+    }
+    return std::nullopt;
+}
+
+std::string told_with(const Dye& dye, const std::string& sentence) {
+    auto words = words_of(sentence);
+    for (auto at = words.begin(); (at = std::search(at, words.end(), dye.words.begin(), dye.words.end())) != words.end();) {
+        at = words.erase(at, at + static_cast<std::ptrdiff_t>(dye.words.size()));
+        at = words.insert(at, dye.base) + 1;
+    }
+    return joined(words);
+}
+
+void apply_dye(const Dye& dye, const Image& share, Image& picture) {
+    GSE_CHECK_EQ(picture.channels, 3);
+    GSE_CHECK(share.width == picture.width && share.height == picture.height);
+    for (std::size_t p = 0; p < share.data.size(); ++p) {
+        if (!(share.data[p] > 0)) continue;
+        float* pixel = &picture.data[3 * p];
+        const float much = std::min(share.data[p], 1.0f) * own_share(pixel, dye.metal);
+        const float lit = std::clamp((std::max({pixel[0], pixel[1], pixel[2]}) - GoldShade) / (GoldLit - GoldShade), 0.0f, 1.0f);
+        for (std::size_t c = 0; c < 3; ++c) {
+            const float dyed = dye.metal ? dye.shade[c] + (dye.colour[c] - dye.shade[c]) * lit * std::sqrt(lit)
+                                         : dye.colour[c] * pixel[c] / WhiteSurface;
+            pixel[c] = std::clamp(pixel[c] + much * (dyed - pixel[c]), 0.0f, 1.0f);
+        }
+    }
+}
+
+RoundTargets DyedViews::edit(const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) {
+    RoundInput told = input;
+    if (!told.sentence.empty()) told.sentence = told_with(dye_, told.sentence);
+    auto targets = guidance_.edit(views, told, job);
+    for (std::size_t v = 0; v < targets.images.size(); ++v) {
+        Image share(views[v].mask.width, views[v].mask.height, 1);
+        for (std::size_t p = 0; p < share.data.size(); ++p) {
+            const float drawn = targets.outlines.empty() || targets.outlines[v].data.size() != share.data.size() || !input.anew ? 1 : targets.outlines[v].data[p];
+            share.data[p] = views[v].mask.data[p] != 0 ? drawn : 0;
+        }
+        apply_dye(dye_, share, targets.images[v]);
+    }
+    return targets;
+}
+
+}  // namespace gse::edit

@@ -1,0 +1,54 @@
+// Colours that a model of few words has no word for: what it draws in a colour that it knows is dyed in the picture.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/edit/interfaces.h"
+#include "engine/edit/request.h"
+
+namespace gse::edit {
+
+/// What a colour is made of. Of a plain one the model draws `base` white, and every pixel is multiplied by the colour; of a metal it draws gold,
+/// whose reflections get the metal's tones.
+struct Dye {
+    std::vector<std::string> words;        // of the sentence, one after the other: "pink"; "dark", "red"
+    std::string base;                      // that the model is told instead: "white", "golden"
+    std::array<float, 3> colour{};         // display values in [0,1]; of a metal where it is lit
+    std::array<float, 3> shade{};          // of a metal where it mirrors what is dark
+    bool metal = false;
+};
+
+/// Names of colours (CSS Color 4's that are one word, painters' names, metals) and "dark", "light", "pale", "deep" that may stand before one.
+/// Empty where a model of the words `known` has none to draw them in, or takes any word.
+std::vector<std::string> dye_words(const std::vector<std::string>& known);
+
+/// `drawn`, words that a model of the words `known` draws besides, with the dyes behind it.
+std::vector<std::string> with_dyes(std::vector<std::string> drawn, const std::vector<std::string>& known);
+
+/// The dye for what a validated request makes: the name of a colour in its target, or right before it, that is not in `known`. None where there is
+/// none, or dye_words() is empty.
+std::optional<Dye> dye_of(const EditRequest& request, const std::vector<std::string>& known);
+
+/// The sentence (words as as_told() has them) with the dye's words replaced by its base, wherever they stand.
+std::string told_with(const Dye& dye, const std::string& sentence);
+
+/// Dyes `picture` [H,W,3] where `share` [H,W,1] says how much: what has a strong colour of its own (a beak on white) keeps it.
+void apply_dye(const Dye& dye, const Image& share, Image& picture);
+
+/// Tells the model the base, and dyes what it draws: inside the outlines that it tells, else inside the masks.
+class DyedViews final : public ViewGuidance {
+public:
+    /// `guidance` stays alive.
+    DyedViews(ViewGuidance& guidance, Dye dye) : guidance_(guidance), dye_(std::move(dye)) {}
+    RoundTargets edit(const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) override;
+    bool restyles() const override { return guidance_.restyles(); }
+
+private:
+    ViewGuidance& guidance_;
+    Dye dye_;
+};
+
+}  // namespace gse::edit
