@@ -50,10 +50,12 @@ struct Modifier {
 
 constexpr Modifier Modifiers[] = {{"dark", 0.45f, 0}, {"light", 0.6f, 0.4f}, {"pale", 0.45f, 0.52f}, {"deep", 0.65f, 0}};
 
-constexpr const char* PlainBase = "white";
+constexpr const char* PlainBase = "red";
 constexpr const char* MetalBase = "golden";
-constexpr float WhiteSurface = 0.9f;   // of a white thing where light falls on it
-// Saturation, the channels' difference over the largest: below the first a pixel is the base, above the second it has a colour of its own.
+constexpr Rgb Red{0.85f, 0.07f, 0.07f};   // as models draw it where light falls on it
+// Hues, degrees from red: up to the first a pixel counts as red, beyond the second it has a colour of its own.
+constexpr float RedHue = 16, OtherHue = 28;
+// Saturation of gold, the channels' difference over the largest.
 constexpr float Colourless = 0.2f, Coloured = 0.45f;
 // Of gold the largest channel is red: what it is in its darkest and its brightest reflections.
 constexpr float GoldShade = 0.25f, GoldLit = 0.98f;
@@ -99,13 +101,29 @@ std::size_t phrase_begin(const std::vector<std::string>& words, std::size_t inde
     return index;
 }
 
-/// How much of a pixel is of the base's colour, by its saturation: gold is the other way round, and dark pixels are neither.
-float own_share(const float* pixel, bool metal) {
+float ramp(float low, float high, float value) { return std::clamp((value - low) / (high - low), 0.0f, 1.0f); }
+
+/// Of a pixel that is a mixture of red and grey, the red gets the colour (linear unmixing).
+Rgb dyed_red(const Rgb& pixel, const Rgb& colour) {
     const auto [low, high] = std::minmax({pixel[0], pixel[1], pixel[2]});
-    const float saturation = high > 0.02f ? (high - low) / high : 0;
-    const float coloured = std::clamp((saturation - Colourless) / (Coloured - Colourless), 0.0f, 1.0f);
-    if (!metal) return 1 - coloured;
-    return pixel[0] >= pixel[2] ? std::max(coloured, std::clamp((high - 0.8f) / 0.15f, 0.0f, 1.0f)) : 0;   // its highlights are pale
+    if (high - low <= 0 || pixel[0] < high) return pixel;
+    const float hue = 60 * std::abs(pixel[1] - pixel[2]) / (high - low);   // of those near red
+    const float much = 1 - ramp(RedHue, OtherHue, hue);
+    const float red = (high - low) / (Red[0] - Red[1]), grey = low - red * Red[1];
+    Rgb dyed = pixel;
+    for (std::size_t c = 0; c < 3; ++c) dyed[c] += much * (red * colour[c] + grey - pixel[c]);
+    return dyed;
+}
+
+/// Gold's reflections in another metal's tones; its highlights are pale.
+Rgb dyed_gold(const Rgb& pixel, const Dye& dye) {
+    const auto [low, high] = std::minmax({pixel[0], pixel[1], pixel[2]});
+    if (high <= 0 || pixel[0] < pixel[2]) return pixel;
+    const float much = std::max(ramp(Colourless, Coloured, (high - low) / high), ramp(0.8f, 0.95f, high));
+    const float lit = ramp(GoldShade, GoldLit, high);
+    Rgb dyed = pixel;
+    for (std::size_t c = 0; c < 3; ++c) dyed[c] += much * (dye.shade[c] + (dye.colour[c] - dye.shade[c]) * lit * std::sqrt(lit) - pixel[c]);
+    return dyed;
 }
 
 }  // namespace
@@ -164,14 +182,9 @@ void apply_dye(const Dye& dye, const Image& share, Image& picture) {
     GSE_CHECK(share.width == picture.width && share.height == picture.height);
     for (std::size_t p = 0; p < share.data.size(); ++p) {
         if (!(share.data[p] > 0)) continue;
-        float* pixel = &picture.data[3 * p];
-        const float much = std::min(share.data[p], 1.0f) * own_share(pixel, dye.metal);
-        const float lit = std::clamp((std::max({pixel[0], pixel[1], pixel[2]}) - GoldShade) / (GoldLit - GoldShade), 0.0f, 1.0f);
-        for (std::size_t c = 0; c < 3; ++c) {
-            const float dyed = dye.metal ? dye.shade[c] + (dye.colour[c] - dye.shade[c]) * lit * std::sqrt(lit)
-                                         : dye.colour[c] * pixel[c] / WhiteSurface;
-            pixel[c] = std::clamp(pixel[c] + much * (dyed - pixel[c]), 0.0f, 1.0f);
-        }
+        float* at = &picture.data[3 * p];
+        const Rgb pixel{at[0], at[1], at[2]}, dyed = dye.metal ? dyed_gold(pixel, dye) : dyed_red(pixel, dye.colour);
+        for (std::size_t c = 0; c < 3; ++c) at[c] = std::clamp(pixel[c] + std::min(share.data[p], 1.0f) * (dyed[c] - pixel[c]), 0.0f, 1.0f);
     }
 }
 
@@ -179,7 +192,9 @@ RoundTargets DyedViews::edit(const std::vector<RoundView>& views, const RoundInp
     RoundInput told = input;
     if (!told.sentence.empty()) told.sentence = told_with(dye_, told.sentence);
     auto targets = guidance_.edit(views, told, job);
+    drawn_.clear();
     for (std::size_t v = 0; v < targets.images.size(); ++v) {
+        drawn_.push_back({views[v].original, targets.images[v]});
         Image share(views[v].mask.width, views[v].mask.height, 1);
         for (std::size_t p = 0; p < share.data.size(); ++p) {
             const float drawn = targets.outlines.empty() || targets.outlines[v].data.size() != share.data.size() || !input.anew ? 1 : targets.outlines[v].data[p];

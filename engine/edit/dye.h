@@ -11,11 +11,11 @@
 
 namespace gse::edit {
 
-/// What a colour is made of. Of a plain one the model draws `base` white, and every pixel is multiplied by the colour; of a metal it draws gold,
-/// whose reflections get the metal's tones.
+/// What a colour is made of. Of a plain one the model draws `base` red, and of every pixel the share that is red gets the colour: what is
+/// white, grey or black stays. Of a metal it draws gold, whose reflections get the metal's tones.
 struct Dye {
     std::vector<std::string> words;        // of the sentence, one after the other: "pink"; "dark", "red"
-    std::string base;                      // that the model is told instead: "white", "golden"
+    std::string base;                      // that the model is told instead: "red", "golden"
     std::array<float, 3> colour{};         // display values in [0,1]; of a metal where it is lit
     std::array<float, 3> shade{};          // of a metal where it mirrors what is dark
     bool metal = false;
@@ -35,7 +35,7 @@ std::optional<Dye> dye_of(const EditRequest& request, const std::vector<std::str
 /// The sentence (words as as_told() has them) with the dye's words replaced by its base, wherever they stand.
 std::string told_with(const Dye& dye, const std::string& sentence);
 
-/// Dyes `picture` [H,W,3] where `share` [H,W,1] says how much: what has a strong colour of its own (a beak on white) keeps it.
+/// Dyes `picture` [H,W,3] where `share` [H,W,1] says how much: what has a colour of its own (a beak) keeps it.
 void apply_dye(const Dye& dye, const Image& share, Image& picture);
 
 /// Tells the model the base, and dyes what it draws: inside the outlines that it tells, else inside the masks.
@@ -45,10 +45,16 @@ public:
     DyedViews(ViewGuidance& guidance, Dye dye) : guidance_(guidance), dye_(std::move(dye)) {}
     RoundTargets edit(const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) override;
     bool restyles() const override { return guidance_.restyles(); }
+    /// The views of the last round as the model was shown the unedited scene, and as it drew them, before they were dyed.
+    struct Drawn {
+        Image original, undyed;
+    };
+    const std::vector<Drawn>& drawn() const { return drawn_; }
 
 private:
     ViewGuidance& guidance_;
     Dye dye_;
+    std::vector<Drawn> drawn_;
 };
 
 }  // namespace gse::edit

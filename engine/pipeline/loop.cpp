@@ -146,6 +146,17 @@ private:
     bool decided_ = false;
 };
 
+/// Of what was dyed, in the colour that the model was told, which its encoder knows. Of a thing that only gets another colour there is nothing to say.
+Verdict judge_undyed(const neural::TextToImage& model, const edit::EditRequest& request, edit::EditMode mode, const edit::Dye& dye,
+                     const edit::DyedViews& views) {
+    if (mode == edit::EditMode::Modify) return {};
+    std::vector<PicturePair> pictures;
+    for (const auto& view : views.drawn()) pictures.emplace_back(&view.original, &view.undyed);
+    auto told = request;
+    for (auto* words : {&told.prompt, &told.target}) *words = edit::told_with(dye, *words);
+    return judge(model, told, edit::as_told(told.prompt), pictures);
+}
+
 /// Ends an attempt before anything was fitted.
 struct AnotherWay {};
 
@@ -219,7 +230,7 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     Edited edited;
     tools.targets = [&](const edit::ViewTargets& sheet) {
         if (!edited.verdict) {
-            const auto verdict = judge_targets(model, request, edit::as_told(request.prompt), sheet);
+            const auto verdict = dyed ? judge_undyed(model, request, plan.mode, *dye, *dyed) : judge_targets(model, request, edit::as_told(request.prompt), sheet);
             if (attempts.goes_on(verdict)) {
                 log::info("the first views hardly show \"{}\" (score {:.2f}); they are drawn another way", request.prompt, *verdict.score);
                 throw AnotherWay{};

@@ -13,6 +13,7 @@
 #include "engine/base/check.h"
 #include "engine/base/hash.h"
 #include "engine/base/log.h"
+#include "engine/edit/dye.h"
 #include "engine/edit/front_reading.h"
 #include "engine/edit/head.h"
 #include "engine/edit/left_out.h"
@@ -192,7 +193,10 @@ private:
         std::vector<std::string> targets{request.target};
         if (hints_.target_open) targets = edit::possible_targets(request.prompt, request.source, hints_.said);
         if (const auto thing = edit::thing_in_place(request); hints_.target_open && !thing.empty()) targets = {thing};
-        std::erase_if(targets, [&](const auto& word) { return !edit::knows(workplace_.model().known_words(), word); });
+        const auto known = workplace_.model().known_words();
+        // What is only drawn, the encoder cannot tell: the sentence's order decides.
+        if (!edit::knows(known, targets.front()) && edit::knows(edit::with_dyes(workplace_.model().drawn_words(), known), targets.front())) targets.resize(1);
+        else std::erase_if(targets, [&](const auto& word) { return !edit::knows(known, word); });
         const auto reading = edit::read_scene(recognition, request, targets, pictures);
         if (hints_.target_open)
             log::info("new in the sentence: \"{}\" (what it says without fits the scene to {:.2f})", reading.target, reading.fit);
