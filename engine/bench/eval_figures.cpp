@@ -239,6 +239,26 @@ void add_old_shown(const EvalSetting& setting, const edit::EditResult& result, c
     json["old_shown"] = overlap.recall();
 }
 
+/// What another true scene of the same sentence is measured at, in the heading and the size in which it comes nearest: how much of the truth the
+/// sentence leaves open, and what no model could know.
+Json figures_of_another_truth(const EvalSetting& setting, const EvalTools& tools) {
+    EvalSetting other = setting;
+    auto spec = setting.edit.target;
+    spec.variant = 1;
+    const auto twin = synth::generate(spec);
+    settle_pose(other, twin.scene.gaussians, tools);
+    const HeldOut seen = look(other, twin.scene.gaussians, tools.painter);
+    Json json, inside;
+    add_inside(seen, inside);
+    json["l1_reduction"] = inside["l1_reduction"];
+    PooledOverlap overlap;
+    for (std::size_t v = 0; v < seen.part.size(); ++v)
+        overlap.add(part_mask(tools.painter, twin, setting.edit.part, setting.held_out.views[v].camera, PartShare), seen.part[v]);
+    json["silhouette_iou"] = overlap.iou();
+    add_old_left(seen, json);
+    return json;
+}
+
 void add_consistency(const HeldOut& seen, Json& json) {
     json["inconsistency"] = evaluate::path_inconsistency({seen.before, seen.after, seen.part, true});
     json["inconsistency_of_truth"] = evaluate::path_inconsistency({seen.before, seen.truth, seen.part, true});
@@ -399,6 +419,7 @@ Json edited_figures(const EvalSetting& setting, const edit::EditPlan& plan, cons
     if (setting.edit.kind == "replace") {
         add_old_left(seen, json);
         add_old_shown(setting, result, seen, tools.painter, json);
+        json["another_truth"] = figures_of_another_truth(setting, tools);
         json["truth"] = {{"heading", setting.target.spec.heading}, {"size", setting.target.spec.size}};
     }
     add_outside(seen, json);

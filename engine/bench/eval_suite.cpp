@@ -123,16 +123,26 @@ Combination choose(std::vector<Combination> list, std::set<std::string>& used, R
     return chosen;
 }
 
+constexpr const char* Dye = "dye";
+
+/// Colours that the bundled model has no word for.
+const std::vector<std::string>& dyed_materials() {
+    static const std::vector<std::string> words{"pink", "brown", "gray", "turquoise", "silver", "bronze"};
+    return words;
+}
+
 std::vector<Combination> combinations_of(const std::string& kind, Random& random) {
     if (kind == "add") return additions();
     if (kind == "ground") return ground_changes();
     if (kind == "replace") return replacements(random.uniform() < 0.5);
+    if (kind == Dye) return material_changes(false, random.uniform() < 0.5);
     const bool with_accessory = random.uniform() < 0.5;
     return material_changes(kind == "material", with_accessory);
 }
 
 EvalCase make_case(const std::string& kind, std::set<std::string>& used, Random random) {
     Combination words = choose(combinations_of(kind, random), used, random);
+    if (kind == Dye) words.target.material = pick(dyed_materials(), random);
     const std::uint64_t seed = random.next();
     const std::string ground = pick(synth::ground_words(), random);
     words.target.accessory_colour = accessory_colour(words, random);
@@ -173,22 +183,23 @@ const std::vector<std::string>& eval_kinds() {
 }
 
 std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vector<std::string>& kinds) {
-    const auto& known = eval_kinds();
+    auto known = eval_kinds();
+    known.emplace_back(Dye);   // only where it is asked for
     for (const auto& kind : kinds)
         if (std::find(known.begin(), known.end(), kind) == known.end())
             throw Error(ErrorCode::InvalidArgument, "there is no kind of edit named \"" + kind + "\"",
                         "use " + list_of(known));
     if (kinds.empty())
         throw Error(ErrorCode::InvalidArgument, "no kind of edit is named", "use " + list_of(known));
-    constexpr std::uint64_t OfWhatStays = 40000, OfReplacements = 50000;   // random streams
+    constexpr std::uint64_t OfWhatStays = 40000, OfReplacements = 50000, OfDyes = 60000;   // random streams
     std::vector<EvalCase> suite;
-    std::set<std::string> used, used_to_replace;
-    std::uint64_t others = 0, replacements = 0;
+    std::set<std::string> used, used_to_replace, used_to_dye;
+    std::uint64_t others = 0, replacements = 0, dyes = 0;
     for (int i = 0; i < count; ++i) {
         const auto& kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
-        suite.push_back(kind == "replace"
-                            ? make_case(kind, used_to_replace, Random::stream(seed, OfReplacements + replacements++))
-                            : make_case(kind, used, Random::stream(seed, OfWhatStays + others++)));
+        suite.push_back(kind == "replace" ? make_case(kind, used_to_replace, Random::stream(seed, OfReplacements + replacements++))
+                        : kind == Dye     ? make_case(kind, used_to_dye, Random::stream(seed, OfDyes + dyes++))
+                                          : make_case(kind, used, Random::stream(seed, OfWhatStays + others++)));
     }
     return suite;
 }

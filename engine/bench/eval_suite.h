@@ -11,7 +11,7 @@ namespace gse::bench {
 
 /// One edit with its ground truth.
 struct EvalCase {
-    std::string kind;  // "recolour", "material", "add", "ground" or "replace"
+    std::string kind;  // "recolour", "material", "add", "ground", "replace" or "dye"
     synth::SceneSpec source;
     synth::SceneSpec target;                 // same seed: the same scene but for what the sentence changes
     std::string prompt;                      // describes the target

@@ -126,7 +126,7 @@ void add_edits(const Json& report, const Json& edits, Json& summary) {
     const Edits changed = of_kinds(edits, {"recolour", "material"}), added = of_kinds(edits, {"add"});
     summary["change_l1_reduction"] = figure(mean(changed, "l1_reduction"), {">=", 0.6});
     summary["change_l1_reduction_pooled"] = figure(pooled_reduction(changed), {});
-    for (const char* kind : {"recolour", "material", "add", "ground"}) {
+    for (const char* kind : {"recolour", "material", "add", "ground", "dye"}) {
         const Edits list = of_kinds(edits, {kind});
         if (!list.empty())
             summary[std::string(kind) + "_l1_reduction"] = figure(mean(list, "l1_reduction"), {});
@@ -156,6 +156,18 @@ void add_preservation(const Json& edits, Json& summary) {
     summary["inconsistency_of_truth"] = figure(mean(all, "inconsistency_of_truth"), {});
 }
 
+/// Of what another true scene of each sentence is measured at.
+Json mean_of_another_truth(const Edits& edits, const char* key) {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const Json* edit : edits) {
+        if (!edit->contains("another_truth")) continue;
+        sum += (*edit)["another_truth"][key].get<double>();
+        ++count;
+    }
+    return count > 0 ? Json(sum / static_cast<double>(count)) : Json();
+}
+
 /// What another thing took the place of.
 void add_replacements(const Json& report, const Json& edits, Json& summary) {
     const Edits replaced = of_kinds(edits, {"replace"}), done = finished(replaced);
@@ -165,6 +177,8 @@ void add_replacements(const Json& report, const Json& edits, Json& summary) {
     summary["replace_old_left"] = figure(mean(done, "old_left"), {"<=", 0.05});
     summary["replace_old_unchanged"] = figure(mean(done, "old_unchanged"), {});
     summary["replace_old_shown"] = figure(mean(done, "old_shown"), {});
+    for (const char* key : {"silhouette_iou", "l1_reduction", "old_left"})
+        summary[std::string("replace_another_truth_") + key] = figure(mean_of_another_truth(done, key), {});
     summary["replace_success"] = figure(success_share(replaced, report), {">=", 0.8});
     summary["replace_psnr_outside_db"] = figure(mean(done, "psnr_outside_db"), {">=", 38});
     summary["replace_leak_rate"] = figure(mean(done, "leak_rate"), {});

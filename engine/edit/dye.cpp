@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "engine/base/check.h"
+#include "engine/base/random.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/edit/words.h"
+#include "engine/math/sh.h"
 
 namespace gse::edit {
 namespace {
@@ -25,13 +27,12 @@ constexpr Name Names[] = {
     {"turquoise", 0x0fc2bd}, {"teal", 0x008080},       {"cyan", 0x00d5e0},       {"aqua", 0x20d8d8},       {"aquamarine", 0x70e8c4}, {"azure", 0x3f9fe8},
     {"navy", 0x10185c},      {"indigo", 0x3c1a82},     {"violet", 0x8a4fe0},     {"magenta", 0xe0189c},    {"fuchsia", 0xf030b0},   {"crimson", 0xbe1236},
     {"scarlet", 0xf0280c},   {"maroon", 0x6c1020},     {"burgundy", 0x6a0f2c},   {"coral", 0xff7050},      {"salmon", 0xfa8a78},    {"peach", 0xffbe98},
-    {"apricot", 0xfba860},   {"tan", 0xcaa472},        {"beige", 0xe6d8b8},      {"ivory", 0xf8f2da},      {"cream", 0xfaeec2},     {"khaki", 0xb4a468},
+    {"tan", 0xcaa472},        {"beige", 0xe6d8b8},      {"ivory", 0xf8f2da},      {"cream", 0xfaeec2},     {"khaki", 0xb4a468},
     {"olive", 0x6c7018},     {"lime", 0x8ee010},       {"mint", 0x96ecbe},       {"emerald", 0x0c9c5e},    {"jade", 0x24a878},      {"lavender", 0xb8a4ec},
-    {"lilac", 0xc8a0d8},     {"plum", 0x80306c},       {"orchid", 0xd86cd0},     {"mauve", 0xb884b0},      {"rose", 0xf05480},      {"ruby", 0xb80c40},
-    {"sapphire", 0x1040a8},  {"amber", 0xfaac10},      {"mustard", 0xd2a41c},    {"ochre", 0xc07c24},      {"chocolate", 0x4a240e}, {"coffee", 0x58381f},
+    {"lilac", 0xc8a0d8},     {"plum", 0x80306c},       {"mauve", 0xb884b0},      {"ruby", 0xb80c40},
+    {"sapphire", 0x1040a8},  {"amber", 0xfaac10},      {"mustard", 0xd2a41c},    {"ochre", 0xc07c24},      {"chocolate", 0x4a240e}, 
     {"caramel", 0xb8702c},   {"chestnut", 0x803a20},   {"sienna", 0x984824},     {"umber", 0x644a34},      {"charcoal", 0x38393e},  {"slate", 0x5c6a78},
-    {"ebony", 0x241c1a},     {"cobalt", 0x0c44ac},     {"ultramarine", 0x2018a0}, {"denim", 0x2c5c90},     {"chartreuse", 0xa8e810}, {"lemon", 0xfaf050},
-    {"cherry", 0xc01030},    {"raspberry", 0xc81c5c},  {"tomato", 0xf04c30},     {"rust", 0xa0441a},       {"vermilion", 0xe64022}, {"periwinkle", 0x8c94ee}};
+    {"ebony", 0x241c1a},     {"cobalt", 0x0c44ac},     {"ultramarine", 0x2018a0}, {"denim", 0x2c5c90},     {"chartreuse", 0xa8e810}, {"rust", 0xa0441a},       {"vermilion", 0xe64022}, {"periwinkle", 0x8c94ee}};
 
 struct Metal {
     const char* word;
@@ -94,6 +95,24 @@ void modify(const Modifier& modifier, Dye& dye) {
         for (auto& channel : *colour) channel = modifier.own * channel + modifier.white;
 }
 
+Vec3 vec_of(const Rgb& colour) { return {colour[0], colour[1], colour[2]}; }
+
+/// The pattern named at `index`, in the colour beside it.
+std::optional<Dye> patterned(const std::vector<std::string>& words, std::size_t begin, std::size_t index, std::size_t end) {
+    const auto pattern = pattern_named(words[index]);
+    if (!pattern) return std::nullopt;
+    Dye dye{{words[index]}, PlainBase, {}, {}, false, pattern};
+    if (!takes_colours(pattern->kind)) return dye;
+    const auto colour_at_place = [&](std::size_t i) { return i >= begin && i < end ? find_word(Names, words[i]) : std::end(Names); };
+    const auto before = colour_at_place(index - 1), after = colour_at_place(index + 1);   // begin is 0: the one before is beyond every end
+    const auto name = before != std::end(Names) ? before : after;
+    if (name == std::end(Names)) return dye;
+    dye.words.insert(before != std::end(Names) ? dye.words.begin() : dye.words.end(), name->word);
+    dye.pattern->first = vec_of(rgb_of(name->rgb));
+    if (std::string(name->word) == "white") dye.pattern->second = {0.08, 0.08, 0.09};
+    return dye;
+}
+
 /// Where the noun phrase begins of which the word at `index` is a part.
 std::size_t phrase_begin(const std::vector<std::string>& words, std::size_t index) {
     static const std::vector<std::string> articles{"a", "an", "the", "its", "his", "her", "their", "some", "this", "that"};
@@ -138,6 +157,8 @@ std::vector<std::string> dye_words(const std::vector<std::string>& known) {
     add(Names);
     if (contains(known, MetalBase)) add(Metals);
     add(Modifiers);
+    for (const auto& word : pattern_words())
+        if (!contains(known, word)) words.push_back(word);
     return words;
 }
 
@@ -147,12 +168,16 @@ std::vector<std::string> with_dyes(std::vector<std::string> drawn, const std::ve
     return drawn;
 }
 
-std::optional<Dye> dye_of(const EditRequest& request, const std::vector<std::string>& known) {
+std::optional<Dye> dye_of(const EditRequest& request, EditMode mode, const std::vector<std::string>& known) {
     if (!contains(known, PlainBase)) return std::nullopt;
     const auto words = words_of(request.prompt);
     const std::size_t target = first_word(request.prompt, request.target);
     if (target >= words.size()) return std::nullopt;
-    const std::size_t begin = phrase_begin(words, target), end = target + words_of(request.target).size();
+    const std::size_t begin = phrase_begin(words, target);
+    std::size_t end = target + words_of(request.target).size();
+    if (mode != EditMode::Modify) --end;   // the thing itself, whatever it is called
+    for (std::size_t i = begin; i < end; ++i)
+        if (auto dye = contains(known, words[i]) ? std::nullopt : patterned(words, begin, i, end)) return dye;
     for (std::size_t i = end; i-- > begin;) {
         auto dye = dye_named(words[i], known);
         if (!dye) continue;
@@ -188,6 +213,69 @@ void apply_dye(const Dye& dye, const Image& share, Image& picture) {
     }
 }
 
+namespace {
+
+/// dyed_red() of colours near one: red's share of each goes into the colour.
+Mat3 near_map(const Rgb& pixel, const Rgb& colour) {
+    const std::size_t low = pixel[1] < pixel[2] ? 1 : 2;
+    const Rgb dyed = dyed_red(pixel, colour);
+    const float span = pixel[0] - pixel[low], red = span / (Red[0] - Red[1]);
+    // How much of it was red by its hue: dyed - pixel = much (red colour + grey - pixel).
+    double much = 0, whole = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double change = red * colour[c] + pixel[low] - red * Red[1] - pixel[c];
+        much += change * (dyed[c] - pixel[c]), whole += change * change;
+    }
+    much = whole > 0 ? much / whole : 0;
+    Mat3 map;
+    for (std::size_t c = 0; c < 3; ++c) {
+        Vec3 row{0, 0, 0};
+        const double share = 1 / (Red[0] - Red[1]);
+        row.x = much * share * (colour[c] - Red[1]);
+        row[static_cast<int>(low)] = much * (1 - share * (colour[c] - Red[1]));
+        row[static_cast<int>(c)] += 1 - much;
+        for (int k = 0; k < 3; ++k) map(static_cast<int>(c), k) = row[k];
+    }
+    return map;
+}
+
+/// A point of the world in thing space.
+Vec3 within_thing(const DyedThing& thing, const Vec3& point) {
+    const Vec3 from = (point - thing.standing.foot) / figure_height(thing.standing);
+    return {dot(from, cross(thing.up, thing.front)), dot(from, thing.up), -dot(from, thing.front)};
+}
+
+}  // namespace
+
+GaussianSet dye_rows(const Dye& dye, const DyedThing& thing, std::span<const std::uint8_t> rows, const GaussianSet& set, std::uint64_t seed) {
+    GSE_CHECK_EQ(rows.size(), set.size());
+    if (!dye.pattern || !(figure_height(thing.standing) > 0)) return set;
+    auto pattern = *dye.pattern;
+    Random random(seed);
+    pattern.offset = {random.uniform(0, 50), random.uniform(0, 50), random.uniform(0, 50)};
+    auto data = set.to_data();
+    const std::size_t stride = data.sh_stride();
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+        float* sh = &data.sh[row * stride];
+        if (rows[row] == 0 || !std::isfinite(sh[0] + sh[1] + sh[2])) continue;
+        const Vec3 shown = colour_at(pattern, within_thing(thing, {data.position[3 * row], data.position[3 * row + 1], data.position[3 * row + 2]}));
+        Rgb pixel, colour;
+        for (std::size_t c = 0; c < 3; ++c) {
+            pixel[c] = static_cast<float>(std::clamp(colour_from_sh(sh[c]), 0.0, 1.0));
+            colour[c] = static_cast<float>(shown[static_cast<int>(c)]);
+        }
+        const Rgb dyed = dyed_red(pixel, colour);
+        if (dyed == pixel) continue;
+        const Mat3 map = near_map(pixel, colour);
+        for (std::size_t c = 0; c < 3; ++c) sh[c] = static_cast<float>(sh_from_colour(std::clamp(dyed[c], 0.0f, 1.0f)));
+        for (std::size_t k = 3; k + 2 < stride; k += 3) {
+            const Vec3 value = map * Vec3{sh[k], sh[k + 1], sh[k + 2]};
+            for (std::size_t c = 0; c < 3; ++c) sh[k + c] = static_cast<float>(value[static_cast<int>(c)]);
+        }
+    }
+    return GaussianSet(std::move(data));
+}
+
 RoundTargets DyedViews::edit(const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) {
     RoundInput told = input;
     if (!told.sentence.empty()) told.sentence = told_with(dye_, told.sentence);
@@ -195,6 +283,7 @@ RoundTargets DyedViews::edit(const std::vector<RoundView>& views, const RoundInp
     drawn_.clear();
     for (std::size_t v = 0; v < targets.images.size(); ++v) {
         drawn_.push_back({views[v].original, targets.images[v]});
+        if (dye_.pattern) continue;
         Image share(views[v].mask.width, views[v].mask.height, 1);
         for (std::size_t p = 0; p < share.data.size(); ++p) {
             const float drawn = targets.outlines.empty() || targets.outlines[v].data.size() != share.data.size() || !input.anew ? 1 : targets.outlines[v].data[p];

@@ -157,6 +157,14 @@ Verdict judge_undyed(const neural::TextToImage& model, const edit::EditRequest& 
     return judge(model, told, edit::as_told(told.prompt), pictures);
 }
 
+/// Over what is labelled, but for the ground that an old thing hid.
+void lay_pattern(const edit::Dye& dye, const Located& located, std::uint64_t seed, edit::EditResult& result) {
+    auto rows = result.label;
+    for (std::size_t row = 0; row < rows.size(); ++row) rows[row] &= result.hidden[row] == 0 ? 1 : 0;
+    const Vec3 up = located.views.orbit.up, front = located.views.front;
+    result.set = edit::dye_rows(dye, {edit::standing_alone(result.set, rows, up, front), up, front}, rows, result.set, seed);
+}
+
 /// Ends an attempt before anything was fitted.
 struct AnotherWay {};
 
@@ -201,7 +209,7 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     const auto& request = recipe.request;
     const bool editor = model.kind() == neural::BundleKind::InstructPix2Pix;
     const bool by_views = edit::edits_by_views(request);
-    const auto dye = by_views && !editor ? edit::dye_of(request, edit::words_to_say(model.known_words(), model.drawn_words())) : std::nullopt;
+    const auto dye = by_views && !editor ? edit::dye_of(request, plan.mode, edit::words_to_say(model.known_words(), model.drawn_words())) : std::nullopt;
     const auto prompt = editor ? told_to_editor(request) : edit::as_told(request.prompt);
     auto settings = with_sentence_before(recipe.guidance, request);
     settings.restyle = way.restyle;
@@ -244,6 +252,7 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     };
     tools.target_orders = observer.target_orders;
     edited.result = edit::run_edit(scene, plan, request, tools);
+    if (dye && dye->pattern) lay_pattern(*dye, located, request.seed, edited.result);
     edited.drawn = drawable(edited.result.set);
     edited.key = located.key + fields_to_json(static_cast<const edit::LoopSettings&>(request)).dump() +
                  fields_to_json(recipe.guidance).dump();

@@ -41,6 +41,11 @@ struct Pose {
     Vec3 shift{};
 };
 
+/// Of what is another in another variant of a scene.
+Random own_stream(const SceneSpec& spec, std::uint64_t index) {
+    return Random::stream(spec.seed + 0x9e3779b97f4a7c15ULL * spec.variant, index);
+}
+
 /// The first that a pose is drawn with.
 double turn_of(Random& random, const SceneSpec& spec) { return random.uniform(-0.22, 0.22) + spec.heading; }
 
@@ -149,9 +154,9 @@ SynthScene generate(const SceneSpec& spec) {
     };
     const std::uint64_t object_index = word_index(object_words(), more_object_words(), spec.object);
     const Light light = make_light(stream(LightStream));
-    const Pose pose = make_pose(stream(PoseStream), spec);
-    const Model model = make_object(spec.object, stream(ObjectStream + object_index));
-    const Material material = make_material(spec.material, stream(TextureStream));
+    const Pose pose = make_pose(own_stream(spec, PoseStream), spec);
+    const Model model = make_object(spec.object, own_stream(spec, ObjectStream + object_index));
+    const Material material = make_material(spec.material, own_stream(spec, TextureStream));
 
     const auto own =
         sample_surface(model.shapes, {}, share(ObjectShare), stream(SampleStream + object_index));
@@ -184,7 +189,7 @@ SynthScene generate(const SceneSpec& spec) {
 }
 
 double turn_of(const SceneSpec& spec) {
-    Random random = Random::stream(spec.seed, PoseStream);
+    Random random = own_stream(spec, PoseStream);
     return turn_of(random, spec);
 }
 

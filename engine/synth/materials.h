@@ -4,26 +4,20 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/math/noise.h"
+#include "engine/scene/surface_pattern.h"
 #include "engine/synth/shapes.h"
 
 namespace gse::synth {
 
-/// Smooth noise in [0,1] with features of about one unit; the same everywhere for the same point.
-double value_noise(const Vec3& p);
-/// Three octaves of value_noise, in [0,1].
-double layered_noise(const Vec3& p);
-
 /// A material as one scene shows it (`offset` moves the texture, `tint` varies a plain colour a little).
 struct Material {
-    enum class Texture : std::uint8_t { Plain, Wood, Stone, Gold, Silver, Bronze, Marble, Brick, Striped, Spotted, Checkered, Rainbow, Rusty, Lava, Mossy };
+    enum class Texture : std::uint8_t { Plain, Wood, Stone, Gold, Silver, Bronze, Pattern };
     Texture texture = Texture::Plain;
     Vec3 base{};
-    Vec3 second{};   // of stripes, spots and squares
+    SurfacePattern pattern{};
     Vec3 offset{};
 };
-
-/// Colour of the textures of more_material_words() (not of metals) at a point of model space.
-Vec3 pattern_colour(const Material& material, const Vec3& p);
 
 /// Makes `material` one of more_material_words(); false for another word.
 bool make_more_material(const std::string& word, Random& random, Material& material);
@@ -42,8 +36,5 @@ Light make_light(Random random);
 
 /// Display colour in [0,1] of a surface point.
 Vec3 shade(const Paint& paint, const Material& material, const Light& light, const SurfacePoint& point);
-
-Vec3 mix(const Vec3& a, const Vec3& b, double t);
-double smooth_step(double low, double high, double x);
 
 }  // namespace gse::synth

@@ -1,7 +1,6 @@
-// More colours and materials: patterns, weathered and natural surfaces.
+// More colours and materials: metals, and patterns of every surface.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "engine/synth/materials.h"
 
@@ -10,127 +9,41 @@ namespace {
 
 using Texture = Material::Texture;
 
-struct Named {
+struct NamedMaterial {
     const char* word;
     Texture texture;
     Vec3 base;
 };
 
-constexpr std::array<Named, 15> MoreMaterials{{{"pink", Texture::Plain, {0.98, 0.45, 0.68}},
-                                               {"brown", Texture::Plain, {0.40, 0.20, 0.08}},
-                                               {"gray", Texture::Plain, {0.47, 0.47, 0.48}},
-                                               {"turquoise", Texture::Plain, {0.06, 0.76, 0.74}},
-                                               {"silver", Texture::Silver, {}},
-                                               {"bronze", Texture::Bronze, {}},
-                                               {"marble", Texture::Marble, {}},
-                                               {"brick", Texture::Brick, {}},
-                                               {"striped", Texture::Striped, {}},
-                                               {"spotted", Texture::Spotted, {}},
-                                               {"checkered", Texture::Checkered, {0.08, 0.08, 0.09}},
-                                               {"rainbow", Texture::Rainbow, {}},
-                                               {"rusty", Texture::Rusty, {}},
-                                               {"lava", Texture::Lava, {}},
-                                               {"mossy", Texture::Mossy, {}}}};
+constexpr std::array<NamedMaterial, 6> MoreMaterials{{{"pink", Texture::Plain, {0.98, 0.45, 0.68}},
+                                                      {"brown", Texture::Plain, {0.40, 0.20, 0.08}},
+                                                      {"gray", Texture::Plain, {0.47, 0.47, 0.48}},
+                                                      {"turquoise", Texture::Plain, {0.06, 0.76, 0.74}},
+                                                      {"silver", Texture::Silver, {}},
+                                                      {"bronze", Texture::Bronze, {}}}};
 
 /// Strong colours of stripes and spots.
 constexpr std::array<Vec3, 6> Strong{Vec3{0.82, 0.08, 0.08}, Vec3{0.10, 0.22, 0.85}, Vec3{0.05, 0.50, 0.18},
                                      Vec3{0.50, 0.12, 0.70}, Vec3{0.95, 0.45, 0.05}, Vec3{0.08, 0.08, 0.09}};
 
-/// Light blue-white veins across white: Perlin's marble.
-Vec3 marble(const Vec3& q) {
-    const double bend = layered_noise(q * 3.2);
-    const double vein = std::abs(std::sin(3.14159265 * (2.2 * (q.x + 0.7 * q.y + 0.4 * q.z) + 4.5 * bend)));
-    const double cloud = layered_noise(q * 2.0 + Vec3{9, 4, 2});
-    const Vec3 ground = mix({0.98, 0.97, 0.95}, {0.86, 0.86, 0.88}, smooth_step(0.4, 0.75, cloud));
-    return mix({0.42, 0.44, 0.50}, ground, smooth_step(0.0, 0.3, vein));
-}
-
-/// Courses of bricks around the vertical axis, every other one moved by half a brick.
-Vec3 brick(const Vec3& p, const Vec3& q) {
-    constexpr double Height = 0.105, Around = 11, Joint = 0.16;   // bricks around; of a brick's height
-    const double course = p.y / Height, row = std::floor(course);
-    const double place = Around * (std::atan2(p.z, p.x) / 6.28318531 + 0.5) + 0.5 * std::fmod(row + 100, 2.0);
-    const double up = course - row, along = place - std::floor(place);
-    if (up < Joint || along < 0.5 * Joint) return {0.80, 0.77, 0.72};
-    const double tone = value_noise(Vec3{std::floor(place) * 7.3, row * 5.1, 0} + q);
-    return mix({0.48, 0.15, 0.09}, {0.78, 0.32, 0.20}, tone);
-}
-
-/// Round dots on a jittered cubic lattice.
-bool in_spot(const Vec3& p, const Vec3& offset) {
-    constexpr double Cell = 0.2, Radius = 0.34;
-    const Vec3 q = (p + offset) * (1 / Cell);
-    const Vec3 cell{std::floor(q.x), std::floor(q.y), std::floor(q.z)};
-    for (int k = 0; k < 27; ++k) {
-        const Vec3 near = cell + Vec3{k % 3 - 1.0, k / 3 % 3 - 1.0, k / 9 - 1.0};
-        const Vec3 middle = near + Vec3{0.5 + 0.3 * (value_noise(near * 3.7) - 0.5), 0.5 + 0.3 * (value_noise(near * 5.1) - 0.5), 0.5};
-        if (length(q - middle) < Radius * 1.25) return true;
-    }
-    return false;
-}
-
-Vec3 rainbow(const Vec3& p) {
-    constexpr std::array<Vec3, 6> Bands{Vec3{0.50, 0.15, 0.75}, Vec3{0.12, 0.28, 0.90}, Vec3{0.08, 0.62, 0.22},
-                                        Vec3{0.98, 0.88, 0.10}, Vec3{0.98, 0.50, 0.05}, Vec3{0.88, 0.08, 0.08}};
-    const double at = std::clamp(p.y / 1.02, 0.0, 0.999) * Bands.size();
-    const auto i = static_cast<std::size_t>(at);
-    const Vec3& next = Bands[std::min(i + 1, Bands.size() - 1)];
-    return mix(Bands[i], next, smooth_step(0.8, 1.0, at - std::floor(at)));
-}
-
-Vec3 rusty(const Vec3& q) {
-    const double patch = layered_noise(q * 5.0), grain = value_noise(q * 40.0);
-    const Vec3 rust = mix({0.36, 0.14, 0.05}, {0.76, 0.36, 0.12}, 0.6 * value_noise(q * 13.0) + 0.4 * grain);
-    return mix(rust, {0.34, 0.33, 0.34}, smooth_step(0.56, 0.66, patch));
-}
-
-/// Dark crust with glowing cracks.
-Vec3 lava(const Vec3& q) {
-    const double crack = std::abs(layered_noise(q * 4.2) - 0.5) + 0.35 * std::abs(value_noise(q * 9.0) - 0.5);
-    const Vec3 glow = mix({1.0, 0.85, 0.20}, {0.95, 0.28, 0.02}, smooth_step(0.02, 0.08, crack));
-    return mix(glow, Vec3{0.10, 0.07, 0.07} * (0.7 + 0.6 * value_noise(q * 20.0)), smooth_step(0.08, 0.13, crack));
-}
-
-Vec3 mossy(const Vec3& p, const Vec3& q) {
-    const double grey = 0.36 + 0.38 * layered_noise(q * 6.0);
-    const double grown = smooth_step(0.38, 0.58, layered_noise(q * 3.6) + 0.12 * (p.y - 0.5));
-    const Vec3 moss = mix({0.18, 0.34, 0.06}, {0.52, 0.70, 0.20}, value_noise(q * 24.0));
-    return mix(Vec3{grey, grey, 0.95 * grey}, moss, grown);
-}
-
 }  // namespace
 
 bool make_more_material(const std::string& word, Random& random, Material& material) {
-    const auto found = std::find_if(MoreMaterials.begin(), MoreMaterials.end(), [&](const Named& named) { return word == named.word; });
+    if (const auto pattern = pattern_named(word)) {
+        material.texture = Texture::Pattern;
+        material.pattern = *pattern;
+        material.pattern.offset = material.offset;
+        if (takes_colours(pattern->kind) && pattern->kind != SurfacePattern::Kind::Checkered) {
+            material.pattern.first = Strong[random.below(Strong.size())];
+            if (pattern->kind == SurfacePattern::Kind::Spotted && random.uniform() < 0.5) std::swap(material.pattern.first, material.pattern.second);
+        }
+        return true;
+    }
+    const auto found = std::find_if(MoreMaterials.begin(), MoreMaterials.end(), [&](const NamedMaterial& named) { return word == named.word; });
     if (found == MoreMaterials.end()) return false;
     material.texture = found->texture;
     material.base = found->base;
-    material.second = {0.95, 0.95, 0.94};
-    if (material.texture == Texture::Striped || material.texture == Texture::Spotted) {
-        material.base = Strong[random.below(Strong.size())];
-        if (material.texture == Texture::Spotted && random.uniform() < 0.5) std::swap(material.base, material.second);
-    }
     return true;
-}
-
-Vec3 pattern_colour(const Material& material, const Vec3& p) {
-    const Vec3 q = p + material.offset;
-    switch (material.texture) {
-        case Texture::Marble: return marble(q);
-        case Texture::Brick: return brick(p, material.offset);
-        case Texture::Striped: return std::sin(6.28318531 * (p.y / 0.17 + 0.12 * p.x)) < 0 ? material.base : material.second;
-        case Texture::Spotted: return in_spot(p, material.offset) ? material.base : material.second;
-        case Texture::Checkered: {
-            constexpr double Square = 0.21;
-            const auto cell = std::lround(std::floor(p.x / Square + 0.5) + std::floor(p.y / Square) + std::floor(p.z / Square + 0.5));
-            return (cell & 1) == 0 ? material.base : material.second;
-        }
-        case Texture::Rainbow: return rainbow(p);
-        case Texture::Rusty: return rusty(q);
-        case Texture::Lava: return lava(q);
-        case Texture::Mossy: return mossy(p, q);
-        default: return material.base;
-    }
 }
 
 }  // namespace gse::synth

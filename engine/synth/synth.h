@@ -25,6 +25,7 @@ struct SceneSpec {
     int gaussian_budget = 6000;      // about this many Gaussians in all
     double heading = 0;              // radians about the vertical, beyond the seed's own pose; the ground stays
     double size = 1;                 // factor of the object's and the accessory's size
+    std::uint64_t variant = 0;       // others: another thing of the same words in the same light on the same ground, in pose, proportions and texture
 };
 
 /// A generated scene: up is -y as in COLMAP worlds, object standing on y = 0, front towards -z, about 1 unit

@@ -82,6 +82,8 @@ DOCTEST_TEST_CASE("what the window says of guidance, attention, learning and fro
         app.set_model_settings(settings);
         auto request = app.model().request;
         request.iterations = 2;
+        request.views = 6;
+        request.edited_views = 2;
         app.set_request(request);
         app.edit();
         DOCTEST_REQUIRE(session.idle());

@@ -67,6 +67,22 @@ private:
     int calls = 0;
 };
 
+/// One view has much attention beside the thing: at a low threshold its mask is at odds with the others'.
+class DistractedAttention : public ColourAttention {
+public:
+    std::vector<Image> locate(const edit::AttentionQuery& query) override {
+        auto maps = ColourAttention::locate(query);
+        if (queries.size() % 12 == 1)
+            for (int y = 0; y < maps[0].height; ++y)
+                for (int x = 0; x < maps[0].width / 3; ++x) maps[0].at(x, y, 0) = std::max(maps[0].at(x, y, 0), Beside * maximum(maps[0]));
+        return maps;
+    }
+
+private:
+    static constexpr float Beside = 0.45f;
+    static float maximum(const Image& map) { return *std::max_element(map.data.begin(), map.data.end()); }
+};
+
 /// Finds red things when asked for a ball, nothing else.
 class RedDetector : public edit::TextSegmenter {
 public:
@@ -521,22 +537,6 @@ DOCTEST_TEST_CASE("another threshold asks no network, and remembered views and t
     }
     DOCTEST_CHECK(cached.asked() == asked);
 }
-
-/// One view has much attention beside the thing: at a low threshold its mask is at odds with the others'.
-class DistractedAttention : public ColourAttention {
-public:
-    std::vector<Image> locate(const edit::AttentionQuery& query) override {
-        auto maps = ColourAttention::locate(query);
-        if (queries.size() % 12 == 1)
-            for (int y = 0; y < maps[0].height; ++y)
-                for (int x = 0; x < maps[0].width / 3; ++x) maps[0].at(x, y, 0) = std::max(maps[0].at(x, y, 0), Beside * maximum(maps[0]));
-        return maps;
-    }
-
-private:
-    static constexpr float Beside = 0.45f;
-    static float maximum(const Image& map) { return *std::max_element(map.data.begin(), map.data.end()); }
-};
 
 DOCTEST_TEST_CASE("a threshold at which another view is at odds with the rest asks no network either") {
     const Quiet quiet;

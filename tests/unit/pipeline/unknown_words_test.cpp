@@ -2,6 +2,7 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -89,6 +90,49 @@ DOCTEST_TEST_CASE("words that the model does not know change neither what is fou
     DOCTEST_CAPTURE(before);
     DOCTEST_CHECK(after > before + 0.3);   // of the range: plainly blue, which the bear is not
     DOCTEST_CHECK(named.result().changed_outside_label == 0);
+}
+
+DOCTEST_TEST_CASE("a colour that the model has no word for comes out; dark eyes stay dark, and nothing outside changes") {
+    if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
+    const auto scene = load_scene(assets_path() / "scenes/bear/scene.ply");
+    const auto model = load_recipe_model({});
+    const auto colours_of = [](const GaussianSet& set) {
+        std::vector<Vec3> colours;
+        const std::size_t stride = set.sh().size() / set.size();
+        for (std::size_t row = 0; row < set.size(); ++row) {
+            const float* sh = &set.sh()[row * stride];
+            colours.push_back({colour_from_sh(sh[0]), colour_from_sh(sh[1]), colour_from_sh(sh[2])});
+        }
+        return colours;
+    };
+    std::vector<std::uint8_t> label;
+    for (const auto* word : {"pink", "striped"}) {
+        EditJob job(recipe_of("bear", "a " + std::string(word) + " bear on the grass", word), EditJobInput{scene, {}, model, label}, JobControl{});
+        job.locate();
+        DOCTEST_REQUIRE(job.found());
+        if (label.empty()) label = *job.located().label.bits;
+        job.run();
+        DOCTEST_CHECK(job.result().changed_outside_label == 0);
+        const auto before = colours_of(scene.gaussians), after = colours_of(job.result().set);
+        DOCTEST_REQUIRE(before.size() == after.size());
+        double red = 0, pink = 0, grey = 0, dark = 0, still_dark = 0;
+        for (std::size_t row = 0; row < before.size(); ++row) {
+            if (job.result().label[row] == 0) continue;
+            const auto& b = before[row];
+            const auto& a = after[row];
+            if (std::max({b.x, b.y, b.z}) < 0.12) dark += 1, still_dark += std::max({a.x, a.y, a.z}) < 0.35 ? 1 : 0;
+            if (b.x < 0.35 || b.x < 3 * std::max(b.y, b.z)) continue;
+            red += 1;
+            pink += a.x > a.z && a.z > a.y + 0.05 * a.x && a.y > 0.3 * a.x ? 1 : 0;
+            grey += std::max({a.x, a.y, a.z}) - std::min({a.x, a.y, a.z}) < 0.15 ? 1 : 0;
+        }
+        DOCTEST_CAPTURE(word);
+        DOCTEST_REQUIRE(red > 500);
+        DOCTEST_REQUIRE(dark > 10);
+        DOCTEST_CHECK(still_dark > 0.8 * dark);
+        if (std::string(word) == "pink") DOCTEST_CHECK(pink > 0.8 * red);
+        else DOCTEST_CHECK(grey > 0.8 * red);   // stripes are black and white
+    }
 }
 
 }  // namespace unknown_words_test

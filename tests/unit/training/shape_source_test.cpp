@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/neural/starter_words.h"
 #include "engine/synth/synth.h"
 #include "engine/training/starter_source.h"
 
@@ -143,6 +144,33 @@ DOCTEST_TEST_CASE("what is restyled looked different before, where it is and now
     plain->before()->picture(views, Size);   // of another scene: nothing of the first is known
     source->before()->picture(0, Size);
     DOCTEST_CHECK(plain->before()->picture(0, Size).rgb == alone);
+}
+
+DOCTEST_TEST_CASE("further words are in as many scenes as asked for, and in the vocabulary") {
+    const auto source = gse::training::make_shape_source(8, {.restyled = 0.3, .more = 0.5}), looks = gse::training::make_shape_source(8, {.more = 1, .more_looks = true});
+    const auto views = static_cast<std::uint64_t>(source->views_of_scene());
+    const auto& known = gse::synth::vocabulary();
+    const auto vocabulary = source->vocabulary();
+    const auto has = [](const std::vector<std::string>& words, const std::string& word) { return std::find(words.begin(), words.end(), word) != words.end(); };
+    constexpr std::uint64_t Scenes = 200;
+    std::size_t further = 0, grey = 0;
+    for (std::uint64_t scene = 0; scene < Scenes; ++scene)
+        for (const auto* from : {source.get(), looks.get()}) {
+            bool is_further = false;
+            for (std::uint64_t wording = 0; wording < 4; ++wording)
+                for (const auto& word : gse::neural::split_caption(from->caption(scene * views, wording, false).text)) {
+                    if (word == ",") continue;
+                    DOCTEST_CHECK(has(vocabulary, word));
+                    is_further = is_further || !has(known, word);
+                    grey += word == "grey" ? 1 : 0;
+                    if (from == looks.get()) DOCTEST_CHECK_FALSE(has(gse::synth::more_object_words(), word));
+                }
+            further += is_further && from == source.get() ? 1 : 0;
+        }
+    DOCTEST_CHECK(further > 0.35 * Scenes);   // some captions leave the word out
+    DOCTEST_CHECK(further < 0.6 * Scenes);
+    DOCTEST_CHECK(grey > 0);
+    DOCTEST_CHECK(gse::training::make_shape_source(8)->vocabulary() == known);
 }
 
 }  // namespace shape_source_test
