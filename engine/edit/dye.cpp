@@ -54,8 +54,9 @@ constexpr Modifier Modifiers[] = {{"dark", 0.45f, 0}, {"light", 0.6f, 0.4f}, {"p
 constexpr const char* PlainBase = "red";
 constexpr const char* MetalBase = "golden";
 constexpr Rgb Red{0.85f, 0.07f, 0.07f};   // as models draw it where light falls on it
-// Hues, degrees from red: up to the first a pixel counts as red, beyond the second it has a colour of its own.
-constexpr float RedHue = 16, OtherHue = 28;
+// Degrees from the hue that most of a thing has which was drawn red: up to the first a pixel counts as that, beyond the second it has a colour
+// of its own. What cannot be called red is no thing's hue.
+constexpr float SameHue = 16, OtherHue = 28, MostOffRed = 36;
 // Saturation of gold, the channels' difference over the largest.
 constexpr float Colourless = 0.2f, Coloured = 0.45f;
 // Of gold the largest channel is red: what it is in its darkest and its brightest reflections.
@@ -122,12 +123,36 @@ std::size_t phrase_begin(const std::vector<std::string>& words, std::size_t inde
 
 float ramp(float low, float high, float value) { return std::clamp((value - low) / (high - low), 0.0f, 1.0f); }
 
-/// Of a pixel that is a mixture of red and grey, the red gets the colour (linear unmixing).
-Rgb dyed_red(const Rgb& pixel, const Rgb& colour) {
+/// Degrees from red, of pixels in which that is the largest channel: yellow is 60, magenta -60. `chroma` above 0.
+float hue_of(const Rgb& pixel, float chroma) { return 60 * (pixel[1] - pixel[2]) / chroma; }
+
+/// The hue that most of what is about red has, by the chroma of pixels: what a model calls red differs from thing to thing.
+class HueVote {
+public:
+    void add(const Rgb& pixel, double share) {
+        const auto [low, high] = std::minmax({pixel[0], pixel[1], pixel[2]});
+        if (high - low <= 0 || pixel[0] < high) return;
+        const float hue = hue_of(pixel, high - low);
+        if (std::abs(hue) <= MostOffRed) votes_[static_cast<std::size_t>(std::lround(hue + MostOffRed))] += share * (high - low);
+    }
+    /// Their median; 0 where there are none.
+    float hue() const {
+        double all = 0, below = 0;
+        for (const double votes : votes_) all += votes;
+        for (std::size_t i = 0; i < votes_.size() && all > 0; ++i)
+            if ((below += votes_[i]) >= 0.5 * all) return static_cast<float>(i) - MostOffRed;
+        return 0;
+    }
+
+private:
+    std::array<double, 2 * static_cast<std::size_t>(MostOffRed) + 1> votes_{};
+};
+
+/// Of a pixel that is a mixture of grey and of red of the hue `red_hue`, the red gets the colour (linear unmixing).
+Rgb dyed_red(const Rgb& pixel, const Rgb& colour, float red_hue) {
     const auto [low, high] = std::minmax({pixel[0], pixel[1], pixel[2]});
     if (high - low <= 0 || pixel[0] < high) return pixel;
-    const float hue = 60 * std::abs(pixel[1] - pixel[2]) / (high - low);   // of those near red
-    const float much = 1 - ramp(RedHue, OtherHue, hue);
+    const float much = 1 - ramp(SameHue, OtherHue, std::abs(hue_of(pixel, high - low) - red_hue));
     const float red = (high - low) / (Red[0] - Red[1]), grey = low - red * Red[1];
     Rgb dyed = pixel;
     for (std::size_t c = 0; c < 3; ++c) dyed[c] += much * (red * colour[c] + grey - pixel[c]);
@@ -202,23 +227,37 @@ std::string told_with(const Dye& dye, const std::string& sentence) {
     return joined(words);
 }
 
-void apply_dye(const Dye& dye, const Image& share, Image& picture) {
-    GSE_CHECK_EQ(picture.channels, 3);
-    GSE_CHECK(share.width == picture.width && share.height == picture.height);
+namespace {
+
+void apply_dye(const Dye& dye, const Image& share, float red_hue, Image& picture) {
     for (std::size_t p = 0; p < share.data.size(); ++p) {
         if (!(share.data[p] > 0)) continue;
         float* at = &picture.data[3 * p];
-        const Rgb pixel{at[0], at[1], at[2]}, dyed = dye.metal ? dyed_gold(pixel, dye) : dyed_red(pixel, dye.colour);
+        const Rgb pixel{at[0], at[1], at[2]}, dyed = dye.metal ? dyed_gold(pixel, dye) : dyed_red(pixel, dye.colour, red_hue);
         for (std::size_t c = 0; c < 3; ++c) at[c] = std::clamp(pixel[c] + std::min(share.data[p], 1.0f) * (dyed[c] - pixel[c]), 0.0f, 1.0f);
     }
+}
+
+}  // namespace
+
+void apply_dye(const Dye& dye, std::span<const Image> shares, std::span<Image> pictures) {
+    GSE_CHECK_EQ(shares.size(), pictures.size());
+    HueVote vote;
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        GSE_CHECK_EQ(pictures[i].channels, 3);
+        GSE_CHECK(shares[i].width == pictures[i].width && shares[i].height == pictures[i].height);
+        for (std::size_t p = 0; p < shares[i].data.size(); ++p)
+            if (const float* at = &pictures[i].data[3 * p]; shares[i].data[p] > 0) vote.add({at[0], at[1], at[2]}, shares[i].data[p]);
+    }
+    for (std::size_t i = 0; i < pictures.size(); ++i) apply_dye(dye, shares[i], vote.hue(), pictures[i]);
 }
 
 namespace {
 
 /// dyed_red() of colours near one: red's share of each goes into the colour.
-Mat3 near_map(const Rgb& pixel, const Rgb& colour) {
+Mat3 near_map(const Rgb& pixel, const Rgb& colour, float red_hue) {
     const std::size_t low = pixel[1] < pixel[2] ? 1 : 2;
-    const Rgb dyed = dyed_red(pixel, colour);
+    const Rgb dyed = dyed_red(pixel, colour, red_hue);
     const float span = pixel[0] - pixel[low], red = span / (Red[0] - Red[1]);
     // How much of it was red by its hue: dyed - pixel = much (red colour + grey - pixel).
     double much = 0, whole = 0;
@@ -255,18 +294,27 @@ GaussianSet dye_rows(const Dye& dye, const DyedThing& thing, std::span<const std
     pattern.offset = {random.uniform(0, 50), random.uniform(0, 50), random.uniform(0, 50)};
     auto data = set.to_data();
     const std::size_t stride = data.sh_stride();
+    const auto colour_of = [&](std::size_t row) {
+        Rgb colour;
+        for (std::size_t c = 0; c < 3; ++c) colour[c] = static_cast<float>(std::clamp(colour_from_sh(data.sh[row * stride + c]), 0.0, 1.0));
+        return colour;
+    };
+    std::vector<std::size_t> dyed_rows;
+    HueVote vote;
     for (std::size_t row = 0; row < rows.size(); ++row) {
-        float* sh = &data.sh[row * stride];
+        const float* sh = &data.sh[row * stride];
         if (rows[row] == 0 || !std::isfinite(sh[0] + sh[1] + sh[2])) continue;
+        dyed_rows.push_back(row);
+        vote.add(colour_of(row), 1);
+    }
+    const float red_hue = vote.hue();
+    for (const std::size_t row : dyed_rows) {
+        float* sh = &data.sh[row * stride];
         const Vec3 shown = colour_at(pattern, within_thing(thing, {data.position[3 * row], data.position[3 * row + 1], data.position[3 * row + 2]}));
-        Rgb pixel, colour;
-        for (std::size_t c = 0; c < 3; ++c) {
-            pixel[c] = static_cast<float>(std::clamp(colour_from_sh(sh[c]), 0.0, 1.0));
-            colour[c] = static_cast<float>(shown[static_cast<int>(c)]);
-        }
-        const Rgb dyed = dyed_red(pixel, colour);
+        const Rgb pixel = colour_of(row), colour{static_cast<float>(shown.x), static_cast<float>(shown.y), static_cast<float>(shown.z)};
+        const Rgb dyed = dyed_red(pixel, colour, red_hue);
         if (dyed == pixel) continue;
-        const Mat3 map = near_map(pixel, colour);
+        const Mat3 map = near_map(pixel, colour, red_hue);
         for (std::size_t c = 0; c < 3; ++c) sh[c] = static_cast<float>(sh_from_colour(std::clamp(dyed[c], 0.0f, 1.0f)));
         for (std::size_t k = 3; k + 2 < stride; k += 3) {
             const Vec3 value = map * Vec3{sh[k], sh[k + 1], sh[k + 2]};
@@ -281,16 +329,16 @@ RoundTargets DyedViews::edit(const std::vector<RoundView>& views, const RoundInp
     if (!told.sentence.empty()) told.sentence = told_with(dye_, told.sentence);
     auto targets = guidance_.edit(views, told, job);
     drawn_.clear();
+    std::vector<Image> shares;
     for (std::size_t v = 0; v < targets.images.size(); ++v) {
         drawn_.push_back({views[v].original, targets.images[v]});
-        if (dye_.pattern) continue;
-        Image share(views[v].mask.width, views[v].mask.height, 1);
+        Image& share = shares.emplace_back(views[v].mask.width, views[v].mask.height, 1);
         for (std::size_t p = 0; p < share.data.size(); ++p) {
             const float drawn = targets.outlines.empty() || targets.outlines[v].data.size() != share.data.size() || !input.anew ? 1 : targets.outlines[v].data[p];
             share.data[p] = views[v].mask.data[p] != 0 ? drawn : 0;
         }
-        apply_dye(dye_, share, targets.images[v]);
     }
+    if (!dye_.pattern) apply_dye(dye_, shares, targets.images);
     return targets;
 }
 

@@ -40,8 +40,8 @@ std::optional<Dye> dye_of(const EditRequest& request, EditMode mode, const std::
 /// The sentence (words as as_told() has them) with the dye's words replaced by its base, wherever they stand.
 std::string told_with(const Dye& dye, const std::string& sentence);
 
-/// Dyes `picture` [H,W,3] where `share` [H,W,1] says how much: what has a colour of its own (a beak) keeps it.
-void apply_dye(const Dye& dye, const Image& share, Image& picture);
+/// Dyes pictures [H,W,3] of one thing where `shares` [H,W,1] say how much: what has a colour of its own (a beak) keeps it.
+void apply_dye(const Dye& dye, std::span<const Image> shares, std::span<Image> pictures);
 
 /// Where a thing stands, and which way it looks.
 struct DyedThing {

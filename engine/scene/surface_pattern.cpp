@@ -27,10 +27,10 @@ constexpr std::array<Named, 16> Patterns{{{"striped", Kind::Striped},     {"spot
 /// Light blue-white veins across white: Perlin's marble.
 Vec3 marble(const Vec3& q) {
     const double bend = layered_noise(q * 3.2);
-    const double vein = std::abs(std::sin(3.14159265 * (2.2 * (q.x + 0.7 * q.y + 0.4 * q.z) + 4.5 * bend)));
+    const double vein = std::abs(std::sin(3.14159265 * (3.0 * (q.x + 0.7 * q.y + 0.4 * q.z) + 5.5 * bend)));
     const double cloud = layered_noise(q * 2.0 + Vec3{9, 4, 2});
     const Vec3 ground = mix({0.98, 0.97, 0.95}, {0.86, 0.86, 0.88}, smooth_step(0.4, 0.75, cloud));
-    return mix({0.42, 0.44, 0.50}, ground, smooth_step(0.0, 0.3, vein));
+    return mix({0.42, 0.44, 0.50}, ground, smooth_step(0.05, 0.42, vein));
 }
 
 /// Courses of bricks around the vertical axis, every other one moved by half a brick.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,20 +39,16 @@ std::optional<edit::Dye> dye(const std::string& prompt, const std::string& targe
 
 using Words = std::vector<std::string>;
 
-Image pixel(const Rgb& colour) {
-    Image image(1, 1, 3);
-    std::copy(colour.begin(), colour.end(), image.data.begin());
-    return image;
-}
+constexpr Rgb Red{0.85f, 0.07f, 0.07f};
 
 Rgb dyed(const edit::Dye& with, const Rgb& colour, float much = 1) {
-    Image image = pixel(colour), share(1, 1, 1);
-    share.data[0] = much;
-    edit::apply_dye(with, share, image);
+    // Most of the thing is of a clear red.
+    Image image(5, 1, 3), share(5, 1, 1, much);
+    for (std::size_t p = 0; p < 5; ++p) std::copy_n(p == 0 ? colour.data() : Red.data(), 3, &image.data[3 * p]);
+    std::fill(share.data.begin() + 1, share.data.end(), 1.0f);
+    edit::apply_dye(with, std::span(&share, 1), std::span(&image, 1));
     return {image.data[0], image.data[1], image.data[2]};
 }
-
-constexpr Rgb Red{0.85f, 0.07f, 0.07f};
 
 Rgb mixed(const Rgb& a, const Rgb& b, float t) { return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])}; }
 
@@ -136,6 +133,19 @@ DOCTEST_TEST_CASE("red becomes the colour, in light and shade; white, grey, blac
         for (const Rgb& other : {Rgb{1, 0.5f, 0.03f}, Rgb{0.1f, 0.8f, 0.1f}, Rgb{0.1f, 0.2f, 0.9f}, Rgb{0.9f, 0.9f, 0.1f}}) DOCTEST_CHECK(dyed(*with, other) == other);
         DOCTEST_CHECK(dyed(*with, Red, 0) == Red);
     }
+}
+
+DOCTEST_TEST_CASE("what a model calls red may be as brown as a thing makes it; what is much yellower than most of the thing stays") {
+    const auto pink = dye("a pink bear", "pink");
+    DOCTEST_REQUIRE(pink);
+    const Rgb brown{0.6f, 0.34f, 0.1f};   // 29 degrees from red
+    const Rgb yellow{0.9f, 0.89f, 0.1f};
+    Image image(6, 1, 3), share(6, 1, 1, 1.0f);
+    for (std::size_t p = 0; p < 6; ++p) std::copy_n(p == 0 ? yellow.data() : brown.data(), 3, &image.data[3 * p]);
+    edit::apply_dye(*pink, std::span(&share, 1), std::span(&image, 1));
+    DOCTEST_CHECK(std::equal(yellow.begin(), yellow.end(), image.data.begin()));
+    DOCTEST_CHECK(image.data[5] > image.data[4]);   // pink: more blue than green
+    DOCTEST_CHECK(image.data[3] > image.data[5]);
 }
 
 DOCTEST_TEST_CASE("gold becomes another metal: what is brighter stays brighter, what is blue stays") {
