@@ -193,10 +193,9 @@ private:
         std::vector<std::string> targets{request.target};
         if (hints_.target_open) targets = edit::possible_targets(request.prompt, request.source, hints_.said);
         if (const auto thing = edit::thing_in_place(request); hints_.target_open && !thing.empty()) targets = {thing};
-        const auto known = workplace_.model().known_words();
-        // What is only drawn, the encoder cannot tell: the sentence's order decides.
-        if (!edit::knows(known, targets.front()) && edit::knows(edit::with_dyes(workplace_.model().drawn_words(), known), targets.front())) targets.resize(1);
-        else std::erase_if(targets, [&](const auto& word) { return !edit::knows(known, word); });
+        // What is only drawn the encoder is not told: it is new where the scene shows all else that the sentence says.
+        const auto known = workplace_.model().known_words(), said = edit::words_to_say(known, edit::with_dyes(workplace_.model().drawn_words(), known));
+        std::erase_if(targets, [&](const auto& word) { return !edit::knows(said, word); });
         const auto reading = edit::read_scene(recognition, request, targets, pictures);
         if (hints_.target_open)
             log::info("new in the sentence: \"{}\" (what it says without fits the scene to {:.2f})", reading.target, reading.fit);

@@ -71,6 +71,18 @@ DOCTEST_TEST_CASE("the word that the pictures do not show is new") {
     DOCTEST_CHECK(read({{showing(0, 1, 1, 1)}}, {"snow"}).target == "snow");
 }
 
+DOCTEST_TEST_CASE("a word that the encoder is not told is new where the pictures show all else") {
+    const auto read_pink = [](const Image& picture) {
+        auto request = sentence();
+        request.prompt = "a pink bear wearing a hat";
+        int asked = 0;
+        edit::Recognition recognition(std::make_unique<WordScore>(asked), {});
+        return edit::read_scene(recognition, request, {"hat", "pink"}, {{picture}}).target;
+    };
+    DOCTEST_CHECK(read_pink(showing(0, 1, 1, 0)) == "pink");
+    DOCTEST_CHECK(read_pink(showing(0, 1, 0, 0)) == "hat");
+}
+
 DOCTEST_TEST_CASE("distances whose pictures fit nearly as well as the best are kept, in their order") {
     const auto reading = read({{showing(0.9f, 1, 0.5f, 0.2f)}, {showing(0, 1, 0.9f, 1)}, {showing(0, 1, 1, 1)}, {showing(0.3f, 0, 1, 1)}});
     DOCTEST_CHECK(reading.target == "golden");
