@@ -19,8 +19,9 @@ struct SceneReading {
 
 /// Compares the pictures of each distance with the sentence as it was before the edit, for each of the `targets`: the one
 /// whose absence fits best is new, or the first where the sentence with all of them fits better still. `recognition` compares(); `pictures`: some of each distance, [H,W,3] in [0,1]; both lists
-/// have an entry. A validated request.
+/// have an entry. A validated request. `known`: of targets with other words, which the encoder is not told, none is shown or missed; they are new unless
+/// the pictures clearly miss another. Empty = it is told all.
 SceneReading read_scene(Recognition& recognition, const EditRequest& request, const std::vector<std::string>& targets,
-                        const std::vector<std::vector<Image>>& pictures);
+                        const std::vector<std::vector<Image>>& pictures, const std::vector<std::string>& known = {});
 
 }  // namespace gse::edit

@@ -85,7 +85,8 @@ void require_known_words(const EditRequest& request, const std::vector<std::stri
     if (!target.empty())
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("the model does not know the word \"{}\" and cannot make it", target),
-                    fmt::format("use {}", words_to_use(target, say)));
+                    fmt::format("use {}", nearest_words(target, say).empty() ? words_to_use(target, known) + (drawn.empty() ? "" : ", or a colour by its name")
+                                                                             : words_to_use(target, say)));
 }
 
 }  // namespace gse::edit

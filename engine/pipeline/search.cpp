@@ -196,7 +196,7 @@ private:
         // What is only drawn the encoder is not told: it is new where the scene shows all else that the sentence says.
         const auto known = workplace_.model().known_words(), said = edit::words_to_say(known, edit::with_dyes(workplace_.model().drawn_words(), known));
         std::erase_if(targets, [&](const auto& word) { return !edit::knows(said, word); });
-        const auto reading = edit::read_scene(recognition, request, targets, pictures);
+        const auto reading = edit::read_scene(recognition, request, targets, pictures, known);
         if (hints_.target_open)
             log::info("new in the sentence: \"{}\" (what it says without fits the scene to {:.2f})", reading.target, reading.fit);
         request.target = reading.target;

@@ -77,7 +77,7 @@ DOCTEST_TEST_CASE("a word that the encoder is not told is new where the pictures
         request.prompt = "a pink bear wearing a hat";
         int asked = 0;
         edit::Recognition recognition(std::make_unique<WordScore>(asked), {});
-        return edit::read_scene(recognition, request, {"hat", "pink"}, {{picture}}).target;
+        return edit::read_scene(recognition, request, {"hat", "pink"}, {{picture}}, {"a", "bear", "wearing", "hat"}).target;
     };
     DOCTEST_CHECK(read_pink(showing(0, 1, 1, 0)) == "pink");
     DOCTEST_CHECK(read_pink(showing(0, 1, 0, 0)) == "hat");
