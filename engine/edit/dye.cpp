@@ -303,7 +303,8 @@ GaussianSet dye_rows(const Dye& dye, const DyedThing& thing, std::span<const std
     HueVote vote;
     for (std::size_t row = 0; row < rows.size(); ++row) {
         const float* sh = &data.sh[row * stride];
-        if (rows[row] == 0 || !std::isfinite(sh[0] + sh[1] + sh[2])) continue;
+        const float* at = &data.position[3 * row];
+        if (rows[row] == 0 || !std::isfinite(sh[0] + sh[1] + sh[2] + at[0] + at[1] + at[2])) continue;
         dyed_rows.push_back(row);
         vote.add(colour_of(row), 1);
     }
