@@ -3,6 +3,8 @@ import json
 
 import torch
 
+import weights
+
 
 # Known words whose mean a new word begins from.
 BEGINNINGS = {
@@ -66,7 +68,6 @@ class Tokenizer:
         """Tokenizer, text encoder and the list of the new words of the folder `out`."""
         if not self.fresh:
             return
-        import weights
         json.dump(self.ids, open(f"{out}/tokenizer/vocab.json", "w"), ensure_ascii=False, separators=(",", ":"))
         open(f"{out}/tokenizer/merges.txt", "w").write("\n".join(self.merges) + "\n")
         name = "text_model.embeddings.token_embedding.weight"
