@@ -29,7 +29,7 @@ struct EvalParameters {
     static void visit_fields(Self& self, F&& f) {
         f("seed", self.seed, "Seed of the suite: which edits, and the scenes' shapes.");
         f("edits", self.edits, "Synthetic edits with ground truth.", Range{0, 10000});
-        f("kinds", self.kinds, "Kinds of edits, in turn: recolour material add ground replace.");
+        f("kinds", self.kinds, "Kinds of edits, in turn: recolour material add ground replace; dye = colours that the bundled model has no word for.");
         f("mode", self.mode, "Mode the edits are asked for: auto, or right (modify, replace or add, as each needs).");
         f("held_out_views", self.held_out_views,
           "Views between those of the edit, on which the result is compared.", Range{1, 512});
