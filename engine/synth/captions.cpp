@@ -131,16 +131,16 @@ struct EditReader {
         if (contains(joints, word)) finish();  // "made of gold on ...": no noun follows the adjective
         if (word == "without" || word == "remove" || word == "no") {
             removing = true;
-        } else if (contains(material_words(), word)) {
+        } else if (one_of(material_words(), more_material_words(), word)) {
             adjective = word;
             known = true;
-        } else if (contains(object_words(), word)) {
+        } else if (one_of(object_words(), more_object_words(), word)) {
             spec.object = word;
             if (!adjective.empty()) spec.material = adjective;
             noun(false);
-        } else if (contains(accessory_words(), word)) {
+        } else if (one_of(accessory_words(), more_accessory_words(), word)) {
             read_accessory(word);
-        } else if (contains(ground_words(), word)) {
+        } else if (one_of(ground_words(), more_ground_words(), word)) {
             spec.ground = word;
             noun(false);
         }
@@ -155,6 +155,9 @@ struct EditReader {
     }
 
 private:
+    static bool one_of(const std::vector<std::string>& words, const std::vector<std::string>& more, const std::string& word) {
+        return contains(words, word) || contains(more, word);
+    }
     void noun(bool accessory) {
         adjective.clear();
         removing = false;

@@ -43,7 +43,7 @@ const std::vector<std::string>& accessory_words();  // at least 5: hat crown sun
 const std::vector<std::string>& ground_words();     // at least 4
 
 /// More words of each list, which generate() knows, too. What looks for things was not trained on them, only what draws
-/// (`drawn_vocabulary()`): random specs, suites and edit sentences keep to the lists above.
+/// (`drawn_vocabulary()`): random specs and, unless they are asked for, suites keep to the lists above.
 const std::vector<std::string>& more_object_words();
 const std::vector<std::string>& more_material_words();
 const std::vector<std::string>& more_accessory_words();
@@ -52,8 +52,8 @@ const std::vector<std::string>& more_ground_words();
 /// Colours an accessory is made in (random specs choose among them); empty when it has its natural look only.
 const std::vector<std::string>& accessory_colour_words(const std::string& accessory);
 
-/// Every word of any caption and every word apply_edit() understands, without punctuation (captions use
-/// commas).
+/// Every word of any caption and every word apply_edit() understands but those of more_*_words(), without punctuation
+/// (captions use commas).
 const std::vector<std::string>& vocabulary();
 
 /// vocabulary(), then every word that only captions of more_*_words() have.

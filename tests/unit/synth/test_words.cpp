@@ -224,6 +224,8 @@ DOCTEST_TEST_CASE("edit sentences change what they name and nothing else") {
         s.material = "green";
         s.accessory = s.accessory_colour = "";
     });
+    expect(bear, "a pink rabbit on the leaves", [](SceneSpec& s) { s.object = "rabbit", s.material = "pink", s.ground = "leaves"; });
+    expect(bear, "a bear with golden horns", [](SceneSpec& s) { s.accessory = "horns", s.accessory_colour = "golden"; });
     expect(hatted, "a red bear on the tiled floor", [](SceneSpec& s) { s.ground = "tiles"; });
 }
 
