@@ -78,7 +78,7 @@ public:
           job_(job),
           sheets_(folder, "edits", run.parameters.sheet_rows),
           scene_sheets_(folder, "scenes", run.parameters.sheet_rows) {
-        suite_ = make_suite(run.parameters.seed, run.parameters.edits, edit::words_of(run.parameters.kinds));
+        suite_ = make_suite(run.parameters.seed, run.parameters.edits, edit::words_of(run.parameters.kinds), run.parameters.drawn_words);
         if (run.parameters.mode != "auto" && run.parameters.mode != "right")
             throw Error(ErrorCode::InvalidArgument, "the mode \"" + run.parameters.mode + "\" is not known",
                         "use auto or right");

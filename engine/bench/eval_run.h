@@ -22,6 +22,7 @@ struct EvalParameters {
     bool oracle_views = false;
     bool ablations = false;
     int ablation_edits = 6;
+    bool drawn_words = false;
     double success_direction = 0.25;   // pictures in which something else changed score about 0.2 (`bench clip`)
     int sheet_rows = 6;
 
@@ -30,6 +31,7 @@ struct EvalParameters {
         f("seed", self.seed, "Seed of the suite: which edits, and the scenes' shapes.");
         f("edits", self.edits, "Synthetic edits with ground truth.", Range{0, 10000});
         f("kinds", self.kinds, "Kinds of edits, in turn: recolour material add ground replace; dye = colours that the bundled model has no word for.");
+        f("drawn_words", self.drawn_words, "What is added or comes in a thing's place is called by words that the bundled model draws and does not look for.");
         f("mode", self.mode, "Mode the edits are asked for: auto, or right (modify, replace or add, as each needs).");
         f("held_out_views", self.held_out_views,
           "Views between those of the edit, on which the result is compared.", Range{1, 512});

@@ -16,11 +16,11 @@ bool is_substance(const std::string& material) {
     return material == "wooden" || material == "stone" || material == "golden";
 }
 
-std::vector<std::string> accessories_and_none() {
-    auto words = synth::accessory_words();
-    words.insert(words.begin(), "");
-    return words;
-}
+/// What comes is called by.
+struct Vocabulary {
+    const std::vector<std::string>& objects = synth::object_words();
+    const std::vector<std::string>& accessories = synth::accessory_words();
+};
 
 /// Words of an edit without seed, ground and accessory colour.
 struct Combination {
@@ -31,10 +31,12 @@ struct Combination {
     }
 };
 
-void for_each_spec(const auto& visit) {
-    for (const auto& object : synth::object_words())
+void for_each_spec(const Vocabulary& vocabulary, const auto& visit) {
+    auto accessories = vocabulary.accessories;
+    accessories.insert(accessories.begin(), "");
+    for (const auto& object : vocabulary.objects)
         for (const auto& material : synth::material_words())
-            for (const auto& accessory : accessories_and_none()) {
+            for (const auto& accessory : accessories) {
                 SceneSpec spec;
                 spec.object = object;
                 spec.material = material;
@@ -46,7 +48,7 @@ void for_each_spec(const auto& visit) {
 /// Another material, a colour or a substance; with or without an accessory that stays.
 std::vector<Combination> material_changes(bool substance, bool with_accessory) {
     std::vector<Combination> list;
-    for_each_spec([&](const SceneSpec& target) {
+    for_each_spec({}, [&](const SceneSpec& target) {
         if (!synth::held_out(target) || is_substance(target.material) != substance) return;
         if (target.accessory.empty() == with_accessory) return;
         for (const auto& material : synth::material_words()) {
@@ -60,9 +62,9 @@ std::vector<Combination> material_changes(bool substance, bool with_accessory) {
     return list;
 }
 
-std::vector<Combination> additions() {
+std::vector<Combination> additions(const std::vector<std::string>& accessories) {
     std::vector<Combination> list;
-    for_each_spec([&](const SceneSpec& target) {
+    for_each_spec({synth::object_words(), accessories}, [&](const SceneSpec& target) {
         if (target.accessory.empty() || !synth::held_out(target)) return;
         SceneSpec source = target;
         source.accessory.clear();
@@ -73,16 +75,16 @@ std::vector<Combination> additions() {
 
 std::vector<Combination> ground_changes() {
     std::vector<Combination> list;
-    for_each_spec([&](const SceneSpec& spec) {
+    for_each_spec({}, [&](const SceneSpec& spec) {
         if (synth::held_out(spec)) list.push_back({spec, spec});
     });
     return list;
 }
 
 /// Another object in the place of one; the new one's combination is held out.
-std::vector<Combination> replacements(bool same_material) {
+std::vector<Combination> replacements(const std::vector<std::string>& objects, bool same_material) {
     std::vector<Combination> list;
-    for_each_spec([&](const SceneSpec& target) {
+    for_each_spec({objects, synth::accessory_words()}, [&](const SceneSpec& target) {
         if (!target.accessory.empty() || !synth::held_out(target)) return;
         for (const auto& object : synth::object_words())
             for (const auto& material : synth::material_words()) {
@@ -131,17 +133,17 @@ const std::vector<std::string>& dyed_materials() {
     return words;
 }
 
-std::vector<Combination> combinations_of(const std::string& kind, Random& random) {
-    if (kind == "add") return additions();
+std::vector<Combination> combinations_of(const std::string& kind, bool drawn_words, Random& random) {
+    if (kind == "add") return additions(drawn_words ? synth::more_accessory_words() : synth::accessory_words());
     if (kind == "ground") return ground_changes();
-    if (kind == "replace") return replacements(random.uniform() < 0.5);
+    if (kind == "replace") return replacements(drawn_words ? synth::more_object_words() : synth::object_words(), random.uniform() < 0.5);
     if (kind == Dye) return material_changes(false, random.uniform() < 0.5);
     const bool with_accessory = random.uniform() < 0.5;
     return material_changes(kind == "material", with_accessory);
 }
 
-EvalCase make_case(const std::string& kind, std::set<std::string>& used, Random random) {
-    Combination words = choose(combinations_of(kind, random), used, random);
+EvalCase make_case(const std::string& kind, bool drawn_words, std::set<std::string>& used, Random random) {
+    Combination words = choose(combinations_of(kind, drawn_words, random), used, random);
     if (kind == Dye) words.target.material = pick(dyed_materials(), random);
     const std::uint64_t seed = random.next();
     const std::string ground = pick(synth::ground_words(), random);
@@ -182,7 +184,7 @@ const std::vector<std::string>& eval_kinds() {
     return kinds;
 }
 
-std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vector<std::string>& kinds) {
+std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vector<std::string>& kinds, bool drawn_words) {
     auto known = eval_kinds();
     known.emplace_back(Dye);   // only where it is asked for
     for (const auto& kind : kinds)
@@ -197,9 +199,9 @@ std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vecto
     std::uint64_t others = 0, replacements = 0, dyes = 0;
     for (int i = 0; i < count; ++i) {
         const auto& kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
-        suite.push_back(kind == "replace" ? make_case(kind, used_to_replace, Random::stream(seed, OfReplacements + replacements++))
-                        : kind == Dye     ? make_case(kind, used_to_dye, Random::stream(seed, OfDyes + dyes++))
-                                          : make_case(kind, used, Random::stream(seed, OfWhatStays + others++)));
+        suite.push_back(kind == "replace" ? make_case(kind, drawn_words, used_to_replace, Random::stream(seed, OfReplacements + replacements++))
+                        : kind == Dye     ? make_case(kind, drawn_words, used_to_dye, Random::stream(seed, OfDyes + dyes++))
+                                          : make_case(kind, drawn_words, used, Random::stream(seed, OfWhatStays + others++)));
     }
     return suite;
 }

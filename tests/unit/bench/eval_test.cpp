@@ -123,6 +123,24 @@ DOCTEST_TEST_CASE("edits that replace are drawn apart: the others are the same w
     DOCTEST_CHECK(lines(all, false).front() == "recolour a white duck with red wings on the grass 10220632845217208698");
 }
 
+DOCTEST_TEST_CASE("what comes is called by words that are drawn only, where that is asked for") {
+    std::set<std::string> words;
+    for (const auto& edit : make_suite(5, 40, {"replace", "add"}, true)) {
+        DOCTEST_CAPTURE(edit.prompt);
+        const auto& list = edit.kind == "add" ? synth::more_accessory_words() : synth::more_object_words();
+        DOCTEST_CHECK(std::find(list.begin(), list.end(), edit.target_word) != list.end());
+        DOCTEST_CHECK(synth::held_out(edit.target));
+        DOCTEST_CHECK(edit.prompt.find(edit.target_word) != std::string::npos);
+        const auto applied = synth::apply_edit(edit.source, edit.prompt);   // the sentence alone leads from the source to the target
+        DOCTEST_CHECK(applied.object == edit.target.object);
+        DOCTEST_CHECK(applied.accessory == edit.target.accessory);
+        DOCTEST_CHECK(applied.material == edit.target.material);
+        words.insert(edit.target_word);
+    }
+    DOCTEST_CHECK(words.size() > 12);   // of 26
+    DOCTEST_CHECK(make_suite(5, 4, {"recolour"}, true).front().prompt == make_suite(5, 4, {"recolour"}).front().prompt);
+}
+
 DOCTEST_TEST_CASE("another object of a held-out combination takes the place, as the sentence says") {
     std::size_t same_material = 0;
     std::set<std::string> pairs;
