@@ -26,6 +26,10 @@ def pieces(word, ranks):
     return parts
 
 
+# What the network draws of these is their mean colour, whose pattern differs from view to view: the program lays them over in space.
+PATTERNS = ("marble", "brick", "striped", "spotted", "checkered", "rainbow", "rusty", "lava", "mossy")
+
+
 class Tokenizer:
     """The tokenizer of a starter folder, in which each of `words` is one token."""
 
@@ -78,4 +82,4 @@ class Tokenizer:
         config["vocab_size"] = len(self.ids)
         json.dump(config, open(path, "w"), indent=2)
         known = set(facts["vocabulary"])
-        facts["drawn_vocabulary"] = facts.get("drawn_vocabulary", []) + [word for word in self.new_words if word not in known]
+        facts["drawn_vocabulary"] = facts.get("drawn_vocabulary", []) + [word for word in self.new_words if word not in known and word not in PATTERNS]
