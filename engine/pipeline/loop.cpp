@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/base/log.h"
+#include "engine/edit/colour_word.h"
 #include "engine/edit/dye.h"
 #include "engine/edit/head.h"
 #include "engine/edit/instruction.h"
@@ -157,6 +158,18 @@ Verdict judge_undyed(const neural::TextToImage& model, const edit::EditRequest& 
     return judge(model, told, edit::as_told(told.prompt), pictures);
 }
 
+/// What comes in a thing's place, in its usual colour where the sentence tells none.
+edit::EditRequest in_usual_colour(const neural::TextToImage& model, edit::EditRequest request, edit::EditMode mode) {
+    if (mode != edit::EditMode::Replace) return request;
+    const auto known = model.known_words();
+    const auto thing = new_thing(request, mode), told = edit::as_told(request.prompt);
+    const auto usual = edit::with_usual_colour(told, thing, edit::words_to_say(known, edit::with_dyes(model.drawn_words(), known)));
+    if (usual == told) return request;
+    log::info("the sentence names no colour for \"{}\": it is drawn as \"{}\"", thing, usual);
+    request.prompt = usual;
+    return request;
+}
+
 /// Over what is labelled, but for the ground that an old thing hid.
 void lay_pattern(const edit::Dye& dye, const Located& located, std::uint64_t seed, edit::EditResult& result) {
     auto rows = result.label;
@@ -206,9 +219,9 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
                    const std::optional<edit::GroundUnder>& ground, Attempts& attempts, const EditObserver& observer, const JobControl& control) {
     const Way way = attempts.way();
     const auto& model = workplace.model();
-    const auto& request = recipe.request;
     const bool editor = model.kind() == neural::BundleKind::InstructPix2Pix;
-    const bool by_views = edit::edits_by_views(request);
+    const bool by_views = edit::edits_by_views(recipe.request);
+    const auto request = by_views && !editor ? in_usual_colour(model, recipe.request, plan.mode) : recipe.request;
     const auto dye = by_views && !editor ? edit::dye_of(request, plan.mode, edit::words_to_say(model.known_words(), model.drawn_words())) : std::nullopt;
     const auto prompt = editor ? told_to_editor(request) : edit::as_told(request.prompt);
     auto settings = with_sentence_before(recipe.guidance, request);

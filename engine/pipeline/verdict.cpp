@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "engine/edit/words.h"
 #include "engine/evaluate/direction.h"
 
 namespace gse::pipeline {
@@ -12,6 +15,14 @@ namespace {
 /// the starter's encoder, unchanged ones about 0, those of true edits 0.4 to 0.95 (`bench clip`).
 constexpr double LeastScore = 0.25;
 
+/// Whether the sentence got a word that the model draws and its encoder does not know.
+bool says_what_is_drawn_only(const neural::TextToImage& model, const std::string& before, const std::string& told) {
+    const auto drawn = model.drawn_words();
+    const auto said = edit::words_of(before);
+    const auto is_new = [&](const auto& word) { return std::find(said.begin(), said.end(), word) == said.end() && std::find(drawn.begin(), drawn.end(), word) != drawn.end(); };
+    return std::ranges::any_of(edit::words_of(told), is_new);
+}
+
 }  // namespace
 
 Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
@@ -19,7 +30,9 @@ Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request
     Verdict result;
     const auto encoder = model.text_image_score();
     if (!encoder || pictures.empty()) return result;
-    const auto words_before = encoder->text(edit::sentence_before(request));
+    const auto said_before = edit::sentence_before(request);
+    if (says_what_is_drawn_only(model, said_before, told)) return result;
+    const auto words_before = encoder->text(said_before);
     const auto words_after = encoder->text(told);
     if (words_before == words_after) return result;   // nothing the encoder knows is new
     double sum = 0;

@@ -14,7 +14,7 @@
 namespace gse::pipeline {
 
 struct Verdict {
-    /// Mean cosine of the pictures' and the sentences' change; none when the model has no encoder to tell.
+    /// Mean cosine of the pictures' and the sentences' change; none when the model has no encoder to tell, or it does not know what the sentence says.
     std::optional<double> score;
     std::string verdict;   // the score in a sentence; empty without one
     bool warns = false;    // the pictures do not show the edit

@@ -93,4 +93,15 @@ DOCTEST_TEST_CASE("the colour stands before the thing, and the article follows i
     DOCTEST_CHECK(edit::described_as("the cat", "cat", "") == "the cat");
 }
 
+DOCTEST_TEST_CASE("a thing that comes has its usual colour where the sentence tells none") {
+    const std::vector<std::string> sayable{"white", "green", "red", "frog", "owl"};
+    DOCTEST_CHECK(edit::with_usual_colour("a frog on the grass", "frog", sayable) == "a green frog on the grass");
+    DOCTEST_CHECK(edit::with_usual_colour("a red frog", "frog", sayable) == "a red frog");
+    DOCTEST_CHECK(edit::with_usual_colour("a big frog", "frog", sayable) == "a big green frog");   // which says nothing to the model
+    DOCTEST_CHECK(edit::with_usual_colour("a frog made of wood", "frog", sayable) == "a frog made of wood");
+    DOCTEST_CHECK(edit::with_usual_colour("a cat", "cat", sayable) == "a cat");
+    DOCTEST_CHECK(edit::with_usual_colour("an owl", "owl", sayable) == "an owl");   // brown cannot be said
+    DOCTEST_CHECK(edit::with_usual_colour("a frog", "frog", {}) == "a frog");       // a model of all words
+}
+
 }  // namespace colour_word_test
