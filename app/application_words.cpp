@@ -51,7 +51,7 @@ void Application::refresh_reach() {
     const NamedLabel* label = active_label();
     if (label == nullptr || count_labelled(*label) == 0) return;
     model_.reach = {label->name, count_labelled(*label), label_drives_edit(), !label->found_for.empty() && corrected_by_hand(*label)};
-    model_.labelled_by_hand = model_.reach.by_label && made_by_hand(*label);
+    model_.labelled_by_hand = model_.reach.by_label && stands_alone(*label, request, model_.known_words);
 }
 
 void Application::set_reach(bool by_label) {

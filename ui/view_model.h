@@ -330,7 +330,7 @@ struct ViewModel {
     PickedRows picked;
     std::string keymap;       // Keymap::text(); empty = as it is by default
     bool adjusting = false;   // the last step is an adjustment of colours, which more of it changes
-    bool labelled_by_hand = false;               // the active label says what may change, whatever the words find
+    bool labelled_by_hand = false;               // nothing has to be found: the active label says what may change
     std::size_t words_read = 0;                  // of the sentence, by the text encoder; 0 = all, or not known
     ModelSettings model_settings, model_settings_defaults;
     Estimate estimate;

@@ -22,7 +22,7 @@ struct Dye {
     std::array<float, 3> colour{};         // display values in [0,1]; of a metal where it is lit
     std::array<float, 3> shade{};          // of a metal where it mirrors what is dark
     bool metal = false;
-    std::optional<SurfacePattern> pattern = {};   // instead of one colour; it is laid over what comes of the edit, by dye_rows()
+    std::optional<SurfacePattern> pattern = {};   // instead of one colour; it is laid over what the edit has come to, by dye_rows()
 };
 
 /// Names of colours (CSS Color 4's that are one word, painters' names, metals), "dark", "light", "pale", "deep" that may stand before one, and

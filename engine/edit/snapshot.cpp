@@ -56,7 +56,8 @@ GaussianSet EditSnapshot::materialise() const {
             to.insert(to.end(), at(labelled, place.size()), labelled.end());
         },
         rows->rows, before, data);
-    return GaussianSet(std::move(data));
+    GaussianSet set(std::move(data));
+    return finish ? finish(*this, set) : set;
 }
 
 std::vector<std::int64_t> EditSnapshot::base_to_new() const {

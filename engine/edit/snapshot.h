@@ -25,6 +25,10 @@ struct SnapshotRows {
     std::vector<std::uint32_t> removed;   // base rows that are gone, ascending
 };
 
+struct EditSnapshot;
+/// What is laid over the edited set and is no part of what an edit goes on from, such as a pattern.
+using SnapshotFinish = std::function<GaussianSet(const EditSnapshot& snapshot, const GaussianSet& edited)>;
+
 /// May be kept: it is immutable, shares the arrays of the scene and holds the rows of the label beside them. The edited set
 /// has the base's rows in their order, without those that are gone, and the born ones at its end.
 struct EditSnapshot {
@@ -32,10 +36,11 @@ struct EditSnapshot {
     std::shared_ptr<const SnapshotRows> rows;
     int iteration = 0;
     std::shared_ptr<const RoundState> round = {};   // of view guidance: what the rows are fitted to; null = nothing yet
+    SnapshotFinish finish = {};
 
     /// Rows of the edited set.
     std::size_t size() const { return base.size() - rows->removed.size() + rows->ancestor.size(); }
-    /// The edited set, with arrays of its own.
+    /// The edited set, finished, with arrays of its own.
     GaussianSet materialise() const;
     std::vector<std::int64_t> base_to_new() const;   // [base rows] row of the edited set, -1 = removed
     std::vector<std::uint8_t> label() const;         // [size()] 1 = the row belongs to the label

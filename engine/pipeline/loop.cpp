@@ -170,13 +170,26 @@ edit::EditRequest in_usual_colour(const neural::TextToImage& model, edit::EditRe
     return request;
 }
 
-/// Over what is labelled, but for the ground that an old thing hid.
-void lay_pattern(const edit::Dye& dye, const Located& located, std::uint64_t seed, edit::EditResult& result) {
-    auto rows = result.label;
-    for (std::size_t row = 0; row < rows.size(); ++row) rows[row] &= result.hidden[row] == 0 ? 1 : 0;
-    const Vec3 up = located.views.orbit.up, front = located.views.front;
-    result.set = edit::dye_rows(dye, {edit::standing_alone(result.set, rows, up, front), up, front}, rows, result.set, seed);
-}
+/// Lays a dye's pattern over what is labelled, but for the ground that an old thing hid.
+struct PatternLayer {
+    edit::Dye dye;
+    Vec3 up, front;
+    std::uint64_t seed;
+
+    GaussianSet over(const GaussianSet& set, std::vector<std::uint8_t> rows, const std::vector<std::uint8_t>& hidden) const {
+        for (std::size_t row = 0; row < rows.size(); ++row) rows[row] &= hidden[row] == 0 ? 1 : 0;
+        return edit::dye_rows(dye, {edit::standing_alone(set, rows, up, front), up, front}, rows, set, seed);
+    }
+    /// Hands on states of the edit which show it.
+    edit::SnapshotCallback over(edit::SnapshotCallback snapshots) const {
+        if (!snapshots) return snapshots;
+        const auto finish = [layer = *this](const edit::EditSnapshot& snapshot, const GaussianSet& set) { return layer.over(set, snapshot.label(), snapshot.hidden()); };
+        return [finish, next = std::move(snapshots)](edit::EditSnapshot snapshot) {
+            snapshot.finish = finish;
+            next(std::move(snapshot));
+        };
+    }
+};
 
 /// Ends an attempt before anything was fitted.
 struct AnotherWay {};
@@ -231,7 +244,9 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     std::optional<edit::DyedViews> dyed;
     if (dye) dyed.emplace(*drawn, *dye);
     edit::ViewGuidance* const views = dyed ? &*dyed : drawn.get();
-    edit::EditTools tools{workplace.painter().rasterizer(), *guidance, observer.snapshot, control, observer.iteration};
+    std::optional<PatternLayer> pattern;
+    if (dye && dye->pattern) pattern = PatternLayer{*dye, located.views.orbit.up, located.views.front, request.seed};
+    edit::EditTools tools{workplace.painter().rasterizer(), *guidance, pattern ? pattern->over(observer.snapshot) : observer.snapshot, control, observer.iteration};
     tools.snapshot_seconds = observer.snapshot_seconds;
     tools.new_label = observer.new_label;
     tools.start = observer.start ? &*observer.start : nullptr;
@@ -265,7 +280,7 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     };
     tools.target_orders = observer.target_orders;
     edited.result = edit::run_edit(scene, plan, request, tools);
-    if (dye && dye->pattern) lay_pattern(*dye, located, request.seed, edited.result);
+    if (pattern) edited.result.set = pattern->over(edited.result.set, edited.result.label, edited.result.hidden);
     edited.drawn = drawable(edited.result.set);
     edited.key = located.key + fields_to_json(static_cast<const edit::LoopSettings&>(request)).dump() +
                  fields_to_json(recipe.guidance).dump();

@@ -53,6 +53,10 @@ bool same_vote(const edit::LabelThresholds& a, const edit::LabelThresholds& b) {
     return a.attention_threshold == b.attention_threshold && a.left_out == b.left_out;
 }
 
+bool stands_alone(const NamedLabel& label, const edit::EditRequest& request, const std::vector<std::string>& known) {
+    return made_by_hand(label) || (is_label_of(label, edit::as_told(request.source)) && !edit::knows(known, edit::as_told(request.source)));
+}
+
 bool label_says(const NamedLabel& label, const edit::EditRequest& request, const std::vector<std::string>& known,
                 const std::optional<ReachChoice>& choice) {
     if (count_labelled(label) == 0) return false;

@@ -31,6 +31,10 @@ bool is_label_of(const NamedLabel& label, const std::string& word);
 bool label_says(const NamedLabel& label, const edit::EditRequest& request, const std::vector<std::string>& known,
                 const std::optional<ReachChoice>& choice);
 
+/// Whether nothing has to be found where the label says what the request may change: it was made by hand, or it is of a thing that the model
+/// cannot find, as of what it drew.
+bool stands_alone(const NamedLabel& label, const edit::EditRequest& request, const std::vector<std::string>& known);
+
 /// What the edits of a stack that are switched on were asked for; those made by hand, or by another version, are passed over.
 std::vector<edit::EditRequest> applied_requests(const std::vector<EditNode>& stack);
 

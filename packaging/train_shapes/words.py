@@ -26,8 +26,9 @@ def pieces(word, ranks):
     return parts
 
 
-# What the network draws of these is their mean colour, whose pattern differs from view to view: the program lays them over in space.
-PATTERNS = ("marble", "brick", "striped", "spotted", "checkered", "rainbow", "rusty", "lava", "mossy")
+# The program dyes what is drawn in these colours, which comes out as well; of patterns the network draws the mean colour, and the program lays them
+# over in space.
+DYED = ("pink", "brown", "gray", "grey", "turquoise", "marble", "brick", "striped", "spotted", "checkered", "rainbow", "rusty", "lava", "mossy")
 
 
 class Tokenizer:
@@ -82,4 +83,4 @@ class Tokenizer:
         config["vocab_size"] = len(self.ids)
         json.dump(config, open(path, "w"), indent=2)
         known = set(facts["vocabulary"])
-        facts["drawn_vocabulary"] = facts.get("drawn_vocabulary", []) + [word for word in self.new_words if word not in known and word not in PATTERNS]
+        facts["drawn_vocabulary"] = facts.get("drawn_vocabulary", []) + [word for word in self.new_words if word not in known and word not in DYED]

@@ -50,7 +50,7 @@ void draw_unknown_source(Context& context) {
     const auto& prompt = context.state.prompt;
     const std::string word = edit::unknown_word(context.model.known_words, context.request.source);
     if (context.model.labelled_by_hand) {
-        dim_text(fmt::format("The model does not know \"{}\": your label says where it is.", word));
+        dim_text(fmt::format("The model cannot find \"{}\": the label says where it is.", word));
         return;
     }
     coloured_text(palette::Warning, edit::knows(context.model.drawn_words, word) && !context.model.drawn_words.empty()

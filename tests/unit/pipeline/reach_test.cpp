@@ -61,4 +61,15 @@ DOCTEST_TEST_CASE("a label that was found belongs to its word under any name") {
     DOCTEST_CHECK_FALSE(label_says(found("Bruno", "bear"), about("grass", "golden"), Known, {}));
 }
 
+DOCTEST_TEST_CASE("the label of a thing that the model drew and cannot find says where it is") {
+    using pipeline::stands_alone;
+    DOCTEST_CHECK(label_says(found("rabbit", "bear"), about("rabbit", "pink"), Known, {}));   // named after what came in the bear's place
+    DOCTEST_CHECK(stands_alone(found("rabbit", "bear"), about("rabbit", "pink"), Known));
+    DOCTEST_CHECK(stands_alone(found("rabbit", "bear"), about("Rabbit", "pink"), Known));
+    DOCTEST_CHECK_FALSE(stands_alone(found("rabbit", "bear"), about("bear", "golden"), Known));   // that is looked for
+    DOCTEST_CHECK_FALSE(stands_alone(found("rabbit", "bear"), about("horse", "pink"), Known));    // of another thing
+    DOCTEST_CHECK_FALSE(stands_alone(found("rabbit", "bear"), about("rabbit", "pink"), {}));      // a model that takes any word
+    DOCTEST_CHECK(stands_alone(painted("label"), about("bear", "golden"), Known));
+}
+
 }  // namespace reach_test

@@ -112,8 +112,16 @@ DOCTEST_TEST_CASE("a colour that the model has no word for comes out; dark eyes 
         job.locate();
         DOCTEST_REQUIRE(job.found());
         if (label.empty()) label = *job.located().label.bits;
-        job.run();
+        std::vector<edit::EditSnapshot> snapshots;
+        EditObserver observer;
+        observer.snapshot = [&](edit::EditSnapshot snapshot) { snapshots.push_back(std::move(snapshot)); };
+        job.run(observer);
         DOCTEST_CHECK(job.result().changed_outside_label == 0);
+        DOCTEST_REQUIRE(!snapshots.empty());
+        const auto shown = snapshots.back().materialise();   // striped, too
+        std::size_t alike = 0;
+        for (std::size_t i = 0; shown.size() == job.result().set.size() && i < shown.sh().size(); ++i) alike += std::abs(shown.sh()[i] - job.result().set.sh()[i]) < 0.5 ? 1 : 0;
+        DOCTEST_CHECK(static_cast<double>(alike) > 0.95 * static_cast<double>(shown.sh().size()));
         const auto before = colours_of(scene.gaussians), after = colours_of(job.result().set);
         double red = 0, pink = 0, grey = 0, dark = 0, still_dark = 0;
         for (std::size_t row = 0; row < before.size(); ++row) {
