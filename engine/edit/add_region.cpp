@@ -205,7 +205,8 @@ const std::map<std::string, std::string>& usual_places() {
         {"hat", "top"},          {"crown", "top"},     {"cap", "top"},         {"helmet", "top"},
         {"sunglasses", "front"}, {"glasses", "front"}, {"moustache", "front"}, {"mask", "front"},
         {"scarf", "neck"},       {"necklace", "neck"}, {"collar", "neck"},     {"tie", "neck"},
-        {"bow", "neck"},         {"flames", "around"}, {"fire", "around"},     {"smoke", "around"},
+        {"horns", "top"},        {"antlers", "top"},   {"halo", "top"},        {"headphones", "top"},
+        {"beard", "neck"},       {"bow", "neck"},     {"flames", "around"}, {"fire", "around"},     {"smoke", "around"},
         {"wings", "around"},     {"snow", "around"}};
     return places;
 }

@@ -340,6 +340,7 @@ RoundTargets DyedViews::edit(const std::vector<RoundView>& views, const RoundInp
         }
     }
     if (!dye_.pattern) apply_dye(dye_, shares, targets.images);
+    targets.unfinished = dye_.pattern.has_value();
     return targets;
 }
 

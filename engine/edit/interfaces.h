@@ -80,6 +80,7 @@ struct RoundTargets {
     /// Per view, [H,W,1] in [0,1]: how much of each pixel the new thing covers; empty where the model cannot tell.
     std::vector<Image> outlines = {};
     std::map<std::string, double> scalars = {};
+    bool unfinished = false;   // what they lack is laid over the edited scene: pictures like the scene do not mean that nothing came
 };
 
 /// Edits all views of a round in the picture; the scene is fitted to what comes back.

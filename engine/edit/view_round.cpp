@@ -239,6 +239,7 @@ RoundTargets ViewRounds::draw(const std::vector<RoundView>& views, const JobCont
     const auto asked = input(40000 + static_cast<std::uint64_t>(round_));
     auto drawn = drawn_by(guidance_, views, asked, job);
     auto agreement = view_agreement(views, drawn.images);
+    if (drawn.unfinished) agreement.unchanged = 0;
     if (shapes_ == nullptr && raised_ == 0 && asked.strength < 1 && hardly_edited(agreement)) {
         raised_ = StrengthRaise;
         extra_pictures_ += views.size();

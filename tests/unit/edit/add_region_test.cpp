@@ -209,6 +209,8 @@ DOCTEST_TEST_CASE("anchors lie where their names say") {
     DOCTEST_CHECK(edit::usual_place("sunglasses") == "front");
     DOCTEST_CHECK(edit::usual_place("scarf") == "neck");
     DOCTEST_CHECK(edit::usual_place("flames") == "around");
+    DOCTEST_CHECK(edit::usual_place("horns") == "top");
+    DOCTEST_CHECK(edit::usual_place("white beard") == "neck");
 }
 
 DOCTEST_TEST_CASE("seeds lie in the region, are finite and repeatable") {

@@ -189,7 +189,12 @@ DOCTEST_TEST_CASE("views are told the base, and dyed where they may change and, 
             }
         DOCTEST_REQUIRE(views.drawn().size() == 1);
         DOCTEST_CHECK(views.drawn()[0].undyed.at(0, 0, 0) == Red[0]);
+        DOCTEST_CHECK_FALSE(targets.unfinished);
     }
+    const auto striped = dye("a striped cat", "cat", edit::EditMode::Replace);
+    DOCTEST_REQUIRE(striped);
+    edit::DyedViews patterned(red, *striped);
+    DOCTEST_CHECK(patterned.edit({view}, input, {}).unfinished);   // red still, as the scene may be
 }
 
 DOCTEST_TEST_CASE("a pattern takes the colour beside it, and lies over what is red of the rows") {

@@ -122,6 +122,21 @@ DOCTEST_TEST_CASE("an artist is told when the model left the views as they were"
     DOCTEST_REQUIRE(!sheets.empty());
     DOCTEST_REQUIRE(sheets.front().warnings.size() == 1);
     DOCTEST_CHECK(sheets.front().warnings.front().find("100 % of the redrawn views hardly differ") == 0);
+
+    struct Unfinished final : edit::ViewGuidance {   // a pattern comes over them
+        explicit Unfinished(edit::ViewGuidance& idle) : views(idle) {}
+        edit::RoundTargets edit(const std::vector<edit::RoundView>& seen, const edit::RoundInput& input, const JobControl& job) override {
+            auto targets = views.edit(seen, input, job);
+            targets.unfinished = true;
+            return targets;
+        }
+        edit::ViewGuidance& views;
+    } unfinished(idle);
+    sheets.clear();
+    run.tools.views = &unfinished;
+    run.edited(request);
+    DOCTEST_REQUIRE(!sheets.empty());
+    DOCTEST_CHECK(sheets.front().warnings.empty());
 }
 
 DOCTEST_TEST_CASE("colour that is lost between the redrawn views and the scene is noticed, where there is colour to lose") {
