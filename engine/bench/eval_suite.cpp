@@ -127,7 +127,7 @@ Combination choose(std::vector<Combination> list, std::set<std::string>& used, R
 
 constexpr const char* Dye = "dye";
 
-/// Colours that the bundled model has no word for.
+/// Colours that the bundled model does not look for: they are dyed, or (the metals) drawn.
 const std::vector<std::string>& dyed_materials() {
     static const std::vector<std::string> words{"pink", "brown", "gray", "turquoise", "silver", "bronze"};
     return words;

@@ -206,8 +206,8 @@ const std::map<std::string, std::string>& usual_places() {
         {"sunglasses", "front"}, {"glasses", "front"}, {"moustache", "front"}, {"mask", "front"},
         {"scarf", "neck"},       {"necklace", "neck"}, {"collar", "neck"},     {"tie", "neck"},
         {"horns", "top"},        {"antlers", "top"},   {"halo", "top"},        {"headphones", "top"},
-        {"beard", "neck"},       {"bow", "neck"},     {"flames", "around"}, {"fire", "around"},     {"smoke", "around"},
-        {"wings", "around"},     {"snow", "around"}};
+        {"beard", "neck"},       {"bow", "neck"},      {"flames", "around"},   {"fire", "around"},
+        {"smoke", "around"},     {"wings", "around"},  {"snow", "around"}};
     return places;
 }
 
