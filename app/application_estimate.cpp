@@ -7,6 +7,7 @@
 #include "engine/base/error.h"
 #include "engine/base/memory.h"
 #include "engine/base/process_memory.h"
+#include "engine/edit/vocabulary.h"
 
 namespace gse::app {
 namespace {
@@ -67,6 +68,7 @@ void Application::refresh_estimate() {
     const bool learns = model_.model_settings.learn_scene && !work.located && !known_tuning(current_recipe());
     work.tune_steps = learns ? model_.model_settings.learning.steps : 0;
     work.rows = document_.state().current.size();
+    work.words = edit::words_to_say(model_.known_words, model_.drawn_words);
     try {
         work.mode = edit::planned_mode(edit::validated(model_.request));
     } catch (const Error&) {   // not a sentence yet

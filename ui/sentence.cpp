@@ -31,6 +31,13 @@ std::string unknown_source(const std::string& source, const SentenceGround& grou
                        edit::unknown_word(ground.known, source));
 }
 
+/// Instead of a target that cannot be made: words near to it; where there are none, all of them would fill the panel.
+std::string what_to_say(const std::string& target, const std::vector<std::string>& known, bool dyes, const std::string& hint) {
+    const auto word = edit::unknown_word(known, target);
+    if (!edit::nearest_words(word, known).empty()) return hint;
+    return std::string("the words that it knows are under Models") + (dyes ? "; colours and patterns go by their names" : "");
+}
+
 /// Whether the word number `index` of the sentence belongs to the phrase.
 bool within(const std::string& sentence, const std::string& phrase, std::size_t index) {
     if (!edit::has_word(sentence, phrase)) return false;
@@ -55,13 +62,11 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
     facts.guessed_target = request.target.empty() ? valid.target : std::string();
     if (!facts.source_known && !ground.labelled_by_hand)   // the words to use stand beside the source already
         return unknown_source(valid.source, ground);
+    const auto drawn = request.method == "sds" ? std::vector<std::string>{} : ground.drawn;
     try {
-        edit::require_known_words(valid, ground.known, request.method == "sds" ? std::vector<std::string>{} : ground.drawn, ground.labelled_by_hand);
+        edit::require_known_words(valid, ground.known, drawn, ground.labelled_by_hand);
     } catch (const Error& error) {
-        // The words it knows stand beside the source already.
-        const bool source = !facts.source_known && !ground.labelled_by_hand;
-        return fmt::format("{}: {}", first_letter_up(error.message()),
-                           source ? "label it by hand instead, or use a word it knows" : error.hint());
+        return fmt::format("{}: {}", first_letter_up(error.message()), what_to_say(valid.target, edit::words_to_say(ground.known, drawn), !drawn.empty(), error.hint()));
     }
     for (const auto& word : {valid.source, valid.target})
         if (unread(valid.prompt, word, ground))

@@ -7,6 +7,7 @@
 
 #include "engine/base/error.h"
 #include "engine/base/spelling.h"
+#include "engine/edit/dye.h"
 
 namespace gse::edit {
 namespace {
@@ -73,6 +74,18 @@ std::vector<std::string> words_to_say(const std::vector<std::string>& known, con
     return words;
 }
 
+/// What can be said in a word's place where something is to be made: words near to it, else all but the names of colours and
+/// patterns that are dyed, of which there are many.
+static std::string words_to_make(const std::string& word, const std::vector<std::string>& known, const std::vector<std::string>& drawn) {
+    const auto say = words_to_say(known, drawn);
+    if (!nearest_words(word, say).empty()) return words_to_use(word, say);
+    const auto dyes = dye_words(known);
+    auto shown = known;
+    for (const auto& candidate : drawn)
+        if (std::find(dyes.begin(), dyes.end(), candidate) == dyes.end()) shown.push_back(candidate);
+    return words_to_use(word, shown) + (dyes.empty() ? "" : ", or a colour or pattern by its name");
+}
+
 void require_known_words(const EditRequest& request, const std::vector<std::string>& known, const std::vector<std::string>& drawn,
                          bool labelled_by_hand) {
     const auto say = words_to_say(known, drawn);
@@ -85,8 +98,7 @@ void require_known_words(const EditRequest& request, const std::vector<std::stri
     if (!target.empty())
         throw Error(ErrorCode::InvalidArgument,
                     fmt::format("the model does not know the word \"{}\" and cannot make it", target),
-                    fmt::format("use {}", nearest_words(target, say).empty() ? words_to_use(target, known) + (drawn.empty() ? "" : ", or a colour by its name")
-                                                                             : words_to_use(target, say)));
+                    fmt::format("use {}", words_to_make(target, known, drawn)));
 }
 
 }  // namespace gse::edit

@@ -123,7 +123,10 @@ void add_place(Sum& sum, const Measured& measured, const edit::EditRequest& requ
 }  // namespace
 
 Cost estimated_cost(const Measured& measured, const edit::EditRequest& asked, const PlannedWork& work) {
-    const auto request = measured.restyles > 0 && edit::edits_by_views(asked) ? edit::restyling(asked, work.mode) : asked;
+    const bool by_views = edit::edits_by_views(asked);
+    auto request = measured.restyles > 0 && by_views ? edit::restyling(asked, work.mode) : asked;
+    if (by_views && work.mode == edit::EditMode::Replace)
+        request.prompt = edit::with_usual_colour(edit::as_told(request.prompt), new_thing(request, work.mode), work.words);
     Sum sum;
     sum.add(work.loaded ? 0 : 1, measured.load);
     sum.add(work.tune_steps, measured.tune_step, measured.tune_step_tflop);
@@ -133,7 +136,6 @@ Cost estimated_cost(const Measured& measured, const edit::EditRequest& asked, co
     sum.add(work.located ? 0 : search, measured.question, measured.question_tflop);
     if (drawn && !work.located) add_place(sum, measured, request);
     if (work.shows_idea) add_idea(sum, measured);
-    const bool by_views = edit::edits_by_views(request);
     const int steps = std::max(0, edit::loop_steps(request, work.mode) - work.first_iteration);
     const double size = static_cast<double>(work.rows) / measured.rows;
     sum.add(size, std::max(0.0, measured.begin));

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <string>
+#include <vector>
 
 #include "engine/base/fields.h"
 #include "engine/pipeline/edit_job.h"
@@ -77,6 +79,7 @@ struct PlannedWork {
     bool loaded = false;           // the model is in memory
     bool located = false;          // the search is done
     edit::EditMode mode = edit::EditMode::Modify;
+    std::vector<std::string> words = {};   // that the model draws; a thing that comes has its usual colour where they name it. Empty: any word
     bool shows_idea = true;
     int tune_steps = 0;
     std::size_t rows = 1;

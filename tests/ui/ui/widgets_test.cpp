@@ -179,6 +179,26 @@ DOCTEST_TEST_CASE("the target follows the sentence, against what the scene shows
     DOCTEST_CHECK(target({.said = {"a", "blue", "bear"}}) == "hat");
 }
 
+DOCTEST_TEST_CASE("what cannot be made is said in a line, however many words the model knows") {
+    edit::EditRequest request;
+    request.source = "bear";
+    request.prompt = "a unicorn on the grass";
+    request.target = "unicorn";
+    ui::SentenceGround ground{.known = {"a", "bear", "red", "on", "the", "grass"}};
+    for (char a = 'a'; a <= 'z'; ++a)
+        for (char b = 'a'; b <= 'z'; ++b) ground.known.push_back(std::string("zz") + a + b);
+    constexpr std::size_t line = 160;   // letters: two lines of the panel
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.find("under Models") != std::string::npos);
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.find("colours") == std::string::npos);
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.size() < line);
+    ground.drawn = {"pink", "rabbit"};
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.find("colours") != std::string::npos);
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.size() < line);
+    request.prompt = "a rabit on the grass";
+    request.target = "rabit";
+    DOCTEST_CHECK(ui::facts_of(request, ground).problem.find("\"rabbit\"") != std::string::npos);
+}
+
 DOCTEST_TEST_CASE("things of several words are marked, checked and looked for whole") {
     edit::EditRequest request;
     request.source = "teddy bear";

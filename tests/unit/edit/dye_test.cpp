@@ -98,6 +98,7 @@ DOCTEST_TEST_CASE("a colour that describes what is new is dyed, one that describ
 
 DOCTEST_TEST_CASE("what is drawn besides can be made and not found") {
     const auto made = edit::with_dyes({"rabbit"}, Few);
+    std::string hint;
     const auto refused = [&](const std::string& source, const std::string& prompt, const std::string& target) {
         auto request = request_of(prompt, target);
         request.source = source;
@@ -105,6 +106,7 @@ DOCTEST_TEST_CASE("what is drawn besides can be made and not found") {
             edit::require_known_words(request, Few, made, false);
         } catch (const Error& error) {
             DOCTEST_CHECK(error.hint().size() < 200);   // not the names of all colours
+            hint = error.hint();
             return error.message();
         }
         return std::string();
@@ -113,6 +115,9 @@ DOCTEST_TEST_CASE("what is drawn besides can be made and not found") {
     DOCTEST_CHECK(refused("bear", "a rabbit", "rabbit").empty());
     DOCTEST_CHECK(refused("rabbit", "a red rabbit", "red") == "the model can draw \"rabbit\" but not find it");
     DOCTEST_CHECK(refused("bear", "a sign", "sign") == "the model does not know the word \"sign\" and cannot make it");
+    DOCTEST_CHECK(hint.find("rabbit") != std::string::npos);   // what it draws besides is named, colours in one phrase
+    DOCTEST_CHECK(hint.find("navy") == std::string::npos);
+    DOCTEST_CHECK(hint.find("a colour or pattern by its name") != std::string::npos);
     DOCTEST_CHECK(edit::with_dyes({}, {}).empty());
     DOCTEST_CHECK(std::find(made.begin(), made.end(), "red") == made.end());   // it has that word itself
 }

@@ -177,6 +177,23 @@ DOCTEST_TEST_CASE("an estimate counts the view that is drawn first for the colou
     DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(branch));
 }
 
+DOCTEST_TEST_CASE("an estimate counts no such view where a new thing comes in its usual colour") {
+    edit::EditRequest request;
+    request.prompt = "a green frog on the grass";
+    request.source = "bear";
+    request.target = "frog";
+    const auto known = redrawing();
+    auto work = located();
+    work.mode = edit::EditMode::Replace;
+    const double told = seconds(known, request, work);
+    request.prompt = "a frog on the grass";
+    DOCTEST_CHECK(seconds(known, request, work) > told);
+    work.words = {"a", "frog", "green", "on", "the", "grass"};
+    DOCTEST_CHECK(seconds(known, request, work) == doctest::Approx(told));
+    work.words = {"a", "frog", "red", "on", "the", "grass"};   // the model cannot say it
+    DOCTEST_CHECK(seconds(known, request, work) > told);
+}
+
 DOCTEST_TEST_CASE("an estimate counts the views that are drawn to see where something goes") {
     edit::EditRequest request;
     request.prompt = "a bear wearing a red hat on the grass";
