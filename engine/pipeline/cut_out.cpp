@@ -13,6 +13,7 @@
 #include "engine/base/printable.h"
 #include "engine/edit/grabcut_segmenter.h"
 #include "engine/localize/back_projection.h"
+#include "engine/localize/clusters.h"
 #include "engine/pipeline/cut_out_sides.h"
 #include "engine/pipeline/scene_tools.h"
 
@@ -22,6 +23,8 @@ namespace {
 constexpr int LongestSide = 512;     // pixels of the picture: GrabCut takes a third of a second for it
 constexpr double Surroundings = 0.5;  // of the box's sides, that the picture shows around it
 constexpr double MostEnlarged = 4;    // of the screen's pixels
+constexpr float Opaque = 0.5f;        // alpha
+constexpr double Beside = 0.02;       // of the picture's longer side: so far beside the outline splats may be the thing's
 
 /// The part of the view around the area.
 struct Section {
@@ -98,14 +101,66 @@ Image unexplained(const Image& picture, const edit::BoxPrompt& box) {
     return hint;
 }
 
+/// The square of the distance to a colour that all but a few of the opaque pixels have; negative where there are none.
+double distance_from_most(const raster::ForwardOutput& picture, const std::array<float, 3>& colour, std::vector<float>& distances) {
+    constexpr double few = 0.05;
+    distances.clear();
+    for (std::size_t pixel = 0; pixel < picture.alpha.data.size(); ++pixel) {
+        if (picture.alpha.data[pixel] < Opaque) continue;
+        float sum = 0;
+        for (std::size_t c = 0; c < 3; ++c) sum += std::pow(std::clamp(picture.colour.data[pixel * 3 + c], 0.0f, 1.0f) - colour[c], 2.0f);
+        distances.push_back(sum);
+    }
+    if (distances.empty()) return -1;
+    const auto place = distances.begin() + static_cast<std::ptrdiff_t>(few * static_cast<double>(distances.size() - 1));
+    std::nth_element(distances.begin(), place, distances.end());
+    return static_cast<double>(*place);
+}
+
+/// Something dark before a dark nothing has no outline: where much of what is opaque looks like the background, another colour, which is least
+/// like any of it. Elsewhere the background stays: black, it also stands for shadows, which are not the thing.
+std::array<float, 3> telling_background(const raster::ForwardOutput& picture, const std::array<float, 3>& background) {
+    constexpr double alike = 0.16 * 0.16, least_nothing = 0.005;   // in RGB; of the pixels: less has no outline anyway
+    constexpr std::array<std::array<float, 3>, 9> colours{{{1, 1, 1}, {0.5f, 0.5f, 0.5f}, {0, 0, 0}, {0, 1, 0}, {1, 0, 1}, {0, 0, 1}, {0, 1, 1}, {1, 1, 0}, {1, 0, 0}}};
+    std::vector<float> scratch;
+    scratch.reserve(picture.alpha.data.size());
+    const double distance = distance_from_most(picture, background, scratch);
+    const double nothing = static_cast<double>(picture.alpha.data.size() - scratch.size());
+    if (distance < 0 || distance > alike || nothing < least_nothing * static_cast<double>(picture.alpha.data.size())) return background;
+    std::array<float, 3> best = background;
+    double farthest = distance;
+    for (const auto& colour : colours)
+        if (const double far = distance_from_most(picture, colour, scratch); far > farthest) farthest = far, best = colour;
+    return best;
+}
+
+/// Where the picture is opaque at about the depths that the mask's pixels have.
+Mask level_with(const Mask& mask, const raster::ForwardOutput& picture, double focal) {
+    constexpr double trim = 0.02, gap = 0.1;   // of the depths; of the mask's longer side
+    std::vector<float> depths;
+    for (std::size_t i = 0; i < mask.data.size(); ++i)
+        if (mask.data[i] != 0 && picture.alpha.data[i] > Opaque) depths.push_back(picture.depth.data[i] / picture.alpha.data[i]);
+    Mask level(mask.width, mask.height);
+    if (depths.empty()) return level;
+    std::sort(depths.begin(), depths.end());
+    const auto at = [&](double share) { return static_cast<double>(depths[static_cast<std::size_t>(share * static_cast<double>(depths.size() - 1))]); };
+    const auto box = localize::bounds_of(mask);
+    const double reach = gap * std::max(box.width, box.height) / focal * at(0.5);
+    for (std::size_t i = 0; i < level.data.size(); ++i) {
+        if (!(picture.alpha.data[i] > Opaque)) continue;
+        const auto depth = static_cast<double>(picture.depth.data[i] / picture.alpha.data[i]);
+        level.data[i] = depth > at(trim) - reach && depth < at(1 - trim) + reach ? 1 : 0;
+    }
+    return level;
+}
+
 /// Whether a row's centre lies in the mask or just beside it.
 bool centred(const GaussianSet& set, std::size_t row, const Camera& camera, const Mask& mask) {
-    constexpr double beside = 0.02;   // of the picture's longer side
     const auto positions = set.spans().position;
     const Vec3 at = camera.to_camera({positions[row * 3], positions[row * 3 + 1], positions[row * 3 + 2]});
     if (!(at[2] > 0)) return false;
     const double x = camera.fx * at[0] / at[2] + camera.cx, y = camera.fy * at[1] / at[2] + camera.cy;
-    const double reach = beside * std::max(mask.width, mask.height);
+    const double reach = Beside * std::max(mask.width, mask.height);
     if (!(x > -reach && x < mask.width + reach && y > -reach && y < mask.height + reach)) return false;
     const auto from = [&](double value) { return std::max(0, static_cast<int>(std::floor(value - reach))); };
     const auto to = [&](double value, int size) { return std::min(size - 1, static_cast<int>(std::floor(value + reach))); };
@@ -191,7 +246,10 @@ std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& r
     const auto section = section_of(request);
     if (!section) return std::vector<std::uint8_t>(set.size(), 0);
     Painter painter;
-    Image picture = painter.paint(set.spans(), section->camera, request.settings).colour;
+    auto settings = request.settings;
+    settings.background = telling_background(painter.paint(set.spans(), section->camera, settings), settings.background);
+    const raster::ForwardOutput& painted = painter.paint(set.spans(), section->camera, settings);
+    Image picture = painted.colour;
     for (auto& value : picture.data) value = std::clamp(value, 0.0f, 1.0f);
     std::unique_ptr<edit::Segmenter> own;
     if (segmenter == nullptr) {   // what is outside of a box that was drawn around a thing is not the thing
@@ -202,12 +260,14 @@ std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& r
     const Mask whole = mask_of(*section);
     for (std::size_t i = 0; i < seen.mask.data.size(); ++i) seen.mask.data[i] &= whole.data[i];
     if (seen.mask.count() == 0) seen.mask = whole;
-    seen.front = seen_rows(set, section->camera, seen.mask, request.settings, painter);
+    close_holes(seen.mask, level_with(seen.mask, painted, section->camera.fx));
+    seen.front = seen_rows(set, section->camera, seen.mask, settings, painter);
     PickOptions options;
     options.pool = &painter.pool();
-    options.mask = &seen.mask;
+    const Mask wide = localize::dilate(seen.mask, Beside * std::max(seen.mask.width, seen.mask.height));
+    options.mask = &wide;
     seen.cone = rows_in_area(set, section->camera, section->area, options);
-    return follow_around(set, seen, request.settings, *segmenter, painter, control);
+    return follow_around(set, seen, settings, *segmenter, painter, control);
 }
 
 }  // namespace gse::pipeline

@@ -183,7 +183,11 @@ public:
         : set_(set), settings_(settings), segmenter_(segmenter), painter_(painter), candidates_(candidates.begin(), candidates.end()),
           alone_(set.filtered(candidates)), ones_(alone_.size(), 1), masked_(set.size()), total_(set.size()) {}
 
-    void first(const SeenThing& seen, Knowledge& knowledge) { vote(seen.camera, seen.mask, knowledge); }
+    void first(const SeenThing& seen, Knowledge& knowledge) {
+        Mask mask = seen.mask;
+        close_holes(mask, above_half(shown(set_, seen.camera, candidates_)));
+        vote(seen.camera, mask, knowledge);
+    }
 
     void look(const Camera& camera, Knowledge& knowledge) {
         const Mask possible = above_half(shown(set_, camera, candidates_));
@@ -195,6 +199,7 @@ public:
         if (!box) return;
         Mask mask = segmenter_.segment(picture_of(camera), {}, *box, expected);
         for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] &= possible.data[i];
+        close_holes(mask, possible);
         if (localize::mask_iou(mask, before) >= LeastAgreement) vote(camera, mask, knowledge);
     }
 
@@ -236,6 +241,28 @@ private:
 };
 
 }  // namespace
+
+void close_holes(Mask& mask, const Mask& possible) {
+    std::vector<std::uint8_t> outside(mask.data.size(), 0);
+    std::vector<int> open;
+    const auto reach = [&](int x, int y) {
+        if (x < 0 || y < 0 || x >= mask.width || y >= mask.height) return;
+        const int at = y * mask.width + x;
+        const auto place = static_cast<std::size_t>(at);
+        if (mask.data[place] != 0 || outside[place] != 0) return;
+        outside[place] = 1;
+        open.push_back(at);
+    };
+    for (int x = 0; x < mask.width; ++x) reach(x, 0), reach(x, mask.height - 1);
+    for (int y = 0; y < mask.height; ++y) reach(0, y), reach(mask.width - 1, y);
+    while (!open.empty()) {
+        const int x = open.back() % mask.width, y = open.back() / mask.width;
+        open.pop_back();
+        reach(x - 1, y), reach(x + 1, y), reach(x, y - 1), reach(x, y + 1);
+    }
+    for (std::size_t i = 0; i < outside.size(); ++i)
+        if (outside[i] == 0) mask.data[i] |= possible.data[i];
+}
 
 std::vector<std::uint8_t> follow_around(const GaussianSet& set, const SeenThing& seen, const raster::Settings& settings, edit::Segmenter& segmenter, Painter& painter,
                                         const JobControl& control) {

@@ -19,6 +19,9 @@ struct SeenThing {
     Vec3 up{0, -1, 0};                 // of the world: around it the views turn
 };
 
+/// Takes in what the outline encloses, where it is `possible`: a dark panel of a thing before something dark is no hole in it.
+void close_holes(Mask& mask, const Mask& possible);
+
 /// One byte per row of `set`: 1 for the thing from all sides. Views are taken around it; in each the rows that count so far, as they are seen
 /// there, tell `segmenter` what to cut out, and its outline tells which rows count next (SA3D, Cen et al. 2023). Only rows of `front` and those
 /// of `cone` that are not too far behind it can be the thing. A view that something stands in the way of, or whose outline has little to do with

@@ -9,6 +9,7 @@
 #include "engine/base/random.h"
 #include "engine/edit/grabcut_segmenter.h"
 #include "engine/pipeline/cut_out.h"
+#include "engine/pipeline/cut_out_sides.h"
 #include "engine/pipeline/scene_tools.h"
 #include "engine/synth/synth.h"
 
@@ -41,6 +42,18 @@ GaussianSet ball_and_wall() {
         data.sh[row * 3] = ball ? 1.5f : -1.2f;
         data.sh[row * 3 + 1] = ball ? -1.2f : 1.0f;
         data.sh[row * 3 + 2] = -1.2f;
+    }
+    return GaussianSet(std::move(data));
+}
+
+/// The same in other colours (DC coefficients), by position and whether it is the ball.
+template <class Colour>
+GaussianSet with_colours(const GaussianSet& set, const Colour& colour) {
+    auto data = set.to_data();
+    for (std::size_t row = 0; row < BallRows + WallRows; ++row) {
+        const float* at = &data.position[row * 3];
+        const Vec3 value = colour(Vec3{at[0], at[1], at[2]}, row < BallRows);
+        for (std::size_t c = 0; c < 3; ++c) data.sh[row * 3 + c] = static_cast<float>(value[static_cast<int>(c)]);
     }
     return GaussianSet(std::move(data));
 }
@@ -158,6 +171,48 @@ DOCTEST_TEST_CASE("things of all kinds are cut out whole from any side") {
         }
     }
     DOCTEST_CHECK(both > LeastIou * any);
+}
+
+DOCTEST_TEST_CASE("what is dark before a dark nothing has an outline all the same") {
+    if (!edit::grabcut_available()) return;
+    const auto set = with_colours(ball_and_wall(), [](const Vec3& at, bool ball) { return ball && at[0] > -0.1 ? Vec3{1.5, -1.2, -1.2} : Vec3{-1.7, -1.7, -1.7}; });
+    std::vector<std::uint8_t> ball(set.size(), 0);
+    std::fill_n(ball.begin(), BallRows, std::uint8_t{1});
+    const auto rows = cut_out(set.filtered(ball), around_ball(), nullptr);
+    DOCTEST_CHECK(count(rows, 0, BallRows) > BallRows * 95 / 100);
+}
+
+DOCTEST_TEST_CASE("a panel that looks like what is behind is the thing's, and what is seen through a hole is not") {
+    if (!edit::grabcut_available()) return;
+    const auto dark = [](const Vec3& at, bool ball) { return ball && !(std::hypot(at[0], at[1]) < 0.22 && at[2] < 0) ? Vec3{1.5, -1.2, -1.2} : Vec3{-1.2, -1.2, -1.2}; };
+    const auto rows = cut_out(with_colours(ball_and_wall(), dark), around_ball(), nullptr);
+    DOCTEST_CHECK(count(rows, 0, BallRows) > BallRows * 95 / 100);
+    DOCTEST_CHECK(count(rows, BallRows, rows.size()) < count(rows, 0, BallRows) / 50);
+    auto data = ball_and_wall().to_data();
+    for (std::size_t row = 0; row < BallRows; ++row) {   // the ball as a ring
+        float* at = &data.position[row * 3];
+        const float radius = std::max(1e-6f, std::hypot(at[0], at[1]));
+        const float to = (0.42f + 0.16f * (radius - 0.25f)) / radius;
+        at[0] *= to, at[1] *= to, at[2] *= 0.15f;
+    }
+    const auto ring = cut_out(GaussianSet(std::move(data)), around_ball(), nullptr);
+    DOCTEST_CHECK(count(ring, 0, BallRows) > BallRows * 95 / 100);
+    DOCTEST_CHECK(count(ring, BallRows, ring.size()) < count(ring, 0, BallRows) / 50);
+}
+
+DOCTEST_TEST_CASE("holes are closed where it is possible, and not what the picture's rim opens") {
+    Mask mask(7, 5), possible(7, 5);
+    for (int y = 0; y < 5; ++y)
+        for (int x = 0; x < 7; ++x) mask.at(x, y) = x == 0 || x == 3 || x == 6 || y == 0 || (y == 4 && x < 4) ? 1 : 0;
+    std::fill(possible.data.begin(), possible.data.end(), std::uint8_t{1});
+    possible.at(1, 2) = 0;
+    auto closed = mask;
+    close_holes(closed, possible);
+    DOCTEST_CHECK(closed.at(1, 1) == 1);
+    DOCTEST_CHECK(closed.at(2, 3) == 1);
+    DOCTEST_CHECK(closed.at(1, 2) == 0);   // something else is seen there
+    DOCTEST_CHECK(closed.at(5, 2) == 0);   // open below
+    DOCTEST_CHECK(closed.count() == mask.count() + 5);
 }
 
 DOCTEST_TEST_CASE("where nothing is cut out the box counts, and a box of nothing selects nothing") {
