@@ -108,11 +108,12 @@ public:
     const Way& way() const { return ways_[at_]; }
     std::vector<Answer>& answers() { return answers_[at_]; }
     bool several() const { return ways_.size() > 1; }
-    /// Whether these pictures are not to be used, or not yet. `score`: none when nothing can tell.
+    /// Whether these pictures are not to be used, or not yet.
     bool goes_on(const Verdict& verdict) {
-        if (ways_.size() == 1 || !verdict.score || (!verdict.warns && *verdict.score >= best_score_)) decided_ = true;
+        const auto score = verdict.measure();
+        if (ways_.size() == 1 || !score || (!verdict.is_poor() && *score >= best_score_)) decided_ = true;
         if (decided_) return false;
-        if (*verdict.score > best_score_) best_score_ = *verdict.score, best_ = at_;
+        if (*score > best_score_) best_score_ = *score, best_ = at_;
         if (at_ + 1 < ways_.size()) {
             ++at_;
             return true;
@@ -268,7 +269,7 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
         if (!edited.verdict) {
             const auto verdict = dyed ? judge_undyed(model, request, plan.mode, *dye, *dyed) : judge_targets(model, request, edit::as_told(request.prompt), sheet);
             if (attempts.goes_on(verdict)) {
-                log::info("the first views hardly show \"{}\" (score {:.2f}); they are drawn another way", request.prompt, *verdict.score);
+                log::info("the first views hardly show \"{}\" (score {:.2f}); they are drawn another way", request.prompt, *verdict.measure());
                 throw AnotherWay{};
             }
             if (verdict.warns) log::warning("{}", verdict.verdict);

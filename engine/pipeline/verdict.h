@@ -18,6 +18,13 @@ struct Verdict {
     std::optional<double> score;
     std::string verdict;   // the score in a sentence; empty without one
     bool warns = false;    // the pictures do not show the edit
+    /// Where a new thing is one that the model draws and its encoder has no word for: the same of the thing that it has a word for and that the
+    /// pictures show most. Says nothing of whether it is the right one, but what is like none is a lump.
+    std::optional<double> likeness = {};
+
+    /// What ways of drawing are chosen by, and whether another one is worth a try.
+    std::optional<double> measure() const { return score ? score : likeness; }
+    bool is_poor() const;
 };
 
 /// A picture before and after.

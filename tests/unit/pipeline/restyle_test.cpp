@@ -54,6 +54,7 @@ public:
     bool knows_scene() const override { return model_->knows_scene(); }
     bool restyles() const override { return true; }
     std::vector<std::string> known_words() const override { return model_->known_words(); }
+    std::vector<std::string> drawn_words() const override { return model_->drawn_words(); }
     int image_size() const override { return model_->image_size(); }
     std::string name() const override { return model_->name(); }
     neural::BundleKind kind() const override { return model_->kind(); }
@@ -85,14 +86,15 @@ public:
         if (first.rendered.data == first.backdrop.picture.data) return guidance_->edit(views, input, job);
         edit::RoundTargets targets;
         for (const auto& view : views) {
-            targets.images.push_back(view.backdrop.picture);
+            targets.images.push_back(draws_lumps ? view.rendered : view.backdrop.picture);
+            if (draws_lumps) std::transform(targets.images.back().data.begin(), targets.images.back().data.end(), targets.images.back().data.begin(), [](float value) { return 0.3f * value; });
             targets.outlines.emplace_back(view.mask.width, view.mask.height, 1);
             if (draws_outlines) std::copy(view.mask.data.begin(), view.mask.data.end(), targets.outlines.back().data.begin());
         }
         return targets;
     }
     bool restyles() const override { return guidance_->restyles(); }
-    bool draws_outlines = true;
+    bool draws_outlines = true, draws_lumps = false;   // what was there, in the dark
 
 private:
     std::unique_ptr<edit::ViewGuidance> guidance_;
@@ -100,16 +102,18 @@ private:
 
 class ShyModel final : public Misled {
 public:
-    ShyModel(std::shared_ptr<neural::TextToImage> model, bool draws_outlines) : Misled(std::move(model), false), draws_outlines_(draws_outlines) {}
+    ShyModel(std::shared_ptr<neural::TextToImage> model, bool draws_outlines, bool draws_lumps = false)
+        : Misled(std::move(model), false), draws_outlines_(draws_outlines), draws_lumps_(draws_lumps) {}
     std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const neural::SdsParameters& parameters) const override {
         asked.push_back(parameters.restyle);
         auto shy = std::make_unique<Shy>(model_->views(prompt, parameters));
         shy->draws_outlines = draws_outlines_;
+        shy->draws_lumps = draws_lumps_;
         return shy;
     }
 
 private:
-    bool draws_outlines_;
+    bool draws_outlines_, draws_lumps_;
 };
 
 EditRecipe blue_bear() {
@@ -191,6 +195,16 @@ DOCTEST_TEST_CASE("a thing that the model cannot draw into the scene is drawn on
         DOCTEST_REQUIRE(found.judged.size() == 1);
         DOCTEST_CHECK_FALSE(found.judged[0].warns);
     }
+    // Of what its encoder has no word for nothing is said, but what is like nothing gives way all the same.
+    auto drawn_only = recipe;
+    drawn_only.request.prompt = "a yellow rabbit on the grass";
+    drawn_only.request.target = "rabbit";
+    const auto rabbit = edited(drawn_only, std::make_shared<ShyModel>(load_recipe_model({}), true, true));
+    DOCTEST_CHECK(rabbit.asked.size() == 2);
+    DOCTEST_REQUIRE(rabbit.judged.size() == 1);
+    DOCTEST_CHECK_FALSE(rabbit.judged[0].score);
+    DOCTEST_CHECK_FALSE(rabbit.judged[0].warns);
+    DOCTEST_CHECK(rabbit.judged[0].likeness.value_or(0) > 0);
     recipe.guidance.plain_ground = false;
     const auto warned = edited(recipe, std::make_shared<ShyModel>(load_recipe_model({}), true));
     DOCTEST_CHECK(warned.asked.size() == 1);
