@@ -58,10 +58,11 @@ struct Usual {
     const char *thing, *colour;
 };
 
-/// Of things that models of few words may draw besides those that they look for.
+/// Of things that models of few words may draw besides those that they look for, and of what is worn. A hat may be any.
 constexpr Usual UsualColours[] = {{"rabbit", "white"}, {"horse", "brown"},    {"elephant", "gray"},  {"pig", "pink"},     {"lion", "ochre"},     {"penguin", "black"},
                                   {"owl", "brown"},    {"frog", "green"},     {"turtle", "green"},   {"dinosaur", "green"}, {"snowman", "white"}, {"robot", "gray"},
-                                  {"pumpkin", "orange"}, {"cactus", "green"}, {"teapot", "white"},   {"rocket", "white"}, {"castle", "stone"},   {"lamp", "yellow"}};
+                                  {"pumpkin", "orange"}, {"cactus", "green"}, {"teapot", "white"},   {"rocket", "white"}, {"castle", "stone"},   {"lamp", "yellow"},
+                                  {"wings", "white"},  {"crown", "golden"},   {"halo", "golden"},    {"necklace", "golden"}, {"sunglasses", "black"}};
 
 bool is_vowel(char letter) { return std::string("aeiou").find(letter) != std::string::npos; }
 

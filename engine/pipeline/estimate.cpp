@@ -125,7 +125,7 @@ void add_place(Sum& sum, const Measured& measured, const edit::EditRequest& requ
 Cost estimated_cost(const Measured& measured, const edit::EditRequest& asked, const PlannedWork& work) {
     const bool by_views = edit::edits_by_views(asked);
     auto request = measured.restyles > 0 && by_views ? edit::restyling(asked, work.mode) : asked;
-    if (by_views && work.mode == edit::EditMode::Replace)
+    if (by_views && work.mode != edit::EditMode::Modify)
         request.prompt = edit::with_usual_colour(edit::as_told(request.prompt), new_thing(request, work.mode), work.words);
     Sum sum;
     sum.add(work.loaded ? 0 : 1, measured.load);

@@ -159,9 +159,10 @@ Verdict judge_undyed(const neural::TextToImage& model, const edit::EditRequest& 
     return judge(model, told, edit::as_told(told.prompt), pictures);
 }
 
-/// What comes in a thing's place, in its usual colour where the sentence tells none.
+/// What comes in a thing's place or is added, in its usual colour where the sentence tells none: before a dark nothing most of the wings that
+/// the first view showed was black, and all views drew black ones.
 edit::EditRequest in_usual_colour(const neural::TextToImage& model, edit::EditRequest request, edit::EditMode mode) {
-    if (mode != edit::EditMode::Replace) return request;
+    if (mode == edit::EditMode::Modify) return request;
     const auto known = model.known_words();
     const auto thing = new_thing(request, mode), told = edit::as_told(request.prompt);
     const auto usual = edit::with_usual_colour(told, thing, edit::words_to_say(known, edit::with_dyes(model.drawn_words(), known)));

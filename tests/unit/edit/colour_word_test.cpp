@@ -100,6 +100,7 @@ DOCTEST_TEST_CASE("a thing that comes has its usual colour where the sentence te
     DOCTEST_CHECK(edit::with_usual_colour("a big frog", "frog", sayable) == "a big green frog");   // which says nothing to the model
     DOCTEST_CHECK(edit::with_usual_colour("a frog made of wood", "frog", sayable) == "a frog made of wood");
     DOCTEST_CHECK(edit::with_usual_colour("a cat", "cat", sayable) == "a cat");
+    DOCTEST_CHECK(edit::with_usual_colour("a bear with wings", "wings", {"a", "bear", "with", "wings", "white"}) == "a bear with white wings");
     DOCTEST_CHECK(edit::with_usual_colour("an owl", "owl", sayable) == "an owl");   // brown cannot be said
     DOCTEST_CHECK(edit::with_usual_colour("a frog", "frog", {}) == "a frog");       // a model of all words
 }
