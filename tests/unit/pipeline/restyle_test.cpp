@@ -87,14 +87,15 @@ public:
         edit::RoundTargets targets;
         for (const auto& view : views) {
             targets.images.push_back(draws_lumps ? view.rendered : view.backdrop.picture);
-            if (draws_lumps) std::transform(targets.images.back().data.begin(), targets.images.back().data.end(), targets.images.back().data.begin(), [](float value) { return 0.3f * value; });
+            if (draws_lumps)
+                for (std::size_t i = 0; i + 2 < targets.images.back().data.size(); i += 3) std::swap(targets.images.back().data[i], targets.images.back().data[i + 2]);
             targets.outlines.emplace_back(view.mask.width, view.mask.height, 1);
             if (draws_outlines) std::copy(view.mask.data.begin(), view.mask.data.end(), targets.outlines.back().data.begin());
         }
         return targets;
     }
     bool restyles() const override { return guidance_->restyles(); }
-    bool draws_outlines = true, draws_lumps = false;   // what was there, in the dark
+    bool draws_outlines = true, draws_lumps = false;   // what was there, red for blue
 
 private:
     std::unique_ptr<edit::ViewGuidance> guidance_;
@@ -197,7 +198,7 @@ DOCTEST_TEST_CASE("a thing that the model cannot draw into the scene is drawn on
     }
     // Of what its encoder has no word for nothing is said, but what is like nothing gives way all the same.
     auto drawn_only = recipe;
-    drawn_only.request.prompt = "a yellow rabbit on the grass";
+    drawn_only.request.prompt = "a red rabbit on the grass";
     drawn_only.request.target = "rabbit";
     const auto rabbit = edited(drawn_only, std::make_shared<ShyModel>(load_recipe_model({}), true, true));
     DOCTEST_CHECK(rabbit.asked.size() == 2);
