@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <span>
 
 #include "engine/base/error.h"
 #include "engine/localize/back_projection.h"
@@ -101,6 +103,64 @@ void keep_joined(const GaussianSet& set, const std::vector<std::uint8_t>& front,
                 for (std::int64_t x = -1; x <= 1; ++x) reach({at[0] + x, at[1] + y, at[2] + z});
     }
     for (std::size_t row = 0; row < rows.size(); ++row) rows[row] &= rows[row] != 0 && reached[cell_of(row)] ? 1 : 0;
+}
+
+/// Rows that touch each other, by cells that their ellipsoids reach.
+class Parts {
+public:
+    Parts(const GaussianSet& set, double cell) : positions_(set.spans().position), scales_(set.spans().log_scale), cell_(cell), parents_(set.size()) {
+        std::iota(parents_.begin(), parents_.end(), 0u);
+    }
+    void add(std::uint32_t row) {
+        constexpr double deviations = 2, most = 4;   // cells
+        double widest = 0;
+        std::array<std::int64_t, 3> at{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            widest = std::max(widest, std::exp(static_cast<double>(scales_[row * std::size_t{3} + axis])));
+            at[axis] = static_cast<std::int64_t>(std::floor(static_cast<double>(positions_[row * std::size_t{3} + axis]) / cell_));
+        }
+        const auto reach = static_cast<std::int64_t>(std::clamp(std::ceil(deviations * widest / cell_), 1.0, most));
+        for (std::int64_t z = -reach; z <= reach; ++z)
+            for (std::int64_t y = -reach; y <= reach; ++y)
+                for (std::int64_t x = -reach; x <= reach; ++x) join(row, owners_.try_emplace({at[0] + x, at[1] + y, at[2] + z}, row).first->second);
+    }
+    std::uint32_t part_of(std::uint32_t row) {
+        while (parents_[row] != row) row = parents_[row] = parents_[parents_[row]];
+        return row;
+    }
+
+private:
+    void join(std::uint32_t a, std::uint32_t b) { parents_[part_of(a)] = part_of(b); }
+
+    std::span<const float> positions_, scales_;
+    double cell_;
+    std::vector<std::uint32_t> parents_;
+    std::map<std::array<std::int64_t, 3>, std::uint32_t> owners_;   // of each cell that is reached
+};
+
+/// Takes in the candidates that hang on nothing but the thing: crumbs that no view gave to it, and that would float where it goes.
+void take_in_crumbs(const GaussianSet& set, const std::vector<std::uint8_t>& candidates, const Bounds& bounds, std::vector<std::uint8_t>& rows) {
+    constexpr double cell_share = 0.03, around = 0.25, most = 0.05;   // of the longest side; of the thing's rows: more of them are something else
+    const Vec3 sides = bounds.high - bounds.low;
+    const double longest = std::max({sides[0], sides[1], sides[2]});
+    if (!(longest > 0)) return;
+    const auto positions = set.spans().position;
+    const auto near = [&](std::size_t row) {
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto value = static_cast<double>(positions[row * 3 + static_cast<std::size_t>(axis)]);
+            if (!(value > bounds.low[axis] - around * longest && value < bounds.high[axis] + around * longest)) return false;
+        }
+        return true;
+    };
+    Parts parts(set, cell_share * longest);
+    std::vector<std::uint32_t> left;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        if (rows[row] == 0 && near(row)) left.push_back(static_cast<std::uint32_t>(row)), parts.add(left.back());
+    std::map<std::uint32_t, std::size_t> sizes;   // of the parts; those with a row that cannot be the thing are too large
+    const auto thing = static_cast<std::size_t>(std::count(rows.begin(), rows.end(), std::uint8_t{1}));
+    for (const auto row : left) sizes[parts.part_of(row)] += candidates[row] != 0 ? 1 : rows.size();
+    for (const auto row : left)
+        if (static_cast<double>(sizes[parts.part_of(row)]) < most * static_cast<double>(thing)) rows[row] = 1;
 }
 
 /// The rows that can be the thing.
@@ -282,6 +342,7 @@ std::vector<std::uint8_t> follow_around(const GaussianSet& set, const SeenThing&
     localize::spread_to_unseen(set.spans(), {}, weights, &painter.pool());
     std::vector<std::uint8_t> rows(set.size(), 0);
     for (std::size_t row = 0; row < rows.size(); ++row) rows[row] = candidates[row] != 0 && static_cast<double>(weights.weight[row]) > Half ? 1 : 0;
+    take_in_crumbs(set, candidates, *bounds, rows);
     return rows;
 }
 
