@@ -110,7 +110,11 @@ public:
     bool several() const { return ways_.size() > 1; }
     /// Whether these pictures are not to be used, or not yet.
     bool goes_on(const Verdict& verdict) {
-        const auto score = verdict.measure();
+        if (!verdict.score && verdict.likeness) {   // it finds lumps, but says little of which way is the better one: the last is used
+            decided_ |= !verdict.is_poor() || at_ + 1 == ways_.size();
+            return !decided_ && ++at_ > 0;
+        }
+        const auto score = verdict.score;
         if (ways_.size() == 1 || !score || (!verdict.is_poor() && *score >= best_score_)) decided_ = true;
         if (decided_) return false;
         if (*score > best_score_) best_score_ = *score, best_ = at_;
@@ -270,7 +274,7 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
         if (!edited.verdict) {
             const auto verdict = dyed ? judge_undyed(model, request, plan.mode, *dye, *dyed) : judge_targets(model, request, edit::as_told(request.prompt), sheet);
             if (attempts.goes_on(verdict)) {
-                log::info("the first views hardly show \"{}\" (score {:.2f}); they are drawn another way", request.prompt, *verdict.measure());
+                log::info("the first views hardly show \"{}\" (score {:.2f}); they are drawn another way", request.prompt, verdict.score.value_or(verdict.likeness.value_or(0)));
                 throw AnotherWay{};
             }
             if (verdict.warns) log::warning("{}", verdict.verdict);

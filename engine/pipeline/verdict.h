@@ -22,8 +22,7 @@ struct Verdict {
     /// pictures show most. Says nothing of whether it is the right one, but what is like none is a lump.
     std::optional<double> likeness = {};
 
-    /// What ways of drawing are chosen by, and whether another one is worth a try.
-    std::optional<double> measure() const { return score ? score : likeness; }
+    /// Whether another way of drawing is worth a try.
     bool is_poor() const;
 };
 
@@ -38,7 +37,7 @@ Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request
 Verdict judge_targets(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
                       const edit::ViewTargets& round);
 
-/// {"score", "verdict", "warns"}.
+/// {"score", "verdict", "warns"}, and "likeness" where it was asked.
 nlohmann::ordered_json verdict_to_json(const Verdict& verdict);
 
 }  // namespace gse::pipeline
