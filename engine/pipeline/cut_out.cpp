@@ -247,8 +247,9 @@ std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& r
     if (!section) return std::vector<std::uint8_t>(set.size(), 0);
     Painter painter;
     auto settings = request.settings;
-    settings.background = telling_background(painter.paint(set.spans(), section->camera, settings), settings.background);
-    const raster::ForwardOutput& painted = painter.paint(set.spans(), section->camera, settings);
+    const raster::ForwardOutput& painted = painter.paint(set.spans(), section->camera, settings);   // the painter's own: the last picture
+    settings.background = telling_background(painted, settings.background);
+    if (settings.background != request.settings.background) painter.paint(set.spans(), section->camera, settings);
     Image picture = painted.colour;
     for (auto& value : picture.data) value = std::clamp(value, 0.0f, 1.0f);
     std::unique_ptr<edit::Segmenter> own;

@@ -112,7 +112,9 @@ public:
     bool goes_on(const Verdict& verdict) {
         if (!verdict.score && verdict.likeness) {   // it finds lumps, but says little of which way is the better one: the last is used
             decided_ |= !verdict.is_poor() || at_ + 1 == ways_.size();
-            return !decided_ && ++at_ > 0;
+            if (decided_) return false;
+            best_score_ = *verdict.likeness, best_ = at_++;   // should the next one draw nothing at all
+            return true;
         }
         const auto score = verdict.score;
         if (ways_.size() == 1 || !score || (!verdict.is_poor() && *score >= best_score_)) decided_ = true;
