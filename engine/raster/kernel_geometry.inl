@@ -1,42 +1,38 @@
-// Kernel part 1: raw parameters of W Gaussians -> everything up to the projected covariance, in double lanes,
-// and the spherical harmonics in float lanes. Included inside the namespace of an instruction set.
+// Kernel part 1: raw parameters of W Gaussians -> scale, rotation and opacity in float lanes (they are no more exact than the
+// parameters), everything from there up to the projected covariance in double lanes, and the spherical harmonics in float lanes.
+// Included inside the namespace of an instruction set.
 
 constexpr double Ln2 = 0.69314718055994530942;
 constexpr double Log2E = 1.44269504088896340736;
 constexpr double Log2Of255 = 7.99435343685885793770;
 
 #ifndef GSE_SCALAR_MATH
-/// exp for |a| < 600: 2^n times a Taylor polynomial on [-ln 2 / 2, ln 2 / 2], relative error 1e-11.
-GSE_INLINE D exp_lanes(D a) {
-    const D n = round_nearest(a * setd(Log2E));
-    const D x = fnma(n, setd(1.9082149292705877e-10), fnma(n, setd(0.69314718036912381649), a));
-    D p = setd(1.0 / 362880);
-    p = fma(p, x, setd(1.0 / 40320));
-    p = fma(p, x, setd(1.0 / 5040));
-    p = fma(p, x, setd(1.0 / 720));
-    p = fma(p, x, setd(1.0 / 120));
-    p = fma(p, x, setd(1.0 / 24));
-    p = fma(p, x, setd(1.0 / 6));
-    p = fma(p, x, setd(0.5));
-    p = fma(p, x, setd(1.0));
-    p = fma(p, x, setd(1.0));
-    return scale_by_power(p, n);
+/// exp for |a| < 85: 2^n times a minimax polynomial on [-ln 2 / 2, ln 2 / 2] (Cephes, expf), relative error 2e-7.
+GSE_INLINE F exp_lanes(F a) {
+    const F n = floor(fma(a, set(static_cast<float>(Log2E)), set(0.5f)));
+    const F x = fnma(n, set(-2.12194440e-4f), fnma(n, set(0.693359375f), a));
+    F p = set(1.9875691500e-4f);
+    p = fma(p, x, set(1.3981999507e-3f));
+    p = fma(p, x, set(8.3334519073e-3f));
+    p = fma(p, x, set(4.1665795894e-2f));
+    p = fma(p, x, set(1.6666665459e-1f));
+    p = fma(p, x, set(5.0000001201e-1f));
+    return scale_by_power(fma(p, x * x, x) + set(1.0f), n);
 }
 
-/// log2 of a positive normal number: exponent plus the atanh series of the mantissa, absolute error 1e-10.
-GSE_INLINE D log2_lanes(D a) {
-    D exponent = exponent_of(a), mantissa = mantissa_of(a);
-    const MD high = mantissa > setd(1.41421356237309504880);
-    exponent = exponent + select(high, setd(1.0), setd(0.0));
-    mantissa = mantissa * select(high, setd(0.5), setd(1.0));
-    const D t = (mantissa - setd(1.0)) / (mantissa + setd(1.0)), tt = t * t;
-    D p = setd(1.0 / 11);
-    p = fma(p, tt, setd(1.0 / 9));
-    p = fma(p, tt, setd(1.0 / 7));
-    p = fma(p, tt, setd(1.0 / 5));
-    p = fma(p, tt, setd(1.0 / 3));
-    p = fma(p, tt, setd(1.0));
-    return fma(p * t, setd(2 * Log2E), exponent);
+/// log2 of a positive normal number: exponent plus the atanh series of the mantissa, absolute error 2e-7.
+GSE_INLINE F log2_lanes(F a) {
+    F exponent = exponent_of(a), mantissa = mantissa_of(a);
+    const M high = mantissa > set(1.41421356f);
+    exponent = exponent + only(high, set(1.0f));
+    mantissa = mantissa * select(high, set(0.5f), set(1.0f));
+    const F t = (mantissa - set(1.0f)) / (mantissa + set(1.0f)), tt = t * t;
+    F p = set(1.0f / 9);
+    p = fma(p, tt, set(1.0f / 7));
+    p = fma(p, tt, set(1.0f / 5));
+    p = fma(p, tt, set(1.0f / 3));
+    p = fma(p, tt, set(1.0f));
+    return fma(p * t, set(static_cast<float>(2 * Log2E)), exponent);
 }
 #endif
 
@@ -83,31 +79,67 @@ struct Geometry {
     D inverse_z;
     D ratio_x, ratio_y;
     MD inside_x, inside_y;
-    D q[4], inverse_norm;  // unit quaternion; inverse_norm is 0 where the identity was used
     Vec3D rotation[3];     // rows
     D scale[3];
-    MD scale_free[3];  // false where the log-scale limit holds
     Vec3D to_pixels[2];
     Vec3D footprint[2];
     D raw_xx, xy, raw_yy, xx, yy, raw_determinant, determinant;
-    D opacity;  // sigmoid only
 };
 
-GSE_INLINE D absolute(D a) { return max(a, setd(0.0) - a); }
+
+GSE_INLINE F absolute(F a) { return max(a, zero() - a); }
 
 /// Lanes whose numbers mean something; log-scale -inf and logit +-inf do.
-GSE_INLINE MD usable_lanes(const RawBatch& raw, int at) {
-    constexpr double largest = 3.40282346638528859812e38;
-    MD good = absolute(widen(raw.position[0] + at)) <= setd(PositionLimit);
-    good = good & (absolute(widen(raw.position[1] + at)) <= setd(PositionLimit));
-    good = good & (absolute(widen(raw.position[2] + at)) <= setd(PositionLimit));
-    for (int k = 0; k < 3; ++k) good = good & (widen(raw.log_scale[k] + at) <= setd(largest));
-    for (int k = 0; k < 4; ++k) {
-        const D q = widen(raw.rotation[k] + at);
-        good = good & (q <= setd(largest)) & (q >= setd(-largest));
-    }
-    const D logit = widen(raw.opacity_logit + at);
-    return good & (logit == logit);
+GSE_INLINE M usable_lanes(const RawBatch& raw) {
+    const F largest = set(3.40282346638528859812e38f), farthest = set(static_cast<float>(PositionLimit));
+    M good = absolute(load(raw.position[0])) <= farthest;
+    for (int k = 1; k < 3; ++k) good = good & (absolute(load(raw.position[k])) <= farthest);
+    for (int k = 0; k < 3; ++k) good = good & (load(raw.log_scale[k]) <= largest);
+    for (int k = 0; k < 4; ++k) good = good & (absolute(load(raw.rotation[k])) <= largest);
+    const F logit = load(raw.opacity_logit);
+    return good & (logit <= logit);
+}
+
+/// What a batch is before a camera sees it.
+struct alignas(64) Shape {
+    float q[4][F::W], inverse_norm[F::W];  // unit quaternion; inverse_norm is 0 where the identity was used
+    float rotation[3][3][F::W];            // [row][column]
+    float scale[3][F::W];
+    float opacity[F::W];  // sigmoid only
+};
+
+GSE_INLINE void orient(const RawBatch& raw, Shape& shape) {
+    F q[4], most = zero(), squared = zero();
+    for (int k = 0; k < 4; ++k) most = max(most, absolute(load(raw.rotation[k])));
+    // Divided by the largest first: squares of floats are not always floats.
+    const F size = max(most, set(1e-30f));
+    for (int k = 0; k < 4; ++k) q[k] = load(raw.rotation[k]) / size;
+    for (int k = 0; k < 4; ++k) squared = fma(q[k], q[k], squared);
+    const F length = sqrt(squared);
+    const M proper = size * length >= set(QuaternionLengthCut);
+    const F to_unit = only(proper, set(1.0f) / length);
+    store(shape.inverse_norm, to_unit / size);
+    q[0] = select(proper, q[0] * to_unit, set(1.0f));
+    for (int k = 1; k < 4; ++k) q[k] = only(proper, q[k] * to_unit);
+    for (int k = 0; k < 4; ++k) store(shape.q[k], q[k]);
+    const F w = q[0], x = q[1], y = q[2], z = q[3], one = set(1.0f), two = set(2.0f);
+    store(shape.rotation[0][0], fnma(two, fma(y, y, z * z), one));
+    store(shape.rotation[0][1], two * fnma(w, z, x * y));
+    store(shape.rotation[0][2], two * fma(w, y, x * z));
+    store(shape.rotation[1][0], two * fma(w, z, x * y));
+    store(shape.rotation[1][1], fnma(two, fma(x, x, z * z), one));
+    store(shape.rotation[1][2], two * fnma(w, x, y * z));
+    store(shape.rotation[2][0], two * fnma(w, y, x * z));
+    store(shape.rotation[2][1], two * fma(w, x, y * z));
+    store(shape.rotation[2][2], fnma(two, fma(x, x, y * y), one));
+}
+
+GSE_INLINE void compute_shape(const RawBatch& raw, Shape& shape) {
+    orient(raw, shape);
+    for (int k = 0; k < 3; ++k)   // e^-80 is nothing
+        store(shape.scale[k], exp_lanes(max(min(load(raw.log_scale[k]), set(static_cast<float>(LogScaleLimit))), set(-80.0f))));
+    const F logit = min(max(load(raw.opacity_logit), set(-80.0f)), set(80.0f));
+    store(shape.opacity, set(1.0f) / (set(1.0f) + exp_lanes(zero() - logit)));
 }
 
 GSE_INLINE void place(const RawBatch& raw, int at, const Viewpoint& view, Geometry& g) {
@@ -123,21 +155,10 @@ GSE_INLINE void place(const RawBatch& raw, int at, const Viewpoint& view, Geomet
     g.inverse_z = setd(1.0) / g.z;
 }
 
-GSE_INLINE void orient(const RawBatch& raw, int at, Geometry& g) {
-    for (int k = 0; k < 4; ++k) g.q[k] = widen(raw.rotation[k] + at);
-    const D squared = fma(g.q[3], g.q[3], fma(g.q[2], g.q[2], fma(g.q[1], g.q[1], g.q[0] * g.q[0])));
-    const MD proper = squared >= setd(QuaternionCut);
-    g.inverse_norm = select(proper, setd(1.0) / sqrt(squared), setd(0.0));
-    g.q[0] = select(proper, g.q[0] * g.inverse_norm, setd(1.0));
-    for (int k = 1; k < 4; ++k) g.q[k] = g.q[k] * g.inverse_norm;
-    const D w = g.q[0], x = g.q[1], y = g.q[2], z = g.q[3], one = setd(1.0), two = setd(2.0);
-    g.rotation[0] = {fnma(two, fma(y, y, z * z), one), two * fnma(w, z, x * y), two * fma(w, y, x * z)};
-    g.rotation[1] = {two * fma(w, z, x * y), fnma(two, fma(x, x, z * z), one), two * fnma(w, x, y * z)};
-    g.rotation[2] = {two * fnma(w, y, x * z), two * fma(w, x, y * z), fnma(two, fma(x, x, y * y), one)};
+GSE_INLINE void take_shape(const Shape& shape, int at, Geometry& g) {
     for (int k = 0; k < 3; ++k) {
-        const D log_scale = widen(raw.log_scale[k] + at);
-        g.scale_free[k] = log_scale <= setd(LogScaleLimit);
-        g.scale[k] = exp_lanes(max(min(log_scale, setd(LogScaleLimit)), setd(-80.0)));  // e^-80 is nothing
+        g.rotation[k] = {widen(shape.rotation[k][0] + at), widen(shape.rotation[k][1] + at), widen(shape.rotation[k][2] + at)};
+        g.scale[k] = widen(shape.scale[k] + at);
     }
 }
 
@@ -179,16 +200,10 @@ GSE_INLINE void flatten(const Viewpoint& view, Geometry& g) {
     g.determinant = fma(blur, g.raw_xx + g.raw_yy, fma(blur, blur, g.raw_determinant));
 }
 
-GSE_INLINE void activate(const RawBatch& raw, int at, Geometry& g) {
-    const D logit = min(max(widen(raw.opacity_logit + at), setd(-80.0)), setd(80.0));
-    g.opacity = setd(1.0) / (setd(1.0) + exp_lanes(setd(0.0) - logit));
-}
-
-GSE_INLINE void compute_geometry(const RawBatch& raw, int at, const Viewpoint& view, Geometry& g) {
+GSE_INLINE void compute_geometry(const RawBatch& raw, const Shape& shape, int at, const Viewpoint& view, Geometry& g) {
     place(raw, at, view, g);
-    orient(raw, at, g);
+    take_shape(shape, at, g);
     flatten(view, g);
-    activate(raw, at, g);
 }
 
 /// Basis of the spherical harmonics for unit directions (spherical_harmonics.cpp is the plain twin).

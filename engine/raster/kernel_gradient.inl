@@ -3,6 +3,7 @@
 
 struct alignas(64) GradientBatch {
     RawBatch raw;
+    Shape shape;
     float sums[9][F::W];
     float positive[3][F::W];  // 1 where the colour is above its clamp
     const float* sh[F::W];
@@ -13,9 +14,9 @@ struct alignas(64) GradientBatch {
 };
 
 /// Sums that are not finite (only overflow could make them so) count as nothing.
-GSE_INLINE D finite_or_zero(D a) {
-    constexpr double largest = 3.40282346638528859812e38;
-    return select(absolute(a) <= setd(largest), a, setd(0.0));
+GSE_INLINE void keep_finite_sums(GradientBatch& batch) {
+    const F largest = set(3.40282346638528859812e38f);
+    for (int k = 0; k <= SumGvv; ++k) store(batch.sums[k], only(absolute(load(batch.sums[k])) <= largest, load(batch.sums[k])));
 }
 
 /// Into the range of float; NaN becomes 0.
@@ -32,19 +33,17 @@ struct CovarianceD {
 /// (sum g w w^T) L.
 GSE_INLINE CovarianceD covariance_gradient(const GradientBatch& batch, int at, const Geometry& g,
                                            const Viewpoint& view, D* centre) {
-    const D l1 = sqrt(setd(0.5 * Log2E) * g.yy / g.determinant), l2 = setd(0.0) - l1 * g.xy / g.yy;
-    const D l3 = sqrt(setd(0.5 * Log2E) / g.yy);
-    const D mu = finite_or_zero(widen(batch.sums[SumGu] + at)),
-            mv = finite_or_zero(widen(batch.sums[SumGv] + at));
-    const D uu = finite_or_zero(widen(batch.sums[SumGuu] + at)),
-            uv = finite_or_zero(widen(batch.sums[SumGuv] + at)),
-            vv = finite_or_zero(widen(batch.sums[SumGvv] + at));
+    const D per_yy = setd(1.0) / g.yy;
+    const D l1 = sqrt(setd(0.5 * Log2E) * g.yy / g.determinant), l2 = setd(0.0) - l1 * g.xy * per_yy;
+    const D l3 = sqrt(setd(0.5 * Log2E) * per_yy);
+    const D mu = widen(batch.sums[SumGu] + at), mv = widen(batch.sums[SumGv] + at);
+    const D uu = widen(batch.sums[SumGuu] + at), uv = widen(batch.sums[SumGuv] + at), vv = widen(batch.sums[SumGvv] + at);
     centre[0] = setd(2 * Ln2) * l1 * mu;
     centre[1] = setd(2 * Ln2) * fma(l2, mu, l3 * mv);
     const D c = setd(2 * Ln2 * Ln2), cross = fma(l2, uu, l3 * uv);
     CovarianceD d = {c * l1 * l1 * uu, c * l1 * cross, c * fma(l2, cross, l3 * fma(l2, uv, l3 * vv))};
     if (view.antialiased) {
-        const D half = setd(0.5) * finite_or_zero(widen(batch.sums[SumG] + at));
+        const D half = setd(0.5) * widen(batch.sums[SumG] + at);
         const D raw = select(g.raw_determinant > setd(0.0), half / g.raw_determinant, setd(0.0));
         const D blurred = half / g.determinant;
         d.xx = d.xx + (raw * g.raw_yy - blurred * g.yy);
@@ -70,12 +69,14 @@ GSE_INLINE void axes_gradient(const Geometry& g, const Vec3D* d_footprint, int a
         d_scale[2] = fma(d.z, g.rotation[r].z, d_scale[2]);
     }
     for (int k = 0; k < 3; ++k)
-        narrow(batch.log_scale[k] + at,
-               into_float(select(g.scale_free[k], d_scale[k] * g.scale[k], setd(0.0))));
+        narrow(batch.log_scale[k] + at, into_float(d_scale[k] * g.scale[k]));
 }
 
-GSE_INLINE void rotation_gradient(const Geometry& g, const Vec3D* d, int at, GradientBatch& batch) {
-    const D w = g.q[0], x = g.q[1], y = g.q[2], z = g.q[3], two = setd(2.0);
+GSE_INLINE void rotation_gradient(const Vec3D* d, int at, GradientBatch& batch) {
+    const D q[4] = {widen(batch.shape.q[0] + at), widen(batch.shape.q[1] + at), widen(batch.shape.q[2] + at),
+                    widen(batch.shape.q[3] + at)};
+    const D inverse_norm = widen(batch.shape.inverse_norm + at);
+    const D w = q[0], x = q[1], y = q[2], z = q[3], two = setd(2.0);
     const D a = d[2].y - d[1].z, b = d[0].z - d[2].x, c = d[1].x - d[0].y;  // antisymmetric part
     const D e = d[0].y + d[1].x, f = d[0].z + d[2].x, h = d[1].z + d[2].y;  // symmetric part
     D dq[4];
@@ -85,7 +86,7 @@ GSE_INLINE void rotation_gradient(const Geometry& g, const Vec3D* d, int at, Gra
     dq[3] = two * (fma(x, f, fma(y, h, w * c)) - two * z * (d[0].x + d[1].y));
     const D radial = fma(w, dq[0], fma(x, dq[1], fma(y, dq[2], z * dq[3])));
     for (int k = 0; k < 4; ++k)
-        narrow(batch.rotation[k] + at, into_float(fnma(g.q[k], radial, dq[k]) * g.inverse_norm));
+        narrow(batch.rotation[k] + at, into_float(fnma(q[k], radial, dq[k]) * inverse_norm));
 }
 
 /// Gradient of the position through the centre of the splat, its Jacobian, and the direction of its colour.
@@ -134,12 +135,19 @@ GSE_INLINE void half_batch(const Viewpoint& view, const Geometry& g, int at, Gra
                       two * fma(d.xy, a.z, d.yy * b.z)};
     Vec3D d_rotation[3];
     axes_gradient(g, d_footprint, at, batch, d_rotation);
-    rotation_gradient(g, d_rotation, at, batch);
+    rotation_gradient(d_rotation, at, batch);
     position_gradient(g, view, d_footprint, centre, at, batch);
-    const D sum = finite_or_zero(widen(batch.sums[SumG] + at));
-    narrow(batch.opacity_logit + at, sum * (setd(1.0) - g.opacity));
+    const D sum = widen(batch.sums[SumG] + at);
+    narrow(batch.opacity_logit + at, sum * (setd(1.0) - widen(batch.shape.opacity + at)));
     const D nx = centre[0] * setd(0.5 * view.width), ny = centre[1] * setd(0.5 * view.height);
     narrow(batch.mean2d + at, into_float(sqrt(fma(nx, nx, ny * ny))));
+}
+
+/// No gradient of log-scales that count as their limit.
+GSE_INLINE void hold_limits(GradientBatch& batch) {
+    const F limit = set(static_cast<float>(LogScaleLimit));
+    for (int k = 0; k < 3; ++k)
+        store(batch.log_scale[k], only(load(batch.raw.log_scale[k]) <= limit, load(batch.log_scale[k])));
 }
 
 /// Derivative of the colour's polynomial with respect to the unit direction; h[k] = sum over channels of
@@ -256,15 +264,18 @@ static void finish_batch(const GradientJob& job, GradientBatch& batch) {
         for (auto& channel : batch.positive) channel[lane] = 0.0f;
     }
     fill_batch(job.source, batch.raw);
+    compute_shape(batch.raw, batch.shape);
+    keep_finite_sums(batch);
     Geometry g[F::W / D::W];
     for (int at = 0, half = 0; at < F::W; at += D::W, ++half) {
-        compute_geometry(batch.raw, at, *job.view, g[half]);
+        compute_geometry(batch.raw, batch.shape, at, *job.view, g[half]);
         narrow(batch.direction[0] + at, g[half].offset.x);
         narrow(batch.direction[1] + at, g[half].offset.y);
         narrow(batch.direction[2] + at, g[half].offset.z);
     }
     colour_gradient(*job.view, batch);
     for (int at = 0, half = 0; at < F::W; at += D::W, ++half) half_batch(*job.view, g[half], at, batch);
+    hold_limits(batch);
     write_gradients(job, batch);
     batch.raw.size = 0;
 }
@@ -278,10 +289,12 @@ static void gradient(const GradientJob& job) {
     for (const Record* record = job.begin; record < job.end; ++record, ++range) {
         if (job.end - record > ahead) prefetch_gradients(job, record[ahead].row, asked);
         alignas(64) float sums[PartialStride];
-        clear_slot(sums);
+        F total[PartialStride / F::W];
+        for (F& part : total) part = zero();
         const float* slot = job.partials + static_cast<std::size_t>(range->begin + job.slot_shift) * PartialStride;
         for (std::uint32_t pair = 0; pair < range->count; ++pair, slot += PartialStride)
-            for (int k = 0; k < PartialStride; k += F::W) store(sums + k, load(sums + k) + load(slot + k));
+            for (int k = 0; k < PartialStride / F::W; ++k) total[k] = total[k] + load(slot + k * F::W);
+        for (int k = 0; k < PartialStride / F::W; ++k) store(sums + k * F::W, total[k]);
         if (!(sums[SumBlended] > 0.0f)) continue;
         clear_rows(job, next, record->row);
         next = record->row + std::size_t{1};

@@ -1,4 +1,4 @@
-// Kernel part 2: rows -> records: culling in double lanes, then the colours of what is left in float lanes.
+// Kernel part 2: rows -> records: ellipses in double lanes, then extents, and the colours of what is left, in float lanes.
 
 /// The drawn rows of a batch wait here for their colour.
 struct alignas(64) ColourBatch {
@@ -13,39 +13,47 @@ struct alignas(64) ColourBatch {
 struct alignas(64) RecordBatch {
     float x[F::W], y[F::W], l1[F::W], l2[F::W], l3[F::W], log2_opacity[F::W], depth[F::W];
     float half_width[F::W], half_height[F::W], lean[F::W], direction[3][F::W];
+    float dimming[F::W];  // of the opacity, by antialiasing
 };
 
-/// Ellipse of one half batch; returns the lanes that are drawn.
-GSE_INLINE MD finish_records(const Viewpoint& view, const Geometry& g, int at, RecordBatch& out) {
-    D opacity = g.opacity;
-    if (view.antialiased) opacity = opacity * sqrt(g.raw_determinant / g.determinant);
-    MD drawn = (g.z > setd(view.near_plane)) & (g.z < setd(view.far_plane)) &
-               (g.determinant > setd(DeterminantCut)) & (opacity >= setd(AlphaCut));
-    const D x = fma(setd(view.fx) * g.x, g.inverse_z, setd(view.cx));
-    const D y = fma(setd(view.fy) * g.y, g.inverse_z, setd(view.cy));
-    const D log2_opacity = log2_lanes(max(opacity, setd(1e-30)));
-    // alpha >= 1/255 <=> u^2 + v^2 <= log2(255 o); a little more, so that rounding can never drop a pair.
-    const D reach = fma(log2_opacity + setd(Log2Of255), setd(1.0 + 1e-4), setd(1e-4));
-    const D half_width = sqrt(max(setd(2 * Ln2) * reach * g.xx, setd(0.0)));
-    const D half_height = sqrt(max(setd(2 * Ln2) * reach * g.yy, setd(0.0)));
-    const D nought = setd(0.0);
-    drawn = drawn & (x + half_width >= nought) & (x - half_width <= setd(view.width)) &
-            (y + half_height >= nought) & (y - half_height <= setd(view.height));
+/// Ellipse of one half batch: centre and Cholesky factor; of its extent, what finish_records needs. Returns the lanes that have one.
+GSE_INLINE MD project_records(const Viewpoint& view, const Geometry& g, int at, RecordBatch& out) {
+    constexpr double longest = 1e36;  // px^2; squares beyond a float's range are as long as this
+    if (view.antialiased) narrow(out.dimming + at, sqrt(g.raw_determinant / g.determinant));
+    narrow(out.x + at, fma(setd(view.fx) * g.x, g.inverse_z, setd(view.cx)));
+    narrow(out.y + at, fma(setd(view.fy) * g.y, g.inverse_z, setd(view.cy)));
+    const D per_yy = setd(1.0) / g.yy, nought = setd(0.0);
     const D l1 = sqrt(setd(0.5 * Log2E) * g.yy / g.determinant);
-    narrow(out.x + at, x);
-    narrow(out.y + at, y);
     narrow(out.l1 + at, l1);
-    narrow(out.l2 + at, nought - l1 * g.xy / g.yy);
-    narrow(out.l3 + at, sqrt(setd(0.5 * Log2E) / g.yy));
-    narrow(out.log2_opacity + at, min(log2_opacity, nought));
+    narrow(out.l2 + at, nought - l1 * g.xy * per_yy);
+    narrow(out.l3 + at, sqrt(setd(0.5 * Log2E) * per_yy));
     narrow(out.depth + at, g.z);
-    narrow(out.half_width + at, half_width);
-    narrow(out.half_height + at, half_height);
-    narrow(out.lean + at, half_width * g.xy / g.xx);
+    narrow(out.half_width + at, min(g.xx, setd(longest)));
+    narrow(out.half_height + at, min(g.yy, setd(longest)));
+    narrow(out.lean + at, g.xy / g.xx);
     narrow(out.direction[0] + at, g.offset.x);
     narrow(out.direction[1] + at, g.offset.y);
     narrow(out.direction[2] + at, g.offset.z);
-    return drawn;
+    return (g.z > setd(view.near_plane)) & (g.z < setd(view.far_plane)) & (g.determinant > setd(DeterminantCut));
+}
+
+/// Opacity and extent of the batch; returns the lanes that may show in the picture.
+GSE_INLINE M finish_records(const Viewpoint& view, const Shape& shape, RecordBatch& out) {
+    F opacity = load(shape.opacity);
+    if (view.antialiased) opacity = opacity * load(out.dimming);
+    const F log2_opacity = min(log2_lanes(max(opacity, set(1e-30f))), zero());
+    // alpha >= 1/255 <=> u^2 + v^2 <= log2(255 o); a little more, so that rounding can never drop a pair.
+    const F reach = fma(log2_opacity + set(static_cast<float>(Log2Of255)), set(1.0f + 1e-4f), set(1e-4f));
+    const F squared = set(static_cast<float>(2 * Ln2)) * reach, x = load(out.x), y = load(out.y);
+    const F half_width = sqrt(max(squared * load(out.half_width), zero()));
+    const F half_height = sqrt(max(squared * load(out.half_height), zero()));
+    store(out.log2_opacity, log2_opacity);
+    store(out.lean, half_width * load(out.lean));
+    store(out.half_width, half_width);
+    store(out.half_height, half_height);
+    const F right = set(static_cast<float>(view.width)), bottom = set(static_cast<float>(view.height));
+    return (opacity >= set(static_cast<float>(AlphaCut))) & (x + half_width >= zero()) & (x - half_width <= right) &
+           (y + half_height >= zero()) & (y - half_height <= bottom);
 }
 
 GSE_INLINE void write_record(const RecordBatch& from, int lane, std::uint32_t row, Record& to) {
@@ -124,6 +132,7 @@ GSE_INLINE void prefetch_coefficients(const ProjectJob& job, std::size_t row, st
 
 static void project(ProjectJob& job) {
     RawBatch raw;
+    Shape shape;
     RecordBatch found;
     ColourBatch colours;
     colours.size = 0;
@@ -135,17 +144,18 @@ static void project(ProjectJob& job) {
         for (int lane = 0; lane < raw.size; ++lane)
             load_row(job.source, row + static_cast<std::size_t>(lane), lane, raw);
         fill_batch(job.source, raw);
-        unsigned drawn = 0, usable = 0;
+        compute_shape(raw, shape);
+        unsigned drawn = 0;
         for (int at = 0; at < F::W; at += D::W) {
             Geometry g;
             const std::size_t asked = row + static_cast<std::size_t>(F::W + at);
             prefetch_coefficients(job, asked, (D::W + 1) / 2);
-            compute_geometry(raw, at, *job.view, g);
+            compute_geometry(raw, shape, at, *job.view, g);
             prefetch_coefficients(job, asked + (D::W + 1) / 2, D::W / 2);
-            const unsigned good = bits(usable_lanes(raw, at));
-            drawn |= (bits(finish_records(*job.view, g, at, found)) & good) << at;
-            usable |= good << at;
+            drawn |= bits(project_records(*job.view, g, at, found)) << at;
         }
+        const unsigned usable = bits(usable_lanes(raw));
+        drawn &= usable & bits(finish_records(*job.view, shape, found));
         const unsigned valid = (2u << (raw.size - 1)) - 1u;
         drawn &= valid;
         job.unusable += static_cast<std::size_t>(__builtin_popcount(valid & ~usable));

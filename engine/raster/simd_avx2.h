@@ -42,6 +42,7 @@ GSE_INLINE M operator|(M a, M b) { return {_mm256_or_ps(a.v, b.v)}; }
 GSE_INLINE M none() { return {_mm256_setzero_ps()}; }
 GSE_INLINE F select(M m, F a, F b) { return {_mm256_blendv_ps(b.v, a.v, m.v)}; }
 GSE_INLINE F only(M m, F a) { return {_mm256_and_ps(m.v, a.v)}; }
+GSE_INLINE unsigned bits(M m) { return static_cast<unsigned>(_mm256_movemask_ps(m.v)); }
 GSE_INLINE bool any(M m) { return _mm256_movemask_ps(m.v) != 0; }
 GSE_INLINE F reciprocal(F a) { return {_mm256_div_ps(_mm256_set1_ps(1.0f), a.v)}; }
 /// Counters; count() adds 1 in the lanes of m.
@@ -106,33 +107,110 @@ GSE_INLINE MD operator==(D a, D b) { return {_mm256_cmp_pd(a.v, b.v, _CMP_EQ_OQ)
 GSE_INLINE MD operator&(MD a, MD b) { return {_mm256_and_pd(a.v, b.v)}; }
 GSE_INLINE D select(MD m, D a, D b) { return {_mm256_blendv_pd(b.v, a.v, m.v)}; }
 GSE_INLINE unsigned bits(MD m) { return static_cast<unsigned>(_mm256_movemask_pd(m.v)); }
-GSE_INLINE D round_nearest(D a) {
-    return {_mm256_round_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
+/// a 2^power, for whole powers and results that are normal numbers.
+GSE_INLINE F scale_by_power(F a, F power) {
+    const __m256i field = _mm256_slli_epi32(_mm256_cvtps_epi32(power.v), 23);
+    return {_mm256_castsi256_ps(_mm256_add_epi32(_mm256_castps_si256(a.v), field))};
 }
-/// a 2^power for a whole power in [-1000, 1000].
-GSE_INLINE D scale_by_power(D a, D power) {
-    const __m256d magic = _mm256_set1_pd(6755399441055744.0);  // 1.5 * 2^52
-    const __m256i whole = _mm256_castpd_si256(_mm256_add_pd(power.v, magic));
-    return {_mm256_castsi256_pd(_mm256_add_epi64(_mm256_castpd_si256(a.v), _mm256_slli_epi64(whole, 52)))};
+GSE_INLINE F exponent_of(F a) {
+    const __m256i field = _mm256_srli_epi32(_mm256_castps_si256(a.v), 23);
+    return {_mm256_cvtepi32_ps(_mm256_sub_epi32(field, _mm256_set1_epi32(127)))};
 }
-GSE_INLINE D exponent_of(D a) {
-    const __m256i field = _mm256_srli_epi64(_mm256_castpd_si256(a.v), 52);
-    const __m256i magic = _mm256_set1_epi64x(0x4330000000000000);  // 2^52: its low bits hold a whole number
-    const __m256d biased = _mm256_castsi256_pd(_mm256_or_si256(field, magic));
-    return {_mm256_sub_pd(biased, _mm256_set1_pd(4503599627370496.0 + 1023.0))};
-}
-GSE_INLINE D mantissa_of(D a) {
-    const __m256i low = _mm256_and_si256(_mm256_castpd_si256(a.v), _mm256_set1_epi64x(0x000fffffffffffff));
-    return {_mm256_castsi256_pd(_mm256_or_si256(low, _mm256_set1_epi64x(0x3ff0000000000000)))};
+GSE_INLINE F mantissa_of(F a) {
+    const __m256i low = _mm256_and_si256(_mm256_castps_si256(a.v), _mm256_set1_epi32(0x007fffff));
+    return {_mm256_castsi256_ps(_mm256_or_si256(low, _mm256_set1_epi32(0x3f800000)))};
 }
 
+/// 8x8 transpose of registers.
+GSE_INLINE void transpose(__m256* r) {
+    __m256 t[8];
+    for (int i = 0; i < 8; i += 2) {
+        t[i] = _mm256_unpacklo_ps(r[i], r[i + 1]);
+        t[i + 1] = _mm256_unpackhi_ps(r[i], r[i + 1]);
+    }
+    for (int i = 0; i < 8; i += 4) {
+        r[i] = _mm256_shuffle_ps(t[i], t[i + 2], 0x44);
+        r[i + 1] = _mm256_shuffle_ps(t[i], t[i + 2], 0xee);
+        r[i + 2] = _mm256_shuffle_ps(t[i + 1], t[i + 3], 0x44);
+        r[i + 3] = _mm256_shuffle_ps(t[i + 1], t[i + 3], 0xee);
+    }
+    for (int i = 0; i < 4; ++i) {
+        const __m256 low = r[i], high = r[i + 4];
+        r[i] = _mm256_permute2f128_ps(low, high, 0x20);
+        r[i + 4] = _mm256_permute2f128_ps(low, high, 0x31);
+    }
+}
 GSE_INLINE void load_columns(const float* const* rows, int columns, float* to) {
-    for (int row = 0; row < 8; ++row)
-        for (int k = 0; k < columns; ++k) to[k * 8 + row] = rows[row][k];
+    int base = 0;
+    for (; base + 8 <= columns; base += 8) {
+        __m256 r[8];
+        for (int i = 0; i < 8; ++i) r[i] = _mm256_loadu_ps(rows[i] + base);
+        transpose(r);
+        for (int i = 0; i < 8; ++i) _mm256_store_ps(to + (base + i) * 8, r[i]);
+    }
+    for (; base < columns; ++base)
+        for (int row = 0; row < 8; ++row) to[base * 8 + row] = rows[row][base];
 }
 GSE_INLINE void store_columns(const float* from, int columns, float* const* rows, int row_count) {
-    for (int row = 0; row < row_count; ++row)
-        for (int k = 0; k < columns; ++k) rows[row][k] = from[k * 8 + row];
+    int base = 0;
+    for (; base + 8 <= columns; base += 8) {
+        __m256 r[8];
+        for (int i = 0; i < 8; ++i) r[i] = _mm256_load_ps(from + (base + i) * 8);
+        transpose(r);
+        for (int i = 0; i < row_count; ++i) _mm256_storeu_ps(rows[i] + base, r[i]);
+    }
+    for (; base < columns; ++base)
+        for (int row = 0; row < row_count; ++row) rows[row][base] = from[base * 8 + row];
+}
+/// store_columns of whole cache lines, and zeros, that go past the caches.
+#define GSE_HAS_STREAMS 1
+constexpr bool HasStreams = true;
+GSE_INLINE void stream_columns(const float* from, int columns, float* const* rows, int row_count) {
+    for (int base = 0; base < columns; base += 16) {
+        __m256 low[8], high[8];
+        for (int i = 0; i < 8; ++i) low[i] = _mm256_load_ps(from + (base + i) * 8);
+        for (int i = 0; i < 8; ++i) high[i] = _mm256_load_ps(from + (base + 8 + i) * 8);
+        transpose(low);
+        transpose(high);
+        for (int i = 0; i < row_count; ++i) {   // the two halves of a line together
+            _mm256_stream_ps(rows[i] + base, low[i]);
+            _mm256_stream_ps(rows[i] + base + 8, high[i]);
+        }
+    }
+}
+GSE_INLINE void stream_zeros(float* to, std::size_t count) {
+    for (std::size_t i = 0; i < count; i += 8) _mm256_stream_ps(to + i, _mm256_setzero_ps());
+}
+/// What was streamed is there before what is stored from now on.
+GSE_INLINE void end_streams() { _mm_sfence(); }
+
+/// For each set of eight bits, the places of those that are set, in order.
+struct PlacesOfBits {
+    std::uint8_t of[256][8];
+};
+constexpr PlacesOfBits places_of_bits() {
+    PlacesOfBits places = {};
+    for (int set = 0; set < 256; ++set)
+        for (int bit = 0, found = 0; bit < 8; ++bit)
+            if ((set >> bit & 1) != 0) places.of[set][found++] = static_cast<std::uint8_t>(bit);
+    return places;
+}
+/// The masks of 16 entries -> for each block the list of the entries that touch it. Nothing of it can be predicted, so it has no branch.
+#define GSE_HAS_LISTS 1
+GSE_INLINE void append_lists(const std::uint32_t* blocks, std::uint32_t first, std::uint16_t (*lists)[272],
+                             std::uint32_t* lengths) {
+    static constexpr PlacesOfBits places = places_of_bits();
+    for (std::uint32_t half = 0; half < 16; half += 8) {
+        const __m256i masks = _mm256_load_si256(reinterpret_cast<const __m256i*>(blocks + half));
+        const __m128i base = _mm_set1_epi16(static_cast<short>(first + half));
+        for (int block = 15; block >= 0; --block) {   // its bit is moved to where the sign is
+            const __m256i at_sign = _mm256_slli_epi32(masks, 31 - block);
+            const auto touched = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(at_sign)));
+            const __m128i found = _mm_cvtepu8_epi16(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(places.of[touched])));
+            _mm_storeu_si128(reinterpret_cast<__m128i*>(lists[block] + lengths[block]), _mm_add_epi16(found, base));
+            lengths[block] += static_cast<std::uint32_t>(__builtin_popcount(touched));
+        }
+    }
 }
 /// Sums of four registers, one per lane.
 GSE_INLINE __m128 four_sums(__m256 a, __m256 b, __m256 c, __m256 d) {
@@ -146,4 +224,11 @@ GSE_INLINE void store_sums(const F* a, float* to) {
     _mm_store_ps(to + 4, four_sums(a[4].v, a[5].v, a[6].v, a[7].v));
     _mm_store_ps(to + 8, four_sums(a[8].v, a[9].v, nought, nought));
     _mm_store_ps(to + 12, _mm_setzero_ps());
+}
+GSE_INLINE void stream_sums(const F* a, float* to) {
+    const __m256 nought = _mm256_setzero_ps();
+    const __m128 first = four_sums(a[0].v, a[1].v, a[2].v, a[3].v), second = four_sums(a[4].v, a[5].v, a[6].v, a[7].v);
+    const __m128 third = four_sums(a[8].v, a[9].v, nought, nought);
+    _mm256_stream_ps(to, _mm256_set_m128(second, first));
+    _mm256_stream_ps(to + 8, _mm256_set_m128(_mm_setzero_ps(), third));
 }

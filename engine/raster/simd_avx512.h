@@ -42,6 +42,7 @@ GSE_INLINE M operator|(M a, M b) { return {_kor_mask16(a.v, b.v)}; }
 GSE_INLINE M none() { return {0}; }
 GSE_INLINE F select(M m, F a, F b) { return {_mm512_mask_mov_ps(b.v, m.v, a.v)}; }
 GSE_INLINE F only(M m, F a) { return {_mm512_maskz_mov_ps(m.v, a.v)}; }
+GSE_INLINE unsigned bits(M m) { return m.v; }
 GSE_INLINE bool any(M m) { return !_kortestz_mask16_u8(m.v, m.v); }
 /// 1/a to the last bit or two: estimate and one Newton step.
 GSE_INLINE F reciprocal(F a) {
@@ -103,12 +104,10 @@ GSE_INLINE MD operator==(D a, D b) { return {_mm512_cmp_pd_mask(a.v, b.v, _CMP_E
 GSE_INLINE MD operator&(MD a, MD b) { return {_kand_mask8(a.v, b.v)}; }
 GSE_INLINE D select(MD m, D a, D b) { return {_mm512_mask_mov_pd(b.v, m.v, a.v)}; }
 GSE_INLINE unsigned bits(MD m) { return m.v; }
-GSE_INLINE D round_nearest(D a) {
-    return {_mm512_roundscale_pd(a.v, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC)};
-}
-GSE_INLINE D scale_by_power(D a, D power) { return {_mm512_scalef_pd(a.v, power.v)}; }
-GSE_INLINE D exponent_of(D a) { return {_mm512_getexp_pd(a.v)}; }
-GSE_INLINE D mantissa_of(D a) { return {_mm512_getmant_pd(a.v, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_src)}; }
+/// a 2^power, for whole powers.
+GSE_INLINE F scale_by_power(F a, F power) { return {_mm512_scalef_ps(a.v, power.v)}; }
+GSE_INLINE F exponent_of(F a) { return {_mm512_getexp_ps(a.v)}; }
+GSE_INLINE F mantissa_of(F a) { return {_mm512_getmant_ps(a.v, _MM_MANT_NORM_1_2, _MM_MANT_SIGN_src)}; }
 
 /// 16x16 transpose of registers.
 GSE_INLINE void transpose(__m512* r) {

@@ -53,6 +53,7 @@ GSE_INLINE M operator|(M a, M b) { return {a.v || b.v}; }
 GSE_INLINE M none() { return {false}; }
 GSE_INLINE F select(M m, F a, F b) { return m.v ? a : b; }
 GSE_INLINE F only(M m, F a) { return {m.v ? a.v : 0.0f}; }
+GSE_INLINE unsigned bits(M m) { return m.v ? 1u : 0u; }
 GSE_INLINE bool any(M m) { return m.v; }
 GSE_INLINE F reciprocal(F a) { return {1.0f / a.v}; }
 /// Counters; count() adds 1 in the lanes of m.
@@ -103,8 +104,8 @@ GSE_INLINE MD operator&(MD a, MD b) { return {a.v && b.v}; }
 GSE_INLINE D select(MD m, D a, D b) { return m.v ? a : b; }
 GSE_INLINE unsigned bits(MD m) { return m.v ? 1u : 0u; }
 #ifdef GSE_SCALAR_MATH
-GSE_INLINE D exp_lanes(D a) { return {__builtin_exp(a.v)}; }
-GSE_INLINE D log2_lanes(D a) { return {__builtin_log2(a.v)}; }
+GSE_INLINE F exp_lanes(F a) { return {__builtin_expf(a.v)}; }
+GSE_INLINE F log2_lanes(F a) { return {__builtin_log2f(a.v)}; }
 #endif
 
 /// columns of W rows -> to[column][row]; rows may lie anywhere.

@@ -89,13 +89,16 @@ GSE_DEVICE void gradient_row(const Grid& grid, const GradientArguments& args) {
         load_row(args.source, row, 0, batch.raw);
         for (int k = 0; k < 9; ++k) batch.sums[k][0] = found.sums[k];
         for (int channel = 0; channel < 3; ++channel) batch.positive[channel][0] = args.records[row].colour[channel];
+        compute_shape(batch.raw, batch.shape);
+        keep_finite_sums(batch);
         Geometry g;
-        compute_geometry(batch.raw, 0, args.view, g);
+        compute_geometry(batch.raw, batch.shape, 0, args.view, g);
         narrow(batch.direction[0], g.offset.x);
         narrow(batch.direction[1], g.offset.y);
         narrow(batch.direction[2], g.offset.z);
         colour_chain_of(args, row, batch);
         half_batch(args.view, g, 0, batch);
+        hold_limits(batch);
         for (std::size_t k = 0; k < 3; ++k) args.out.position[index * 3 + k] = batch.position[k][0];
         for (std::size_t k = 0; k < 3; ++k) args.out.log_scale[index * 3 + k] = batch.log_scale[k][0];
         for (std::size_t k = 0; k < 4; ++k) args.out.rotation[index * 4 + k] = batch.rotation[k][0];

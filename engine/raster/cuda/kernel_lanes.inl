@@ -4,16 +4,14 @@
 #define GSE_ONE_LANE_MATH 1
 #include "engine/raster/simd_scalar.h"
 
-GSE_INLINE D round_nearest(D a) { return {__builtin_rint(a.v)}; }
-/// a 2^power for whole powers in [-1022, 1023].
-GSE_INLINE D scale_by_power(D a, D power) {
-    return {a.v * __builtin_bit_cast(double, static_cast<std::int64_t>(static_cast<std::int32_t>(power.v) + 1023) << 52)};
+/// a 2^power, for whole powers and results that are normal numbers.
+GSE_INLINE F scale_by_power(F a, F power) {
+    const std::int32_t field = static_cast<std::int32_t>(power.v) * (1 << 23);
+    return {__builtin_bit_cast(float, __builtin_bit_cast(std::int32_t, a.v) + field)};
 }
-GSE_INLINE D exponent_of(D a) {
-    return {static_cast<double>(static_cast<std::int32_t>(__builtin_bit_cast(std::int64_t, a.v) >> 52) - 1023)};
-}
-GSE_INLINE D mantissa_of(D a) {
-    return {__builtin_bit_cast(double, (__builtin_bit_cast(std::int64_t, a.v) & 0xfffffffffffffll) | 0x3ff0000000000000ll)};
+GSE_INLINE F exponent_of(F a) { return {static_cast<float>((__builtin_bit_cast(std::int32_t, a.v) >> 23) - 127)}; }
+GSE_INLINE F mantissa_of(F a) {
+    return {__builtin_bit_cast(float, (__builtin_bit_cast(std::int32_t, a.v) & 0x007fffff) | 0x3f800000)};
 }
 
 // clang-format off

@@ -53,11 +53,14 @@ enum class RowFate { Drawn, Culled, Unusable };
 GSE_DEVICE RowFate record_of(const ProjectArguments& args, std::uint32_t row, Record& record) {
     RawBatch raw;
     load_row(args.source, row, 0, raw);
+    Shape shape;
+    compute_shape(raw, shape);
     Geometry g;
-    compute_geometry(raw, 0, args.view, g);
+    compute_geometry(raw, shape, 0, args.view, g);
     RecordBatch found;
-    const bool drawn = bits(finish_records(args.view, g, 0, found)) != 0;
-    if (bits(usable_lanes(raw, 0)) == 0) return RowFate::Unusable;
+    const bool has_ellipse = bits(project_records(args.view, g, 0, found)) != 0;
+    const bool drawn = bits(finish_records(args.view, shape, found)) != 0 && has_ellipse;
+    if (bits(usable_lanes(raw)) == 0) return RowFate::Unusable;
     if (!drawn) return RowFate::Culled;
     write_record(found, 0, row, record);
     return colour_record(args, found, record) ? RowFate::Drawn : RowFate::Unusable;
