@@ -136,7 +136,7 @@ void Frame::fill_tiles() {
 /// record points to is asked for some records before.
 template <class Body>
 void Frame::for_places(std::size_t begin, std::size_t end, const Body& body) const {
-    constexpr std::size_t far_ahead = 24, ahead = 8;
+    constexpr std::size_t far_ahead = 48, ahead = 20;
     const std::size_t count = begin < end ? end - begin : begin - end;
     const auto record_at = [&](std::size_t i) { return order_[begin < end ? begin + i : begin - 1 - i]; };
     const auto pairs_of = [&](std::uint32_t record) {

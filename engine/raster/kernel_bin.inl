@@ -111,13 +111,6 @@ struct alignas(64) SmallFootprints {
     std::int32_t fits[F::W];
 };
 
-/// Fields of W records, one after the other.
-struct alignas(64) RecordColumns {
-    float x[F::W], y[F::W], l1[F::W], l2[F::W], l3[F::W], log2_opacity[F::W], colour[3][F::W], depth[F::W];
-    float half_width[F::W], half_height[F::W], lean[F::W], rest[3][F::W];
-};
-static_assert(sizeof(RecordColumns) == F::W * sizeof(Record));
-
 /// What the bands of W Gaussians share.
 struct SmallCut {
     F reach, inverse_l1, slope, half_height;
@@ -203,7 +196,7 @@ static void bin(BinJob& job) {
         const float* rows[F::W];
         for (int lane = 0; lane < F::W; ++lane)
             rows[lane] = &job.records[job.begin + static_cast<std::size_t>(lane < size ? lane : 0)].x;
-        load_columns(rows, sizeof(Record) / sizeof(float), columns.x);
+        load_columns(rows, RecordFloats, columns.x);
         cut_small(columns, job, small);
         for (int lane = 0; lane < size; ++lane, ++job.begin) {
             const std::size_t before = job.written;

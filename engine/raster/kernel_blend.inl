@@ -104,7 +104,7 @@ GSE_INLINE void gather_batch(const BlendJob& job, std::uint32_t begin, std::uint
     alignas(64) std::uint32_t blocks[BatchEntries];
     for (std::uint32_t i = 0; i < size; ++i) {
         const TileEntry& entry = job.entries[begin + i];
-        if (begin + i + 12 < job.count) __builtin_prefetch(&record_at(job.records, job.entries[begin + i + 12].record));
+        if (begin + i + 24 < job.count) __builtin_prefetch(&record_at(job.records, job.entries[begin + i + 24].record));
         scratch.records[i] = record_at(job.records, entry.record);
         blocks[i] = entry.blocks;
     }

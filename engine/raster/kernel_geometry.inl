@@ -112,13 +112,13 @@ GSE_INLINE void orient(const RawBatch& raw, Shape& shape) {
     F q[4], most = zero(), squared = zero();
     for (int k = 0; k < 4; ++k) most = max(most, absolute(load(raw.rotation[k])));
     // Divided by the largest first: squares of floats are not always floats.
-    const F size = max(most, set(1e-30f));
-    for (int k = 0; k < 4; ++k) q[k] = load(raw.rotation[k]) / size;
+    const F size = max(most, set(1e-30f)), per_size = set(1.0f) / size;
+    for (int k = 0; k < 4; ++k) q[k] = load(raw.rotation[k]) * per_size;
     for (int k = 0; k < 4; ++k) squared = fma(q[k], q[k], squared);
     const F length = sqrt(squared);
     const M proper = size * length >= set(QuaternionLengthCut);
     const F to_unit = only(proper, set(1.0f) / length);
-    store(shape.inverse_norm, to_unit / size);
+    store(shape.inverse_norm, to_unit * per_size);
     q[0] = select(proper, q[0] * to_unit, set(1.0f));
     for (int k = 1; k < 4; ++k) q[k] = only(proper, q[k] * to_unit);
     for (int k = 0; k < 4; ++k) store(shape.q[k], q[k]);

@@ -287,13 +287,19 @@ static void gradient(const GradientJob& job) {
     const PairRange* range = job.ranges;
     std::size_t next = job.first_row, asked = job.first_row;
     for (const Record* record = job.begin; record < job.end; ++record, ++range) {
+        if (job.end - record > 2 * ahead) {
+            __builtin_prefetch(record + 2 * ahead);
+            __builtin_prefetch(range + 2 * ahead);
+        }
         if (job.end - record > ahead) prefetch_gradients(job, record[ahead].row, asked);
         alignas(64) float sums[PartialStride];
         F total[PartialStride / F::W];
         for (F& part : total) part = zero();
         const float* slot = job.partials + static_cast<std::size_t>(range->begin + job.slot_shift) * PartialStride;
-        for (std::uint32_t pair = 0; pair < range->count; ++pair, slot += PartialStride)
+        for (std::uint32_t pair = 0; pair < range->count; ++pair, slot += PartialStride) {
+            __builtin_prefetch(slot + 24 * PartialStride);
             for (int k = 0; k < PartialStride / F::W; ++k) total[k] = total[k] + load(slot + k * F::W);
+        }
         for (int k = 0; k < PartialStride / F::W; ++k) store(sums + k * F::W, total[k]);
         if (!(sums[SumBlended] > 0.0f)) continue;
         clear_rows(job, next, record->row);

@@ -1,36 +1,40 @@
 // Kernel part 2: rows -> records: ellipses in double lanes, then extents, and the colours of what is left, in float lanes.
 
-/// The drawn rows of a batch wait here for their colour.
-struct alignas(64) ColourBatch {
-    float direction[3][F::W];  // world, not normalised
-    float coefficients[48][F::W];
-    Record* record[F::W];
-    const float* sh[F::W];
-    int size;
+/// Fields of W records, one after the other.
+struct alignas(64) RecordColumns {
+    float x[F::W], y[F::W], l1[F::W], l2[F::W], l3[F::W], log2_opacity[F::W], colour[3][F::W], depth[F::W];
+    float half_width[F::W], half_height[F::W], lean[F::W];
+    std::uint32_t row[F::W];
+    float rest[2][F::W];
 };
+static_assert(sizeof(RecordColumns) == F::W * sizeof(Record));
+constexpr int RecordFloats = sizeof(Record) / sizeof(float);
 
-/// Component-major results of one batch of rows, before they are scattered into records.
+/// Rows on their way to records.
 struct alignas(64) RecordBatch {
-    float x[F::W], y[F::W], l1[F::W], l2[F::W], l3[F::W], log2_opacity[F::W], depth[F::W];
-    float half_width[F::W], half_height[F::W], lean[F::W], direction[3][F::W];
-    float dimming[F::W];  // of the opacity, by antialiasing
+    RecordColumns columns;
+    float direction[3][F::W];  // world, not normalised
+    float dimming[F::W];       // of the opacity, by antialiasing
+    const float* sh[F::W];
+    float* record[F::W];       // where each goes
+    int size;
 };
 
 /// Ellipse of one half batch: centre and Cholesky factor; of its extent, what finish_records needs. Returns the lanes that have one.
 GSE_INLINE MD project_records(const Viewpoint& view, const Geometry& g, int at, RecordBatch& out) {
     constexpr double longest = 1e36;  // px^2; squares beyond a float's range are as long as this
     if (view.antialiased) narrow(out.dimming + at, sqrt(g.raw_determinant / g.determinant));
-    narrow(out.x + at, fma(setd(view.fx) * g.x, g.inverse_z, setd(view.cx)));
-    narrow(out.y + at, fma(setd(view.fy) * g.y, g.inverse_z, setd(view.cy)));
+    narrow(out.columns.x + at, fma(setd(view.fx) * g.x, g.inverse_z, setd(view.cx)));
+    narrow(out.columns.y + at, fma(setd(view.fy) * g.y, g.inverse_z, setd(view.cy)));
     const D per_yy = setd(1.0) / g.yy, nought = setd(0.0);
     const D l1 = sqrt(setd(0.5 * Log2E) * g.yy / g.determinant);
-    narrow(out.l1 + at, l1);
-    narrow(out.l2 + at, nought - l1 * g.xy * per_yy);
-    narrow(out.l3 + at, sqrt(setd(0.5 * Log2E) * per_yy));
-    narrow(out.depth + at, g.z);
-    narrow(out.half_width + at, min(g.xx, setd(longest)));
-    narrow(out.half_height + at, min(g.yy, setd(longest)));
-    narrow(out.lean + at, g.xy / g.xx);
+    narrow(out.columns.l1 + at, l1);
+    narrow(out.columns.l2 + at, nought - l1 * g.xy * per_yy);
+    narrow(out.columns.l3 + at, sqrt(setd(0.5 * Log2E) * per_yy));
+    narrow(out.columns.depth + at, g.z);
+    narrow(out.columns.half_width + at, min(g.xx, setd(longest)));
+    narrow(out.columns.half_height + at, min(g.yy, setd(longest)));
+    narrow(out.columns.lean + at, g.xy / g.xx);
     narrow(out.direction[0] + at, g.offset.x);
     narrow(out.direction[1] + at, g.offset.y);
     narrow(out.direction[2] + at, g.offset.z);
@@ -44,84 +48,116 @@ GSE_INLINE M finish_records(const Viewpoint& view, const Shape& shape, RecordBat
     const F log2_opacity = min(log2_lanes(max(opacity, set(1e-30f))), zero());
     // alpha >= 1/255 <=> u^2 + v^2 <= log2(255 o); a little more, so that rounding can never drop a pair.
     const F reach = fma(log2_opacity + set(static_cast<float>(Log2Of255)), set(1.0f + 1e-4f), set(1e-4f));
-    const F squared = set(static_cast<float>(2 * Ln2)) * reach, x = load(out.x), y = load(out.y);
-    const F half_width = sqrt(max(squared * load(out.half_width), zero()));
-    const F half_height = sqrt(max(squared * load(out.half_height), zero()));
-    store(out.log2_opacity, log2_opacity);
-    store(out.lean, half_width * load(out.lean));
-    store(out.half_width, half_width);
-    store(out.half_height, half_height);
+    const F squared = set(static_cast<float>(2 * Ln2)) * reach, x = load(out.columns.x), y = load(out.columns.y);
+    const F half_width = sqrt(max(squared * load(out.columns.half_width), zero()));
+    const F half_height = sqrt(max(squared * load(out.columns.half_height), zero()));
+    store(out.columns.log2_opacity, log2_opacity);
+    store(out.columns.lean, half_width * load(out.columns.lean));
+    store(out.columns.half_width, half_width);
+    store(out.columns.half_height, half_height);
     const F right = set(static_cast<float>(view.width)), bottom = set(static_cast<float>(view.height));
     return (opacity >= set(static_cast<float>(AlphaCut))) & (x + half_width >= zero()) & (x - half_width <= right) &
            (y + half_height >= zero()) & (y - half_height <= bottom);
 }
 
-GSE_INLINE void write_record(const RecordBatch& from, int lane, std::uint32_t row, Record& to) {
-    to.x = from.x[lane];
-    to.y = from.y[lane];
-    to.l1 = from.l1[lane];
-    to.l2 = from.l2[lane];
-    to.l3 = from.l3[lane];
-    to.log2_opacity = from.log2_opacity[lane];
-    to.depth = from.depth[lane];
-    to.half_width = from.half_width[lane];
-    to.half_height = from.half_height[lane];
-    to.lean = from.lean[lane];
-    to.row = row;
+constexpr float UnusableMark = 1.0f;   // as log2(opacity), which is never positive
+
+/// Colours of the batch, clamped at 0. Lanes without a finite one are marked and counted (so that what is drawn is the same whether
+/// colours or values are composited).
+static void colour_batch(const ProjectJob& job, RecordBatch& batch) {
+    const int sh_count = job.view->sh_count;
+    alignas(64) float coefficients[48][F::W];
+    load_columns(batch.sh, sh_count * 3, coefficients[0]);
+    const F x = load(batch.direction[0]), y = load(batch.direction[1]), z = load(batch.direction[2]);
+    const F scale = set(1.0f) / sqrt(fma(z, z, fma(y, y, x * x)));
+    F basis[16], colour[3];
+    basis_lanes(x * scale, y * scale, z * scale, sh_count, basis);
+    for (F& channel : colour) channel = set(0.5f);
+    for (int k = 0; k < sh_count; ++k)
+        for (int channel = 0; channel < 3; ++channel)
+            colour[channel] = fma(basis[k], load(coefficients[k * 3 + channel]), colour[channel]);
+    const F largest = set(3.40282346638528859812e38f);
+    const M finite = (absolute(colour[0]) <= largest) & (absolute(colour[1]) <= largest) & (absolute(colour[2]) <= largest);
+    store(batch.columns.log2_opacity, select(finite, load(batch.columns.log2_opacity), set(UnusableMark)));
+    for (int channel = 0; channel < 3; ++channel) store(batch.columns.colour[channel], max(colour[channel], zero()));
 }
 
-static void colour_batch(ColourBatch& batch, int sh_count) {
+/// The first `size` lanes, with their colours, into their records.
+static void write_records(const ProjectJob& job, RecordBatch& batch) {
     if (batch.size == 0) return;
     for (int lane = batch.size; lane < F::W; ++lane) {
         batch.sh[lane] = batch.sh[0];
-        for (int k = 0; k < 3; ++k) batch.direction[k][lane] = batch.direction[k][0];
+        batch.columns.row[lane] = batch.columns.row[0];
+        for (auto& component : batch.direction) component[lane] = component[0];
     }
-    load_columns(batch.sh, sh_count * 3, batch.coefficients[0]);
-    const F x = load(batch.direction[0]), y = load(batch.direction[1]), z = load(batch.direction[2]);
-    const F scale = set(1.0f) / sqrt(fma(z, z, fma(y, y, x * x)));
-    F basis[16];
-    basis_lanes(x * scale, y * scale, z * scale, sh_count, basis);
-    alignas(64) float colour[3][F::W];
-    for (int channel = 0; channel < 3; ++channel) {
-        F sum = set(0.5f);
-        for (int k = 0; k < sh_count; ++k)
-            sum = fma(basis[k], load(batch.coefficients[k * 3 + channel]), sum);
-        store(colour[channel], sum);
+    colour_batch(job, batch);
+    for (int lane = 0; lane < F::W && job.values != nullptr; ++lane) {
+        batch.columns.colour[0][lane] = job.values[batch.columns.row[lane]];
+        batch.columns.colour[1][lane] = batch.columns.colour[2][lane] = 0.0f;
     }
-    for (int lane = 0; lane < batch.size; ++lane)
-        for (int channel = 0; channel < 3; ++channel)
-            batch.record[lane]->colour[channel] = colour[channel][lane];
+    store_columns(batch.columns.x, RecordFloats, batch.record, batch.size);
     batch.size = 0;
 }
 
-/// Clamps the colours at 0 and takes out the records whose colour is not finite (so that what is drawn is the
-/// same whether colours or values are composited).
-static void check_colours(ProjectJob& job) {
-    constexpr float largest = 3.40282346638528859812e38f;
+/// Takes out what is marked; the keys of the rest.
+static void finish_keys(ProjectJob& job) {
     std::size_t kept = 0;
     for (std::size_t i = 0; i < job.drawn; ++i) {
-        Record& record = job.records[i];
-        bool finite = true;
-        for (float& channel : record.colour) {
-            finite = finite && channel >= -largest && channel <= largest;
-            channel = channel > 0.0f ? channel : 0.0f;
-        }
-        if (!finite) {
+        const Record& record = job.records[i];
+        if (record.log2_opacity == UnusableMark) {
             ++job.unusable;
             continue;
         }
-        if (job.values != nullptr) {
-            record.colour[0] = job.values[record.row];
-            record.colour[1] = record.colour[2] = 0.0f;
-        }
-        if (kept != i) job.records[kept] = record;
         union {
             float depth;
             std::uint32_t key;
         } pun = {record.depth};
+        if (kept != i) job.records[kept] = record;
         job.keys[kept++] = pun.key;
     }
     job.drawn = kept;
+}
+
+/// Adds a lane of one batch to another.
+GSE_INLINE void append_lane(const RecordBatch& from, int lane, RecordBatch& to) {
+    const RecordColumns& source = from.columns;
+    RecordColumns& columns = to.columns;
+    const int at = to.size++;
+    columns.x[at] = source.x[lane];
+    columns.y[at] = source.y[lane];
+    columns.l1[at] = source.l1[lane];
+    columns.l2[at] = source.l2[lane];
+    columns.l3[at] = source.l3[lane];
+    columns.log2_opacity[at] = source.log2_opacity[lane];
+    columns.depth[at] = source.depth[lane];
+    columns.half_width[at] = source.half_width[lane];
+    columns.half_height[at] = source.half_height[lane];
+    columns.lean[at] = source.lean[lane];
+    columns.row[at] = source.row[lane];
+    for (int k = 0; k < 3; ++k) to.direction[k][at] = from.direction[k][lane];
+    to.sh[at] = from.sh[lane];
+    to.record[at] = from.record[lane];
+}
+
+/// Records of the drawn lanes: a batch of which most is drawn is written as it is, the others are collected.
+GSE_INLINE void keep_drawn(ProjectJob& job, unsigned drawn, RecordBatch& found, RecordBatch& waiting) {
+    const bool direct = 2 * __builtin_popcount(drawn) > F::W;
+    const float* any_sh = job.source.sh + found.columns.row[__builtin_ctz(drawn)] * job.source.sh_stride;
+    Record nowhere;
+    for (int lane = 0; lane < F::W; ++lane) {
+        const bool is_drawn = (drawn >> lane & 1u) != 0;
+        found.sh[lane] = is_drawn ? job.source.sh + found.columns.row[lane] * job.source.sh_stride : any_sh;
+        found.record[lane] = is_drawn ? &job.records[job.drawn].x : &nowhere.x;
+        job.drawn += is_drawn ? 1 : 0;
+    }
+    if (direct) {
+        found.size = F::W;
+        return write_records(job, found);
+    }
+    for (; drawn != 0; drawn &= drawn - 1) {
+        append_lane(found, __builtin_ctz(drawn), waiting);
+        if (waiting.size == F::W) write_records(job, waiting);
+    }
 }
 
 /// Asks for the coefficients of the next batch, of which most are drawn.
@@ -133,9 +169,10 @@ GSE_INLINE void prefetch_coefficients(const ProjectJob& job, std::size_t row, st
 static void project(ProjectJob& job) {
     RawBatch raw;
     Shape shape;
-    RecordBatch found;
-    ColourBatch colours;
-    colours.size = 0;
+    RecordBatch found, waiting;
+    for (auto& column : found.columns.rest) store(column, zero());
+    for (auto& column : waiting.columns.rest) store(column, zero());
+    waiting.size = 0;
     job.drawn = 0;
     job.unusable = 0;
     for (std::size_t row = job.begin; row < job.end; row += F::W) {
@@ -154,22 +191,13 @@ static void project(ProjectJob& job) {
             prefetch_coefficients(job, asked + (D::W + 1) / 2, D::W / 2);
             drawn |= bits(project_records(*job.view, g, at, found)) << at;
         }
-        const unsigned usable = bits(usable_lanes(raw));
-        drawn &= usable & bits(finish_records(*job.view, shape, found));
-        const unsigned valid = (2u << (raw.size - 1)) - 1u;
-        drawn &= valid;
+        const unsigned valid = (2u << (raw.size - 1)) - 1u, usable = bits(usable_lanes(raw));
+        drawn &= valid & usable & bits(finish_records(*job.view, shape, found));
         job.unusable += static_cast<std::size_t>(__builtin_popcount(valid & ~usable));
-        for (; drawn != 0; drawn &= drawn - 1) {
-            const int lane = __builtin_ctz(drawn);
-            const std::size_t source_row = raw.row[lane];
-            Record& record = job.records[job.drawn++];
-            write_record(found, lane, raw.row[lane], record);
-            for (int k = 0; k < 3; ++k) colours.direction[k][colours.size] = found.direction[k][lane];
-            colours.sh[colours.size] = job.source.sh + source_row * job.source.sh_stride;
-            colours.record[colours.size] = &record;
-            if (++colours.size == F::W) colour_batch(colours, job.view->sh_count);
-        }
+        if (drawn == 0) continue;
+        for (int lane = 0; lane < F::W; ++lane) found.columns.row[lane] = raw.row[lane];
+        keep_drawn(job, drawn, found, waiting);
     }
-    colour_batch(colours, job.view->sh_count);
-    check_colours(job);
+    write_records(job, waiting);
+    finish_keys(job);
 }

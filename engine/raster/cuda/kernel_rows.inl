@@ -48,6 +48,20 @@ GSE_DEVICE bool colour_record(const ProjectArguments& args, const RecordBatch& f
     return finite;
 }
 
+GSE_DEVICE void write_record(const RecordColumns& from, Record& to) {
+    to.x = from.x[0];
+    to.y = from.y[0];
+    to.l1 = from.l1[0];
+    to.l2 = from.l2[0];
+    to.l3 = from.l3[0];
+    to.log2_opacity = from.log2_opacity[0];
+    to.depth = from.depth[0];
+    to.half_width = from.half_width[0];
+    to.half_height = from.half_height[0];
+    to.lean = from.lean[0];
+    to.row = from.row[0];
+}
+
 enum class RowFate { Drawn, Culled, Unusable };
 
 GSE_DEVICE RowFate record_of(const ProjectArguments& args, std::uint32_t row, Record& record) {
@@ -62,7 +76,8 @@ GSE_DEVICE RowFate record_of(const ProjectArguments& args, std::uint32_t row, Re
     const bool drawn = bits(finish_records(args.view, shape, found)) != 0 && has_ellipse;
     if (bits(usable_lanes(raw)) == 0) return RowFate::Unusable;
     if (!drawn) return RowFate::Culled;
-    write_record(found, 0, row, record);
+    found.columns.row[0] = row;
+    write_record(found.columns, record);
     return colour_record(args, found, record) ? RowFate::Drawn : RowFate::Unusable;
 }
 
