@@ -146,6 +146,10 @@ DOCTEST_TEST_CASE("legal infinities and degenerate shapes") {
             for (std::size_t k = 0; k < 4; ++k)
                 h.data.rotation[row * 4 + k] *= row % 3 == 0 ? 0.0f : row % 3 == 1 ? 1e-11f : 1e-30f;
     }
+    DOCTEST_SUBCASE("quaternions whose square overflows") {
+        for (std::size_t row = 0; row < h.data.size(); ++row)
+            for (std::size_t k = 0; k < 4; ++k) h.data.rotation[row * 4 + k] *= row % 2 == 0 ? 1e25f : 3e37f;
+    }
     DOCTEST_SUBCASE("scales whose exponential overflows") {
         for (std::size_t row = 0; row < h.data.size(); row += 4) h.data.log_scale[row * 3 + row % 3] = 100.0f;
         h.data.log_scale[3] = h.data.log_scale[4] = h.data.log_scale[5] = 3e38f;
