@@ -27,14 +27,6 @@ bool any_of_between(const Words& words, int begin, int end, const Words& wanted)
     return false;
 }
 
-/// What things stand on or are in, not things: one in the place of another changes no shape.
-bool is_ground(const std::string& word) {
-    static const Words grounds{"grass", "sand",  "snow",   "water",  "tiles", "floor",  "lake",   "ground", "lawn",  "meadow", "field",
-                               "beach", "sea",   "ocean",  "river",  "ice",   "street", "road",   "gravel", "mud",   "soil",   "earth",
-                               "carpet", "rug",  "desert", "forest", "sky",   "pavement", "asphalt", "concrete", "background"};
-    return is_among(grounds, word);
-}
-
 /// Colours, materials and states: what a thing is like.
 bool is_description(const std::string& word) {
     static const Words descriptions{

@@ -132,6 +132,8 @@ std::vector<Candidate> candidates_of(const Words& words, const std::string& sour
             if (ends_phrase(words[i])) add_phrase(i + 1);
         // "A bear wearing a crown" for the hat: what is worn takes the place of what is worn.
         std::stable_partition(list.begin(), list.end(), [&](const Candidate& candidate) { return has_usual_place(source) && has_usual_place(candidate.head); });
+        // And what things stand on that of what they stood on: "a robot on the snow" for the ground.
+        std::stable_partition(list.begin(), list.end(), [&](const Candidate& candidate) { return is_ground(source) && is_ground(candidate.head); });
         return list;
     }
     const auto at = static_cast<std::size_t>(found - words.begin());
@@ -176,6 +178,7 @@ std::string guessed_target(const std::string& prompt, const std::string& source,
 std::vector<std::string> possible_targets(const std::string& prompt, const std::string& source, const Words& said) {
     const auto words = noun_terms(prompt, {source});
     Words targets{guessed_target(prompt, source, said)};
+    if (is_ground(source) && is_ground(targets.front()) && !has_word(prompt, source)) return targets;   // however little a scene looks like the rest
     const auto add = [&](const std::string& word) {
         if (word != source && says_something(word) && !contains(targets, word) && !contains(said, word)) targets.push_back(word);
     };

@@ -89,6 +89,14 @@ std::vector<std::string> terms_of(const std::string& sentence, const std::vector
     return terms;
 }
 
+bool is_ground(const std::string& word) {
+    static const std::vector<std::string> grounds{
+        "grass", "sand",  "snow",   "water",  "tiles", "floor",  "lake",   "ground", "lawn",  "meadow", "field",
+        "beach", "sea",   "ocean",  "river",  "ice",   "street", "road",   "gravel", "mud",   "soil",   "earth",
+        "carpet", "rug",  "desert", "forest", "sky",   "pavement", "asphalt", "concrete", "background"};
+    return std::find(grounds.begin(), grounds.end(), word) != grounds.end();
+}
+
 std::vector<std::string> phrases_of(const std::string& list) {
     if (list.find(',') == std::string::npos) return words_of(list);
     std::vector<std::string> phrases;

@@ -31,6 +31,9 @@ std::size_t first_word(const std::string& sentence, const std::string& phrase);
 /// The words of the sentence, where each of the phrases is one entry ("a", "teddy bear"); of two that overlap the longer.
 std::vector<std::string> terms_of(const std::string& sentence, const std::vector<std::string>& phrases);
 
+/// What things stand on or are in, not things: one in the place of another changes no shape.
+bool is_ground(const std::string& word);
+
 /// Phrases of a list: between commas, or, where there is no comma, every word for itself ("hat grass", "top hat, grass").
 std::vector<std::string> phrases_of(const std::string& list);
 

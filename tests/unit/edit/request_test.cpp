@@ -287,7 +287,9 @@ DOCTEST_TEST_CASE("all that a sentence says of the source or names may be its ne
     };
     DOCTEST_CHECK(possible("a golden bear wearing a red hat on the snow", "bear") == Words{"hat", "golden", "snow"});
     DOCTEST_CHECK(possible("a golden bear wearing a red hat on the snow", "bear", {"a", "bear", "hat", "red"}) == Words{"golden", "snow"});
-    DOCTEST_CHECK(possible("a golden bear on the snow", "grass") == Words{"bear", "snow"});
+    DOCTEST_CHECK(possible("a golden bear on the snow", "grass") == Words{"snow"});   // ground for ground
+    DOCTEST_CHECK(possible("a robot on the snow", "ground") == Words{"snow"});
+    DOCTEST_CHECK(possible("a golden bear in the wind", "grass") == Words{"bear", "wind"});
     DOCTEST_CHECK(possible("a red ball beside a bear", "bear") == Words{"bear", "ball"});   // the sentence alone does not tell
     DOCTEST_CHECK(possible("a blue bear", "bear", {"a", "blue", "bear"}) == Words{"blue"});
     DOCTEST_CHECK(possible("bear", "bear") == Words{"bear"});
