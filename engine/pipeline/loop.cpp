@@ -10,6 +10,7 @@
 #include "engine/edit/head.h"
 #include "engine/edit/instruction.h"
 #include "engine/edit/plain_ground.h"
+#include "engine/edit/usual_look.h"
 #include "engine/edit/vocabulary.h"
 #include "engine/pipeline/neural_loader.h"
 #include "engine/pipeline/recipe_model.h"
@@ -36,6 +37,7 @@ void keep(std::vector<edit::ViewTargets>& rounds, const edit::ViewTargets& sheet
 struct Way {
     bool restyle = false;        // SdsParameters::restyle
     bool plain_ground = false;   // the model is not shown the scene
+    bool usual_look = false;     // it is not asked at all
 };
 
 /// A network that is shown the scene draws well where that looks as in the pictures it was trained on, and may do nearly the opposite where
@@ -44,6 +46,8 @@ struct Way {
 /// none scored below 0.30. So where the first views hardly show what was asked, the next way is tried, and the best of all is used.
 /// What stands in nothing is drawn so at first: a man cut out of his surroundings became a green bear with a face (0.45; without it a dark
 /// lump, 0.26), and a golden figure (0.51; 0.30, no figure), and the wings that he got were wings (0.51; 0.05).
+/// A ground cannot be shown without the scene: it gets the colour that such a ground has. (A dark scan's became blue for "on the snow", -0.07, and red for
+/// "on the sand", 0.06; drawn by the model itself purple in half the views, which scored 0.08 and 0.31; in its colour white, 0.11, and yellow.)
 std::vector<Way> ways_to_draw(const neural::TextToImage& model, edit::EditMode mode, const EditRecipe& recipe, const std::optional<edit::GroundUnder>& ground) {
     const auto& guidance = recipe.guidance;
     std::vector<Way> ways{{guidance.restyle, false}};
@@ -52,7 +56,8 @@ std::vector<Way> ways_to_draw(const neural::TextToImage& model, edit::EditMode m
     const bool draws_anew = model.knows_scene() && (mode == edit::EditMode::Replace || (mode == edit::EditMode::Add && ground && ground->in_nothing));
     if (ground && (restyles || draws_anew)) ways.insert(ground->in_nothing ? ways.begin() : ways.end(), {guidance.restyle, true});
     if (draws_anew && ground && ground->in_nothing) ways.resize(1);
-    if (restyles) ways.push_back({false, false});   // the model itself
+    if (edit::usual_look(recipe.request, mode)) ways.push_back({guidance.restyle, false, true});
+    else if (restyles) ways.push_back({false, false});   // the model itself
     return ways;
 }
 
@@ -165,6 +170,13 @@ Verdict judge_undyed(const neural::TextToImage& model, const edit::EditRequest& 
     return judge(model, told, edit::as_told(told.prompt), pictures);
 }
 
+/// By the encoder; of a ground that it has no word for, by the colour that such a ground has.
+Verdict judge_drawn(const neural::TextToImage& model, const edit::EditRequest& request, edit::EditMode mode, const edit::ViewTargets& round) {
+    auto verdict = judge_targets(model, request, edit::as_told(request.prompt), round);
+    if (const auto look = edit::usual_look(request, mode); look && !verdict.score) verdict.likeness = edit::gone_towards(*look, round);
+    return verdict;
+}
+
 /// What comes in a thing's place or is added, in its usual colour where the sentence tells none: before a dark nothing most of the wings that
 /// the first view showed was black, and all views drew black ones.
 edit::EditRequest in_usual_colour(const neural::TextToImage& model, edit::EditRequest request, edit::EditMode mode) {
@@ -251,7 +263,9 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     const auto drawn = by_views ? model.views(dye ? edit::told_with(*dye, prompt) : prompt, settings) : nullptr;
     std::optional<edit::DyedViews> dyed;
     if (dye) dyed.emplace(*drawn, *dye);
-    edit::ViewGuidance* const views = dyed ? &*dyed : drawn.get();
+    std::optional<edit::UsualLook> look;
+    if (way.usual_look) look.emplace(*edit::usual_look(recipe.request, plan.mode));
+    edit::ViewGuidance* const views = look ? &*look : dyed ? static_cast<edit::ViewGuidance*>(&*dyed) : drawn.get();
     std::optional<PatternLayer> pattern;
     if (dye && dye->pattern) pattern = PatternLayer{*dye, located.views.orbit.up, located.views.front, request.seed};
     edit::EditTools tools{workplace.painter().rasterizer(), *guidance, pattern ? pattern->over(observer.snapshot) : observer.snapshot, control, observer.iteration};
@@ -270,11 +284,11 @@ Edited run_attempt(Workplace& workplace, const GaussianSet& scene, const Located
     std::optional<Kept> kept;
     if (attempts.several() && views) tools.views = &kept.emplace(*tools.views, attempts.answers());
     tools.known = model.known_words();
-    tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings).dump() + (on_ground ? "plain ground" : "") + (dye ? edit::joined(dye->words) : "");
+    tools.redraw_key = model.name() + tuning_key(recipe) + fields_to_json(settings).dump() + (on_ground ? "plain ground" : look ? "usual look" : "") + (dye ? edit::joined(dye->words) : "");
     Edited edited;
     tools.targets = [&](const edit::ViewTargets& sheet) {
         if (!edited.verdict) {
-            const auto verdict = dyed ? judge_undyed(model, request, plan.mode, *dye, *dyed) : judge_targets(model, request, edit::as_told(request.prompt), sheet);
+            const auto verdict = dyed ? judge_undyed(model, request, plan.mode, *dye, *dyed) : judge_drawn(model, request, plan.mode, sheet);
             if (attempts.goes_on(verdict)) {
                 log::info("the first views hardly show \"{}\" (score {:.2f}); they are drawn another way", request.prompt, verdict.score.value_or(verdict.likeness.value_or(0)));
                 throw AnotherWay{};

@@ -19,7 +19,8 @@ struct Verdict {
     std::string verdict;   // the score in a sentence; empty without one
     bool warns = false;    // the pictures do not show the edit
     /// Where a new thing is one that the model draws and its encoder has no word for: the same of the thing that it has a word for and that the
-    /// pictures show most. Says nothing of whether it is the right one, but what is like none is a lump.
+    /// pictures show most. Says nothing of whether it is the right one, but what is like none is a lump. Of such a ground: how much of the way to
+    /// its usual colour the pictures have gone (edit/usual_look.h).
     std::optional<double> likeness = {};
 
     /// Whether another way of drawing is worth a try.

@@ -1,0 +1,81 @@
+// One colour times how bright a pixel is beside the others.
+#include "engine/edit/usual_look.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "engine/edit/colour_word.h"
+#include "engine/edit/words.h"
+
+namespace gse::edit {
+namespace {
+
+// Shade is the luminance over the median of all views, to this power (a dark scan is lit unevenly), within these limits.
+constexpr float ShadePower = 0.5f, DarkestShade = 0.45f, BrightestShade = 1.12f;
+
+float luminance(const Image& picture, std::size_t pixel) {   // Rec. 709
+    return 0.2126f * picture.data[pixel * 3] + 0.7152f * picture.data[pixel * 3 + 1] + 0.0722f * picture.data[pixel * 3 + 2];
+}
+
+/// Of what all masks hold; 0 where they hold nothing.
+float median_luminance(const std::vector<RoundView>& views) {
+    std::vector<float> values;
+    for (const auto& view : views)
+        for (std::size_t p = 0; p < view.mask.data.size(); ++p)
+            if (view.mask.data[p] != 0) values.push_back(luminance(view.original, p));
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode) {
+    // By their names in CSS or by eye; of snow, sand and grass the middle of what the bundled model has learned (synth/ground.cpp).
+    static const std::map<std::string, std::array<float, 3>> looks{
+        {"snow", {0.90f, 0.93f, 0.98f}},  {"sand", {0.87f, 0.74f, 0.50f}}, {"grass", {0.33f, 0.58f, 0.14f}}, {"water", {0.13f, 0.56f, 0.70f}},
+        {"ice", {0.66f, 0.86f, 0.96f}},   {"mud", {0.33f, 0.21f, 0.13f}},  {"gravel", {0.55f, 0.54f, 0.52f}}};
+    const auto look = looks.find(request.target);
+    if (mode != EditMode::Modify || look == looks.end() || is_described(request.prompt, request.target)) return std::nullopt;
+    return look->second;
+}
+
+double gone_towards(const std::array<float, 3>& colour, const ViewTargets& round) {
+    constexpr float changed = 0.02f;
+    constexpr double near = 0.1;   // of the RGB cube's side: nothing can be said of where the pictures went
+    std::array<double, 3> before{}, after{};
+    double pixels = 0;
+    for (const auto& view : round.views)
+        for (std::size_t p = 0; p < view.before->data.size() && !view.dropped; p += 3) {
+            float most = 0;
+            for (std::size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(view.after->data[p + c] - view.before->data[p + c]));
+            if (most <= changed) continue;
+            ++pixels;
+            for (std::size_t c = 0; c < 3; ++c) before[c] += view.before->data[p + c], after[c] += view.after->data[p + c];
+        }
+    double left = 0, all = 0;
+    for (std::size_t c = 0; c < 3 && pixels > 0; ++c) {
+        left += std::pow(after[c] / pixels - colour[c], 2);
+        all += std::pow(before[c] / pixels - colour[c], 2);
+    }
+    if (pixels == 0) return 0;
+    return std::sqrt(all) < near ? 1 : 1 - std::sqrt(left / all);
+}
+
+RoundTargets UsualLook::edit(const std::vector<RoundView>& views, const RoundInput&, const JobControl&) {
+    RoundTargets targets;
+    const float median = std::max(median_luminance(views), 1e-3f);
+    for (const auto& view : views) {
+        Image& image = targets.images.emplace_back(view.rendered);
+        for (std::size_t p = 0; p < view.mask.data.size(); ++p) {
+            if (view.mask.data[p] == 0) continue;
+            const float shade = std::clamp(std::pow(luminance(view.original, p) / median, ShadePower), DarkestShade, BrightestShade);
+            for (std::size_t c = 0; c < 3; ++c) image.data[p * 3 + c] = std::min(colour_[c] * shade, 1.0f);
+        }
+    }
+    return targets;
+}
+
+}  // namespace gse::edit
