@@ -56,8 +56,9 @@ std::vector<Way> ways_to_draw(const neural::TextToImage& model, edit::EditMode m
     const bool draws_anew = model.knows_scene() && (mode == edit::EditMode::Replace || (mode == edit::EditMode::Add && ground && ground->in_nothing));
     if (ground && (restyles || draws_anew)) ways.insert(ground->in_nothing ? ways.begin() : ways.end(), {guidance.restyle, true});
     if (draws_anew && ground && ground->in_nothing) ways.resize(1);
+    if (!restyles) return ways;
     if (edit::usual_look(recipe.request, mode)) ways.push_back({guidance.restyle, false, true});
-    else if (restyles) ways.push_back({false, false});   // the model itself
+    else ways.push_back({false, false});   // the model itself
     return ways;
 }
 

@@ -172,6 +172,21 @@ DOCTEST_TEST_CASE("what restyles and hardly shows what was asked gives way to th
     DOCTEST_CHECK(same(found.set, told.set));
 }
 
+DOCTEST_TEST_CASE("a ground that the model cannot restyle gets the colour that such a ground has") {
+    if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
+    for (const char* word : {"snow", "ice"}) {   // the encoder has a word for the first only
+        auto recipe = blue_bear();
+        recipe.request.source = "grass";
+        recipe.request.prompt = std::string("a bear on the ") + word;
+        recipe.request.target = word;
+        const auto found = edited(recipe, false);
+        DOCTEST_CHECK(found.asked == std::vector<bool>{true, true});   // never the model itself
+        DOCTEST_REQUIRE(found.judged.size() == 1);
+        DOCTEST_CHECK_FALSE(found.judged[0].is_poor());
+        DOCTEST_CHECK(found.judged[0].score.has_value() == (recipe.request.target == "snow"));
+    }
+}
+
 DOCTEST_TEST_CASE("where the model itself does no better the first pictures are used, with their warning") {
     if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
     Idle::rounds = 0;
