@@ -1,7 +1,6 @@
 // gseditpro locate, edit.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -14,14 +13,13 @@
 #include "engine/base/path_text.h"
 #include "engine/base/print.h"
 #include "engine/base/staged_folder.h"
-#include "engine/io/scene_io.h"
 #include "engine/pipeline/edit_job.h"
 #include "engine/pipeline/edit_output.h"
 #include "engine/pipeline/edit_project.h"
 #include "engine/pipeline/gate.h"
 #include "engine/pipeline/model_settings.h"
-#include "engine/pipeline/target_sheet.h"
 #include "engine/pipeline/tuning_json.h"
+#include "engine/pipeline/variations.h"
 
 namespace gse::app {
 namespace {
@@ -34,6 +32,7 @@ struct EditOptions {
     bool json = false;
     bool gate = true;
     bool no_cache = false;
+    int variations = 1;
     CLI::App* command = nullptr;
 };
 
@@ -121,14 +120,6 @@ void refuse_own_folder(const std::filesystem::path& scene, const std::filesystem
                         "choose another folder", output);
 }
 
-/// Two scenes, pictures of about one raw picture per view together, a film of a tenth of its pixels.
-std::uint64_t bytes_of_results(const EditJob& job) {
-    const auto& recipe = job.recipe();
-    const auto pixels = [](int side) { return static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side) * 3; };
-    return 2 * job.scene().gaussians.byte_size() + job.views().size() * pixels(recipe.request.image_size) +
-           static_cast<std::uint64_t>(recipe.job.turntable_frames) * pixels(recipe.job.turntable_size) / 10;
-}
-
 void print_summary(const nlohmann::ordered_json& report, const std::filesystem::path& output) {
     const auto text = std::filesystem::absolute(output).lexically_normal().string();
     print("{} splats, {} labelled, {} added, {} removed; outside the label {} changed (PSNR {:.1f} dB)\n",
@@ -143,17 +134,6 @@ void print_summary(const nlohmann::ordered_json& report, const std::filesystem::
     print("edited scene   {}/scene.ply\nproject        {}/edit.gsep\nbefore, labels {}/source.ply\nfilm           {}/before_after.mp4\n"
                "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
                text, text, text, text, text, text, text, text);
-}
-
-nlohmann::ordered_json locate_report(EditJob& job) {
-    nlohmann::ordered_json report;
-    report["splats"] = job.scene().gaussians.size();
-    report["labelled"] = std::count(job.located().label.bits->begin(), job.located().label.bits->end(), std::uint8_t{1});
-    report["new"] = job.located().seeds.size();
-    add_search(report, job);
-    report["seconds"] = job.times().to_json();
-    report["networks"] = job.times().networks_json();
-    return report;
 }
 
 /// Ends an edit whose words were not found. What the search saw goes beside the place of the results, which may hold earlier
@@ -175,51 +155,81 @@ void require_search(EditJob& job, const std::filesystem::path& output) {
     throw Error(ErrorCode::NotFound, job.located().message, job.located().remedy + "; what the views showed is in", place);
 }
 
-void run_edit_command(EditOptions& options, const CommandContext& context) {
-    complete(options);
-    refuse_own_folder(options.recipe.job.scene, options.output);
-    StagedFolder folder(options.output, {"report.json", {"scene.ply", "source.ply", "recipe.json", "report.json", "evidence",
-                                                         "before_after.mp4", "before_after.png", "edit.gsep", "lora.safetensors"}});
-    EditJob job(options.recipe, context.job(), options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
-    folder.require_space(bytes_of_results(job));
-    job.locate();
-    require_search(job, options.output);
-    std::optional<Gate> gate;
-    if (options.gate && !edit::edits_by_views(job.recipe().request)) gate = look_through_gate(job);   // redrawn views are judged anyway
-    job.run();
-    job.times().begin("export");
-    Scene edited = job.scene();
-    edited.gaussians = job.result().set;
-    edited.labels = {};
-    folder.keep_on_failure();
-    save_scene(folder.path() / "scene.ply", edited, {.format = "ply"});
-    write_file(folder.path() / "recipe.json", json_text(recipe_to_json(job.recipe()), 2) + "\n");
-    write_labelled_source(folder.path() / "source.ply", job);
-    write_evidence(folder.path() / "evidence", job.painter().pool(), job.located(), job.views());
-    write_targets(folder.path() / "evidence", job.painter().pool(), job.targets(), job.views());
-    write_before_after(folder.path(), job);
-    job.times().end();
-    auto report = make_report(job);
-    if (job.result().iterations > 0)
-        write_file(folder.path() / "edit.gsep", ProjectWriter().pack(std::filesystem::absolute(options.output) / "edit.gsep", project_of(job, report)));
-    add_optional_parts(report, folder.path(), job, gate);
-    if (const auto& verdict = job.edited().verdict) report["gate"] = verdict_to_json(*verdict);
-    report["files"] = folder.listing();
-    write_file(folder.path() / "report.json", json_text(report, 1) + "\n");
-    folder.commit();
-    if (options.json) print_json(report, 2);
-    else print_summary(report, options.output);
+/// Throws what ended an edit before its time.
+void require_finished(const EditJob& job, const std::filesystem::path& output) {
     const auto ended_by = [&](const Error& reason, ErrorCode code) {
         return Error(code,
                      fmt::format("{}; the edit ended after {} of {} iterations, and what it had reached is saved",
                                  reason.message(), job.result().iterations,
                                  edit::loop_steps(job.recipe().request, job.located().mode)),
-                     reason.hint(), options.output);
+                     reason.hint(), output);
     };
     if (const auto& shortage = job.result().shortage) throw ended_by(*shortage, ErrorCode::Foreign);
     if (const auto& failure = job.result().failure) throw ended_by(*failure, failure->code());
-    if (job.result().stopped)
-        throw Error(ErrorCode::Cancelled, "the edit was stopped; what it had reached is saved", "", options.output);
+    if (job.result().stopped) throw Error(ErrorCode::Cancelled, "the edit was stopped; what it had reached is saved", "", output);
+}
+
+/// One edit, into the folder. What a finished one came to goes onto the sheet, too.
+nlohmann::ordered_json edit_into(const std::filesystem::path& output, const EditRecipe& recipe, const EditOptions& options, const CommandContext& context,
+                                 VariationSheet* sheet) {
+    refuse_own_folder(recipe.job.scene, output);
+    StagedFolder folder(output, {"report.json", {"scene.ply", "source.ply", "recipe.json", "report.json", "evidence",
+                                                 "before_after.mp4", "before_after.png", "edit.gsep", "lora.safetensors"}});
+    EditJob job(recipe, context.job(), options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
+    folder.require_space(bytes_of_results(job));
+    job.locate();
+    require_search(job, output);
+    std::optional<Gate> gate;
+    if (options.gate && !edit::edits_by_views(job.recipe().request)) gate = look_through_gate(job);   // redrawn views are judged anyway
+    job.run();
+    job.times().begin("export");
+    folder.keep_on_failure();
+    write_edit(folder.path(), job);
+    job.times().end();
+    auto report = make_report(job);
+    if (job.result().iterations > 0)
+        write_file(folder.path() / "edit.gsep", ProjectWriter().pack(std::filesystem::absolute(output) / "edit.gsep", project_of(job, report)));
+    add_optional_parts(report, folder.path(), job, gate);
+    if (const auto& verdict = job.edited().verdict) report["gate"] = verdict_to_json(*verdict);
+    report["files"] = folder.listing();
+    write_file(folder.path() / "report.json", json_text(report, 1) + "\n");
+    folder.commit();
+    if (!options.json) print_summary(report, output);
+    else if (options.variations == 1) print_json(report, 2);
+    if (sheet != nullptr) sheet->add(job, output.filename().string());
+    require_finished(job, output);
+    return report;
+}
+
+/// The edit from several seeds, each in a folder of its own, and one picture of them all. One that cannot be drawn is left out.
+void run_variations(const EditOptions& options, const CommandContext& context) {
+    VariationSheet sheet;
+    auto reports = nlohmann::ordered_json::array();
+    const auto finish = [&] {
+        if (sheet.empty()) return;
+        sheet.write(options.output / "variations.png");
+        if (options.json) print_json(reports, 2);
+        else print("to choose from {}\n", (options.output / "variations.png").string());
+    };
+    const auto folder = [&](int i) { return options.output / std::to_string(i + 1); };
+    for (int i = 0; i < options.variations; ++i) refuse_own_folder(options.recipe.job.scene, folder(i));   // before the first is begun
+    for (int i = 0; i < options.variations; ++i) try {
+            reports.push_back(edit_into(folder(i), variation_of(options.recipe, i), options, context, &sheet));
+        } catch (const Error& error) {
+            if (error.code() == ErrorCode::Model && (i + 1 < options.variations || !sheet.empty())) {
+                log::warning("variation {}: {}", i + 1, error.what());
+                continue;
+            }
+            finish();
+            throw;
+        }
+    finish();
+}
+
+void run_edit_command(EditOptions& options, const CommandContext& context) {
+    complete(options);
+    if (options.variations > 1) return run_variations(options, context);
+    edit_into(options.output, options.recipe, options, context, nullptr);
 }
 
 void run_locate_command(EditOptions& options, const CommandContext& context) {
@@ -262,6 +272,8 @@ void add_edit_commands(CLI::App& app, CommandContext& context) {
     edit_command->add_flag("--gate,!--no-gate", edit->gate,
                            "Method sds: first show what the model makes of four views, in evidence/gate_*.png, and warn when "
                            "they do not show the edit; redrawn views are judged as they are");
+    edit_command->add_option("--variations", edit->variations, "Make so many, each from the next seed, in folders 1, 2, ... of --out, and variations.png to choose from")
+        ->check(CLI::Range(1, MostVariations));
     edit_command->callback([edit, &context] { run_edit_command(*edit, context); });
 }
 

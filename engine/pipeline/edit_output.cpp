@@ -102,6 +102,13 @@ void write_labelled_source(const fs::path& path, const EditJob& job) {
     save_scene(path, job.scene(), save);
 }
 
+std::uint64_t bytes_of_results(const EditJob& job) {
+    const auto& recipe = job.recipe();
+    const auto pixels = [](int side) { return static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side) * 3; };
+    return 2 * job.scene().gaussians.byte_size() + job.views().size() * pixels(recipe.request.image_size) +
+           static_cast<std::uint64_t>(recipe.job.turntable_frames) * pixels(recipe.job.turntable_size) / 10;
+}
+
 void write_before_after(const fs::path& folder, EditJob& job) {
     const int side = job.recipe().job.turntable_size, frames = job.recipe().job.turntable_frames;
     raster::Settings settings = job.plan().settings;
@@ -187,6 +194,29 @@ void add_search(nlohmann::ordered_json& report, const EditJob& job) {
         report["problem"] = located.message;
         report["remedy"] = located.remedy;
     }
+}
+
+nlohmann::ordered_json locate_report(EditJob& job) {
+    nlohmann::ordered_json report;
+    report["splats"] = job.scene().gaussians.size();
+    report["labelled"] = std::count(job.located().label.bits->begin(), job.located().label.bits->end(), std::uint8_t{1});
+    report["new"] = job.located().seeds.size();
+    add_search(report, job);
+    report["seconds"] = job.times().to_json();
+    report["networks"] = job.times().networks_json();
+    return report;
+}
+
+void write_edit(const fs::path& folder, EditJob& job) {
+    Scene edited = job.scene();
+    edited.gaussians = job.result().set;
+    edited.labels = {};
+    save_scene(folder / "scene.ply", edited, {.format = "ply"});
+    write_file(folder / "recipe.json", json_text(recipe_to_json(job.recipe()), 2) + "\n");
+    write_labelled_source(folder / "source.ply", job);
+    write_evidence(folder / "evidence", job.painter().pool(), job.located(), job.views());
+    write_targets(folder / "evidence", job.painter().pool(), job.targets(), job.views());
+    write_before_after(folder, job);
 }
 
 nlohmann::ordered_json make_report(EditJob& job) {

@@ -148,6 +148,28 @@ class Edits(ProgramTest):
         for name in ["scene.ply", "source.ply", "recipe.json", "before_after.png", "evidence/view_000_attention.png"]:
             self.assertEqual((first / name).read_bytes(), (second / name).read_bytes(), name)
 
+    def test_variations_are_edits_from_other_seeds_and_one_picture_to_choose_from(self):
+        out = self.folder / "out"
+        process = self.edit(out, "--seed", 7, "--variations", 2)
+        self.assertIn("variations.png", process.stdout)
+        self.assertEqual(sorted(path.name for path in out.iterdir()), ["1", "2", "variations.png"])
+        recipes = [json.loads((out / name / "recipe.json").read_text()) for name in "12"]
+        self.assertEqual([recipe["request"]["seed"] for recipe in recipes], [7, 8])
+        self.assertNotEqual((out / "1/scene.ply").read_bytes(), (out / "2/scene.ply").read_bytes())
+        alone = self.folder / "alone"
+        self.edit(alone, "--seed", 8)
+        self.assertEqual((alone / "scene.ply").read_bytes(), (out / "2/scene.ply").read_bytes())
+        for name in "12":
+            self.check_unlabelled_rows(out / name)
+        reports = json.loads(self.edit(self.folder / "again", "--variations", 2, "--json").stdout)
+        self.assertEqual([report["changed_outside_label"] for report in reports], [0, 0])
+        # None may take the place of its own scene, and then nothing is begun.
+        before = (out / "1/scene.ply").read_bytes()
+        process = run("-q", "edit", out / "2/scene.ply", "--prompt", "a blue bear", "--source", "bear", "--out", out, "--variations", 2, *QUICK)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertIn("--out", process.stderr)
+        self.assertEqual((out / "1/scene.ply").read_bytes(), before)
+
     def test_another_sentence_is_not_bound_to_the_target_and_mode_of_the_recipe(self):
         out = self.folder / "golden"
         process = run("-q", "edit", "--demo", "--headless", "--prompt", "a golden bear on the grass", "--out", out,
