@@ -62,8 +62,8 @@ DOCTEST_TEST_CASE("what may change gets the colour in the light in which it was,
                 DOCTEST_CHECK(value > 0.5f * snow[static_cast<std::size_t>(c)]);
                 if (x > 0) DOCTEST_CHECK(value >= bright.images[1].at(x - 1, y, c));   // light stays light
             }
-    edit::RoundView nothing = ramp(0);
-    for (const float value : views.edit({nothing}, {}, {}).images[0].data) DOCTEST_CHECK(std::isfinite(value));
+    const auto black = views.edit({ramp(0)}, {}, {});
+    for (const float value : black.images[0].data) DOCTEST_CHECK(std::isfinite(value));
 }
 
 DOCTEST_TEST_CASE("how far pictures went towards a colour") {
