@@ -136,7 +136,7 @@ void Application::select(const ui::ScreenRegion& region, ui::SetOperation operat
 void Application::cut_out(const ui::ScreenRegion& box, ui::SetOperation operation) {
     if (!require_scene()) return;
     if (work_.running()) return toast("Things can be cut out when the job is done.");
-    CutOutRequest request{model_.camera, screen_area(box), {}, document_.state().info.up};
+    CutOutRequest request{model_.camera, screen_area(box), {}, document_.state().info.up, edit::names_ground(current_recipe().request.source)};
     request.settings.background = parse_colour(model_.view.background);
     request.settings.antialiased = document_.state().info.antialiased;
     auto rows = std::make_shared<std::vector<std::uint8_t>>();

@@ -85,4 +85,63 @@ std::vector<std::size_t> ground_rows(const GaussianSet& set, const std::vector<s
     return low;
 }
 
+namespace {
+
+constexpr int Cells = 24;            // along the side of a grid over what is labelled
+constexpr double Layer = 0.05;       // of its width
+constexpr double LowestShare = 0.1;  // of a cell's rows, up to which they may be floaters below the ground
+
+/// Heights by cells.
+class LowMap {
+public:
+    LowMap(const std::vector<Vec3>& points, const Box& box) : box_(box), lows_(Count, std::numeric_limits<double>::infinity()) {
+        std::vector<std::vector<double>> heights(Count);
+        for (const auto& point : points) heights[index(across(point.x, 0), across(point.z, 2))].push_back(point.y);
+        for (std::size_t i = 0; i < Count; ++i)
+            if (!heights[i].empty()) lows_[i] = quantile(std::move(heights[i]), LowestShare);
+    }
+    /// The lowest of the cell and of those around it: where a thing hides the ground, that beside it tells.
+    double around(const Vec3& point) const {
+        const int u = across(point.x, 0), v = across(point.z, 2);
+        double low = std::numeric_limits<double>::infinity();
+        for (int dv = -1; dv <= 1; ++dv)
+            for (int du = -1; du <= 1; ++du)
+                if (u + du >= 0 && u + du < Cells && v + dv >= 0 && v + dv < Cells) low = std::min(low, lows_[index(u + du, v + dv)]);
+        return low;
+    }
+
+private:
+    static constexpr std::size_t Count = static_cast<std::size_t>(Cells) * Cells;
+    static std::size_t index(int u, int v) { return static_cast<std::size_t>(v * Cells + u); }
+    int across(double value, int axis) const {
+        return std::clamp(static_cast<int>(Cells * (value - box_.low[axis]) / std::max(box_.size()[axis], 1e-12)), 0, Cells - 1);
+    }
+
+    Box box_;
+    std::vector<double> lows_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> lowest_layer(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up) {
+    GSE_CHECK_EQ(bits.size(), set.size());
+    const Frame frame = make_frame(up, std::abs(up.x) > std::abs(up.z) ? Vec3{0, 0, 1} : Vec3{1, 0, 0});
+    std::vector<std::size_t> rows;
+    std::vector<Vec3> points;
+    for (std::size_t row = 0; row < bits.size(); ++row) {
+        if (bits[row] == 0) continue;
+        const auto at = set.position().subspan(row * 3, 3);
+        const Vec3 p = frame.to_frame({at[0], at[1], at[2]});
+        if (std::isfinite(p.x + p.y + p.z)) rows.push_back(row), points.push_back(p);
+    }
+    if (points.empty()) return bits;
+    const Box box = trimmed_box(points, BoundsTrim);
+    const double width = std::max(box.size().x, box.size().z);
+    if (width <= box.size().y) return bits;
+    const LowMap lows(points, box);
+    std::vector<std::uint8_t> ground(bits.size(), 0);
+    for (std::size_t i = 0; i < rows.size(); ++i) ground[rows[i]] = points[i].y <= lows.around(points[i]) + Layer * width ? 1 : 0;
+    return ground;
+}
+
 }  // namespace gse::edit

@@ -15,4 +15,8 @@ namespace gse::edit {
 /// of the label is that low: a ground is a thing, too.
 std::vector<std::size_t> ground_rows(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front);
 
+/// Of the rows that `bits` [N] label around a ground, the ground: those that rise by no more than a twentieth of its width above the lowest
+/// around them. [N], all that is labelled where that is no wider than it is high.
+std::vector<std::uint8_t> lowest_layer(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up);
+
 }  // namespace gse::edit

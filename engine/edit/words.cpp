@@ -97,6 +97,11 @@ bool is_ground(const std::string& word) {
     return std::find(grounds.begin(), grounds.end(), word) != grounds.end();
 }
 
+bool names_ground(const std::string& phrase) {
+    const auto words = words_of(phrase);
+    return !words.empty() && is_ground(words.back());
+}
+
 std::vector<std::string> phrases_of(const std::string& list) {
     if (list.find(',') == std::string::npos) return words_of(list);
     std::vector<std::string> phrases;

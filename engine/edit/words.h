@@ -33,6 +33,8 @@ std::vector<std::string> terms_of(const std::string& sentence, const std::vector
 
 /// What things stand on or are in, not things: one in the place of another changes no shape.
 bool is_ground(const std::string& word);
+/// Of a phrase, by its last word.
+bool names_ground(const std::string& phrase);
 
 /// Phrases of a list: between commas, or, where there is no comma, every word for itself ("hat grass", "top hat, grass").
 std::vector<std::string> phrases_of(const std::string& list);

@@ -12,6 +12,7 @@
 #include "engine/base/error.h"
 #include "engine/base/printable.h"
 #include "engine/edit/grabcut_segmenter.h"
+#include "engine/edit/ground_rows.h"
 #include "engine/localize/back_projection.h"
 #include "engine/localize/clusters.h"
 #include "engine/pipeline/cut_out_sides.h"
@@ -268,7 +269,8 @@ std::vector<std::uint8_t> cut_out(const GaussianSet& set, const CutOutRequest& r
     const Mask wide = localize::dilate(seen.mask, Beside * std::max(seen.mask.width, seen.mask.height));
     options.mask = &wide;
     seen.cone = rows_in_area(set, section->camera, section->area, options);
-    return follow_around(set, seen, settings, *segmenter, painter, control);
+    const auto bits = follow_around(set, seen, settings, *segmenter, painter, control);
+    return request.ground ? edit::lowest_layer(set, bits, request.up) : bits;
 }
 
 }  // namespace gse::pipeline

@@ -20,6 +20,7 @@ struct CutOutRequest {
     ScreenArea area;             // around the thing, in the camera's pixels
     raster::Settings settings;   // of the pictures, their background too
     Vec3 up{0, -1, 0};           // of the world: the other sides are looked at around it
+    bool ground = false;         // not what stands on it
 };
 
 /// A box as --cut-out says it: "LEFT,TOP,RIGHT,BOTTOM", shares of the picture that `render` makes of the scene by default, or with

@@ -35,8 +35,11 @@ std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::pa
 }
 
 /// What the box of --cut-out holds.
-std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const JobParameters& job, edit::Segmenter* segmenter, const JobControl& control) {
-    auto bits = cut_out(drawable(scene.gaussians), cut_out_request(job.cut_out, scene, job.up), segmenter, control);
+std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const EditRecipe& recipe, edit::Segmenter* segmenter, const JobControl& control) {
+    const auto& job = recipe.job;
+    auto request = cut_out_request(job.cut_out, scene, job.up);
+    request.ground = edit::names_ground(recipe.request.source);
+    auto bits = cut_out(drawable(scene.gaussians), request, segmenter, control);
     if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) != bits.end()) return bits;
     throw Error(ErrorCode::InvalidArgument, fmt::format("nothing is seen in the box \"{}\" of --cut-out", job.cut_out),
                 "look at what gseditpro render shows with the same azimuth, elevation and zoom");
@@ -97,7 +100,7 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     times_.end();
     if (!recipe_.job.cut_out.empty()) {
         times_.begin("cut_out");
-        hints_.label = labelled_by_box(scene, recipe_.job, segmenters.clicks.get(), control_);
+        hints_.label = labelled_by_box(scene, recipe_, segmenters.clicks.get(), control_);
         times_.end();
     }
     begin(std::move(scene), std::move(model), std::move(segmenters), given);

@@ -47,7 +47,7 @@ struct Way {
 /// What stands in nothing is drawn so at first: a man cut out of his surroundings became a green bear with a face (0.45; without it a dark
 /// lump, 0.26), and a golden figure (0.51; 0.30, no figure), and the wings that he got were wings (0.51; 0.05).
 /// A ground cannot be shown without the scene: it gets the colour that such a ground has. (A dark scan's became blue for "on the snow", -0.07, and red for
-/// "on the sand", 0.06; drawn by the model itself purple in half the views, which scored 0.08 and 0.31; in its colour white, 0.11, and yellow.)
+/// "on the sand", 0.06; drawn by the model itself it was purple in half the views, which scored 0.08 and 0.31; in its colour 0.11 and 0.44.)
 std::vector<Way> ways_to_draw(const neural::TextToImage& model, edit::EditMode mode, const EditRecipe& recipe, const std::optional<edit::GroundUnder>& ground) {
     const auto& guidance = recipe.guidance;
     std::vector<Way> ways{{guidance.restyle, false}};

@@ -63,4 +63,19 @@ DOCTEST_TEST_CASE("a ground that is a label of its own, a thing without ground a
     DOCTEST_CHECK(nothing.ground().empty());
 }
 
+DOCTEST_TEST_CASE("of what is labelled around a ground the lowest layer is the ground, however it slopes; what is no wider than high stays whole") {
+    test::BoxRows lawn;
+    lawn.box(-2, 2, 0, 0.02, -2, 2, 4000, true, Green).box(-0.4, 0.4, 0.3, 1.2, -0.4, 0.4, 500, true, Red).box(-2, 2, 0, 0.02, -2, 2, 100, false, Green);
+    const auto flat = edit::lowest_layer(lawn.set(), lawn.bits, Up);
+    for (std::size_t row = 0; row < flat.size(); ++row) DOCTEST_CHECK((flat[row] != 0) == (row < 4000));
+    for (std::size_t row = 0; row < flat.size(); ++row) lawn.data.position[row * 3 + 1] -= 0.15f * lawn.data.position[row * 3];
+    DOCTEST_CHECK(edit::lowest_layer(lawn.set(), lawn.bits, Up) == flat);
+    test::BoxRows tower;
+    tower.box(-0.5, 0.5, 0, 3, -0.5, 0.5, 1000, true, Red);
+    DOCTEST_CHECK(edit::lowest_layer(tower.set(), tower.bits, Up) == tower.bits);
+    test::BoxRows nothing;
+    nothing.box(-1, 1, 0, 1, -1, 1, 10, false);
+    DOCTEST_CHECK(edit::lowest_layer(nothing.set(), nothing.bits, Up) == nothing.bits);
+}
+
 }  // namespace ground_rows_test
