@@ -12,7 +12,6 @@ inline constexpr double FrustumMargin = 0.3;     // of half the field of view, f
 inline constexpr double SmallestNear = 1e-6;   // world units; what a given near plane is at least
 inline constexpr double LogScaleLimit = 30.0;  // larger log-scales count as this and get no gradient
 inline constexpr double QuaternionCut = 1e-24;  // |q|^2 below this: identity rotation, no gradient
-inline constexpr float QuaternionLengthCut = 1e-12f;   // its root
 inline constexpr double PositionLimit = 1e18;   // world units; farther rows are dropped like infinite ones
 
 }  // namespace gse::raster

@@ -1,4 +1,4 @@
-// Kernel part 1: raw parameters of W Gaussians -> scale, rotation and opacity in float lanes (they are no more exact than the
+// Kernel part 1: raw parameters of W Gaussians -> scale and opacity in float lanes (they are no more exact than the
 // parameters), everything from there up to the projected covariance in double lanes, and the spherical harmonics in float lanes.
 // Included inside the namespace of an instruction set.
 
@@ -79,6 +79,7 @@ struct Geometry {
     D inverse_z;
     D ratio_x, ratio_y;
     MD inside_x, inside_y;
+    D q[4], inverse_norm;  // unit quaternion; inverse_norm is 0 where the identity was used
     Vec3D rotation[3];     // rows
     D scale[3];
     Vec3D to_pixels[2];
@@ -100,46 +101,20 @@ GSE_INLINE M usable_lanes(const RawBatch& raw) {
     return good & (logit <= logit);
 }
 
-/// What a batch is before a camera sees it.
+/// Scale and opacity of a batch: no more exact than the parameters.
 struct alignas(64) Shape {
-    float q[4][F::W], inverse_norm[F::W];  // unit quaternion; inverse_norm is 0 where the identity was used
-    float rotation[3][3][F::W];            // [row][column]
     float scale[3][F::W];
-    float opacity[F::W];  // sigmoid only
+    float opacity[F::W];       // sigmoid only
+    float transparency[F::W];  // 1 - opacity
 };
 
-GSE_INLINE void orient(const RawBatch& raw, Shape& shape) {
-    F q[4], most = zero(), squared = zero();
-    for (int k = 0; k < 4; ++k) most = max(most, absolute(load(raw.rotation[k])));
-    // Divided by the largest first: squares of floats are not always floats.
-    const F size = max(most, set(1e-30f)), per_size = set(1.0f) / size;
-    for (int k = 0; k < 4; ++k) q[k] = load(raw.rotation[k]) * per_size;
-    for (int k = 0; k < 4; ++k) squared = fma(q[k], q[k], squared);
-    const F length = sqrt(squared);
-    const M proper = size * length >= set(QuaternionLengthCut);
-    const F to_unit = only(proper, set(1.0f) / length);
-    store(shape.inverse_norm, to_unit * per_size);
-    q[0] = select(proper, q[0] * to_unit, set(1.0f));
-    for (int k = 1; k < 4; ++k) q[k] = only(proper, q[k] * to_unit);
-    for (int k = 0; k < 4; ++k) store(shape.q[k], q[k]);
-    const F w = q[0], x = q[1], y = q[2], z = q[3], one = set(1.0f), two = set(2.0f);
-    store(shape.rotation[0][0], fnma(two, fma(y, y, z * z), one));
-    store(shape.rotation[0][1], two * fnma(w, z, x * y));
-    store(shape.rotation[0][2], two * fma(w, y, x * z));
-    store(shape.rotation[1][0], two * fma(w, z, x * y));
-    store(shape.rotation[1][1], fnma(two, fma(x, x, z * z), one));
-    store(shape.rotation[1][2], two * fnma(w, x, y * z));
-    store(shape.rotation[2][0], two * fnma(w, y, x * z));
-    store(shape.rotation[2][1], two * fma(w, x, y * z));
-    store(shape.rotation[2][2], fnma(two, fma(x, x, y * y), one));
-}
-
 GSE_INLINE void compute_shape(const RawBatch& raw, Shape& shape) {
-    orient(raw, shape);
     for (int k = 0; k < 3; ++k)   // e^-80 is nothing
         store(shape.scale[k], exp_lanes(max(min(load(raw.log_scale[k]), set(static_cast<float>(LogScaleLimit))), set(-80.0f))));
     const F logit = min(max(load(raw.opacity_logit), set(-80.0f)), set(80.0f));
-    store(shape.opacity, set(1.0f) / (set(1.0f) + exp_lanes(zero() - logit)));
+    const F rest = exp_lanes(zero() - logit), opacity = set(1.0f) / (set(1.0f) + rest);
+    store(shape.opacity, opacity);
+    store(shape.transparency, rest * opacity);
 }
 
 GSE_INLINE void place(const RawBatch& raw, int at, const Viewpoint& view, Geometry& g) {
@@ -155,11 +130,19 @@ GSE_INLINE void place(const RawBatch& raw, int at, const Viewpoint& view, Geomet
     g.inverse_z = setd(1.0) / g.z;
 }
 
-GSE_INLINE void take_shape(const Shape& shape, int at, Geometry& g) {
-    for (int k = 0; k < 3; ++k) {
-        g.rotation[k] = {widen(shape.rotation[k][0] + at), widen(shape.rotation[k][1] + at), widen(shape.rotation[k][2] + at)};
-        g.scale[k] = widen(shape.scale[k] + at);
-    }
+/// In double: at the ends of a needle an angle of a float's rounding is some of its width.
+GSE_INLINE void orient(const RawBatch& raw, const Shape& shape, int at, Geometry& g) {
+    for (int k = 0; k < 4; ++k) g.q[k] = widen(raw.rotation[k] + at);
+    const D squared = fma(g.q[3], g.q[3], fma(g.q[2], g.q[2], fma(g.q[1], g.q[1], g.q[0] * g.q[0])));
+    const MD proper = squared >= setd(QuaternionCut);
+    g.inverse_norm = select(proper, setd(1.0) / sqrt(squared), setd(0.0));
+    g.q[0] = select(proper, g.q[0] * g.inverse_norm, setd(1.0));
+    for (int k = 1; k < 4; ++k) g.q[k] = g.q[k] * g.inverse_norm;
+    const D w = g.q[0], x = g.q[1], y = g.q[2], z = g.q[3], one = setd(1.0), two = setd(2.0);
+    g.rotation[0] = {fnma(two, fma(y, y, z * z), one), two * fnma(w, z, x * y), two * fma(w, y, x * z)};
+    g.rotation[1] = {two * fma(w, z, x * y), fnma(two, fma(x, x, z * z), one), two * fnma(w, x, y * z)};
+    g.rotation[2] = {two * fnma(w, y, x * z), two * fma(w, x, y * z), fnma(two, fma(x, x, y * y), one)};
+    for (int k = 0; k < 3; ++k) g.scale[k] = widen(shape.scale[k] + at);
 }
 
 /// row i of J W: focal/z (row i of W) - focal ratio/z (row 2 of W).
@@ -202,7 +185,7 @@ GSE_INLINE void flatten(const Viewpoint& view, Geometry& g) {
 
 GSE_INLINE void compute_geometry(const RawBatch& raw, const Shape& shape, int at, const Viewpoint& view, Geometry& g) {
     place(raw, at, view, g);
-    take_shape(shape, at, g);
+    orient(raw, shape, at, g);
     flatten(view, g);
 }
 

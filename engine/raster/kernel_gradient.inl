@@ -72,11 +72,8 @@ GSE_INLINE void axes_gradient(const Geometry& g, const Vec3D* d_footprint, int a
         narrow(batch.log_scale[k] + at, into_float(d_scale[k] * g.scale[k]));
 }
 
-GSE_INLINE void rotation_gradient(const Vec3D* d, int at, GradientBatch& batch) {
-    const D q[4] = {widen(batch.shape.q[0] + at), widen(batch.shape.q[1] + at), widen(batch.shape.q[2] + at),
-                    widen(batch.shape.q[3] + at)};
-    const D inverse_norm = widen(batch.shape.inverse_norm + at);
-    const D w = q[0], x = q[1], y = q[2], z = q[3], two = setd(2.0);
+GSE_INLINE void rotation_gradient(const Geometry& g, const Vec3D* d, int at, GradientBatch& batch) {
+    const D w = g.q[0], x = g.q[1], y = g.q[2], z = g.q[3], two = setd(2.0);
     const D a = d[2].y - d[1].z, b = d[0].z - d[2].x, c = d[1].x - d[0].y;  // antisymmetric part
     const D e = d[0].y + d[1].x, f = d[0].z + d[2].x, h = d[1].z + d[2].y;  // symmetric part
     D dq[4];
@@ -86,7 +83,7 @@ GSE_INLINE void rotation_gradient(const Vec3D* d, int at, GradientBatch& batch) 
     dq[3] = two * (fma(x, f, fma(y, h, w * c)) - two * z * (d[0].x + d[1].y));
     const D radial = fma(w, dq[0], fma(x, dq[1], fma(y, dq[2], z * dq[3])));
     for (int k = 0; k < 4; ++k)
-        narrow(batch.rotation[k] + at, into_float(fnma(q[k], radial, dq[k]) * inverse_norm));
+        narrow(batch.rotation[k] + at, into_float(fnma(g.q[k], radial, dq[k]) * g.inverse_norm));
 }
 
 /// Gradient of the position through the centre of the splat, its Jacobian, and the direction of its colour.
@@ -135,10 +132,10 @@ GSE_INLINE void half_batch(const Viewpoint& view, const Geometry& g, int at, Gra
                       two * fma(d.xy, a.z, d.yy * b.z)};
     Vec3D d_rotation[3];
     axes_gradient(g, d_footprint, at, batch, d_rotation);
-    rotation_gradient(d_rotation, at, batch);
+    rotation_gradient(g, d_rotation, at, batch);
     position_gradient(g, view, d_footprint, centre, at, batch);
     const D sum = widen(batch.sums[SumG] + at);
-    narrow(batch.opacity_logit + at, sum * (setd(1.0) - widen(batch.shape.opacity + at)));
+    narrow(batch.opacity_logit + at, sum * widen(batch.shape.transparency + at));
     const D nx = centre[0] * setd(0.5 * view.width), ny = centre[1] * setd(0.5 * view.height);
     narrow(batch.mean2d + at, into_float(sqrt(fma(nx, nx, ny * ny))));
 }

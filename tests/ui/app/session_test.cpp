@@ -152,7 +152,7 @@ DOCTEST_TEST_CASE("the word that is new is read off the scene when it is searche
     typed.method = "sds";
     typed.iterations = 2;
     app.set_request(typed);
-    DOCTEST_CHECK(app.target() == "bear");   // all that the sentence alone can say
+    DOCTEST_CHECK(app.target() == "snow");   // what things stand on for what they stood on
     app.locate();
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.model().read_target == "snow");
