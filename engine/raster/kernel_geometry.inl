@@ -7,7 +7,7 @@ constexpr double Log2E = 1.44269504088896340736;
 constexpr double Log2Of255 = 7.99435343685885793770;
 
 #ifndef GSE_SCALAR_MATH
-/// exp for |a| < 85: 2^n times a minimax polynomial on [-ln 2 / 2, ln 2 / 2] (Cephes, expf), relative error 2e-7.
+/// exp for |a| < 85: 2^n times a minimax polynomial on [-ln 2 / 2, ln 2 / 2] (Cephes, expf), relative error 9e-8.
 GSE_INLINE F exp_lanes(F a) {
     const F n = floor(fma(a, set(static_cast<float>(Log2E)), set(0.5f)));
     const F x = fnma(n, set(-2.12194440e-4f), fnma(n, set(0.693359375f), a));
@@ -20,7 +20,7 @@ GSE_INLINE F exp_lanes(F a) {
     return scale_by_power(fma(p, x * x, x) + set(1.0f), n);
 }
 
-/// log2 of a positive normal number: exponent plus the atanh series of the mantissa, absolute error 2e-7.
+/// log2 of a positive normal number: exponent plus the atanh series of the mantissa, absolute error 4e-7 on [1/255, 1].
 GSE_INLINE F log2_lanes(F a) {
     F exponent = exponent_of(a), mantissa = mantissa_of(a);
     const M high = mantissa > set(1.41421356f);
@@ -86,7 +86,6 @@ struct Geometry {
     Vec3D footprint[2];
     D raw_xx, xy, raw_yy, xx, yy, raw_determinant, determinant;
 };
-
 
 GSE_INLINE F absolute(F a) { return max(a, zero() - a); }
 
