@@ -125,7 +125,7 @@ private:
 
 std::vector<std::uint8_t> lowest_layer(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up) {
     GSE_CHECK_EQ(bits.size(), set.size());
-    const Frame frame = make_frame(up, std::abs(up.x) > std::abs(up.z) ? Vec3{0, 0, 1} : Vec3{1, 0, 0});
+    const Frame frame = make_frame(up, {});
     std::vector<std::size_t> rows;
     std::vector<Vec3> points;
     for (std::size_t row = 0; row < bits.size(); ++row) {
