@@ -146,11 +146,18 @@ DOCTEST_TEST_CASE("the word that is new is read off the scene when it is searche
     session.open_bear();
     auto& app = session.app;
     auto typed = app.model().request;
-    typed.source = "grass";
-    typed.prompt = "a bear on the snow";
+    typed.source = "bear";
+    typed.prompt = "a red bear on the snow";
     typed.target.clear();
     typed.method = "sds";
     typed.iterations = 2;
+    app.set_request(typed);
+    DOCTEST_CHECK(app.target() == "red");   // all that the sentence alone can say
+    app.locate();
+    DOCTEST_REQUIRE(session.idle());
+    DOCTEST_CHECK(app.model().read_target == "snow");   // the bear is red already
+    typed.source = "grass";
+    typed.prompt = "a bear on the snow";
     app.set_request(typed);
     DOCTEST_CHECK(app.target() == "snow");   // what things stand on for what they stood on
     app.locate();
