@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "engine/base/log.h"
 #include "engine/edit/ground_cover.h"
+#include "engine/edit/usual_look.h"
 #include "engine/edit/words.h"
 
 namespace gse::edit {
@@ -48,12 +48,12 @@ double shown_share(const PlainGround& plain, const GaussianSet& set, const std::
 
 std::optional<PlainGround> plain_ground(const std::string& sentence, const Standing& standing, const Vec3& up) {
     if (!standing.found() || standing.height < LeastUpright * standing.width()) return std::nullopt;
-    // Means of what engine/synth paints. Of grass, snow and sand under a cat the last left the least of a rim; a grey like that of stone, which
+    // Of grass, snow and sand under a cat the last left the least of a rim; a grey like that of stone, which
     // is no ground in the pictures that the model learned from, did no better than the scene.
-    static const std::map<std::string, std::array<float, 3>> known{{"grass", {0.36f, 0.62f, 0.15f}}, {"snow", {0.88f, 0.93f, 0.99f}}};
-    std::array<float, 3> colour{0.85f, 0.73f, 0.5f};
-    for (const auto& [word, of_word] : known)
-        if (has_word(sentence, word)) colour = of_word;
+    std::string ground = "sand";
+    for (const char* word : {"grass", "snow"})
+        if (has_word(sentence, word)) ground = word;
+    const auto colour = *ground_colour(ground);
     return PlainGround{standing, normalized(up), colour, Sky};
 }
 

@@ -32,14 +32,18 @@ float median_luminance(const std::vector<RoundView>& views) {
 
 }  // namespace
 
-std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode) {
-    // By their names in CSS or by eye; of snow, sand and grass the middle of what the bundled model has learned (synth/ground.cpp).
-    static const std::map<std::string, std::array<float, 3>> looks{
-        {"snow", {0.90f, 0.93f, 0.98f}},  {"sand", {0.87f, 0.74f, 0.50f}}, {"grass", {0.33f, 0.58f, 0.14f}}, {"water", {0.13f, 0.56f, 0.70f}},
+std::optional<std::array<float, 3>> ground_colour(const std::string& word) {
+    // Means of what engine/synth paints; of those that the encoder has no word for, by eye.
+    static const std::map<std::string, std::array<float, 3>> colours{
+        {"snow", {0.88f, 0.93f, 0.99f}},  {"sand", {0.85f, 0.73f, 0.50f}}, {"grass", {0.36f, 0.62f, 0.15f}}, {"water", {0.13f, 0.56f, 0.70f}},
         {"ice", {0.66f, 0.86f, 0.96f}},   {"mud", {0.33f, 0.21f, 0.13f}},  {"gravel", {0.55f, 0.54f, 0.52f}}};
-    const auto look = looks.find(request.target);
-    if (mode != EditMode::Modify || look == looks.end() || is_described(request.prompt, request.target)) return std::nullopt;
-    return look->second;
+    const auto found = colours.find(word);
+    return found == colours.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode) {
+    if (mode != EditMode::Modify || is_described(request.prompt, request.target)) return std::nullopt;
+    return ground_colour(request.target);
 }
 
 double gone_towards(const std::array<float, 3>& colour, const ViewTargets& round) {

@@ -11,7 +11,10 @@
 
 namespace gse::edit {
 
-/// The colour, display values in [0,1], of the ground that a validated request makes of another ("snow" for the grass); none where it makes
+/// The colour, display values in [0,1], of a ground by its word; none where it has no usual one.
+std::optional<std::array<float, 3>> ground_colour(const std::string& word);
+
+/// That of the ground that a validated request makes of another ("snow" for the grass); none where it makes
 /// something else, where that has no usual colour, or where the sentence says what it is like ("red sand").
 std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode);
 

@@ -48,8 +48,8 @@ struct Way {
 /// none scored below 0.30. So where the first views hardly show what was asked, the next way is tried, and the best of all is used.
 /// What stands in nothing is drawn so at first: a man cut out of his surroundings became a green bear with a face (0.45; without it a dark
 /// lump, 0.26), and a golden figure (0.51; 0.30, no figure), and the wings that he got were wings (0.51; 0.05).
-/// A ground cannot be shown without the scene: it gets the colour that such a ground has. (A dark scan's became blue for "on the snow", -0.07, and red for
-/// "on the sand", 0.06; drawn by the model itself it was purple in half the views, which scored 0.08 and 0.31; in its colour 0.11 and 0.44.)
+/// A ground cannot be shown without the scene: it gets the colour that such a ground has. (A dark scan's became blue for "on the snow", 0.01, and red for
+/// "on the sand", 0.11; drawn by the model itself it was purple in half the views; in its colour 0.09 and 0.43.)
 std::vector<Way> ways_to_draw(const neural::TextToImage& model, edit::EditMode mode, const EditRecipe& recipe, const std::optional<edit::GroundUnder>& ground) {
     const auto& guidance = recipe.guidance;
     std::vector<Way> ways{{guidance.restyle, false}};
@@ -173,7 +173,7 @@ Verdict judge_undyed(const neural::TextToImage& model, const edit::EditRequest& 
     return judge(model, told, edit::as_told(told.prompt), pictures);
 }
 
-/// Of the way to the colour of a ground: that much is no picture of something else. By judgement; drawn for dark scans it was -0.73 to 0.1.
+/// Of the way to the colour of a ground: that much is no picture of something else. By judgement; drawn for a dark scan it was -0.73 to -0.05.
 constexpr double InItsColour = 0.6;
 
 /// By the encoder; of a ground that it has no word for, by the colour that such a ground has.
