@@ -4,10 +4,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "engine/base/file.h"
 #include "engine/io/scene_io.h"
 
 namespace gse::io {
@@ -27,6 +29,8 @@ std::span<const SceneReader> scene_readers();
 
 bool detect_ply(Bytes bytes, std::string_view name);
 Scene parse_gaussian_ply(Bytes bytes);
+/// The same without ever holding the whole file: nothing where it is no such file, or one that only parse_gaussian_ply can read or refuse.
+std::optional<Scene> load_gaussian_ply(const InputFile& file);
 
 bool detect_compressed_ply(Bytes bytes, std::string_view name);
 Scene parse_compressed_ply(Bytes bytes);

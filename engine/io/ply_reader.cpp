@@ -1,11 +1,13 @@
-// 3DGS PLY: columns found by name, any type, order and encoding; raw values kept bit for bit.
+// 3DGS PLY: columns found by name, any type, order and encoding; raw values kept bit for bit. Binary files are read a piece at a time.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <functional>
 #include <optional>
 
+#include "engine/base/aligned.h"
 #include "engine/base/error.h"
 #include "engine/base/memory.h"
 #include "engine/io/byte_reader.h"
@@ -21,6 +23,8 @@ namespace {
 
 constexpr int Absent = -1;
 constexpr std::size_t BlockRows = 128;       // rows gathered at a time: 128 x 248 bytes stay in the cache
+constexpr std::size_t ReadBytes = std::size_t{1} << 20;       // asked of a file at a time
+constexpr std::size_t LongestHeader = std::size_t{64} << 10;  // of a file that is not read as a whole
 constexpr float SurfelLogScale = -13.8155f;  // third axis of a 2DGS surfel: 1e-6 units
 constexpr std::size_t RestOfDegree4 = 24;
 
@@ -130,16 +134,17 @@ Layout find_layout(const PlyHeader& header, const PlyElement& vertex, std::vecto
     return layout;
 }
 
+/// Hands out binary rows [begin, end); they stay where they are until it is asked again.
+using RowSource = std::function<std::span<const std::byte>(std::size_t begin, std::size_t end)>;
+
 /// Gathers binary rows without lists, block by block, so that each destination is written once.
-void read_fixed_rows(PlyBody& body, const PlyHeader& header, const PlyElement& vertex,
-                     std::span<const Attribute> attributes) {
+void read_fixed_rows(const RowSource& source, const PlyHeader& header, const PlyElement& vertex, std::span<const Attribute> attributes) {
     struct Column {
         std::size_t offset = 0;
         PlyType type = PlyType::Float32;
         bool absent = false;
     };
     const bool big_endian = header.encoding == PlyEncoding::BigEndian;
-    const std::span<const std::byte> rows = body.take_rows(vertex);
     const std::size_t stride = vertex.row_bytes();
     std::vector<std::size_t> offsets;
     for (std::size_t offset = 0; const PlyProperty& property : vertex.properties) {
@@ -163,19 +168,20 @@ void read_fixed_rows(PlyBody& body, const PlyHeader& header, const PlyElement& v
     const auto count = static_cast<std::size_t>(vertex.count);
     for (std::size_t begin = 0; begin < count; begin += BlockRows) {
         const std::size_t end = std::min(count, begin + BlockRows);
+        const std::span<const std::byte> rows = source(begin, end);
         for (std::size_t a = 0; a < attributes.size(); ++a) {
             const std::vector<Column>& columns = plan[a];
             block.resize((end - begin) * columns.size());
             float* out = block.data();
-            for (std::size_t row = begin; row < end; ++row) {
-                const std::byte* source = rows.data() + row * stride;
+            for (std::size_t row = 0; row < end - begin; ++row) {
+                const std::byte* values = rows.data() + row * stride;
                 if (plain[a])
-                    for (const Column& column : columns) *out++ = load_scalar<float>(source + column.offset);
+                    for (const Column& column : columns) *out++ = load_scalar<float>(values + column.offset);
                 else
                     for (const Column& column : columns)
                         *out++ = column.absent
                                      ? attributes[a].missing
-                                     : load_ply_scalar(source + column.offset, column.type, big_endian);
+                                     : load_ply_scalar(values + column.offset, column.type, big_endian);
             }
             attributes[a].target->insert(attributes[a].target->end(), block.begin(), block.end());
         }
@@ -214,22 +220,29 @@ void add_label(Scene& scene, std::vector<float> bits, std::vector<float> weights
     scene.labels.labels.push_back(std::move(label));
 }
 
-}  // namespace
-
-bool detect_ply(Bytes bytes, std::string_view) { return is_ply(bytes); }
-
-Scene parse_gaussian_ply(Bytes bytes) {
-    const PlyHeader header = parse_ply_header(bytes);
-    const PlyElement* vertex = header.find("vertex");
-    if (vertex == nullptr) throw Error(ErrorCode::Malformed, "the PLY header has no vertex element");
+/// The scene that a header describes, without its rows.
+struct Described {
+    PlyHeader header;
+    const PlyElement* vertex = nullptr;
+    Layout layout;
     Scene scene;
-    scene.info.format = "ply";
-    const std::string label_name = read_comments(header, scene.info);
-    const Layout layout = find_layout(header, *vertex, scene.info.warnings);
-    if (vertex->count == 0) throw Error(ErrorCode::Malformed, "the PLY file holds no splats");
-    PlyBody body(bytes, header);
-    body.seek(*vertex);
+    std::string label_name;
 
+    Described(const Described&) = delete;   // `vertex` points into the header
+    explicit Described(Bytes start) : header(parse_ply_header(start)), vertex(header.find("vertex")) {
+        if (vertex == nullptr) throw Error(ErrorCode::Malformed, "the PLY header has no vertex element");
+        scene.info.format = "ply";
+        label_name = read_comments(header, scene.info);
+        layout = find_layout(header, *vertex, scene.info.warnings);
+        if (vertex->count == 0) throw Error(ErrorCode::Malformed, "the PLY file holds no splats");
+    }
+    bool has_fixed_rows() const { return header.encoding != PlyEncoding::Ascii && !vertex->has_list(); }
+};
+
+/// Fills the scene with the rows that `read` puts into the attributes; `rest` tells how many bytes are left behind them, if any are.
+Scene fill_scene(Described& described, const std::function<void(std::span<const Attribute>)>& read,
+                 const std::function<std::size_t()>& rest) {
+    const auto& [header, vertex, layout, scene, label_name] = described;
     require_memory(splat_bytes(vertex->count, layout.sh_degree), fmt::format("the scene of {} splats", vertex->count));
     GaussianData data;
     data.sh_degree = layout.sh_degree;
@@ -241,23 +254,69 @@ Scene parse_gaussian_ply(Bytes bytes) {
                                          {layout.sh, &data.sh}};
     if (complete(layout.label)) attributes.push_back({layout.label, &label});
     if (complete(layout.label_weight)) attributes.push_back({layout.label_weight, &label_weight});
-    for (const Attribute& attribute : attributes)
+    for (const Attribute& attribute : attributes) {
         attribute.target->reserve(static_cast<std::size_t>(vertex->count) * attribute.columns.size());
-    if (header.encoding == PlyEncoding::Ascii || vertex->has_list())
-        read_walked_rows(body, *vertex, attributes);
-    else
-        read_fixed_rows(body, header, *vertex, attributes);
-
+        prefer_huge_pages(attribute.target->data(), attribute.target->capacity() * sizeof(float));
+    }
+    read(attributes);
     if (layout.byte_colours) {
         const PlyType type = vertex->properties[static_cast<std::size_t>(layout.sh[0])].type;
         colours_to_sh(data, type != PlyType::Float32 && type != PlyType::Float64);
     }
-    if (&header.elements.back() == vertex && body.has_rest())
-        scene.info.warnings.push_back(fmt::format("{} bytes after the last of the {} splats are ignored",
-                                                  body.remaining(), vertex->count));
-    scene.gaussians = GaussianSet(std::move(data));
-    add_label(scene, std::move(label), std::move(label_weight), label_name);
-    return scene;
+    Scene filled = std::move(described.scene);
+    if (const std::size_t bytes = &header.elements.back() == vertex ? rest() : 0; bytes > 0)
+        filled.info.warnings.push_back(fmt::format("{} bytes after the last of the {} splats are ignored", bytes, vertex->count));
+    filled.gaussians = GaussianSet(std::move(data));
+    add_label(filled, std::move(label), std::move(label_weight), label_name);
+    return filled;
+}
+
+}  // namespace
+
+bool detect_ply(Bytes bytes, std::string_view) { return is_ply(bytes); }
+
+Scene parse_gaussian_ply(Bytes bytes) {
+    Described described(bytes);
+    const PlyElement& vertex = *described.vertex;
+    PlyBody body(bytes, described.header);
+    body.seek(vertex);
+    const auto read = [&](std::span<const Attribute> attributes) {
+        if (!described.has_fixed_rows()) return read_walked_rows(body, vertex, attributes);
+        const Bytes rows = body.take_rows(vertex);
+        const std::size_t stride = vertex.row_bytes();
+        read_fixed_rows([&](std::size_t begin, std::size_t end) { return rows.subspan(begin * stride, (end - begin) * stride); },
+                        described.header, vertex, attributes);
+    };
+    return fill_scene(described, read, [&] { return body.has_rest() ? body.remaining() : std::size_t{0}; });
+}
+
+std::optional<Scene> load_gaussian_ply(const InputFile& file) {
+    std::vector<std::byte> start(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), LongestHeader)));
+    file.read(0, start);
+    const std::string_view text(reinterpret_cast<const char*>(start.data()), start.size());
+    if (!is_ply(start) || text.find("end_header") == std::string_view::npos || detect_compressed_ply(start, "")) return std::nullopt;
+    Described described(start);
+    const PlyElement& vertex = *described.vertex;
+    const std::uint64_t behind_header = file.size() - described.header.body_offset;
+    const std::size_t stride = vertex.row_bytes();
+    const bool cut = described.header.body_offset == start.size() && start.size() < file.size();   // within a line end, maybe
+    if (cut || !described.has_fixed_rows() || &vertex != &described.header.elements.front() || stride == 0 ||
+        saturating_product(vertex.count, stride) > behind_header)
+        return std::nullopt;
+    std::vector<std::byte> block(std::max(ReadBytes / stride, BlockRows) * stride);
+    const auto count = static_cast<std::size_t>(vertex.count);
+    std::size_t first = 0, behind = 0;   // rows in the block
+    const RowSource source = [&](std::size_t begin, std::size_t end) {
+        if (end > behind) {
+            first = begin;
+            behind = std::min(count, begin + block.size() / stride);
+            file.read(described.header.body_offset + begin * stride, std::span(block).first((behind - first) * stride));
+        }
+        return Bytes(block).subspan((begin - first) * stride, (end - begin) * stride);
+    };
+    return fill_scene(
+        described, [&](std::span<const Attribute> attributes) { read_fixed_rows(source, described.header, vertex, attributes); },
+        [&] { return static_cast<std::size_t>(behind_header) - count * stride; });
 }
 
 }  // namespace gse::io

@@ -62,6 +62,7 @@ Scene load_file(const std::filesystem::path& path) {
     const std::string name = lower(path.filename().string());
     if (name == "lod-meta.json") return io::load_sog_levels(path);
     if (name == "meta.json") return io::load_sog_folder(path);
+    if (auto scene = io::load_gaussian_ply(InputFile(path))) return std::move(*scene);
     const FileBytes file(path);
     return parse_scene(file.bytes(), name);
 }

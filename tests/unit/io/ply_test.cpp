@@ -170,6 +170,62 @@ DOCTEST_TEST_CASE("any order, encoding, line end and company of columns gives th
     }
 }
 
+/// What both readers say about a file; `piecewise` tells whether the one that reads pieces had to take it.
+void check_both_readers(const ScratchFolder& scratch, const std::string& bytes, bool piecewise) {
+    const auto path = scratch.path() / "pieces.ply";
+    write_file(path, bytes);
+    const auto whole = [&] { return io::parse_gaussian_ply(as_bytes(bytes)); };
+    std::optional<Scene> pieces;
+    const auto failure = error_of([&] { pieces = io::load_gaussian_ply(InputFile(path)); });
+    DOCTEST_CHECK((pieces.has_value() || failure.has_value()) == piecewise);
+    if (failure) {
+        const auto same = error_of(whole);
+        DOCTEST_REQUIRE(same.has_value());
+        DOCTEST_CHECK(std::string(failure->what()) == same->what());
+    } else if (pieces) {
+        const Scene scene = whole();
+        DOCTEST_CHECK(same_bits(pieces->gaussians, scene.gaussians));
+        DOCTEST_CHECK(pieces->info.warnings == scene.info.warnings);
+        DOCTEST_REQUIRE(pieces->labels.labels.size() == scene.labels.labels.size());
+        for (std::size_t i = 0; i < scene.labels.labels.size(); ++i)
+            DOCTEST_CHECK(*pieces->labels.labels[i].bits == *scene.labels.labels[i].bits);
+    }
+}
+
+DOCTEST_TEST_CASE("a file that is read in pieces is read as one that is read as a whole") {
+    ScratchFolder scratch;
+    for (const std::size_t count : {1u, 128u, 4227u, 4228u, 4229u, 10001u}) {   // 4228 rows of 248 bytes are a piece
+        const GaussianData data = random_gaussians(count, 3, count);
+        std::vector<Column> columns = columns_of(data);
+        for (const char* name : {"nx", "ny", "label"}) columns.push_back({name, "float", [](std::size_t row) { return row % 3 == 0 ? 1.0 : 0.0; }});
+        check_both_readers(scratch, make_ply(columns, count, {}), true);
+    }
+    const GaussianData data = random_gaussians(700, 1, 3);
+    std::vector<Column> columns = columns_of(data);
+    columns.front().type = "double";
+    FileShape shape;
+    shape.encoding = Encoding::Big;
+    shape.line_end = "\r\n";
+    const std::string good = make_ply(columns, 700, shape);
+    check_both_readers(scratch, good, true);
+    check_both_readers(scratch, good + "more", true);
+    check_both_readers(scratch, good.substr(0, good.size() - 1), false);   // the whole file tells how many rows there are
+    std::string nameless = good;
+    nameless.replace(nameless.find("opacity"), 7, "opaque_");
+    check_both_readers(scratch, nameless, true);
+    check_both_readers(scratch, std::string(good).insert(good.find("obj_info"), "comment " + std::string(70000, 'x') + "\r\n"), false);
+    shape.list_inside = true;
+    check_both_readers(scratch, make_ply(columns, 700, shape), false);
+    shape = {};
+    shape.face_first = true;
+    check_both_readers(scratch, make_ply(columns, 700, shape), false);
+    shape = {};
+    shape.encoding = Encoding::Ascii;
+    check_both_readers(scratch, make_ply(columns, 700, shape), false);
+    check_both_readers(scratch, "ply", false);
+    check_both_readers(scratch, "", false);
+}
+
 DOCTEST_TEST_CASE("a scene written as PLY comes back bit for bit") {
     ScratchFolder scratch;
     for (int degree = 0; degree <= 3; ++degree) {
