@@ -338,7 +338,7 @@ private:
                            voting * 2 < votes.size() ? common_remedy(views) : "look from more views");
         Found found;
         auto& weights = found.weights;
-        weights = localize::back_project(input_.gaussians.spans(), votes, input_.settings, tools_.rasterizer);
+        weights = votes_.back_project(input_.gaussians.spans(), votes, input_.settings, tools_.rasterizer);
         const double least = least_evidence(weights, request().evidence_px);
         localize::SpreadParameters spread;
         spread.least_evidence_px = least;
@@ -573,6 +573,7 @@ private:
     const LocateInput& input_;
     const LocateTools& tools_;
     ViewRenders seen_;
+    localize::KeptVotes votes_;
     std::vector<std::size_t> left_out_;
     std::vector<float> peaks_;   // per view: the most attention that the word of the last search drew there
     std::size_t broken_ = 0;   // values of the attention so far

@@ -23,11 +23,6 @@ std::string redraw_key(const EditRequest& request, EditMode mode, const std::str
                        plan.view_steps, plan.strength, plan.again_strength, plan.guided_until, of_model);
 }
 
-bool same_camera(const Camera& a, const Camera& b) {
-    return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy &&
-           a.rotation == b.rotation && a.translation == b.translation;
-}
-
 std::shared_ptr<const Image> shown_copy(const Image& image) {
     const int longer = std::max(image.width, image.height);
     if (longer <= ShownSide) return std::make_shared<const Image>(image);
@@ -60,7 +55,7 @@ bool ViewPhase::resumes(const RoundState& start, const std::vector<std::size_t>&
     for (std::size_t i = 0; i < start.views.size(); ++i) {
         const auto view = start.views[i];
         if (view >= plan_.views.size() || index_of(visible, view) < 0) return false;
-        if (!same_camera((*start.begun)[i].view.camera, plan_.views[view].camera)) return false;
+        if ((*start.begun)[i].view.camera != plan_.views[view].camera) return false;
     }
     return true;
 }

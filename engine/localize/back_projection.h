@@ -1,6 +1,7 @@
 // From one mask per view to one weight per Gaussian (GSEditPro 3.2; method S5, variant B).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -26,7 +27,35 @@ struct MaskedView {
     bool failed = false;
 };
 
-/// Throws Error when more than half of the views failed or none is left.
+/// Votes of views, kept (as far as their memory allows) for as long as scene and settings are the same: of a view that comes again with
+/// the same mask nothing is rendered. The weights are the same to the last bit.
+class KeptVotes {
+public:
+    static constexpr std::size_t MostBytes = std::size_t{512} << 20;
+    explicit KeptVotes(std::size_t most_bytes = MostBytes) : most_bytes_(most_bytes) {}
+
+    /// Throws Error when more than half of the views failed or none is left.
+    LabelWeights back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views, const raster::Settings& settings,
+                              raster::Rasterizer& rasterizer);
+
+private:
+    struct Vote {
+        Camera camera;
+        Image mask;
+        std::vector<std::uint32_t> row;      // those it shows
+        std::vector<double> masked, total;   // of these
+        std::size_t bytes() const;
+    };
+    Vote* find(const Camera& camera);
+    void keep(Vote vote, Vote* old);
+    Vote cast(const GaussianSpans& gaussians, const MaskedView& view, const raster::Settings& settings, raster::Rasterizer& rasterizer);
+
+    std::size_t most_bytes_, bytes_ = 0;
+    std::vector<Vote> votes_;
+    std::vector<double> masked_, total_;   // of one view, zero in between
+};
+
+/// The same once. Throws Error when more than half of the views failed or none is left.
 LabelWeights back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
                           const raster::Settings& settings, raster::Rasterizer& rasterizer);
 

@@ -13,6 +13,7 @@ struct Camera {
     Mat3 rotation = Mat3::identity();              // world -> camera
     Vec3 translation{};                            // camera frame
 
+    bool operator==(const Camera&) const = default;
     /// Camera centre in the world: -R^T t.
     Vec3 centre() const;
     Vec3 to_camera(const Vec3& world) const { return rotation * world + translation; }

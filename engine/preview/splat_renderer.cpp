@@ -16,11 +16,6 @@ namespace {
 constexpr std::uint64_t LargestFinePicture = 4096 * 2304;  // pixels; larger ones get the larger tiles
 constexpr double Forever = 1e18;                           // milliseconds
 
-bool same_camera(const Camera& a, const Camera& b) {
-    return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx &&
-           a.cy == b.cy && a.rotation == b.rotation && a.translation == b.translation;
-}
-
 /// Mean of a sample of the positions, for the scale of the depth colours.
 Vec3 middle_of(const GaussianSet& set) {
     const std::size_t step = std::max<std::size_t>(set.size() / 4096, 1);
@@ -259,7 +254,7 @@ bool SplatRenderer::render(VkCommandBuffer commands, const FrameRequest& request
     return vulkan::guarded("drawing the splats", [&] {
         state.receive();
         state.advance_upload(commands, upload_ms);
-        const bool same = state.shown && same_camera(state.shown->camera, request.camera) &&
+        const bool same = state.shown && state.shown->camera == request.camera &&
                           state.shown->display == request.display &&
                           (state.shown->want_depth || !request.want_depth);
         if (same && !state.stale && !state.overflowed) return false;

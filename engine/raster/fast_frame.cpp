@@ -3,6 +3,8 @@
 #include "engine/raster/fast_frame.h"
 
 #include <algorithm>
+#include <atomic>
+#include <cmath>
 
 #include "engine/base/error.h"
 #include "engine/raster/viewpoint.h"
@@ -21,7 +23,7 @@ void at_least(Values& values, std::size_t count) {
 Frame::Frame(const Kernels& kernels, ThreadPool& pool) : kernels_(kernels), pool_(pool), sort_(pool) {}
 
 void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
-                    std::span<const float> values) {
+                    std::span<const float> values, Colours colours) {
     check_inputs(gaussians, camera);
     view_ = viewpoint_of(camera, with_depth_range(settings, gaussians, camera), gaussians.sh_degree);
     tile_columns_ = static_cast<std::size_t>((camera.width + TileSize - 1) / TileSize);
@@ -31,6 +33,7 @@ void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const 
         gaussians.rotation.data(), gaussians.opacity_logit.data(),
         gaussians.sh.data(),       sh_floats(gaussians)};
     values_ = values.empty() ? nullptr : values.data();
+    colours_ = colours == Colours::Wanted || !has_finite_colours(gaussians);
     rows_ = gaussians.size;
     at_least(records_, rows_);
     at_least(keys_, rows_);
@@ -52,12 +55,32 @@ void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const 
     fill_tiles();
 }
 
+/// Looks at every coefficient at most once for as long as it is remembered.
+bool Frame::has_finite_colours(const GaussianSpans& gaussians) {
+    constexpr float largest = 1e30f;   // a colour is the sum of 16 coefficients, none counting more than 3 times
+    constexpr std::size_t piece = std::size_t{1} << 16;
+    if (gaussians.colours_known == nullptr) return false;
+    ColoursKnown known = *gaussians.colours_known;
+    if (known == ColoursKnown::NotYet) {
+        std::atomic<bool> all{true};
+        pool_.parallel_for(gaussians.sh.size(), piece, [&](std::size_t begin, std::size_t end, unsigned) {
+            bool small = true;
+            for (std::size_t i = begin; i < end; ++i) small &= std::abs(gaussians.sh[i]) <= largest;   // no NaN is
+            if (!small) all = false;
+        });
+        known = all ? ColoursKnown::Finite : ColoursKnown::NotAll;
+        *gaussians.colours_known = known;
+    }
+    return known == ColoursKnown::Finite;
+}
+
 void Frame::project_chunk(std::size_t chunk) {
     const std::size_t begin = chunk * ChunkRows;
     ProjectJob job{};
     job.source = source_;
     job.view = &view_;
     job.values = values_;
+    job.colours = colours_;
     job.begin = begin;
     job.end = std::min(begin + ChunkRows, rows_);
     job.records = records_.data() + begin;

@@ -26,9 +26,11 @@ class Frame {
 public:
     Frame(const Kernels& kernels, ThreadPool& pool);
 
-    /// Projects, sorts and bins. `values`, if not empty, replaces the colours (in the red channel).
-    void prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
-                 std::span<const float> values);
+    /// Projects, sorts and bins. `values`, if not empty, replaces the colours (in the red channel). Colours that are not wanted are
+    /// left out where all are known to be finite: what is drawn is the same.
+    enum class Colours { Wanted, Unwanted };
+    void prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings, std::span<const float> values = {},
+                 Colours colours = Colours::Wanted);
 
     /// Blends every tile into lights(); calls finish(tile, scratch) on the thread that did it.
     using TileDone = void (*)(void* context, std::size_t tile, const BlendScratch& scratch);
@@ -77,6 +79,7 @@ public:
     std::uint32_t slot_shift(std::size_t chunk) const { return chunk_pairs_[chunk] - first_slot_; }
 
 private:
+    bool has_finite_colours(const GaussianSpans& gaussians);
     void project_chunk(std::size_t chunk);
     void bin_chunk(std::size_t chunk, unsigned worker);
     void collect_keys();
@@ -98,6 +101,7 @@ private:
     Viewpoint view_{};
     Source source_{};
     const float* values_ = nullptr;
+    bool colours_ = true;
     std::size_t rows_ = 0, drawn_ = 0, unusable_ = 0, tile_columns_ = 0, tile_rows_ = 0;
 
     LineVector<Record> records_;      // [rows], with gaps

@@ -20,7 +20,7 @@ public:
 
     void forward(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                  ForwardOutput& output) override {
-        frame_.prepare(gaussians, camera, settings, {});
+        frame_.prepare(gaussians, camera, settings);
         slope_.background = settings.background;
         resize_output(camera.width, camera.height, output);
         output.pairs = frame_.pair_count();
@@ -69,7 +69,7 @@ public:
         GSE_CHECK_EQ(masked.size(), gaussians.size);
         GSE_CHECK_EQ(total.size(), gaussians.size);
         GSE_CHECK(mask.width == camera.width && mask.height == camera.height && mask.channels == 1);
-        side_frame_.prepare(gaussians, camera, settings, {});
+        side_frame_.prepare(gaussians, camera, settings, {}, Frame::Colours::Unwanted);
         side_frame_.assign_slots(0);
         grow_scratch();
         mask_ = &mask;
@@ -87,7 +87,7 @@ public:
     void forward_values(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
                         std::span<const float> values, Image& output) override {
         GSE_CHECK_EQ(values.size(), gaussians.size);
-        side_frame_.prepare(gaussians, camera, settings, values);
+        side_frame_.prepare(gaussians, camera, settings, values, Frame::Colours::Unwanted);
         output.resize(camera.width, camera.height, 1);
         values_output_ = &output;
         side_frame_.blend([](void* self, std::size_t tile,

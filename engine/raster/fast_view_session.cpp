@@ -82,7 +82,7 @@ void FastViewSession::forward(std::size_t view, const GaussianSpans& gaussians, 
 /// False when the view has to be rendered in full.
 bool FastViewSession::continue_view(View& view, const GaussianSpans& gaussians, const Camera& camera, const Settings& settings) {
     Settings settled = with_depth_range(settings, gaussians, camera);
-    frame_.prepare(rows_of(gaussians, first_row_, gaussians.size), camera, settled, {});
+    frame_.prepare(rows_of(gaussians, first_row_, gaussians.size), camera, settled);
     find_live_tiles();
     if (!view.cache.holds(camera, settings, settled.near_plane) || !view.cache.covers(live_numbers_))
         if (!prepare_view(view, gaussians, camera, settings, settled.near_plane)) return false;

@@ -90,7 +90,7 @@ static void write_records(const ProjectJob& job, RecordBatch& batch) {
         batch.columns.row[lane] = batch.columns.row[0];
         for (auto& component : batch.direction) component[lane] = component[0];
     }
-    colour_batch(job, batch);
+    if (job.colours) colour_batch(job, batch);
     for (int lane = 0; lane < F::W && job.values != nullptr; ++lane) {
         batch.columns.colour[0][lane] = job.values[batch.columns.row[lane]];
         batch.columns.colour[1][lane] = batch.columns.colour[2][lane] = 0.0f;
@@ -162,16 +162,22 @@ GSE_INLINE void keep_drawn(ProjectJob& job, unsigned drawn, RecordBatch& found, 
 
 /// Asks for the coefficients of the next batch, of which most are drawn.
 GSE_INLINE void prefetch_coefficients(const ProjectJob& job, std::size_t row, std::size_t count) {
-    const std::size_t end = row + count < job.end ? row + count : job.end;
+    const std::size_t end = !job.colours ? row : row + count < job.end ? row + count : job.end;
     for (; row < end; ++row) prefetch_floats<0>(job.source.sh + row * job.source.sh_stride, job.view->sh_count * 3);
+}
+
+/// Columns that nothing is written to; colours are not, where they are not wanted.
+GSE_INLINE void clear_unset(RecordColumns& columns) {
+    for (auto& column : columns.rest) store(column, zero());
+    for (auto& channel : columns.colour) store(channel, zero());
 }
 
 static void project(ProjectJob& job) {
     RawBatch raw;
     Shape shape;
     RecordBatch found, waiting;
-    for (auto& column : found.columns.rest) store(column, zero());
-    for (auto& column : waiting.columns.rest) store(column, zero());
+    clear_unset(found.columns);
+    clear_unset(waiting.columns);
     waiting.size = 0;
     job.drawn = 0;
     job.unusable = 0;

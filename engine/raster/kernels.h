@@ -56,6 +56,7 @@ struct ProjectJob {
     Source source;
     const Viewpoint* view;
     const float* values;  // if set: colour = (value, 0, 0)
+    bool colours;         // whether they are computed: for the picture, or because some may not be finite
     std::size_t begin, end;
     Record* records;
     std::uint32_t* keys;   // bits of the depth, which sort as unsigned numbers

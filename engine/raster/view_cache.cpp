@@ -12,12 +12,6 @@ namespace {
 
 constexpr std::uint32_t Unused = 0xffffffff;
 
-bool same_camera(const Camera& a, const Camera& b) {
-    return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy &&
-           a.rotation.rows() == b.rotation.rows() && a.translation.x == b.translation.x &&
-           a.translation.y == b.translation.y && a.translation.z == b.translation.z;
-}
-
 /// Marks the tiles within `margin` tiles of each of `tiles`.
 void mark_around(std::span<const std::uint32_t> tiles, int margin, int columns, int rows, std::vector<std::uint8_t>& marks) {
     for (const std::uint32_t tile : tiles) {
@@ -31,7 +25,7 @@ void mark_around(std::span<const std::uint32_t> tiles, int margin, int columns, 
 }  // namespace
 
 bool ViewCache::holds(const Camera& camera, const Settings& settings, float near_plane) const {
-    return times_prepared_ > 0 && same_camera(camera, camera_) && settings == settings_ &&
+    return times_prepared_ > 0 && camera == camera_ && settings == settings_ &&
            (near_plane == near_plane_ || (near_plane > near_low_ && near_plane < near_high_));
 }
 
@@ -81,7 +75,7 @@ void ViewCache::project(const Job& job, Frame& frame) {
     Settings settings = job.settings;
     near_plane_ = job.near_plane;
     settings.near_plane = near_low_ = std::max(0.5f * near_plane_, static_cast<float>(SmallestNear));
-    frame.prepare(job.fixed, job.camera, settings, {});
+    frame.prepare(job.fixed, job.camera, settings);
     const auto depth = [&](std::size_t place) { return frame.records()[frame.order()[place]].depth; };
     std::size_t between = 0;
     while (between < frame.order().size() && depth(between) <= near_plane_) ++between;
@@ -90,7 +84,7 @@ void ViewCache::project(const Job& job, Frame& frame) {
     else if (between > 0) near_low_ = depth(between - 1);
     if (unusable || between > 0) {
         settings.near_plane = near_plane_;
-        frame.prepare(job.fixed, job.camera, settings, {});
+        frame.prepare(job.fixed, job.camera, settings);
     }
     near_high_ = frame.order().empty() ? std::numeric_limits<float>::max() : depth(0);
     if (unusable) near_high_ = near_plane_;

@@ -84,7 +84,7 @@ void GaussianSet::check_lengths() const {
 }
 
 GaussianSpans GaussianSet::spans() const {
-    return {size(), sh_degree_, *position_, *log_scale_, *rotation_, *opacity_logit_, *sh_};
+    return {size(), sh_degree_, *position_, *log_scale_, *rotation_, *opacity_logit_, *sh_, colours_known_.get()};
 }
 
 GaussianData GaussianSet::to_data() const {

@@ -2,6 +2,7 @@
 // it changes.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -30,11 +31,16 @@ struct GaussianData {
     void append_row(const GaussianData& other, std::size_t row);
 };
 
+/// What is remembered of coefficients that never change: whether all are numbers of a size that gives every direction a finite colour.
+enum class ColoursKnown : signed char { NotYet, Finite, NotAll };
+using ColourMemo = std::atomic<ColoursKnown>;
+
 /// Read-only view of N Gaussians for the rasterizer; whoever made it keeps the arrays alive.
 struct GaussianSpans {
     std::size_t size = 0;
     int sh_degree = 0;
     std::span<const float> position, log_scale, rotation, opacity_logit, sh;
+    ColourMemo* colours_known = nullptr;   // of `sh`; null where it may change
 };
 
 GaussianSpans spans(const GaussianData& data);
@@ -88,6 +94,7 @@ private:
 
     int sh_degree_ = 0;
     Buffer position_, log_scale_, rotation_, opacity_logit_, sh_;
+    std::shared_ptr<ColourMemo> colours_known_ = std::make_shared<ColourMemo>(ColoursKnown::NotYet);
 };
 
 }  // namespace gse

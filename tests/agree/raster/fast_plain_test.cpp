@@ -2,6 +2,8 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
+#include <limits>
+
 #include "engine/raster/cuda/emulated_device.h"
 #include "tests/agree/raster/cases.h"
 
@@ -87,6 +89,39 @@ DOCTEST_TEST_CASE("contributions equal the gradient of a constant colour, and ad
         Image ones;
         rasterizer->forward_values(spans(data), camera, {}, std::vector<float>(data.size(), 1.0f), ones);
         DOCTEST_CHECK(test::relative_l2(ones.data, image.alpha.data) < test::ContributionTolerance);
+    }
+}
+
+DOCTEST_TEST_CASE("colours that nobody wants are left out only where all are finite, which changes no bit") {
+    ThreadPool pool(2);
+    const Camera camera = test::test_camera(83, 61);
+    const Image mask = test::noise_image(camera.width, camera.height, 1, 3);
+    const float infinite = std::numeric_limits<float>::infinity();
+    for (const float odd : {0.5f, std::numeric_limits<float>::quiet_NaN(), infinite, -infinite, 2e30f, 3e38f}) {
+        DOCTEST_CAPTURE(odd);
+        GaussianData data = test::random_scene({.count = 900, .seed = 33});
+        for (std::size_t row = 3; row < data.size(); row += 7) data.sh[row * data.sh_stride() + row % data.sh_stride()] = odd;
+        const std::vector<float>& values = data.opacity_logit;
+        for (const std::string& kernels : raster::usable_kernels()) {
+            DOCTEST_CAPTURE(kernels);
+            const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
+            const GaussianSet set(data);   // remembers what its colours are; the arrays alone do not
+            std::vector<double> masked(data.size()), total(data.size()), set_masked(data.size()), set_total(data.size());
+            rasterizer->contributions(spans(data), camera, {}, mask, masked, total);
+            rasterizer->contributions(set.spans(), camera, {}, mask, set_masked, set_total);
+            DOCTEST_CHECK(set_masked == masked);
+            DOCTEST_CHECK(set_total == total);
+            Image expected, found;
+            rasterizer->forward_values(spans(data), camera, {}, values, expected);
+            rasterizer->forward_values(set.spans(), camera, {}, values, found);
+            DOCTEST_CHECK(found.data == expected.data);
+            DOCTEST_CHECK(*set.spans().colours_known == (odd == 0.5f ? ColoursKnown::Finite : ColoursKnown::NotAll));
+            ForwardOutput picture, set_picture;   // a picture wants them
+            rasterizer->forward(spans(data), camera, {}, picture);
+            rasterizer->forward(set.spans(), camera, {}, set_picture);
+            DOCTEST_CHECK(set_picture.colour.data == picture.colour.data);
+            DOCTEST_CHECK(test::relative_l2(picture.alpha.data, std::vector<float>(picture.alpha.data.size())) > 0);
+        }
     }
 }
 

@@ -78,7 +78,68 @@ double iou(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& 
     return static_cast<double>(both) / either;
 }
 
+/// Counts what it is asked for.
+class Counting final : public raster::Rasterizer {
+public:
+    explicit Counting(raster::Rasterizer& whole) : whole_(whole) {}
+    void forward(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings, raster::ForwardOutput& output) override {
+        whole_.forward(rows, camera, settings, output);
+    }
+    void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row, raster::Gradients& output) override {
+        whole_.backward(d_colour, d_alpha, first_row, output);
+    }
+    void contributions(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings, const Image& mask,
+                       std::span<double> masked, std::span<double> total) override {
+        ++rendered;
+        whole_.contributions(rows, camera, settings, mask, masked, total);
+    }
+    void forward_values(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings, std::span<const float> values,
+                        Image& output) override {
+        whole_.forward_values(rows, camera, settings, values, output);
+    }
+    std::string name() const override { return whole_.name(); }
+
+    int rendered = 0;
+
+private:
+    raster::Rasterizer& whole_;
+};
+
 }  // namespace
+
+DOCTEST_TEST_CASE("of a view that votes again as before nothing is rendered, and the weights are the same to the last bit") {
+    const auto scene = two_balls();
+    ThreadPool pool(2);
+    const auto fast = raster::make_fast_rasterizer(pool);
+    for (const std::size_t room : {localize::KeptVotes::MostBytes, std::size_t{40000}, std::size_t{0}}) {
+        DOCTEST_CAPTURE(room);
+        auto views = true_views(scene, *fast, 8);
+        Counting counting(*fast);
+        localize::KeptVotes votes(room);
+        const auto check = [&](int most) {
+            counting.rendered = 0;
+            const auto found = votes.back_project(scene.set.spans(), views, {}, counting);
+            const auto expected = localize::back_project(scene.set.spans(), views, {}, *fast);
+            DOCTEST_CHECK(found.weight == expected.weight);
+            DOCTEST_CHECK(found.evidence == expected.evidence);
+            DOCTEST_CHECK(found.views_used == expected.views_used);
+            if (room == localize::KeptVotes::MostBytes) DOCTEST_CHECK(counting.rendered == most);
+            if (room == 0) DOCTEST_CHECK(counting.rendered == expected.views_used);
+        };
+        check(8);
+        check(0);
+        for (const std::size_t v : {2u, 5u}) std::fill_n(views[v].mask.data.begin(), 700, 1.0f);
+        check(2);
+        views[3].failed = true;
+        check(0);
+        std::swap(views[0], views[7]);   // another order of the sum, of the same votes
+        check(0);
+        views[0].camera.cx += 0.25;
+        views.erase(views.begin() + 4);
+        check(1);
+        check(0);
+    }
+}
 
 DOCTEST_TEST_CASE("true masks give true labels") {
     const auto scene = two_balls();
