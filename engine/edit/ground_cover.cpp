@@ -2,6 +2,9 @@
 #include "engine/edit/ground_cover.h"
 
 #include <cmath>
+#include <limits>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "engine/base/check.h"
@@ -22,15 +25,20 @@ double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, 
     if (!standing.found()) return 0;
     const double figure = figure_height(standing), inner = 0.5 * standing.width(), outer = inner + figure;
     const Vec3 above = normalized(up), foot = standing.foot;
-    std::vector<unsigned char> ground(set.size(), 0);
-    for (std::size_t row = 0; row < ground.size(); ++row) {
+    std::vector<float> opacity(set.size(), -std::numeric_limits<float>::infinity());   // of the ground alone: all else is not seen
+    bool any = false;
+    for (std::size_t row = 0; row < opacity.size(); ++row) {
         const auto p = set.position().subspan(row * 3, 3);
         const Vec3 from = Vec3{p[0], p[1], p[2]} - foot;
         const double height = dot(from, above), way = length(from - above * height);
-        ground[row] = bits[row] == 0 && height <= GroundHeight * figure && way <= 2 * outer ? 1 : 0;   // also not what is not a number
+        if (bits[row] != 0 || !(height <= GroundHeight * figure && way <= 2 * outer)) continue;   // nor what is not a number
+        opacity[row] = set.opacity_logit()[row];
+        any = true;
     }
-    const GaussianSet rows = set.filtered(ground);
-    if (rows.empty()) return 0;
+    if (!any) return 0;
+    auto buffers = set.buffers();
+    buffers.opacity_logit = std::make_shared<const std::vector<float>>(std::move(opacity));
+    const GaussianSet rows(std::move(buffers));   // a copy of its rows would be most of the scene
     const auto across = make_frame(above, {}).front;
     const auto camera = Camera::look_at(foot + above * (Above * outer), foot, across, 2 * std::atan(1 / Above), Side, Side);
     raster::ForwardOutput output;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -55,6 +56,8 @@ Scene parse_ksplat(Bytes bytes);
 /// Writers to memory; the caller writes the bytes atomically. Quantised formats drop unusable rows with a
 /// warning.
 std::string write_gaussian_ply(const Scene& scene, const SaveOptions& options);
+/// The same a piece at a time, for what nobody wants to hold as a whole; throws before the first piece or not at all.
+void write_gaussian_ply(const Scene& scene, const SaveOptions& options, const std::function<void(std::string_view piece)>& take);
 /// `order`, when wanted: row order[i] of the usable rows became row i.
 std::string write_compressed_ply(const Scene& scene, std::vector<std::uint32_t>* order = nullptr);
 std::string write_splat(const Scene& scene);

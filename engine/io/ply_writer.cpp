@@ -2,6 +2,7 @@
 // end.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "engine/base/check.h"
@@ -12,6 +13,8 @@
 
 namespace gse::io {
 namespace {
+
+constexpr std::size_t PieceBytes = std::size_t{1} << 20;
 
 /// Label columns in their final form; empty when absent.
 struct LabelColumns {
@@ -57,37 +60,42 @@ std::string header_text(const Scene& scene, const SaveOptions& options, const La
 
 }  // namespace
 
-std::string write_gaussian_ply(const Scene& scene, const SaveOptions& options) {
+void write_gaussian_ply(const Scene& scene, const SaveOptions& options, const std::function<void(std::string_view piece)>& take) {
     const LabelColumns columns = label_columns(scene, options);
     const GaussianSpans set = scene.gaussians.spans();
     const std::size_t rest = rest_of_degree(set.sh_degree);
     const std::size_t row_floats =
         17 + rest * 3 + (columns.label.empty() ? 0u : 1u) + (columns.weight.empty() ? 0u : 1u);
-    const std::string header = header_text(scene, options, columns);
-    std::string out;
-    out.reserve(header.size() + set.size * row_floats * sizeof(float));
-    out = header;
-    std::vector<float> values(row_floats);
+    take(header_text(scene, options, columns));
+    const std::size_t piece_rows = std::max<std::size_t>(1, PieceBytes / (row_floats * sizeof(float)));
+    std::vector<float> values(std::min(piece_rows, set.size) * row_floats);
+    float* next = values.data();
+    const auto put = [&next](const float* from, std::size_t count) {
+        std::memcpy(next, from, count * sizeof(float));
+        next += count;
+    };
     for (std::size_t row = 0; row < set.size; ++row) {
-        float* next = values.data();
-        const auto put = [&next](const float* from, std::size_t count) {
-            std::memcpy(next, from, count * sizeof(float));
-            next += count;
-        };
         const float* sh = set.sh.data() + row * (rest + 1) * 3;
         constexpr float normal[3] = {0, 0, 0};
         put(set.position.data() + row * 3, 3);
         put(normal, 3);
         put(sh, 3);
         for (std::size_t channel = 0; channel < 3; ++channel)
-            for (std::size_t k = 0; k < rest; ++k) put(sh + 3 + k * 3 + channel, 1);
+            for (std::size_t k = 0; k < rest; ++k) *next++ = sh[3 + k * 3 + channel];
         put(set.opacity_logit.data() + row, 1);
         put(set.log_scale.data() + row * 3, 3);
         put(set.rotation.data() + row * 4, 4);
         if (!columns.label.empty()) put(columns.label.data() + row, 1);
         if (!columns.weight.empty()) put(columns.weight.data() + row, 1);
-        out.append(reinterpret_cast<const char*>(values.data()), row_floats * sizeof(float));
+        if (next != values.data() + values.size() && row + 1 < set.size) continue;
+        take({reinterpret_cast<const char*>(values.data()), static_cast<std::size_t>(next - values.data()) * sizeof(float)});
+        next = values.data();
     }
+}
+
+std::string write_gaussian_ply(const Scene& scene, const SaveOptions& options) {
+    std::string out;
+    write_gaussian_ply(scene, options, [&](std::string_view piece) { out += piece; });
     return out;
 }
 

@@ -13,6 +13,7 @@
 #include "engine/base/error.h"
 #include "engine/base/file.h"
 #include "engine/base/log.h"
+#include "engine/base/pending_file.h"
 #include "engine/io/format_loss.h"
 #include "engine/io/formats.h"
 #include "engine/io/project_file.h"
@@ -133,6 +134,16 @@ void warn_of_losses(const std::string& name, const Scene& scene, const GaussianS
         log::warning("{} does not say which way is up in the scene; .ply and .compressed.ply do", name);
 }
 
+/// A scene as plain PLY, never held as a whole; nothing is touched when it cannot be one.
+void write_in_pieces(const std::filesystem::path& path, const Scene& scene, const SaveOptions& options) {
+    std::optional<PendingFile> file;
+    io::write_gaussian_ply(scene, options, [&](std::string_view piece) {
+        if (!file) file.emplace(path);
+        file->write(piece);
+    });
+    file->commit();
+}
+
 /// A project's own scene may be a project again.
 Scene load_project_scene(const std::filesystem::path& path) {
     constexpr int Deepest = 8;
@@ -217,9 +228,12 @@ SavedRows save_scene(const std::filesystem::path& path, const Scene& scene, cons
     if (labelled && format != "ply")
         throw Error(ErrorCode::InvalidArgument, "only a plain .ply file has room for labels", "save as .ply",
                     path);
+    if (format == "ply") {
+        with_path(path, [&] { write_in_pieces(path, scene, options); });
+        return {scene.gaussians.size(), 0};
+    }
     std::vector<std::uint32_t> order;
     const std::string bytes = with_path(path, [&]() -> std::string {
-        if (format == "ply") return io::write_gaussian_ply(scene, options);
         if (format == "compressed.ply") return io::write_compressed_ply(scene, &order);
         if (format == "splat") return io::write_splat(scene);
         if (format == "sog") return io::write_sog(scene, &order);
@@ -229,11 +243,11 @@ SavedRows save_scene(const std::filesystem::path& path, const Scene& scene, cons
                     "use ply, compressed.ply, splat, spz or sog");
     });
     if (!order.empty()) log::info("a .{} file is stored in another order: splat numbers change", format);
-    const GaussianSet rows = format == "ply" ? scene.gaussians : drop_unusable(scene.gaussians);
+    const GaussianSet rows = drop_unusable(scene.gaussians);
     if (rows.empty() && !scene.gaussians.empty())
         throw Error(ErrorCode::Malformed, fmt::format("none of the {} splats can be written as {}", scene.gaussians.size(), format),
                     "their values are NaN or infinite", path);
-    if (format != "ply") warn_of_losses(path.filename().string(), scene, rows, bytes, format, order);
+    warn_of_losses(path.filename().string(), scene, rows, bytes, format, order);
     write_file(path, bytes);
     return {rows.size(), scene.gaussians.size() - rows.size()};
 }

@@ -92,6 +92,7 @@ std::pair<double, double> row_costs(const LabelWeights& weights, const CutParame
 }
 
 constexpr std::uint32_t NoRow = std::numeric_limits<std::uint32_t>::max();
+constexpr double NoEdge = -1;   // cost of a pair that is met from its other row
 
 /// The energy's numbers for the rows that take part.
 struct Problem {
@@ -99,6 +100,7 @@ struct Problem {
     std::vector<std::pair<double, double>> row_costs;   // [M] of "labelled" and of "not labelled"
     std::vector<float> colours;                         // [M,3]
     std::vector<std::uint32_t> nearest;                 // [M,neighbours] indices into the rows; NoRow where there are not so many
+    std::vector<double> edge_costs;                     // [M,neighbours] of cutting the edges to them; or NoEdge
     std::size_t neighbours = 0;
     double smoothness = 0, mean_difference = 0;
 
@@ -115,19 +117,33 @@ struct Problem {
         const auto near = nearest_to(i);
         return std::find(near.begin(), near.end(), other) != near.end();
     }
-    /// Calls visit(from, to, cost of cutting it) once for every pair of which one is among the other's nearest; it costs half where only one is.
+    /// There is an edge for every pair of which one is among the other's nearest; it costs half where only one is.
+    double edge_cost(std::size_t i, std::uint32_t j) const {
+        const bool mutual = is_near(j, static_cast<std::uint32_t>(i));
+        if (mutual && j < i) return NoEdge;
+        const double alike = std::exp(-squared_difference(i, j) / std::max(mean_difference, LeastDifference));
+        return (mutual ? 1.0 : 0.5) * smoothness * alike;
+    }
+    /// Calls visit(from, to, cost of cutting it) once for every edge.
     template <class F>
     void for_each_edge(F&& visit) const {
-        for (std::size_t i = 0; i < rows.row.size(); ++i)
-            for (const auto j : nearest_to(i)) {
-                if (j == NoRow) break;
-                const bool mutual = is_near(j, static_cast<std::uint32_t>(i));
-                if (mutual && j < i) continue;   // it was met from there
-                const double alike = std::exp(-squared_difference(i, j) / std::max(mean_difference, LeastDifference));
-                visit(i, j, (mutual ? 1.0 : 0.5) * smoothness * alike);
-            }
+        for (std::size_t at = 0; at < edge_costs.size(); ++at)
+            if (edge_costs[at] != NoEdge) visit(at / neighbours, nearest[at], edge_costs[at]);
     }
 };
+
+void set_edge_costs(Problem& problem, ThreadPool* threads) {
+    problem.edge_costs.assign(problem.nearest.size(), NoEdge);
+    const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
+        for (std::size_t at = begin * problem.neighbours; at < end * problem.neighbours; ++at)
+            if (problem.nearest[at] != NoRow) problem.edge_costs[at] = problem.edge_cost(at / problem.neighbours, problem.nearest[at]);
+    };
+    constexpr std::size_t chunk = 4096;   // rows
+    if (threads != nullptr)
+        threads->parallel_for(problem.rows.row.size(), chunk, some);
+    else
+        some(0, problem.rows.row.size(), 0);
+}
 
 /// Sets the nearest rows and the mean over them of the squared difference of the colours.
 void find_nearest(Problem& problem, ThreadPool* threads) {
@@ -165,6 +181,7 @@ Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parame
     problem.row_costs.reserve(rows.size());
     for (const auto row : rows) problem.row_costs.push_back(row_costs(weights, parameters, mean_evidence, row));
     if (!rows.empty()) find_nearest(problem, threads);
+    set_edge_costs(problem, threads);
     return problem;
 }
 
@@ -193,8 +210,8 @@ std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& param
     Problem problem = make_problem(gaussians, parameters, weights, threads);
     const auto& rows = problem.rows.row;
     if (rows.size() < 2) return 0;
-    std::size_t edges = 0;
-    problem.for_each_edge([&](std::size_t, std::size_t, double) { ++edges; });
+    const auto edges = static_cast<std::size_t>(
+        std::count_if(problem.edge_costs.begin(), problem.edge_costs.end(), [](double cost) { return cost != NoEdge; }));
     cv::detail::GCGraph<double> graph(static_cast<unsigned>(rows.size()), static_cast<unsigned>(2 * edges));   // both ways
     for (const auto& [labelled, not_labelled] : problem.row_costs)
         graph.addTermWeights(graph.addVtx(), not_labelled, labelled);   // the source's side is "labelled"
@@ -202,6 +219,7 @@ std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& param
         graph.addEdges(static_cast<int>(from), static_cast<int>(to), cost, cost);
     });
     problem.nearest = {};   // the graph has its own
+    problem.edge_costs = {};
     graph.maxFlow();
     std::size_t changed = 0;
     const auto tau = static_cast<float>(parameters.tau);
