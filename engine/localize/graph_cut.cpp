@@ -92,7 +92,7 @@ std::pair<double, double> row_costs(const LabelWeights& weights, const CutParame
 }
 
 constexpr std::uint32_t NoRow = std::numeric_limits<std::uint32_t>::max();
-constexpr double NoEdge = -1;   // cost of a pair that is met from its other row
+constexpr double NoEdge = -1;   // cost of a pair that is met from its other row, or does not take part
 
 /// The energy's numbers for the rows that take part.
 struct Problem {
@@ -132,11 +132,15 @@ struct Problem {
     }
 };
 
-void set_edge_costs(Problem& problem, ThreadPool* threads) {
+/// Costs of the edges between rows of `inside` [M].
+void set_edge_costs(Problem& problem, std::span<const std::uint8_t> inside, ThreadPool* threads) {
     problem.edge_costs.assign(problem.nearest.size(), NoEdge);
     const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
-        for (std::size_t at = begin * problem.neighbours; at < end * problem.neighbours; ++at)
-            if (problem.nearest[at] != NoRow) problem.edge_costs[at] = problem.edge_cost(at / problem.neighbours, problem.nearest[at]);
+        for (std::size_t i = begin; i < end; ++i) {
+            if (inside[i] == 0) continue;
+            for (std::size_t at = i * problem.neighbours; at < (i + 1) * problem.neighbours && problem.nearest[at] != NoRow; ++at)
+                if (inside[problem.nearest[at]] != 0) problem.edge_costs[at] = problem.edge_cost(i, problem.nearest[at]);
+        }
     };
     constexpr std::size_t chunk = 4096;   // rows
     if (threads != nullptr)
@@ -181,7 +185,6 @@ Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parame
     problem.row_costs.reserve(rows.size());
     for (const auto row : rows) problem.row_costs.push_back(row_costs(weights, parameters, mean_evidence, row));
     if (!rows.empty()) find_nearest(problem, threads);
-    set_edge_costs(problem, threads);
     return problem;
 }
 
@@ -190,8 +193,9 @@ Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parame
 double label_energy(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelWeights& weights,
                     std::span<const std::uint8_t> label) {
     GSE_CHECK_EQ(label.size(), gaussians.size);
-    const Problem problem = make_problem(gaussians, parameters, weights, nullptr);
+    Problem problem = make_problem(gaussians, parameters, weights, nullptr);
     const auto& rows = problem.rows.row;
+    set_edge_costs(problem, std::vector<std::uint8_t>(rows.size(), 1), nullptr);
     double energy = 0;
     for (std::size_t i = 0; i < rows.size(); ++i)
         energy += label[rows[i]] != 0 ? problem.row_costs[i].first : problem.row_costs[i].second;
@@ -203,6 +207,70 @@ double label_energy(const GaussianSpans& gaussians, const CutParameters& paramet
 
 #ifdef GSE_HAVE_OPENCV
 
+namespace {
+
+/// The minimum cut of the rows `inside` [M] and the edges between them: 1 where the label is.
+std::vector<std::uint8_t> cut_inside(const Problem& problem, std::span<const std::uint8_t> inside) {
+    constexpr int NoVertex = -1;
+    std::vector<int> vertex(inside.size(), NoVertex);
+    int count = 0;
+    for (std::size_t i = 0; i < inside.size(); ++i)
+        if (inside[i] != 0) vertex[i] = count++;
+    const auto edges = static_cast<unsigned>(
+        std::count_if(problem.edge_costs.begin(), problem.edge_costs.end(), [](double cost) { return cost != NoEdge; }));
+    cv::detail::GCGraph<double> graph(static_cast<unsigned>(count), 2 * edges);   // both ways
+    for (std::size_t i = 0; i < inside.size(); ++i)   // the source's side is "labelled"
+        if (inside[i] != 0) graph.addTermWeights(graph.addVtx(), problem.row_costs[i].second, problem.row_costs[i].first);
+    problem.for_each_edge([&](std::size_t from, std::size_t to, double cost) { graph.addEdges(vertex[from], vertex[to], cost, cost); });
+    if (count > 0) graph.maxFlow();
+    std::vector<std::uint8_t> label(inside.size(), 0);
+    for (std::size_t i = 0; i < inside.size(); ++i) label[i] = inside[i] != 0 && graph.inSourceSegment(vertex[i]) ? 1 : 0;
+    return label;
+}
+
+/// Adds the rows that are `steps` edges or fewer away; false where that is none.
+bool grow(const Problem& problem, int steps, std::vector<std::uint8_t>& inside) {
+    bool any = false;
+    for (int step = 0; step < steps; ++step) {
+        const auto before = inside;
+        for (std::size_t i = 0; i < inside.size(); ++i)
+            for (const auto j : problem.nearest_to(i)) {
+                if (j == NoRow) break;
+                if (before[i] != 0) inside[j] = 1;
+                if (before[j] != 0) inside[i] = 1;
+            }
+        if (inside == before) break;
+        any = true;
+    }
+    return any;
+}
+
+/// Whether a labelled row has an edge to one outside.
+bool leaves(const Problem& problem, std::span<const std::uint8_t> inside, std::span<const std::uint8_t> label) {
+    for (std::size_t i = 0; i < inside.size(); ++i)
+        for (const auto j : problem.nearest_to(i)) {
+            if (j == NoRow) break;
+            if (inside[i] != inside[j] && label[i] + label[j] > 0) return true;
+        }
+    return false;
+}
+
+/// The minimum cut of everything, of which mostly a part has to be cut: that around the rows that prefer the label. What it leaves out
+/// prefers to stay without, and where no labelled row of the part has an edge to it, nothing could cost less: without its edges to the
+/// rest the part's energy is the least of all labels of the part, and the rest has its least by itself.
+std::vector<std::uint8_t> cut_around_preferring(Problem& problem, int reach, ThreadPool* threads) {
+    std::vector<std::uint8_t> inside(problem.rows.row.size());
+    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = reach <= 0 || problem.row_costs[i].first < problem.row_costs[i].second ? 1 : 0;
+    for (;; reach *= 2) {
+        const bool grown = grow(problem, reach, inside);
+        set_edge_costs(problem, inside, threads);
+        auto label = cut_inside(problem, inside);
+        if (!grown || !leaves(problem, inside, label)) return label;
+    }
+}
+
+}  // namespace
+
 std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& parameters, LabelWeights& weights,
                       ThreadPool* threads) {
     GSE_CHECK_EQ(weights.weight.size(), gaussians.size);
@@ -210,22 +278,12 @@ std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& param
     Problem problem = make_problem(gaussians, parameters, weights, threads);
     const auto& rows = problem.rows.row;
     if (rows.size() < 2) return 0;
-    const auto edges = static_cast<std::size_t>(
-        std::count_if(problem.edge_costs.begin(), problem.edge_costs.end(), [](double cost) { return cost != NoEdge; }));
-    cv::detail::GCGraph<double> graph(static_cast<unsigned>(rows.size()), static_cast<unsigned>(2 * edges));   // both ways
-    for (const auto& [labelled, not_labelled] : problem.row_costs)
-        graph.addTermWeights(graph.addVtx(), not_labelled, labelled);   // the source's side is "labelled"
-    problem.for_each_edge([&](std::size_t from, std::size_t to, double cost) {
-        graph.addEdges(static_cast<int>(from), static_cast<int>(to), cost, cost);
-    });
-    problem.nearest = {};   // the graph has its own
-    problem.edge_costs = {};
-    graph.maxFlow();
+    const auto label = cut_around_preferring(problem, parameters.reach, threads);
     std::size_t changed = 0;
     const auto tau = static_cast<float>(parameters.tau);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         float& weight = weights.weight[rows[i]];
-        const bool labelled = graph.inSourceSegment(static_cast<int>(i));
+        const bool labelled = label[i] != 0;
         if (labelled == (weight > tau)) continue;
         weight = labelled ? std::min(1.0f, tau + BeyondTau) : std::max(0.0f, tau - BeyondTau);
         ++changed;

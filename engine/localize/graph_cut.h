@@ -15,6 +15,7 @@ struct CutParameters {
     double tau = 0.5;          // weight at which a row is undecided
     double least_evidence_px = 0.5;
     double margin_share = 0.1; // of the diagonal: rows farther than this outside the box of the labelled ones stay out
+    int reach = 3;             // edges from rows that prefer the label to where the first graph ends; 0 = everything at once
 };
 
 /// Moves the weight of rows to the other side of `tau` so that label_energy() becomes least, exactly (Boykov and Jolly

@@ -167,6 +167,45 @@ DOCTEST_TEST_CASE("any number of threads gives the same bits") {
     DOCTEST_CHECK(three.inferred == one.inferred);
 }
 
+DOCTEST_TEST_CASE("a part is cut as it is in the cut of everything") {
+    constexpr std::size_t count = 6000;
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        DOCTEST_CAPTURE(seed);
+        Random random(seed);
+        Rows rows(count);
+        for (auto& value : rows.data.position) value = static_cast<float>(random.uniform(0, 1));
+        for (auto& value : rows.data.sh) value = static_cast<float>(random.uniform(0, 0.3));
+        const double size = random.uniform(0.05, 0.4);   // of a ball, most of whose rows prefer the label
+        for (std::size_t row = 0; row < count; ++row) {
+            const float* p = &rows.data.position[row * 3];
+            const bool thing = std::hypot(p[0] - 0.5, p[1] - 0.5, p[2] - 0.5) < size;
+            rows.weights.weight[row] = static_cast<float>(random.uniform(0, 1) < 0.9 ? (thing ? 0.8 : 0.2) : random.uniform(0, 1));
+            rows.weights.evidence[row] = random.uniform(0.6, 5);
+        }
+        for (const double smoothness : {0.5, 1.5, 6.0}) {
+            DOCTEST_CAPTURE(smoothness);
+            localize::CutParameters parameters;
+            parameters.smoothness = smoothness;
+            parameters.margin_share = 1;
+            parameters.reach = 0;
+            auto everything = rows.weights;
+            localize::cut_label(spans(rows.data), parameters, everything);
+            const auto label = *localize::label_from_weights("thing", everything, parameters.tau, 0.5).bits;
+            const double least = localize::label_energy(spans(rows.data), parameters, rows.weights, label);
+            for (const int reach : {1, 3}) {
+                DOCTEST_CAPTURE(reach);
+                parameters.reach = reach;
+                auto part = rows.weights;
+                localize::cut_label(spans(rows.data), parameters, part);
+                const auto found = *localize::label_from_weights("thing", part, parameters.tau, 0.5).bits;
+                DOCTEST_CHECK(localize::label_energy(spans(rows.data), parameters, rows.weights, found) ==
+                              doctest::Approx(least).epsilon(EnergyTolerance));
+                DOCTEST_CHECK(found == label);
+            }
+        }
+    }
+}
+
 DOCTEST_TEST_CASE("rows without a place, a colour or a view keep their weight; no smoothness does nothing") {
     Sheets sheets;
     constexpr std::size_t lost = 5 * Sheets::Side + 5, colourless = lost + 1, unseen = lost + 2;
