@@ -39,38 +39,38 @@ KeptVotes::Vote* KeptVotes::find(const Camera& camera) {
     return found != votes_.end() ? &*found : nullptr;
 }
 
-std::size_t KeptVotes::Vote::bytes() const {
-    return row.capacity() * (sizeof row[0] + sizeof masked[0] + sizeof total[0]) + mask.data.size() * sizeof mask.data[0];
-}
+std::size_t KeptVotes::Vote::bytes() const { return row.size() * RowBytes + mask.data.size() * sizeof mask.data[0]; }
 
-KeptVotes::Vote KeptVotes::cast(const GaussianSpans& gaussians, const MaskedView& view, const raster::Settings& settings,
-                                raster::Rasterizer& rasterizer) {
-    masked_.resize(gaussians.size);
-    total_.resize(gaussians.size);
+/// What the view says of every row, in masked_ and total_; returns how many rows it shows.
+std::size_t KeptVotes::cast(const GaussianSpans& gaussians, const MaskedView& view, const raster::Settings& settings,
+                            raster::Rasterizer& rasterizer) {
+    masked_.assign(gaussians.size, 0);
+    total_.assign(gaussians.size, 0);
     rasterizer.contributions(gaussians, view.camera, settings, view.mask, masked_, total_);
-    Vote vote{view.camera, view.mask, {}, {}, {}};
-    const auto shown = static_cast<std::size_t>(std::count_if(total_.begin(), total_.end(), [](double weight) { return weight != 0; }));
-    vote.row.reserve(shown);
-    vote.masked.reserve(shown);
-    vote.total.reserve(shown);
-    for (std::size_t row = 0; row < gaussians.size; ++row) {
-        if (total_[row] == 0) continue;
-        vote.row.push_back(static_cast<std::uint32_t>(row));
-        vote.masked.push_back(masked_[row]);
-        vote.total.push_back(total_[row]);
-        masked_[row] = total_[row] = 0;
-    }
-    return vote;
+    return static_cast<std::size_t>(std::count_if(total_.begin(), total_.end(), [](double weight) { return weight != 0; }));
 }
 
-/// In place of `old`, if there is one; not at all where that takes too much memory.
-void KeptVotes::keep(Vote vote, Vote* old) {
+/// Keeps what was cast for the rows that are shown, in place of what the camera's view said before.
+void KeptVotes::keep(const MaskedView& view, std::size_t shown, Vote* old) {
     if (old != nullptr) bytes_ -= old->bytes();
-    if (bytes_ + vote.bytes() > most_bytes_) vote = Vote{vote.camera, {}, {}, {}, {}};   // like no mask
+    Vote vote;
+    vote.camera = view.camera;
+    if (bytes_ + shown * Vote::RowBytes + view.mask.data.size() * sizeof view.mask.data[0] <= most_bytes_) {
+        vote.mask = view.mask;
+        vote.row.reserve(shown);
+        vote.masked.reserve(shown);
+        vote.total.reserve(shown);
+        for (std::size_t row = 0; row < total_.size(); ++row) {
+            if (total_[row] == 0) continue;
+            vote.row.push_back(static_cast<std::uint32_t>(row));
+            vote.masked.push_back(masked_[row]);
+            vote.total.push_back(total_[row]);
+        }
+    }
     bytes_ += vote.bytes();
     if (old != nullptr)
         *old = std::move(vote);
-    else
+    else if (!vote.mask.data.empty())
         votes_.push_back(std::move(vote));
 }
 
@@ -82,16 +82,20 @@ LabelWeights KeptVotes::back_project(const GaussianSpans& gaussians, std::span<c
     for (const auto& view : views) {
         if (view.failed) continue;
         ++used;
-        Vote* kept = find(view.camera);
-        const bool known = kept != nullptr && kept->mask.data == view.mask.data;
-        Vote fresh;
-        if (!known) fresh = cast(gaussians, view, settings, rasterizer);
-        const Vote& vote = known ? *kept : fresh;
-        for (std::size_t i = 0; i < vote.row.size(); ++i) {
-            masked[vote.row[i]] += vote.masked[i];
-            total[vote.row[i]] += vote.total[i];
+        Vote* known = find(view.camera);
+        if (known != nullptr && known->mask.data == view.mask.data) {
+            for (std::size_t i = 0; i < known->row.size(); ++i) {
+                masked[known->row[i]] += known->masked[i];
+                total[known->row[i]] += known->total[i];
+            }
+            continue;
         }
-        if (!known) keep(std::move(fresh), kept);
+        const std::size_t shown = cast(gaussians, view, settings, rasterizer);
+        for (std::size_t row = 0; row < total.size(); ++row) {
+            masked[row] += masked_[row];
+            total[row] += total_[row];
+        }
+        keep(view, shown, known);
     }
     return weights_of(masked, std::move(total), used);
 }

@@ -44,15 +44,16 @@ private:
         Image mask;
         std::vector<std::uint32_t> row;      // those it shows
         std::vector<double> masked, total;   // of these
+        static constexpr std::size_t RowBytes = sizeof(std::uint32_t) + 2 * sizeof(double);
         std::size_t bytes() const;
     };
     Vote* find(const Camera& camera);
-    void keep(Vote vote, Vote* old);
-    Vote cast(const GaussianSpans& gaussians, const MaskedView& view, const raster::Settings& settings, raster::Rasterizer& rasterizer);
+    std::size_t cast(const GaussianSpans& gaussians, const MaskedView& view, const raster::Settings& settings, raster::Rasterizer& rasterizer);
+    void keep(const MaskedView& view, std::size_t shown, Vote* old);
 
     std::size_t most_bytes_, bytes_ = 0;
     std::vector<Vote> votes_;
-    std::vector<double> masked_, total_;   // of one view, zero in between
+    std::vector<double> masked_, total_;   // of one view
 };
 
 /// The same once. Throws Error when more than half of the views failed or none is left.
