@@ -32,6 +32,7 @@ namespace {
 constexpr std::size_t RecognisedViews = 6;   // pictures that are compared with words
 constexpr int LeastViews = 3;                // fewer voting views cannot tell front from back
 constexpr std::size_t LeastSplats = 4;       // of a thing; what views at odds have in common by chance are one or two
+constexpr double IslandShare = 0.05;       // of a thing that goes: what hangs in the air without it (a bumper) and is no more
 constexpr float GroundWeight = 0.5f;         // of tau: what ground under a thing keeps of its weight at most
 constexpr double LargestLabelShare = 0.97;   // of what the views see, where the sentence names other things too
 constexpr float LabelSeen = 0.5f;           // share of a pixel from which it shows the artist's label
@@ -53,6 +54,7 @@ struct Search {
     bool rivals_given = false;   // by the user, not read off the sentence
     bool absent = false;
     bool whole = false;   // what the request is about: views that are left out do not vote on it
+    bool alone = false;   // it goes, and the sentence names nothing that it wears or holds: what only it holds goes with it
 };
 
 /// Steps of locate() over all views.
@@ -344,10 +346,8 @@ private:
         spread.least_evidence_px = least;
         spread.tau = request().tau;
         localize::spread_to_unseen(input_.gaussians.spans(), spread, weights, tools_.threads);
-        localize::CutParameters cut;
-        cut.tau = request().tau;
-        cut.least_evidence_px = least;
-        cut.smoothness = request().label_smoothness;
+        const localize::CutParameters cut{.smoothness = request().label_smoothness, .tau = request().tau, .least_evidence_px = least,
+                                          .island_share = search.alone ? IslandShare : 0};
         const auto changed = localize::cut_label(input_.gaussians.spans(), cut, weights, tools_.threads);
         if (changed > 0) log::debug("{} splats took the label of those they belong to", changed);
         found.label = localize::label_from_weights(search.word, weights, request().tau, least);
@@ -403,6 +403,7 @@ private:
     void modify(LocateResult& result) {
         Search search = search_for(request().source, false);
         search.whole = true;
+        search.alone = result.mode == EditMode::Replace && std::all_of(search.rivals.begin(), search.rivals.end(), names_ground);
         result.word = search.word;
         if (input_.label != nullptr) {
             result.views = labelled_views();

@@ -101,6 +101,7 @@ struct Problem {
     std::vector<float> colours;                         // [M,3]
     std::vector<std::uint32_t> nearest;                 // [M,neighbours] indices into the rows; NoRow where there are not so many
     std::vector<double> edge_costs;                     // [M,neighbours] of cutting the edges to them; or NoEdge
+    std::vector<std::uint8_t> enclosed;                 // [M] 1 where the nearest rows are those of the whole scene
     std::size_t neighbours = 0;
     double smoothness = 0, mean_difference = 0;
 
@@ -149,14 +150,23 @@ void set_edge_costs(Problem& problem, std::span<const std::uint8_t> inside, Thre
         some(0, problem.rows.row.size(), 0);
 }
 
+/// Whether a sphere around a row lies in the box.
+bool encloses(const Box& box, const float* centre, double radius) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (centre[axis] - radius < box.low[axis] || centre[axis] + radius > box.high[axis]) return false;
+    return true;
+}
+
 /// Sets the nearest rows and the mean over them of the squared difference of the colours.
-void find_nearest(Problem& problem, ThreadPool* threads) {
+void find_nearest(Problem& problem, const Box& box, ThreadPool* threads) {
     const RowTree tree(3, problem.rows, nanoflann::KDTreeSingleIndexAdaptorParams(RowTreeLeaf));
     const std::size_t count = problem.rows.row.size();
     problem.nearest.assign(count * problem.neighbours, NoRow);
     std::vector<double> difference(count);
     std::vector<std::uint32_t> found(count);
-    const auto take = [&](std::size_t i, std::span<const std::uint32_t> nearest, std::span<const float>) {
+    problem.enclosed.assign(count, 0);
+    const auto take = [&](std::size_t i, std::span<const std::uint32_t> nearest, std::span<const float> squared) {
+        problem.enclosed[i] = encloses(box, &problem.rows.position[i * 3], std::sqrt(squared.back())) ? 1 : 0;
         std::uint32_t* next = problem.nearest.data() + i * problem.neighbours;
         for (const auto other : nearest) {
             if (other == i || found[i] == problem.neighbours) continue;
@@ -184,7 +194,7 @@ Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parame
     for (const auto row : rows) mean_evidence += weights.evidence[row] * share;
     problem.row_costs.reserve(rows.size());
     for (const auto row : rows) problem.row_costs.push_back(row_costs(weights, parameters, mean_evidence, row));
-    if (!rows.empty()) find_nearest(problem, threads);
+    if (!rows.empty()) find_nearest(problem, box, threads);
     return problem;
 }
 
@@ -269,6 +279,62 @@ std::vector<std::uint8_t> cut_around_preferring(Problem& problem, int reach, Thr
     }
 }
 
+/// Disjoint sets of rows (Tarjan 1975, with path halving).
+struct Components {
+    std::vector<std::uint32_t> parent;
+
+    explicit Components(std::size_t count) : parent(count) { std::iota(parent.begin(), parent.end(), 0u); }
+    std::uint32_t root(std::uint32_t i) {
+        while (parent[i] != i) i = parent[i] = parent[parent[i]];
+        return i;
+    }
+    void unite(std::uint32_t a, std::uint32_t b) { parent[root(a)] = root(b); }
+};
+
+/// What is known of a component of the rows without the label, at the number of its root.
+struct Component {
+    std::uint32_t rows = 0;
+    bool beside_label = false;
+    bool enclosed = true;   // none of its neighbours can lie outside the box
+};
+
+Components components_without(const Problem& problem, std::span<const std::uint8_t> label) {
+    Components components(label.size());
+    for (std::uint32_t i = 0; i < label.size(); ++i)
+        for (const auto j : problem.nearest_to(i)) {
+            if (j == NoRow) break;
+            if (j < i && label[i] == 0 && label[j] == 0 && problem.is_near(j, i)) components.unite(i, j);
+        }
+    return components;
+}
+
+std::vector<Component> describe(const Problem& problem, std::span<const std::uint8_t> label, Components& components) {
+    std::vector<Component> about(label.size());
+    for (std::uint32_t i = 0; i < label.size(); ++i) {
+        if (label[i] == 0) {
+            auto& own = about[components.root(i)];
+            ++own.rows;
+            own.enclosed = own.enclosed && problem.enclosed[i] != 0;
+        }
+        for (const auto j : problem.nearest_to(i)) {
+            if (j == NoRow) break;
+            if (label[i] != label[j]) about[components.root(label[i] == 0 ? i : j)].beside_label = true;
+        }
+    }
+    return about;
+}
+
+/// Labels the islands that are no larger than `share` of what is labelled.
+void label_islands(const Problem& problem, double share, std::vector<std::uint8_t>& label) {
+    const double most = share * static_cast<double>(std::count(label.begin(), label.end(), std::uint8_t{1}));
+    Components components = components_without(problem, label);
+    const auto about = describe(problem, label, components);
+    for (std::uint32_t i = 0; i < label.size(); ++i) {
+        const auto& own = about[components.root(i)];
+        if (label[i] == 0 && own.beside_label && own.enclosed && own.rows <= most) label[i] = 1;
+    }
+}
+
 }  // namespace
 
 std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& parameters, LabelWeights& weights,
@@ -278,7 +344,8 @@ std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& param
     Problem problem = make_problem(gaussians, parameters, weights, threads);
     const auto& rows = problem.rows.row;
     if (rows.size() < 2) return 0;
-    const auto label = cut_around_preferring(problem, parameters.reach, threads);
+    auto label = cut_around_preferring(problem, parameters.reach, threads);
+    if (parameters.island_share > 0) label_islands(problem, parameters.island_share, label);
     std::size_t changed = 0;
     const auto tau = static_cast<float>(parameters.tau);
     for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -16,11 +16,14 @@ struct CutParameters {
     double least_evidence_px = 0.5;
     double margin_share = 0.1; // of the diagonal: rows farther than this outside the box of the labelled ones stay out
     int reach = 3;             // edges from rows that prefer the label to where the first graph ends; 0 = everything at once
+    double island_share = 0;   // of the labelled rows: islands of no more take the label; 0 = none does
 };
 
 /// Moves the weight of rows to the other side of `tau` so that label_energy() becomes least, exactly (Boykov and Jolly
 /// 2001, with the contrast term of GrabCut, on a graph of splats in place of pixels). Rows that neither a view saw nor a
-/// neighbour spoke for keep what they have. Returns how many rows changed sides. The same for any number of threads (null =
+/// neighbour spoke for keep what they have. Then islands take the label, where that is asked for: rows without it that are joined to
+/// other rows without it by no pair of mutual neighbours, so that they would hang in the air if the labelled ones were gone. Returns how
+/// many rows changed sides. The same for any number of threads (null =
 /// one); without OpenCV nothing is done.
 std::size_t cut_label(const GaussianSpans& gaussians, const CutParameters& parameters, LabelWeights& weights,
                       ThreadPool* threads = nullptr);
