@@ -259,6 +259,28 @@ Json figures_of_another_truth(const EvalSetting& setting, const EvalTools& tools
     return json;
 }
 
+/// The mean of the pictures of several other true scenes in the pose that the edit is compared in: about the best guess that the sentence
+/// allows, though no picture of anything.
+Json figures_of_mean_truth(const EvalSetting& setting, const EvalTools& tools) {
+    constexpr int Scenes = 16;
+    HeldOut seen = look(setting, setting.target.scene.gaussians, tools.painter);
+    for (auto& mean : seen.after) std::fill(mean.data.begin(), mean.data.end(), 0.0f);
+    for (int variant = 1; variant <= Scenes; ++variant) {
+        auto spec = setting.target.spec;
+        spec.variant = static_cast<std::uint64_t>(variant);
+        const auto other = synth::generate(spec);
+        for (std::size_t v = 0; v < seen.after.size(); ++v) {
+            const Image shown = picture(tools.painter, other.scene.gaussians, setting.held_out.views[v].camera);
+            for (std::size_t i = 0; i < shown.data.size(); ++i) seen.after[v].data[i] += shown.data[i] / Scenes;
+        }
+    }
+    Json json, inside;
+    add_inside(seen, inside);
+    json["l1_reduction"] = inside["l1_reduction"];
+    add_old_left(seen, json);
+    return json;
+}
+
 void add_consistency(const HeldOut& seen, Json& json) {
     json["inconsistency"] = evaluate::path_inconsistency({seen.before, seen.after, seen.part, true});
     json["inconsistency_of_truth"] = evaluate::path_inconsistency({seen.before, seen.truth, seen.part, true});
@@ -420,6 +442,7 @@ Json edited_figures(const EvalSetting& setting, const edit::EditPlan& plan, cons
         add_old_left(seen, json);
         add_old_shown(setting, result, seen, tools.painter, json);
         json["another_truth"] = figures_of_another_truth(setting, tools);
+        json["mean_truth"] = figures_of_mean_truth(setting, tools);
         json["truth"] = {{"heading", setting.target.spec.heading}, {"size", setting.target.spec.size}};
     }
     add_outside(seen, json);

@@ -156,13 +156,13 @@ void add_preservation(const Json& edits, Json& summary) {
     summary["inconsistency_of_truth"] = figure(mean(all, "inconsistency_of_truth"), {});
 }
 
-/// Of what another true scene of each sentence is measured at.
-Json mean_of_another_truth(const Edits& edits, const char* key) {
+/// Of what other true scenes of each sentence are measured at ("another_truth": one, "mean_truth": the mean of several).
+Json mean_of_truths(const Edits& edits, const char* which, const char* key) {
     double sum = 0;
     std::size_t count = 0;
     for (const Json* edit : edits) {
-        if (!edit->contains("another_truth")) continue;
-        sum += (*edit)["another_truth"][key].get<double>();
+        if (!edit->contains(which)) continue;
+        sum += (*edit)[which][key].get<double>();
         ++count;
     }
     return count > 0 ? Json(sum / static_cast<double>(count)) : Json();
@@ -178,7 +178,9 @@ void add_replacements(const Json& report, const Json& edits, Json& summary) {
     summary["replace_old_unchanged"] = figure(mean(done, "old_unchanged"), {});
     summary["replace_old_shown"] = figure(mean(done, "old_shown"), {});
     for (const char* key : {"silhouette_iou", "l1_reduction", "old_left"})
-        summary[std::string("replace_another_truth_") + key] = figure(mean_of_another_truth(done, key), {});
+        summary[std::string("replace_another_truth_") + key] = figure(mean_of_truths(done, "another_truth", key), {});
+    for (const char* key : {"l1_reduction", "old_left"})
+        summary[std::string("replace_mean_truth_") + key] = figure(mean_of_truths(done, "mean_truth", key), {});
     summary["replace_success"] = figure(success_share(replaced, report), {">=", 0.8});
     summary["replace_psnr_outside_db"] = figure(mean(done, "psnr_outside_db"), {">=", 38});
     summary["replace_leak_rate"] = figure(mean(done, "leak_rate"), {});
