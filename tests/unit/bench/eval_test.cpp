@@ -190,6 +190,10 @@ DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and siz
     DOCTEST_CHECK(perfect["old_unchanged"].get<double>() == 0);
     DOCTEST_CHECK(perfect["old_shown"].get<double>() == 0);
     DOCTEST_CHECK(perfect["l1_reduction"].get<double>() == doctest::Approx(1).epsilon(1e-3));
+    // Nobody who knows the sentence alone is that good, nor is the best guess as far off as no edit.
+    DOCTEST_CHECK(perfect["mean_truth"]["l1_reduction"].get<double>() < 0.95);
+    DOCTEST_CHECK(perfect["mean_truth"]["l1_reduction"].get<double>() > 0.2);
+    DOCTEST_CHECK(perfect["mean_truth"]["old_left"].get<double>() < 0.5);
     const auto ground = rows_of(edited, synth::Part::Ground);   // what closes holes is no part of the thing
     for (std::size_t row = 0; row < ground.size(); ++row) result.label[row] |= ground[row], result.hidden[row] = ground[row];
     DOCTEST_CHECK(edited_figures(setting, plan, result, {painter})["silhouette_iou"].get<double>() == doctest::Approx(1));
@@ -213,6 +217,7 @@ DOCTEST_TEST_CASE("what replaces has figures of its own and leaves the others as
     replaced["old_left"] = 0.125;
     replaced["old_unchanged"] = 0.0625;
     replaced["old_shown"] = 0.03125;
+    replaced["mean_truth"] = {{"l1_reduction", 0.75}, {"old_left", 0.0625}};
     Json hat = changed_edit(2, 0, 0.5, 40);
     hat["kind"] = "add";
     hat["target"] = "hat";
@@ -232,6 +237,8 @@ DOCTEST_TEST_CASE("what replaces has figures of its own and leaves the others as
     DOCTEST_CHECK(with["replace_old_left"]["value"] == doctest::Approx(0.125));
     DOCTEST_CHECK(with["replace_old_unchanged"]["value"] == doctest::Approx(0.0625));
     DOCTEST_CHECK(with["replace_old_shown"]["value"] == doctest::Approx(0.03125));
+    DOCTEST_CHECK(with["replace_mean_truth_l1_reduction"]["value"] == doctest::Approx(0.75));
+    DOCTEST_CHECK(with["replace_mean_truth_old_left"]["value"] == doctest::Approx(0.0625));
     const auto table = eval_summary(report_of(Json::array({hat, crown, failed})))["added_means"];
     DOCTEST_REQUIRE(table.size() == 2);
     DOCTEST_CHECK(table[1]["thing"] == "hat");
