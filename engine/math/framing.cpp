@@ -2,6 +2,7 @@
 #include "engine/math/framing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace gse {
@@ -12,18 +13,23 @@ constexpr double SmallestBox = 1e-9;    // of the box's distance from the origin
 
 }  // namespace
 
-double fitting_distance(const Bounds& bounds, const Mat3& rotation, double fov_x, int width, int height) {
+double fitting_distance(std::span<const Vec3> points, Vec3 target, const Mat3& rotation, double fov_x, int width, int height) {
     const double across = FilledShare * std::tan(0.5 * fov_x), down = across * height / width;
-    const Vec3 centre = bounds.centre();
     double distance = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 at{corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
-                      corner & 4 ? bounds.high.z : bounds.low.z};
-        const Vec3 p = rotation * (at - centre);
+    for (const Vec3& at : points) {
+        const Vec3 p = rotation * (at - target);
         distance = std::max({distance, std::abs(p.x) / across - p.z, std::abs(p.y) / down - p.z});
     }
-    const double least = SmallestBox * length(centre);
+    const double least = SmallestBox * length(target);
     return std::max(distance, least > 0 ? least : SmallestBox);
+}
+
+double fitting_distance(const Bounds& bounds, const Mat3& rotation, double fov_x, int width, int height) {
+    std::array<Vec3, 8> corners;
+    for (std::size_t corner = 0; corner < corners.size(); ++corner)
+        corners[corner] = {corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
+                           corner & 4 ? bounds.high.z : bounds.low.z};
+    return fitting_distance(corners, bounds.centre(), rotation, fov_x, width, height);
 }
 
 Camera home_camera(const OrbitParameters& orbit, const Bounds& bounds, double fov_x, int width, int height) {

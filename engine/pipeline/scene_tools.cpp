@@ -13,7 +13,7 @@
 #include "engine/io/image_file.h"
 #include "engine/io/project_file.h"
 #include "engine/io/scene_io.h"
-#include "engine/math/framing.h"
+#include "engine/scene/framing.h"
 
 namespace gse::pipeline {
 
@@ -61,6 +61,20 @@ OrbitParameters fitted(const SceneStatistics& statistics, const SceneInfo& info,
     return orbit;
 }
 
+/// Means of splats in the box: all, or in a large scene every so many.
+std::vector<Vec3> some_points_in(const Bounds& bounds, const GaussianSet& set) {
+    constexpr std::size_t Most = 100'000;
+    const auto position = set.position();
+    const std::size_t step = set.size() / Most + 1;
+    std::vector<Vec3> points;
+    for (std::size_t row = 0; row < set.size(); row += step) {
+        const Vec3 at{position[row * 3], position[row * 3 + 1], position[row * 3 + 2]};
+        if (at.x >= bounds.low.x && at.y >= bounds.low.y && at.z >= bounds.low.z && at.x <= bounds.high.x && at.y <= bounds.high.y && at.z <= bounds.high.z)
+            points.push_back(at);
+    }
+    return points;
+}
+
 }  // namespace
 
 OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& parameters) {
@@ -68,16 +82,21 @@ OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& paramete
 }
 
 OrbitParameters whole_orbit(const Scene& scene, const RenderParameters& parameters) {
-    constexpr int sides = 16;
-    const auto statistics = compute_statistics(scene.gaussians);
-    OrbitParameters orbit = fitted(statistics, scene.info, parameters);
-    const Bounds bounds{statistics.robust_low, statistics.robust_high};
-    double fitting = 0;
-    for (int side = 0; side < sides; ++side) {
-        const auto camera = orbit_camera(orbit, 2 * std::numbers::pi * side / sides, parameters.width, parameters.height);
-        fitting = std::max(fitting, fitting_distance(bounds, camera.rotation, orbit.fov_x, parameters.width, parameters.height));
-    }
-    orbit.radius = std::max(orbit.radius, fitting / parameters.zoom);
+    constexpr int Sides = 16;
+    OrbitParameters orbit = scene_orbit(scene, parameters);
+    const Bounds bounds = framing_bounds(scene.gaussians);
+    const auto points = some_points_in(bounds, scene.gaussians);
+    const auto fitting_from = [&](Vec3 centre) {
+        double fitting = 0;
+        for (int side = 0; side < Sides; ++side) {
+            const auto camera = orbit_camera(orbit, 2 * std::numbers::pi * side / Sides, parameters.width, parameters.height);
+            fitting = std::max(fitting, fitting_distance(points, centre, camera.rotation, orbit.fov_x, parameters.width, parameters.height));
+        }
+        return fitting;
+    };
+    if (points.empty() || fitting_from(orbit.centre) <= orbit.radius * parameters.zoom) return orbit;
+    orbit.centre = bounds.centre();
+    orbit.radius = fitting_from(orbit.centre) / parameters.zoom;
     return orbit;
 }
 
@@ -109,7 +128,7 @@ Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path
                         "choose a smaller --view or name the cameras with --cameras", scene_path);
         return views[index].camera.resized(parameters.width, parameters.height);
     }
-    return orbit_camera(scene_orbit(scene, parameters), parameters.azimuth * Degree, parameters.width, parameters.height);
+    return orbit_camera(whole_orbit(scene, parameters), parameters.azimuth * Degree, parameters.width, parameters.height);
 }
 
 Painter::Painter(unsigned threads, const std::string& rasterizer) : pool_(threads), rasterizer_(raster::make_rasterizer(rasterizer, pool_)) {}

@@ -39,7 +39,7 @@ struct RenderParameters {
         f("height", self.height, "Picture height in pixels.", Range{1, 16384});
         f("azimuth", self.azimuth, "Direction of the automatic camera in degrees, 0 = front.", Range{-3600, 3600});
         f("elevation", self.elevation, "Height of the automatic camera in degrees above the horizon.", Range{-89, 89});
-        f("zoom", self.zoom, "Nearer (above 1) or farther (below 1) than the fitted distance.", Range{0.01, 100});
+        f("zoom", self.zoom, "Nearer (above 1) or farther (below 1) than from where the picture shows all of the scene.", Range{0.01, 100});
         f("fov", self.fov, "Horizontal field of view of the automatic camera in degrees.", Range{5, 150});
         f("up", self.up, "World up: auto, x, y, z, -x, -y or -z.");
         f("background", self.background, "black, white, grey or #rrggbb.");
@@ -61,7 +61,8 @@ raster::Settings raster_settings(const RenderParameters& parameters, const Scene
 
 /// The orbit fitted to the scene under these parameters.
 OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& parameters);
-/// The same, stepped back where a picture of that shape would cut off the top or the bottom of what stands tall, from some side.
+/// The same, around the middle and from where all is seen, where a picture of that shape at a zoom of 1 would cut off the top or the
+/// bottom of what stands tall, from some side.
 OrbitParameters whole_orbit(const Scene& scene, const RenderParameters& parameters);
 
 /// The cameras named, or those found beside the scene; none when there are none.
@@ -72,7 +73,7 @@ std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const s
 /// there are none).
 std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit = 0);
 
-/// The one camera `render` uses.
+/// The one camera `render` uses: the one named, or one of whole_orbit().
 Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path, const RenderParameters& parameters);
 
 /// A rasterizer with its threads.

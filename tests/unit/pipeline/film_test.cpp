@@ -97,33 +97,59 @@ DOCTEST_TEST_CASE("easing is walked as the file says, kept, and refused where it
     DOCTEST_CHECK(length(back.at(1).camera.centre() - keys.at(1).camera.centre()) < 1e-12);
 }
 
-DOCTEST_TEST_CASE("what stands tall is whole in a turn around it") {
+namespace {
+
+/// A pole of splats at these heights.
+Scene pole(const std::vector<float>& heights) {
     GaussianData data;
-    data.resize(200);
-    for (std::size_t row = 0; row < 200; ++row) {
-        data.position[row * 3 + 1] = static_cast<float>(row) / 20;   // a pole of ten units
+    data.resize(heights.size());
+    for (std::size_t row = 0; row < heights.size(); ++row) {
+        data.position[row * 3 + 1] = heights[row];
         for (std::size_t axis = 0; axis < 3; ++axis) data.log_scale[row * 3 + axis] = -4;
         data.rotation[row * 4] = 1;
         data.opacity_logit[row] = 4;
     }
     Scene scene;
     scene.gaussians = GaussianSet(std::move(data));
+    return scene;
+}
+
+}  // namespace
+
+DOCTEST_TEST_CASE("what stands tall is whole in a turn around it and in a picture, also on a foot of few splats") {
+    std::vector<float> even, footed;
+    for (int row = 0; row < 200; ++row) even.push_back(static_cast<float>(row) / 20);
+    for (int row = 0; row < 190; ++row) footed.push_back(static_cast<float>(row) / 95);
+    for (int row = 1; row <= 10; ++row) footed.push_back(2 + 0.15f * static_cast<float>(row));
     pipeline::RenderParameters render;
     render.width = 160;
-    render.height = 90;
-    const auto cut_off = [&](const OrbitParameters& orbit) {
+    const auto cut_off = [&](const std::vector<float>& heights, const Camera& camera) {
         int count = 0;
-        for (const auto& camera : pipeline::turn_cameras(orbit, {}, 0, render.width, render.height))
-            for (const double end : {0.0, 9.95}) {
-                const Vec3 at = camera.to_camera({0, end, 0});
-                const double y = camera.fy * at.y / at.z + camera.cy;
-                count += at.z <= 0 || y < 0 || y > render.height ? 1 : 0;
-            }
+        for (const double end : {heights.front(), heights.back()}) {
+            const Vec3 at = camera.to_camera({0, end, 0});
+            const double y = camera.fy * at.y / at.z + camera.cy;
+            count += at.z <= 0 || y < 0 || y > render.height ? 1 : 0;
+        }
         return count;
     };
-    DOCTEST_CHECK(cut_off(pipeline::scene_orbit(scene, render)) > 0);
-    DOCTEST_CHECK(cut_off(pipeline::whole_orbit(scene, render)) == 0);
+    for (const auto& heights : {even, footed}) {
+        const Scene scene = pole(heights);
+        render.height = 90;
+        int cut = 0;
+        for (const auto& camera : pipeline::turn_cameras(pipeline::scene_orbit(scene, render), {}, 0, render.width, render.height))
+            cut += cut_off(heights, camera);
+        DOCTEST_CHECK(cut > 0);
+        for (const auto& camera : pipeline::turn_cameras(pipeline::whole_orbit(scene, render), {}, 0, render.width, render.height))
+            DOCTEST_CHECK(cut_off(heights, camera) == 0);
+        const Camera one = pipeline::choose_camera(scene, {}, render);
+        DOCTEST_CHECK(cut_off(heights, one) == 0);
+        render.zoom = 2;   // half as far from the same middle
+        const Vec3 middle = pipeline::whole_orbit(scene, render).centre;
+        DOCTEST_CHECK(length(pipeline::choose_camera(scene, {}, render).centre() - middle) == doctest::Approx(0.5 * length(one.centre() - middle)));
+        render.zoom = 1;
+    }
     render.height = 160;   // where it fits, nothing moves
+    const Scene scene = pole(even);
     DOCTEST_CHECK(pipeline::whole_orbit(scene, render).radius == doctest::Approx(pipeline::scene_orbit(scene, render).radius));
 }
 
