@@ -32,7 +32,7 @@ namespace {
 constexpr std::size_t RecognisedViews = 6;   // pictures that are compared with words
 constexpr int LeastViews = 3;                // fewer voting views cannot tell front from back
 constexpr std::size_t LeastSplats = 4;       // of a thing; what views at odds have in common by chance are one or two
-constexpr double IslandShare = 0.05;       // of a thing that goes: what hangs in the air without it (a bumper) and is no more
+constexpr double IslandShare = 0.05;         // of a thing that goes: what hangs in the air without it (a bumper) and is no more
 constexpr float GroundWeight = 0.5f;         // of tau: what ground under a thing keeps of its weight at most
 constexpr double LargestLabelShare = 0.97;   // of what the views see, where the sentence names other things too
 constexpr float LabelSeen = 0.5f;           // share of a pixel from which it shows the artist's label

@@ -101,7 +101,7 @@ struct Problem {
     std::vector<float> colours;                         // [M,3]
     std::vector<std::uint32_t> nearest;                 // [M,neighbours] indices into the rows; NoRow where there are not so many
     std::vector<double> edge_costs;                     // [M,neighbours] of cutting the edges to them; or NoEdge
-    std::vector<std::uint8_t> enclosed;                 // [M] 1 where the nearest rows are those of the whole scene
+    std::vector<std::uint8_t> enclosed;                 // [M] 1 where no row beyond the box is as near as the nearest
     std::size_t neighbours = 0;
     double smoothness = 0, mean_difference = 0;
 

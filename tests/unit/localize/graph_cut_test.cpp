@@ -209,7 +209,7 @@ DOCTEST_TEST_CASE("a part is cut as it is in the cut of everything") {
 }
 
 DOCTEST_TEST_CASE("what only the label holds takes it, where that is asked for: no bridge, no ground, nothing large") {
-    // A labelled block of 6^3 rows, ground far beyond it on all sides half a step below, and beside it a bumper of another colour.
+    // A labelled block of 6^3 rows, ground far beyond it on all sides below, of which the cut sees a piece, and beside it a bumper of another colour.
     constexpr int Block = 6, Ground = 30;
     const auto scene = [](int bumper_layers, int bridge, double lift) {
         std::vector<std::array<double, 3>> places;
@@ -223,7 +223,7 @@ DOCTEST_TEST_CASE("what only the label holds takes it, where that is asked for: 
             for (int i = 0; i < 10; ++i) put(Block - 0.8 + 0.2 * layer, lift + 0.2 * (i % 2), 0.25 * (i / 2));
         const std::size_t bumper = places.size();
         for (int i = 0; i < bridge; ++i) put(Block - 0.6, lift - 0.2 * (i + 1), 0.5);
-        for (int i = 0; i < Ground * Ground; ++i) put(i % Ground - 12, -1.5, i / Ground - 12);
+        for (int i = 0; i < Ground * Ground; ++i) put(i % Ground - 12, -0.8, i / Ground - 12);
         Rows rows(places.size());
         for (std::size_t row = 0; row < places.size(); ++row) {
             for (std::size_t axis = 0; axis < 3; ++axis) rows.data.position[row * 3 + axis] = static_cast<float>(places[row][axis]);
@@ -240,16 +240,19 @@ DOCTEST_TEST_CASE("what only the label holds takes it, where that is asked for: 
         return std::count(bits.begin() + static_cast<std::ptrdiff_t>(begin), bits.begin() + static_cast<std::ptrdiff_t>(end), 1);
     };
     constexpr double High = 3;   // of the bumper above the block's foot
-    for (const double share : {0.0, 0.05, 0.2}) {   // the bumper has 20 rows of 216
+    for (const double share : {0.0, 0.05, 0.2, 0.8}) {   // the bumper has 20 rows of 216, the piece of ground some 50
         DOCTEST_CAPTURE(share);
         auto [rows, block, bumper] = scene(2, 0, High);
-        DOCTEST_CHECK_EQ(labelled(rows, share, block, bumper), share == 0.2 ? 20 : 0);
+        DOCTEST_CHECK_EQ(labelled(rows, share, block, bumper), share >= 0.2 ? 20 : 0);
         DOCTEST_CHECK_EQ(labelled(rows, share, 0, block), static_cast<std::ptrdiff_t>(block));
         DOCTEST_CHECK_EQ(labelled(rows, share, bumper, rows.weights.weight.size()), 0);   // the ground
     }
     auto [held, block, bumper] = scene(2, 22, High);   // it stands on the ground by itself
     DOCTEST_CHECK_EQ(labelled(held, 0.2, block, held.weights.weight.size()), 0);
-    auto [far, far_block, far_bumper] = scene(2, 0, High + 40);   // away from the label it is not its affair
+    auto [low, low_block, low_bumper] = scene(2, 0, 0.3);   // the ground is near it, but it has nearer ones
+    DOCTEST_CHECK_EQ(labelled(low, 0.2, low_block, low.weights.weight.size()), 20);
+    auto [far, far_block, far_bumper] = scene(2, 0, High + 40);   // between two parts of the label, away from both, it is not its affair
+    for (std::size_t row = 0; row < far_block / 2; ++row) far.data.position[row * 3 + 1] += 80;
     DOCTEST_CHECK_EQ(labelled(far, 0.2, far_block, far_bumper), 0);
 }
 
