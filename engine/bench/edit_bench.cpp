@@ -99,16 +99,18 @@ EvalRun run_of(const EditBenchParameters& parameters, const pipeline::EditRecipe
     return run;
 }
 
-/// Means over the edits: what was not found or failed has removed nothing.
+/// Means over the edits, and what each removed: what was not found or failed has removed nothing.
 Json means_of(const Json& edits, std::size_t count) {
     std::map<std::string, double> sums;
     std::map<std::string, std::pair<double, int>> kinds;
     double removed = 0;
     int ran = 0;
+    Json each = Json::array();
     for (const auto& edit : edits) {
         const bool failed = edit.contains("error") || !edit.contains("cost");
         const double reduction = failed ? 0 : edit["l1_reduction"].get<double>();
         removed += reduction;
+        each.push_back(reduction);
         auto& [sum, of] = kinds[edit["kind"].get<std::string>()];
         sum += reduction;
         ++of;
@@ -120,6 +122,7 @@ Json means_of(const Json& edits, std::size_t count) {
     }
     Json means{{"edits", count}, {"ran", ran}};
     means["error_removed"] = count > 0 ? removed / static_cast<double>(count) : 0;
+    means["per_case"]["error_removed"] = std::move(each);
     for (const char* name : {"seconds", "unet", "tflop", "leak_rate", "psnr_outside_db"})
         means[name] = ran > 0 ? Json(sums[name] / ran) : Json(nullptr);
     for (const auto& [kind, sum] : kinds) means["error_removed_of"][kind] = sum.first / std::max(1, sum.second);

@@ -129,7 +129,7 @@ private:
                 {"seconds", job.times().seconds("locate")}};
     }
 
-    /// Means over the scenes, and the least IoU of all.
+    /// Means over the scenes, the least IoU of all, and the error of each.
     static Json means(const std::vector<Json>& found) {
         Json mean = Json::object();
         double least = 1;
@@ -137,6 +137,7 @@ private:
             for (const auto& [name, value] : entry.items())
                 mean[name] = mean.value(name, 0.0) + value.get<double>() / static_cast<double>(found.size());
             least = std::min(least, entry["iou"].get<double>());
+            mean["per_case"]["error"].push_back(entry["error"]);
         }
         mean["least_iou"] = least;
         return mean;

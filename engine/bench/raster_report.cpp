@@ -28,7 +28,8 @@ Json floor_report(const raster::RasterBench& bench) {
     Json json;
     json["threads"] = bench.threads;
     json["ns_per_block"] = {{"forward", kernel.forward_ns}, {"backward_by_blocks_per_tile_pair", backward}};
-    json["ns_per_tile_pair"] = {{"mask", kernel.mask_ns}, {"gather", kernel.gather_ns}};
+    json["ns_per_tile_pair"] = {{"mask", kernel.mask_ns}, {"gather", kernel.scene_gather_ns},
+                                {"gather_in_first_cache", kernel.gather_ns}};
     json["gigabytes_per_second"] = kernel.gigabytes_per_second;
     json["tile_pairs_reached"] = bench.pairs_reached;
     json["block_pairs"] = bench.block_pairs;
@@ -37,7 +38,8 @@ Json floor_report(const raster::RasterBench& bench) {
                   {"lists", step.lists},
                   {"parameters", step.parameters},
                   {"parameter_gradients", step.parameter_gradients},
-                  {"total", step.total()}};
+                  {"total", step.total()},
+                  {"total_with_records_in_first_cache", step.total() - step.lists + step.lists_in_cache}};
     json["measured_ms"] = {{"wall", bench.forward_min_ms + bench.backward_min_ms},
                            {"processor_per_thread", (bench.forward.cpu_min_ms + bench.backward.cpu_min_ms) / bench.threads}};
     json["ratio"] = {{"wall", bench.floor_ratio}, {"processor", bench.floor_ratio_cpu}};

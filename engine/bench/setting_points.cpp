@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace gse::bench {
 namespace {
@@ -28,17 +29,52 @@ bool beats(const ChartPoint& one, const ChartPoint& other, bool less_is_better) 
     return !(one.y < other.y || one.y > other.y) && one.x < other.x * (1 - CostNoise);
 }
 
+std::vector<double> cases_of(const SettingPoint& point, const std::string& figure) {
+    const auto cases = point.figures.find("per_case");
+    if (cases == point.figures.end() || !cases->contains(figure)) return {};
+    return cases->at(figure).get<std::vector<double>>();
+}
+
+/// By how much one point is better than another over the same cases.
+struct Lead {
+    double mean = 0, standard_error = 0;
+};
+
+/// None where the cases of the two cannot be compared one by one.
+std::optional<Lead> lead_of(const SettingPoint& one, const SettingPoint& other, const Facet& facet) {
+    const auto a = cases_of(one, facet.y), b = cases_of(other, facet.y);
+    if (a.size() != b.size() || a.size() < 2) return std::nullopt;
+    const auto count = static_cast<double>(a.size());
+    Lead lead;
+    for (std::size_t i = 0; i < a.size(); ++i) lead.mean += (facet.less_is_better ? b[i] - a[i] : a[i] - b[i]) / count;
+    double squares = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double off = (facet.less_is_better ? b[i] - a[i] : a[i] - b[i]) - lead.mean;
+        squares += off * off;
+    }
+    lead.standard_error = std::sqrt(squares / (count - 1) / count);
+    return lead;
+}
+
 /// Where the default lies; null where no point is it.
 Json default_of(const std::vector<SettingPoint>& points, const Facet& facet) {
     for (const auto& point : points) {
         if (!point.standard) continue;
         const auto own = chart_point(point, facet);
-        Json beaten = Json::array();
-        for (const auto& other : points)
-            if (&other != &point && beats(chart_point(other, facet), own, facet.less_is_better))
+        Json beaten = Json::array(), within = Json::array();
+        for (const auto& other : points) {
+            if (&other == &point || !beats(chart_point(other, facet), own, facet.less_is_better)) continue;
+            const auto lead = lead_of(other, point, facet);
+            if (lead && lead->mean > 0 && lead->mean < LeadErrors * lead->standard_error)
+                within.push_back({{"name", full_name(other)}, {"lead", lead->mean}, {"standard_error", lead->standard_error}});
+            else
                 beaten.push_back(full_name(other));
+        }
         const bool measured = std::isfinite(own.x) && std::isfinite(own.y);
-        return {{"name", full_name(point)}, {"on_front", measured && beaten.empty()}, {"beaten_by", beaten}};
+        return {{"name", full_name(point)},
+                {"on_front", measured && beaten.empty()},
+                {"beaten_by", beaten},
+                {"within_scatter", within}};
     }
     return nullptr;
 }

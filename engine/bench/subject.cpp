@@ -67,8 +67,16 @@ std::vector<std::string> front_remarks(const Json& fronts, const std::vector<std
         if (!standard.is_object()) continue;
         std::string others;
         for (const auto& name : standard["beaten_by"]) others += (others.empty() ? "" : "; ") + name.get<std::string>();
-        if (standard["on_front"].get<bool>())
+        std::string within;
+        for (const auto& lead : standard["within_scatter"])
+            within += fmt::format("{}{} (by {:.2g}, standard error {:.2g})", within.empty() ? "" : "; ",
+                                  lead["name"].get<std::string>(), lead["lead"].get<double>(),
+                                  lead["standard_error"].get<double>());
+        if (standard["on_front"].get<bool>() && within.empty())
             remarks.push_back(fmt::format("{}: the default lies on the front.", titles[i]));
+        else if (standard["on_front"].get<bool>())
+            remarks.push_back(fmt::format("{}: the default lies on the front within the scatter of the cases; ahead by less "
+                                          "than twice the standard error: {}.", titles[i], within));
         else if (others.empty())
             remarks.push_back(fmt::format("{}: the default could not be measured.", titles[i]));
         else

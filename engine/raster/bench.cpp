@@ -96,7 +96,12 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     ForwardOutput image;
     Gradients gradients;
     std::optional<FloorBench> floor;
-    if (settings.floor && rasterizer->name() != "cuda") floor.emplace(choose_kernels(settings.kernels.c_str()), pool);
+    if (settings.floor && rasterizer->name() != "cuda") {
+        rasterizer->forward(gaussians, views.back(), image_settings, image);
+        rasterizer->backward(d_colour, {}, 0, gradients);
+        const auto drawn = static_cast<std::size_t>(std::count(gradients.visible.begin(), gradients.visible.end(), 1));
+        floor.emplace(choose_kernels(settings.kernels.c_str()), pool, drawn);
+    }
     std::vector<Round> forward, backward;
     std::size_t pairs = 0, blended = 0, reached = 0, blocks = 0;
     for (int round = -1; round < settings.repetitions; ++round) {  // round -1 warms up

@@ -20,7 +20,7 @@ constexpr std::uint32_t LoopRounds = 256;                 // between two looks a
 constexpr std::size_t MemoryBytes = std::size_t{128} << 20;   // more than caches hold
 constexpr double StartSeconds = 0.05;                     // how long the threads wait for each other
 
-enum Loop : std::size_t { Forward, Mask, Gather, Backward };   // one Backward for each of FloorBlocks
+enum Loop : std::size_t { Forward, Mask, Gather, SceneGather, Backward };   // one Backward for each of FloorBlocks
 constexpr std::size_t LoopCount = Backward + FloorBlocks.size();
 
 /// Splats of some pixels within a few tiles, so faint that light is left behind all of them.
@@ -54,8 +54,20 @@ void fill_entries(FloorScratch& scratch, int blocks) {
     }
 }
 
-double loop_ns(const Kernels& kernels, FloorLoop loop, FloorScratch& scratch) {
-    FloorJob job = {loop, LoopRounds, &scratch, 0};
+/// Entries of any of so many records, for LoopRounds.
+std::vector<TileEntry> any_entries(std::size_t records, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<TileEntry> entries(std::size_t{LoopRounds} * FloorRecords);
+    for (auto& entry : entries) {
+        const auto record = static_cast<std::uint32_t>(random.below(records));
+        entry = {record, record, 0xfu << record % 13};
+    }
+    return entries;
+}
+
+double loop_ns(const Kernels& kernels, FloorLoop loop, FloorScratch& scratch, const Record* records = nullptr,
+               const TileEntry* entries = nullptr) {
+    FloorJob job = {loop, LoopRounds, &scratch, records, entries, 0};
     kernels.floor(job);   // into the cache
     std::size_t work = 0;
     double seconds = 0;
@@ -83,7 +95,8 @@ FloorStep floor_step(const KernelFloor& kernel, const FloorWork& work) {
     FloorStep step;
     step.forward_blend = blocks * kernel.forward_ns * ms;
     if (work.pairs > 0) step.backward_blend = blocks * at_blocks(kernel, blocks / pairs) * ms;
-    step.lists = 2 * pairs * (kernel.mask_ns + kernel.gather_ns) * ms;
+    step.lists = 2 * pairs * (kernel.mask_ns + kernel.scene_gather_ns) * ms;
+    step.lists_in_cache = 2 * pairs * (kernel.mask_ns + kernel.gather_ns) * ms;
     constexpr std::size_t other_floats = 11;   // position, scale, rotation, opacity
     const auto bytes = static_cast<double>(work.splats * (other_floats + work.sh_floats) * sizeof(float));
     if (kernel.gigabytes_per_second > 0) step.parameters = bytes * 1e-6 / kernel.gigabytes_per_second;
@@ -93,6 +106,8 @@ FloorStep floor_step(const KernelFloor& kernel, const FloorWork& work) {
 
 struct FloorBench::Data {
     std::vector<FloorScratch> scratch;   // per item of the loops, of which each thread takes one
+    std::vector<Record> records;         // as many as the scene's
+    std::vector<std::vector<TileEntry>> entries;   // per item
     std::vector<std::array<double, LoopCount>> ns;
     std::vector<std::uint32_t> memory;
     std::vector<double> rates;           // bytes per nanosecond
@@ -106,11 +121,14 @@ struct FloorBench::Data {
     }
 };
 
-FloorBench::FloorBench(const Kernels& kernels, ThreadPool& pool)
+FloorBench::FloorBench(const Kernels& kernels, ThreadPool& pool, std::size_t records)
     : kernels_(kernels), pool_(pool), data_(std::make_unique<Data>()) {
     const unsigned threads = pool.thread_count();
     data_->scratch.resize(threads);
     for (FloorScratch& scratch : data_->scratch) fill_records(scratch);
+    data_->records.resize(std::max<std::size_t>(records, 1));
+    for (std::size_t i = 0; i < data_->records.size(); ++i) data_->records[i] = data_->scratch[0].records[i % FloorRecords];
+    for (unsigned i = 0; i < threads; ++i) data_->entries.push_back(any_entries(data_->records.size(), i));
     data_->ns.resize(threads);
     data_->rates.resize(threads);
     data_->sums.resize(threads);
@@ -129,6 +147,7 @@ void FloorBench::measure_loops() {
         ns[Forward] = loop_ns(kernels_, FloorLoop::Forward, scratch);
         ns[Mask] = loop_ns(kernels_, FloorLoop::Mask, scratch);
         ns[Gather] = loop_ns(kernels_, FloorLoop::Gather, scratch);
+        ns[SceneGather] = loop_ns(kernels_, FloorLoop::SceneGather, scratch, data_->records.data(), data_->entries[item].data());
         for (std::size_t i = 0; i < FloorBlocks.size(); ++i) {
             fill_entries(scratch, FloorBlocks[i]);
             ns[Backward + i] = loop_ns(kernels_, FloorLoop::Backward, scratch);
@@ -161,6 +180,7 @@ void FloorBench::measure() {
     keep(least_.forward_ns, Forward);
     keep(least_.mask_ns, Mask);
     keep(least_.gather_ns, Gather);
+    keep(least_.scene_gather_ns, SceneGather);
     for (std::size_t i = 0; i < FloorBlocks.size(); ++i) keep(least_.backward_ns[i], Backward + i);
     double rate = 0;
     for (const double part : data_->rates) rate += part;

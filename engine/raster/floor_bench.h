@@ -1,5 +1,6 @@
 // The least time that forward and backward could take on this machine: the innermost loops alone with everything in the first
-// cache, the handling of lists, and memory bandwidth, times the work that was counted.
+// cache, the handling of lists with a record fetched per tile and Gaussian from where a scene's records lie, and memory
+// bandwidth, times the work that was counted.
 #pragma once
 
 #include <array>
@@ -19,7 +20,9 @@ inline constexpr std::array<int, 5> FloorBlocks{1, 2, 4, 8, 16};
 struct KernelFloor {
     double forward_ns = 0;                                   // per 4x4 block and Gaussian
     std::array<double, FloorBlocks.size()> backward_ns{};    // the same, by FloorBlocks
-    double mask_ns = 0, gather_ns = 0;                       // per tile and Gaussian
+    double mask_ns = 0;                                      // per tile and Gaussian
+    double gather_ns = 0;                                    // the same, of records in the first cache
+    double scene_gather_ns = 0;                              // the same, of as many records as the scene has, in any order
     double gigabytes_per_second = 0;
 };
 
@@ -34,7 +37,8 @@ struct FloorWork {
 /// Milliseconds, the work shared evenly among the threads.
 struct FloorStep {
     double forward_blend = 0, backward_blend = 0;
-    double lists = 0;                                  // block masks and records, forward and backward
+    double lists = 0;                                  // block masks and a scene's records, forward and backward
+    double lists_in_cache = 0;                         // the same if all records lay in the first cache; not in the total
     double parameters = 0, parameter_gradients = 0;    // read once; read and written once
     double total() const { return forward_blend + backward_blend + lists + parameters + parameter_gradients; }
 };
@@ -44,7 +48,8 @@ FloorStep floor_step(const KernelFloor& kernel, const FloorWork& work);
 /// Times the loops, each for some milliseconds on all threads at once.
 class FloorBench {
 public:
-    FloorBench(const Kernels& kernels, ThreadPool& pool);
+    /// `records`: rows that are drawn, each of which has one.
+    FloorBench(const Kernels& kernels, ThreadPool& pool, std::size_t records);
     ~FloorBench();
     /// Measures once more; what was least stays.
     void measure();

@@ -1,5 +1,5 @@
-// Kernel part 7: the innermost loops of blending alone, with nothing around them and everything in the first cache. They are the
-// loops that pictures are made with, so a faster kernel lowers the floor, too.
+// Kernel part 7: the innermost loops of blending alone, with nothing around them and everything in the first cache, and records
+// gathered from where a scene's lie. They are the loops that pictures are made with, so a faster kernel lowers the floor, too.
 
 /// Every block of a tile takes all records, from full transmittance.
 static std::size_t floor_forward(FloorScratch& scratch, const PixelGrid& grid) {
@@ -40,6 +40,16 @@ static std::size_t floor_gather(FloorScratch& scratch) {
     return FloorRecords;
 }
 
+/// The same out of a scene's records, which lie where so many lie: in the second or third cache, or in memory.
+static std::size_t floor_scene_gather(const FloorJob& floor, std::uint32_t round) {
+    FloorScratch& scratch = *floor.scratch;
+    const BlendJob job = {{floor.records, nullptr, NoSplit}, floor.entries, floor.rounds * FloorRecords, AllBlocks, 0, 0,
+                          TileSize, TileSize, &scratch.light, &scratch.blend};
+    std::uint32_t lengths[16];
+    gather_batch(job, round * FloorRecords, FloorRecords, lengths);
+    return FloorRecords;
+}
+
 static void floor_loops(FloorJob& job) {
     FloorScratch& scratch = *job.scratch;
     PixelGrid grid;
@@ -52,5 +62,6 @@ static void floor_loops(FloorJob& job) {
         if (job.loop == FloorLoop::Backward) job.work += floor_backward(scratch, grid);
         if (job.loop == FloorLoop::Mask) job.work += floor_mask(scratch);
         if (job.loop == FloorLoop::Gather) job.work += floor_gather(scratch);
+        if (job.loop == FloorLoop::SceneGather) job.work += floor_scene_gather(job, round);
     }
 }

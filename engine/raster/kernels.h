@@ -183,7 +183,7 @@ struct GradientJob {
 };
 
 /// The innermost loops, for floor_bench.h.
-enum class FloorLoop { Forward, Backward, Mask, Gather };
+enum class FloorLoop { Forward, Backward, Mask, Gather, SceneGather };
 inline constexpr std::uint32_t FloorRecords = 64;
 
 struct FloorScratch {
@@ -201,6 +201,8 @@ struct FloorJob {
     FloorLoop loop;
     std::uint32_t rounds;
     FloorScratch* scratch;
+    const Record* records;       // of a whole scene, for SceneGather,
+    const TileEntry* entries;    // and rounds x FloorRecords of them in any order
     std::size_t work;   // result: pairs of block and Gaussian, or of tile and Gaussian
 };
 

@@ -7,6 +7,7 @@
 #include "engine/bench/growth.h"
 #include "engine/bench/pareto_chart.h"
 #include "engine/bench/setting_points.h"
+#include "engine/bench/subject.h"
 #include "engine/io/image_file.h"
 #include "tests/test_paths.h"
 
@@ -81,6 +82,31 @@ DOCTEST_TEST_CASE("the default is on the front unless something is clearly cheap
     DOCTEST_CHECK(beaten["beaten_by"] == nlohmann::ordered_json{"curve, cheap", "curve, better"});
     DOCTEST_CHECK(default_of({setting("usual", 10, Nothing, true)})["on_front"] == false);
     DOCTEST_CHECK(default_of({setting("other", 10, 1)}).is_null());
+}
+
+DOCTEST_TEST_CASE("a lead within the scatter of the cases is named and does not count; one that is sure does") {
+    const auto with_cases = [](SettingPoint point, const std::vector<double>& errors) {
+        point.figures["per_case"]["error"] = errors;
+        return point;
+    };
+    const auto usual = with_cases(setting("usual", 10, 0.25, true), {0.1, 0.2, 0.3, 0.4});
+    const auto chance = with_cases(setting("by chance", 10, 0.2), {0.1, 0.2, 0.3, 0.2});   // one case of four: 0.05, error 0.05
+    const auto sure = with_cases(setting("sure", 10, 0.2), {0.05, 0.15, 0.25, 0.35});      // each case by as much
+    const auto alone = setting("of other cases", 10, 0.2);
+    const auto fronts = [&](const std::vector<SettingPoint>& points) { return fronts_of(points, {ErrorFacet}); };
+    const auto scatter = fronts({usual, chance})[0]["default"];
+    DOCTEST_CHECK(scatter["on_front"] == true);
+    DOCTEST_REQUIRE(scatter["within_scatter"].size() == 1);
+    DOCTEST_CHECK(scatter["within_scatter"][0]["name"] == "curve, by chance");
+    DOCTEST_CHECK(scatter["within_scatter"][0]["lead"].get<double>() == doctest::Approx(0.05));
+    DOCTEST_CHECK(scatter["within_scatter"][0]["standard_error"].get<double>() == doctest::Approx(0.05));
+    const auto beaten = fronts({usual, chance, sure, alone})[0]["default"];
+    DOCTEST_CHECK(beaten["on_front"] == false);
+    DOCTEST_CHECK(beaten["beaten_by"] == nlohmann::ordered_json{"curve, sure", "curve, of other cases"});
+    const auto said = front_remarks(fronts({usual, chance}), {"Against time"});
+    DOCTEST_REQUIRE(said.size() == 1);
+    DOCTEST_CHECK(said[0].find("within the scatter") != std::string::npos);
+    DOCTEST_CHECK(said[0].find("curve, by chance (by 0.05, standard error 0.05)") != std::string::npos);
 }
 
 DOCTEST_TEST_CASE("the slope through logarithms is the power; what has no logarithm is left out") {

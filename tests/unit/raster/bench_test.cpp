@@ -56,6 +56,7 @@ DOCTEST_TEST_CASE("the raster bench measures the floor, with every instruction s
             for (const double ns : floor.backward_ns) DOCTEST_CHECK(ns > 0);
             DOCTEST_CHECK(floor.mask_ns > 0);
             DOCTEST_CHECK(floor.gather_ns > 0);
+            DOCTEST_CHECK(floor.scene_gather_ns > 0);
             DOCTEST_CHECK(floor.gigabytes_per_second > 0);
             DOCTEST_CHECK(bench.floor.total() > 0);
             DOCTEST_CHECK(bench.floor_ratio > 0);
@@ -67,7 +68,7 @@ DOCTEST_TEST_CASE("the floor is the counted work times the times of the loops") 
     raster::KernelFloor kernel;
     kernel.forward_ns = 6;
     kernel.backward_ns = {28, 20, 17, 15, 14};   // of 1, 2, 4, 8, 16 blocks
-    kernel.mask_ns = 10, kernel.gather_ns = 5;
+    kernel.mask_ns = 10, kernel.gather_ns = 1, kernel.scene_gather_ns = 5;
     kernel.gigabytes_per_second = 24;
     const auto step = [&](std::size_t pairs, std::size_t blocks) {
         return raster::floor_step(kernel, {100000, 48, pairs, blocks, 2});
@@ -76,6 +77,7 @@ DOCTEST_TEST_CASE("the floor is the counted work times the times of the loops") 
     DOCTEST_CHECK(even.forward_blend == doctest::Approx(3));
     DOCTEST_CHECK(even.backward_blend == doctest::Approx(8.5));   // 4 blocks per pair
     DOCTEST_CHECK(even.lists == doctest::Approx(3.75));           // forward and backward
+    DOCTEST_CHECK(even.lists_in_cache == doctest::Approx(2.75));
     DOCTEST_CHECK(even.parameters == doctest::Approx(236 * 0.1 / 24));   // bytes of 100,000 splats
     DOCTEST_CHECK(even.parameter_gradients == doctest::Approx(2 * even.parameters));
     DOCTEST_CHECK(even.total() == doctest::Approx(3 + 8.5 + 3.75 + 3 * even.parameters));
