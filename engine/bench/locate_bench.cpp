@@ -1,4 +1,4 @@
-// One search per scene and setting.
+// One search per scene and setting, as an artist's is; where it labels nothing because it is not sure, nothing was found.
 #include "engine/bench/locate_bench.h"
 
 #include <fmt/format.h>
@@ -79,7 +79,6 @@ public:
             if (edit.kind == "add")
                 throw Error(ErrorCode::InvalidArgument, "what is added is not there to be found",
                             "use recolour material ground replace");
-        settings_.request.least_confidence = 0;   // what is found is compared, however unsure
         for (const auto& point : points_) recipe_of(point);   // out of range: said before anything runs
         model_ = pipeline::load_recipe_model(settings.job);
         pipeline::use_threads(settings.job);
