@@ -16,7 +16,7 @@ struct LocateBenchParameters {
     std::string kinds = "recolour material ground";
     std::string views = "6 12 48";
     std::string repeats = "2 4";
-    std::string levels = "0.1; 0.3; 0.5; 0.2 0.4; 0.3 0.5 0.7";
+    std::string levels = "0.1; 0.2; 0.5; 0.3 0.6; 0.3 0.5 0.7";
     std::string img2img = "4 12";
     bool parts = true;
 

@@ -306,20 +306,20 @@ DOCTEST_TEST_CASE("a threshold drag is one step of undo with its value, and undo
         app.set_attention_threshold(*(values.end() - 1), true);
         DOCTEST_REQUIRE(session.settled());
     };
-    drag({0.45, 0.4, 0.36, 0.31});
+    drag({0.6, 0.75, 0.85, 0.9});   // the bear is found whole with any up to 0.8
     DOCTEST_CHECK(app.document().position() == at + 1);
-    DOCTEST_CHECK(app.document().names().back() == "Attention threshold 0.310");
-    const auto low = bits();
-    DOCTEST_CHECK(low != found);
-    drag({0.6, 0.62});
+    DOCTEST_CHECK(app.document().names().back() == "Attention threshold 0.900");
+    const auto strict = bits();
+    DOCTEST_CHECK(strict != found);
+    drag({0.5, 0.3});
     DOCTEST_CHECK(app.document().position() == at + 2);   // another drag, another step
-    const auto high = bits();
-    DOCTEST_CHECK(high != low);
-    DOCTEST_CHECK(app.model().request.attention_threshold == 0.62);
+    const auto wide = bits();
+    DOCTEST_CHECK(wide != strict);
+    DOCTEST_CHECK(app.model().request.attention_threshold == 0.3);
     const auto masks = app.model().attention[0].mask_picture;
     app.undo();
-    DOCTEST_CHECK(bits() == low);
-    DOCTEST_CHECK(app.model().request.attention_threshold == 0.31);
+    DOCTEST_CHECK(bits() == strict);
+    DOCTEST_CHECK(app.model().request.attention_threshold == 0.9);
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.model().attention[0].mask_picture != masks);   // the evidence follows
     DOCTEST_CHECK(app.document().position() == at + 1);   // and makes no step of its own
@@ -329,7 +329,7 @@ DOCTEST_TEST_CASE("a threshold drag is one step of undo with its value, and undo
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.model().attention_threshold == stated);
     app.redo();
-    DOCTEST_CHECK(app.model().request.attention_threshold == 0.31);
+    DOCTEST_CHECK(app.model().request.attention_threshold == 0.9);
     DOCTEST_REQUIRE(session.settled());
     // The label's own threshold is what the recipe calls tau.
     const double tau = app.model().request.tau;
