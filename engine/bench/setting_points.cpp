@@ -45,13 +45,11 @@ std::optional<Lead> lead_of(const SettingPoint& one, const SettingPoint& other, 
     const auto a = cases_of(one, facet.y), b = cases_of(other, facet.y);
     if (a.size() != b.size() || a.size() < 2) return std::nullopt;
     const auto count = static_cast<double>(a.size());
+    const auto better_by = [&](std::size_t i) { return facet.less_is_better ? b[i] - a[i] : a[i] - b[i]; };
     Lead lead;
-    for (std::size_t i = 0; i < a.size(); ++i) lead.mean += (facet.less_is_better ? b[i] - a[i] : a[i] - b[i]) / count;
+    for (std::size_t i = 0; i < a.size(); ++i) lead.mean += better_by(i) / count;
     double squares = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        const double off = (facet.less_is_better ? b[i] - a[i] : a[i] - b[i]) - lead.mean;
-        squares += off * off;
-    }
+    for (std::size_t i = 0; i < a.size(); ++i) squares += (better_by(i) - lead.mean) * (better_by(i) - lead.mean);
     lead.standard_error = std::sqrt(squares / (count - 1) / count);
     return lead;
 }
