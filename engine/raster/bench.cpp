@@ -74,6 +74,14 @@ void compare_with_plain(const Case& c, Rasterizer& fast, RasterBench& result) {
                                       relative_error(found.sh, expected.sh)});
 }
 
+std::size_t drawn_rows(Rasterizer& rasterizer, const GaussianSpans& gaussians, const Camera& camera, const Image& d_colour) {
+    ForwardOutput image;
+    Gradients gradients;
+    rasterizer.forward(gaussians, camera, {}, image);
+    rasterizer.backward(d_colour, {}, 0, gradients);
+    return static_cast<std::size_t>(std::count(gradients.visible.begin(), gradients.visible.end(), 1));
+}
+
 void compare_with_floor(const KernelFloor& floor, std::size_t sh_floats, RasterBench& result) {
     result.kernel_floor = floor;
     result.floor = floor_step(floor, {result.splats, sh_floats, result.pairs_reached, result.block_pairs, result.threads});
@@ -96,12 +104,8 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     ForwardOutput image;
     Gradients gradients;
     std::optional<FloorBench> floor;
-    if (settings.floor && rasterizer->name() != "cuda") {
-        rasterizer->forward(gaussians, views.back(), image_settings, image);
-        rasterizer->backward(d_colour, {}, 0, gradients);
-        const auto drawn = static_cast<std::size_t>(std::count(gradients.visible.begin(), gradients.visible.end(), 1));
-        floor.emplace(choose_kernels(settings.kernels.c_str()), pool, drawn);
-    }
+    if (settings.floor && rasterizer->name() != "cuda")
+        floor.emplace(choose_kernels(settings.kernels.c_str()), pool, drawn_rows(*rasterizer, gaussians, views.back(), d_colour));
     std::vector<Round> forward, backward;
     std::size_t pairs = 0, blended = 0, reached = 0, blocks = 0;
     for (int round = -1; round < settings.repetitions; ++round) {  // round -1 warms up
@@ -128,8 +132,7 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     result.kernels = rasterizer->name();
     result.threads = pool.thread_count();
     result.splats = gaussians.size;
-    result.width = settings.width;
-    result.height = settings.height;
+    result.width = settings.width, result.height = settings.height;
     result.views = views.size();
     result.forward = summarize(forward, views.size());
     result.backward = summarize(backward, views.size());
