@@ -29,8 +29,8 @@ struct Facet {
 /// Differences of a cost below this share say nothing: times of one setting scatter by as much from run to run.
 constexpr double CostNoise = 0.05;
 
-/// A lead in a mean over cases counts from this many standard errors of the mean difference, case by case: one lead of chance
-/// in twenty passes it, and a bench compares a dozen points.
+/// A lead in a mean over cases counts from this many standard errors of the mean difference, case by case: of many
+/// cases one lead of chance in forty passes it, of four one in fourteen, and a bench compares a dozen points.
 constexpr double LeadErrors = 2;
 
 /// [{"x", "y", "front": ["avx512, 2 threads", ...], "default": {"name", "on_front", "beaten_by": [...], "within_scatter":
