@@ -51,6 +51,14 @@ class Benches(ProgramTest):
         self.assertIn("20,000,000", process.stdout)
         self.assertEqual([size for size, _ in series["side"]["costs"][0]["points"]], [16, 32])
 
+    def test_locate_keeps_the_error_of_every_scene(self):
+        _, report = self.subject("locate", "--scenes", 2, "--views", "6", "--repeats", "", "--levels", "", "--img2img", "", "--no-parts")
+        self.assertEqual([point["name"] for point in report["points"]], ["as set", "6"])
+        for point in report["points"]:
+            errors = point["per_case"]["error"]
+            self.assertEqual(len(errors), 2)
+            self.assertAlmostEqual(sum(errors) / 2, point["error"])
+
     def test_all_leaves_a_page_that_needs_nothing_else(self):
         out = self.folder / "all"
         process = run("-q", "bench", "all", "--subjects", "raster", "--raster-splats", 300, "--out", out)
