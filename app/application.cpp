@@ -47,7 +47,8 @@ ui::JobView job_view(const JobStatus& status) {
 nlohmann::ordered_json lasting(nlohmann::ordered_json fields) {
     for (auto field = fields.begin(); field != fields.end();) {
         const std::string& name = field.key();
-        const bool passing = name == "mode" || name == "tint_labels" || name == "wipe" || name == "visible_only" || name.ends_with("_path");
+        const bool passing = name == "mode" || name == "tint_labels" || name == "wipe" ||
+                             name == "visible_only" || name.ends_with("_path");
         field = passing ? fields.erase(field) : std::next(field);
     }
     return fields;
@@ -56,15 +57,16 @@ nlohmann::ordered_json lasting(nlohmann::ordered_json fields) {
 }  // namespace
 
 Application::Application(ApplicationOptions options)
-    : options_(std::move(options)), work_(queue_, JobThread::Priority::Patient), files_(queue_), saver_(queue_, JobThread::Priority::Patient),
-      counter_(queue_, JobThread::Priority::Patient) {
+    : options_(std::move(options)), work_(queue_, JobThread::Priority::Patient), files_(queue_),
+      saver_(queue_, JobThread::Priority::Patient), counter_(queue_, JobThread::Priority::Patient) {
     queue_.set_wake(options_.wake);
     auto box = std::make_shared<LogBox>();
     log_source_ = box;
     log::set_sink([box, wake = options_.wake](log::Level level, std::string_view text) {
         {
             const std::lock_guard lock(box->mutex);
-            box->lines.push_back({level, fmt::format("{:%H:%M:%S}", fmt::localtime(std::time(nullptr))), std::string(text)});
+            box->lines.push_back(
+                {level, fmt::format("{:%H:%M:%S}", fmt::localtime(std::time(nullptr))), std::string(text)});
         }
         if (wake) wake();
     });
@@ -72,7 +74,8 @@ Application::Application(ApplicationOptions options)
     model_.words_known = true;
     load_settings();
     list_models();
-    const auto in_use = std::find_if(model_.models.begin(), model_.models.end(), [](const auto& row) { return row.chosen; });
+    const auto in_use =
+        std::find_if(model_.models.begin(), model_.models.end(), [](const auto& row) { return row.chosen; });
     if (!model_path_.empty() && in_use != model_.models.end() && !in_use->usable)
         refuse_model(std::exchange(model_path_, {}), in_use->problem);
     take_chosen_model();
@@ -86,11 +89,13 @@ Application::~Application() {
 }
 
 bool Application::busy() const {
-    return work_.running() || files_.running() || leaving_ || !toasts_.empty() || seconds_since(last_move_) < 2 * MovingSeconds;
+    return work_.running() || files_.running() || leaving_ || !toasts_.empty() ||
+           seconds_since(last_move_) < 2 * MovingSeconds;
 }
 
 void Application::update(PreviewHost& preview) {
-    const JobStatus work = work_.status(), files = files_.status();   // before the queue: an ended job has left its result
+    const JobStatus work = work_.status(),
+                    files = files_.status();  // before the queue: an ended job has left its result
     queue_.run();
     const auto now = Clock::now();
     const double frame = std::chrono::duration<double>(now - last_frame_).count();
@@ -112,8 +117,10 @@ void Application::update(PreviewHost& preview) {
     const auto picture = preview.state();
     model_.viewport = picture.texture;
     model_.viewport_original = picture.original;
-    // Overlays and tools work in pixels of the whole viewport; while moving the picture has fewer and is stretched.
-    model_.camera = picture.camera.width > 0 ? picture.camera : camera_.resized(viewport_width_, viewport_height_);
+    // Overlays and tools work in pixels of the whole viewport; while moving the picture has fewer and is
+    // stretched.
+    model_.camera =
+        picture.camera.width > 0 ? picture.camera : camera_.resized(viewport_width_, viewport_height_);
     model_.viewport_width = model_.camera.width;
     model_.viewport_height = model_.camera.height;
     model_.viewport_depth = picture.depth;
@@ -169,8 +176,9 @@ void Application::refresh_live() {
         model_.gate = *std::exchange(live_->gate, std::nullopt);
         if (model_.gate.warns) toast(model_.gate.verdict);
     }
-    const bool more = live_->snapshots.size() != snapshots_.size() ||
-                      (!snapshots_.empty() && live_->snapshots.back().iteration != snapshots_.back().iteration);
+    const bool more =
+        live_->snapshots.size() != snapshots_.size() ||
+        (!snapshots_.empty() && live_->snapshots.back().iteration != snapshots_.back().iteration);
     if (!more) return;
     untint();
     newest_set_ = live_->newest;
@@ -215,8 +223,11 @@ void Application::count_anew() {
     auto done = [this, statistics, opened = opened_](const Error*) {
         if (opened == opened_) model_.statistics = *statistics;
     };
-    if (counter_.start({"Count", [statistics, set = current](const JobControl&) { *statistics = compute_statistics(set); }, done}))
-        counted_ = current;   // else once the last count has ended, whose news wake the window
+    if (counter_.start(
+            {"Count",
+             [statistics, set = current](const JobControl&) { *statistics = compute_statistics(set); },
+             done}))
+        counted_ = current;  // else once the last count has ended, whose news wake the window
 }
 
 void Application::refresh_log() {
@@ -233,8 +244,10 @@ void Application::refresh_log() {
 
 void Application::toast(std::string text, bool is_error, std::string button, std::function<void()> action) {
     // The same news again, or told at more length: one of them is enough.
-    std::erase_if(toasts_, [&](const ToastState& old) { return text.find(old.toast.text) != std::string::npos; });
-    if (std::any_of(toasts_.begin(), toasts_.end(), [&](auto& old) { return old.toast.text.find(text) != std::string::npos; }))
+    std::erase_if(toasts_,
+                  [&](const ToastState& old) { return text.find(old.toast.text) != std::string::npos; });
+    if (std::any_of(toasts_.begin(), toasts_.end(),
+                    [&](auto& old) { return old.toast.text.find(text) != std::string::npos; }))
         return;
     if (toasts_.size() >= MostToasts) toasts_.erase(toasts_.begin());
     toasts_.push_back({{std::move(text), is_error, 0, std::move(button)}, Clock::now(), std::move(action)});
@@ -250,13 +263,16 @@ void Application::toast_step(std::string text) {
 
 void Application::report_error(const Error& error) {
     toast(error.what(), true);
-    model_.log.push_back({log::Level::Error, fmt::format("{:%H:%M:%S}", fmt::localtime(std::time(nullptr))), error.what()});
+    model_.log.push_back(
+        {log::Level::Error, fmt::format("{:%H:%M:%S}", fmt::localtime(std::time(nullptr))), error.what()});
 }
 
 void Application::refresh_toasts() {
     std::erase_if(toasts_, [](const ToastState& state) {
         const auto& toast = state.toast;
-        return seconds_since(state.born) > (toast.is_error ? ErrorToastSeconds : toast.button.empty() ? ToastSeconds : ButtonToastSeconds);
+        return seconds_since(state.born) > (toast.is_error         ? ErrorToastSeconds
+                                            : toast.button.empty() ? ToastSeconds
+                                                                   : ButtonToastSeconds);
     });
     model_.toasts.clear();
     for (auto& state : toasts_) {
@@ -295,7 +311,7 @@ void Application::cancel_file_job() { files_.cancel(); }
 void Application::set_request(const edit::EditRequest& request) {
     const bool told_else = request.source != model_.request.source || request.prompt != model_.request.prompt;
     model_.request = request;
-    if (told_else) model_.request.left_out.clear();   // they were views of another search
+    if (told_else) model_.request.left_out.clear();  // they were views of another search
     // A word that was clicked in another sentence is no target of this one.
     auto& target = model_.request.target;
     if (!target.empty() && !edit::has_word(request.prompt, target)) target.clear();
@@ -342,26 +358,29 @@ void Application::load_settings() {
         return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : std::string();
     };
     chosen_scale_ = static_cast<float>(std::clamp(number("ui_scale", 0), 0.0, 4.0));
-    model_.ui_scale = options_.ui_scale > 0 ? options_.ui_scale : chosen_scale_ > 0 ? chosen_scale_ : options_.desktop_scale;
+    model_.ui_scale = options_.ui_scale > 0 ? options_.ui_scale
+                      : chosen_scale_ > 0   ? chosen_scale_
+                                            : options_.desktop_scale;
     if (json.contains("measured") && json["measured"].is_object())
         for (const auto& [key, measured] : json["measured"].items()) {
             try {
                 fields_from_json(measured_[key], measured);
-            } catch (const Error&) {   // of another version: it is measured anew
+            } catch (const Error&) {  // of another version: it is measured anew
                 measured_.erase(key);
             }
         }
     try {
         if (json.contains("view")) fields_from_json(model_.view, lasting(json["view"]));
         if (json.contains("exports")) fields_from_json(model_.exports, lasting(json["exports"]));
-    } catch (const std::exception& error) {   // of another version, or edited by hand
+    } catch (const std::exception& error) {  // of another version, or edited by hand
         log::warning("some settings of view and export cannot be used ({})", error.what());
     }
     model_.cache_mb = static_cast<int>(cache_->most_bytes() >> 20);
     model_.cache_bytes = cached_bytes(cache_->folder());
     model_path_ = text("model");
     loras_ = texts_of(json, "loras");
-    model_.segmenters = {ui::SegmenterView{segmenter_path_ = text("segmenter")}, ui::SegmenterView{text_segmenter_path_ = text("text_segmenter")}};
+    model_.segmenters = {ui::SegmenterView{segmenter_path_ = text("segmenter")},
+                         ui::SegmenterView{text_segmenter_path_ = text("text_segmenter")}};
     model_.keymap = text("keys");
     layout_ = text("layout");
     layout_loaded_ = !layout_.empty();

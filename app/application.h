@@ -1,5 +1,5 @@
-// The editor behind the window: owns the document, the jobs and what the panels show. Everything here runs on the main
-// thread; work goes to job threads and comes back through the main queue.
+// The editor behind the window: owns the document, the jobs and what the panels show. Everything here runs on
+// the main thread; work goes to job threads and comes back through the main queue.
 #pragma once
 
 #include <chrono>
@@ -32,24 +32,27 @@
 
 namespace gse::app {
 
-constexpr std::size_t MostSnapshots = 24, MostSnapshotBytes = std::size_t{512} << 20;   // kept for the scrubber; thinned out beyond
-constexpr const char* AddsElsewhere = "What is added goes where the search placed it: corrections of the label by hand do not move that.";
-constexpr const char* VoteTitle = "New vote";   // of the job
-constexpr double MovingSeconds = 0.25;   // after the last movement of the camera the picture is refined
+constexpr std::size_t MostSnapshots = 24,
+                      MostSnapshotBytes = std::size_t{512}
+                                          << 20;  // kept for the scrubber; thinned out beyond
+constexpr const char* AddsElsewhere =
+    "What is added goes where the search placed it: corrections of the label by hand do not move that.";
+constexpr const char* VoteTitle = "New vote";  // of the job
+constexpr double MovingSeconds = 0.25;         // after the last movement of the camera the picture is refined
 
 struct ApplicationOptions {
     bool autosave = true;
-    double autosave_seconds = 3;              // at most this much work is lost to a crash
-    std::function<void()> wake = {};             // makes the window draw a frame
+    double autosave_seconds = 3;      // at most this much work is lost to a crash
+    std::function<void()> wake = {};  // makes the window draw a frame
     std::function<void(float)> on_scale = {};
-    float ui_scale = 0;                       // for this start only; 0 = as the artist chose last
-    float desktop_scale = 1;                  // until the artist chooses
+    float ui_scale = 0;       // for this start only; 0 = as the artist chose last
+    float desktop_scale = 1;  // until the artist chooses
     std::function<void()> on_fullscreen = {};
 };
 
 /// The edited set of one snapshot.
 struct SnapshotSet {
-    std::shared_ptr<const edit::SnapshotRows> of;   // that snapshot's rows; null = of none
+    std::shared_ptr<const edit::SnapshotRows> of;  // that snapshot's rows; null = of none
     GaussianSet set;
 };
 
@@ -57,27 +60,27 @@ struct SnapshotSet {
 struct LiveEdit {
     std::mutex mutex;
     std::deque<edit::EditSnapshot> snapshots;
-    SnapshotSet newest;   // of the last snapshot, put together on the edit's thread
+    SnapshotSet newest;  // of the last snapshot, put together on the edit's thread
     std::vector<ui::LossPoint> losses;
     std::uint64_t version = 0;
-    std::optional<std::vector<std::uint8_t>> label;   // corrected by the artist, not taken over yet
-    std::shared_ptr<EditJob> found;   // a search made for this edit, not shown yet
-    std::vector<float> attention;     // of it, per splat
-    bool relabel = false;             // what it found is the label now
-    bool adds = false;                // known once the search is over
-    pipeline::Renamed renamed;        // the same
-    std::string name, recipe, target; // of the edit, set before it starts
+    std::optional<std::vector<std::uint8_t>> label;  // corrected by the artist, not taken over yet
+    std::shared_ptr<EditJob> found;                  // a search made for this edit, not shown yet
+    std::vector<float> attention;                    // of it, per splat
+    bool relabel = false;                            // what it found is the label now
+    bool adds = false;                               // known once the search is over
+    pipeline::Renamed renamed;                       // the same
+    std::string name, recipe, target;                // of the edit, set before it starts
     int iterations = 0;
     bool wants_gate = false;
     std::optional<ui::GateView> gate;
-    std::optional<edit::EditSnapshot> start;   // of an earlier run, to go on from
-    neural::NetworkUse use_before, use;   // of the edit's thread: when it began, and by now
+    std::optional<edit::EditSnapshot> start;  // of an earlier run, to go on from
+    neural::NetworkUse use_before, use;       // of the edit's thread: when it began, and by now
     // Of view guidance
     std::vector<ui::TargetRound> targets;
-    std::vector<edit::TargetOrder> orders;     // by the artist, not taken over yet
-    bool reviews = false;                      // the artist looks at every round before it is fitted to
-    bool waits = false;                        // for the artist
-    std::condition_variable_any spoken;        // of orders and waits
+    std::vector<edit::TargetOrder> orders;  // by the artist, not taken over yet
+    bool reviews = false;                   // the artist looks at every round before it is fitted to
+    bool waits = false;                     // for the artist
+    std::condition_variable_any spoken;     // of orders and waits
 };
 
 /// Says what is running: name, target and recipe.
@@ -101,7 +104,8 @@ public:
     /// Writes what is not saved to the recovery folder and stops all jobs.
     void shut_down();
     const Document& document() const { return document_; }
-    /// The word the next edit is about: what was clicked, else what the sentence implies for the scene as it is.
+    /// The word the next edit is about: what was clicked, else what the sentence implies for the scene as it
+    /// is.
     std::string target() const { return current_recipe().request.target; }
 
     // ui::Actions
@@ -208,7 +212,7 @@ private:
     /// What the views of the search are to vote with, that it has not been told yet.
     struct Vote {
         edit::LabelThresholds with;
-        std::string step, merge_key;   // of the undo step it makes; empty = none: undo brought it back
+        std::string step, merge_key;  // of the undo step it makes; empty = none: undo brought it back
     };
 
     // application.cpp: frame
@@ -220,7 +224,8 @@ private:
     void refresh_reading();
     void count_anew();
     void refresh_log();
-    void toast(std::string text, bool is_error = false, std::string button = {}, std::function<void()> action = {});
+    void toast(std::string text, bool is_error = false, std::string button = {},
+               std::function<void()> action = {});
     void toast_step(std::string text);
     void report_error(const Error& error);
     void ask(std::string title, std::string text, std::vector<AskedAnswer> answers);
@@ -256,8 +261,9 @@ private:
     void write_scene(const std::filesystem::path& path);
     void note_keys();
     std::string said_of_export() const;
-    void start_export(const char* what, const std::filesystem::path& path, std::function<void(const JobControl&)> work,
-                      const std::string& said, bool can_pause = false);
+    void start_export(const char* what, const std::filesystem::path& path,
+                      std::function<void(const JobControl&)> work, const std::string& said,
+                      bool can_pause = false);
 
     // application_work.cpp
     bool job_fits() const;
@@ -316,7 +322,8 @@ private:
 
     // application_labels.cpp
     NamedLabel* active_label_copy(DocumentState& state) const;
-    void change_label(const std::string& name, const std::function<NamedLabel(NamedLabel)>& change, const std::string& merge_key = {});
+    void change_label(const std::string& name, const std::function<NamedLabel(NamedLabel)>& change,
+                      const std::string& merge_key = {});
     void change_stack(const std::string& name, const std::function<void(std::vector<EditNode>&)>& change,
                       const std::string& merge_key = {});
 
@@ -337,7 +344,8 @@ private:
     void go_home();
     void stand_up();
     std::shared_ptr<const std::vector<float>> shown_values(const GaussianSet& set) const;
-    std::shared_ptr<const std::vector<float>> on_screen(const std::shared_ptr<const std::vector<float>>& values, const GaussianSet& set) const;
+    std::shared_ptr<const std::vector<float>> on_screen(
+        const std::shared_ptr<const std::vector<float>>& values, const GaussianSet& set) const;
     bool shows_snapshot() const;
     GaussianSet set_on_screen();
     const GaussianSet& before_on_screen() const;
@@ -353,36 +361,37 @@ private:
     nlohmann::json unknown_ = nlohmann::json::object();
     std::unique_ptr<ProjectWriter> writer_ = std::make_unique<ProjectWriter>();
     std::unique_ptr<Autosave> autosave_ = std::make_unique<Autosave>();
-    std::optional<Recoverable> recovered_;   // open now, on disk until it is saved or autosaved anew
-    std::vector<std::function<void()>> answers_;   // to the question of the model
+    std::optional<Recoverable> recovered_;        // open now, on disk until it is saved or autosaved anew
+    std::vector<std::function<void()>> answers_;  // to the question of the model
     struct Leaving {
         bool keep = false;
         std::function<void()> then;
     };
-    nlohmann::json kept_edit_;               // of an edit that was stopped before its first step
-    std::uint64_t opened_ = 0;               // documents so far
-    std::optional<Leaving> leaving_;         // waits for the edit to stop
-    bool keep_ = false;                      // the autosave stays when this document goes
-    bool autosaved_ = false;                 // there is an autosave of this document
+    nlohmann::json kept_edit_;        // of an edit that was stopped before its first step
+    std::uint64_t opened_ = 0;        // documents so far
+    std::optional<Leaving> leaving_;  // waits for the edit to stop
+    bool keep_ = false;               // the autosave stays when this document goes
+    bool autosaved_ = false;          // there is an autosave of this document
     bool start_page_seen_ = false;
-    bool keys_unsaved_ = false;              // of the camera path
-    std::shared_ptr<const Image> thumbnail_; // of the last autosave
+    bool keys_unsaved_ = false;               // of the camera path
+    std::shared_ptr<const Image> thumbnail_;  // of the last autosave
     Clock::time_point thumbnail_made_{};
     std::string scene_path_, project_path_;
     std::uint64_t saved_revision_ = 0, autosaved_revision_ = 0, autosaved_live_ = 0;
     Clock::time_point last_autosave_ = Clock::now();
     std::string layout_;
     bool layout_loaded_ = false;
-    float chosen_scale_ = 0;   // by the artist; 0 = as the desktop says
+    float chosen_scale_ = 0;  // by the artist; 0 = as the desktop says
 
     // Work
     std::shared_ptr<neural::TextToImage> text_model_;
     std::string text_model_key_, model_path_, model_tried_;
-    std::string segmenter_path_, text_segmenter_path_;   // weights of SAM and CLIPSeg; empty = none
-    std::vector<std::string> loras_;   // FILE or FILE:strength, merged into the model in use
-    neural::ModelProfile profile_;   // of the model in use
-    EditRecipe defaults_;            // what settings are that nobody chose
-    std::map<std::string, std::string> model_problems_;   // by path, of models that were tried; empty = none yet
+    std::string segmenter_path_, text_segmenter_path_;  // weights of SAM and CLIPSeg; empty = none
+    std::vector<std::string> loras_;                    // FILE or FILE:strength, merged into the model in use
+    neural::ModelProfile profile_;                      // of the model in use
+    EditRecipe defaults_;                               // what settings are that nobody chose
+    std::map<std::string, std::string>
+        model_problems_;  // by path, of models that were tried; empty = none yet
     std::shared_ptr<EditJob> job_;
     /// What every frame asks of the last search: what runs may be changing job_ itself.
     struct Searched {
@@ -393,9 +402,9 @@ private:
     };
     Searched searched_;
     std::string job_key_, reach_key_;
-    std::string looked_from_;   // where the camera was turned to when the last search began; empty = nowhere
-    std::optional<ReachChoice> reach_choice_;   // of the label that was active then
-    EditRecipe live_recipe_;   // of the edit that runs
+    std::string looked_from_;  // where the camera was turned to when the last search began; empty = nowhere
+    std::optional<ReachChoice> reach_choice_;  // of the label that was active then
+    EditRecipe live_recipe_;                   // of the edit that runs
     GaussianSet job_set_;
     std::shared_ptr<const std::vector<float>> attention_values_;
     GaussianSet attention_set_;
@@ -403,38 +412,39 @@ private:
     std::uint64_t live_seen_ = 0;
     std::deque<edit::EditSnapshot> snapshots_;
     SnapshotSet newest_set_, looked_at_;
-    std::optional<bool> tint_before_;            // of the edit whose snapshots are shown
-    GaussianSet snapshot_base_;                  // what the snapshots are states of
-    std::optional<edit::EditSnapshot> branch_;   // to go on from when the running edit has ended
+    std::optional<bool> tint_before_;           // of the edit whose snapshots are shown
+    GaussianSet snapshot_base_;                 // what the snapshots are states of
+    std::optional<edit::EditSnapshot> branch_;  // to go on from when the running edit has ended
     WaitingResults pending_;
     std::uint64_t next_edit_id_ = 1;
-    std::map<std::string, Measured> measured_;   // by model and size of pictures
-    ModelLoad model_load_;                       // of the model in memory
-    std::shared_ptr<DiskCache> cache_ = open_answer_cache(load_cache_settings());   // of what models answered
+    std::map<std::string, Measured> measured_;  // by model and size of pictures
+    ModelLoad model_load_;                      // of the model in memory
+    std::shared_ptr<DiskCache> cache_ = open_answer_cache(load_cache_settings());  // of what models answered
     std::optional<Vote> wanted_vote_;
-    edit::LabelThresholds voted_with_;   // what job_ was last told
-    std::shared_ptr<ArrivingViews> arriving_ = std::make_shared<ArrivingViews>();   // of the search under way
+    edit::LabelThresholds voted_with_;                                             // what job_ was last told
+    std::shared_ptr<ArrivingViews> arriving_ = std::make_shared<ArrivingViews>();  // of the search under way
 
     // View
     Camera camera_;
-    Vec3 up_shown_{};   // that the orbit stands on
+    Vec3 up_shown_{};  // that the orbit stands on
     int viewport_width_ = 1, viewport_height_ = 1;
-    Clock::time_point last_move_ = Clock::now() - std::chrono::seconds(10), last_frame_ = Clock::now(), last_estimate_{};
+    Clock::time_point last_move_ = Clock::now() - std::chrono::seconds(10), last_frame_ = Clock::now(),
+                      last_estimate_{};
     struct {
         GaussianSet set;
         std::shared_ptr<const std::vector<RowId>> ids;
-    } compared_;   // that comparisons show as before, where the artist chose a step
+    } compared_;  // that comparisons show as before, where the artist chose a step
     struct AdjustedColours {
         DocumentState before;
-        std::uint64_t revision, id;   // of the step, and of its edit
+        std::uint64_t revision, id;  // of the step, and of its edit
     };
-    std::optional<AdjustedColours> adjusted_;   // while that is the last step
-    std::optional<localize::RowPicking> picking_;   // splats chosen by a property
+    std::optional<AdjustedColours> adjusted_;      // while that is the last step
+    std::optional<localize::RowPicking> picking_;  // splats chosen by a property
     HiddenRows hidden_;
     struct SeenSet {
         GaussianSet of, set;
     };
-    std::deque<SeenSet> seen_;   // the last ones, made for hidden_ and the document's rows as they are
+    std::deque<SeenSet> seen_;  // the last ones, made for hidden_ and the document's rows as they are
     std::uint64_t content_ = 1, stroke_ = 0, camera_version_ = 0, document_seen_ = 0;
     struct ShownKey {
         std::uint64_t revision = 0, live = 0;
@@ -449,8 +459,8 @@ private:
     std::vector<ui::LogLine> log_;
     std::shared_ptr<void> log_source_;
     bool quit_ = false;
-    GaussianSet counted_;              // what the statistics are of
-    JobThread work_, files_, saver_, counter_;   // last: their threads end before what they use
+    GaussianSet counted_;                       // what the statistics are of
+    JobThread work_, files_, saver_, counter_;  // last: their threads end before what they use
 };
 
 ui::NetworkCost cost_of(const neural::NetworkUse& use);

@@ -23,11 +23,13 @@ namespace gse::app {
 namespace {
 
 /// Relative names go beside the scene or project, where an artist looks for them.
-std::filesystem::path place_for(const std::string& name, const std::string& project, const std::string& scene) {
+std::filesystem::path place_for(const std::string& name, const std::string& project,
+                                const std::string& scene) {
     const std::filesystem::path path(name);
     if (path.is_absolute()) return path;
     const auto base = std::filesystem::path(!project.empty() ? project : scene).parent_path();
-    const bool bundled = base.string().rfind(assets_path().string(), 0) == 0;   // not a place for an artist's files
+    const bool bundled =
+        base.string().rfind(assets_path().string(), 0) == 0;  // not a place for an artist's files
     return base.empty() || bundled ? std::filesystem::absolute(path) : base / path;
 }
 
@@ -50,26 +52,29 @@ std::filesystem::path Application::free_place(const std::string& name) const {
 std::string Application::said_of_export() const {
     const int snapshot = model_.shown_snapshot;
     if (shows_snapshot() && (snapshot >= 0 || !pending_))
-        return fmt::format(", as the edit was at iteration {}: it is not applied",
-                           (snapshot >= 0 ? snapshots_[static_cast<std::size_t>(snapshot)] : snapshots_.back()).iteration);
+        return fmt::format(
+            ", as the edit was at iteration {}: it is not applied",
+            (snapshot >= 0 ? snapshots_[static_cast<std::size_t>(snapshot)] : snapshots_.back()).iteration);
     if (pending_) return ", with the edit that is not applied yet";
     if (model_.hidden == 0) return {};
-    return model_.exports.visible_only ? ", without what is hidden" : fmt::format(", with the {} splats that are hidden in the window", model_.hidden);
+    return model_.exports.visible_only
+               ? ", without what is hidden"
+               : fmt::format(", with the {} splats that are hidden in the window", model_.hidden);
 }
 
-void Application::start_export(const char* what, const std::filesystem::path& path, std::function<void(const JobControl&)> work,
-                               const std::string& said, bool can_pause) {
+void Application::start_export(const char* what, const std::filesystem::path& path,
+                               std::function<void(const JobControl&)> work, const std::string& said,
+                               bool can_pause) {
     auto done = [this, path, said](const Error* error) {
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
         toast(fmt::format("Wrote {}{}", path.string(), said), false, "Show", [this, path] {
             try {
                 show_folder_of(path);
-            } catch (const Error& failure) {
-                report_error(failure);
-            }
+            } catch (const Error& failure) { report_error(failure); }
         });
     };
-    if (!files_.start({fmt::format("{} {}", what, path.filename().string()), std::move(work), done, can_pause}))
+    if (!files_.start(
+            {fmt::format("{} {}", what, path.filename().string()), std::move(work), done, can_pause}))
         toast("Another file is being read or written; wait for it.");
 }
 
@@ -90,7 +95,8 @@ void Application::export_picture() {
         Painter painter;
         const auto& painted = painter.paint(set.spans(), camera, settings);
         control.report("writing", 1, 1);
-        write_png(path, exports.transparent ? transparent_picture(painted) : painted.colour, picture_text(recipe, recipe_json));
+        write_png(path, exports.transparent ? transparent_picture(painted) : painted.colour,
+                  picture_text(recipe, recipe_json));
     };
     start_export("Screenshot", path, work, said_of_export());
 }
@@ -110,21 +116,26 @@ void Application::export_turntable() {
     film->fps = exports.fps;
     film->cameras = turn_cameras(export_orbit(), {exports.frames, exports.fps, exports.degrees, exports.ease},
                                  exports.start_degrees, exports.width, exports.height);
-    start_export("Turntable", path, [film, path](const JobControl& control) { write_film(path, *film, control); }, said_of_export(), true);
+    start_export(
+        "Turntable", path, [film, path](const JobControl& control) { write_film(path, *film, control); },
+        said_of_export(), true);
 }
 
 void Application::export_scene() {
     if (!something_to_export()) return;
-    const auto path = place_for(model_.exports.scene_path, project_path_, scene_path_), other = free_place(model_.exports.scene_path);
+    const auto path = place_for(model_.exports.scene_path, project_path_, scene_path_),
+               other = free_place(model_.exports.scene_path);
     if (path == other) return write_scene(path);
     std::error_code ignored;
     const bool own = std::filesystem::equivalent(path, scene_path_, ignored);
     std::vector<AskedAnswer> answers;
-    answers.push_back({{fmt::format("Write {}", other.filename().string())}, [this, other] { write_scene(other); }});
+    answers.push_back(
+        {{fmt::format("Write {}", other.filename().string())}, [this, other] { write_scene(other); }});
     if (!own) answers.push_back({{"Replace it", "", true}, [this, path] { write_scene(path); }});
     answers.push_back({{"Cancel"}, {}});
     ask("The file exists",
-        own ? fmt::format("{} is the scene that is open, on which its edits build: it stays.", path.filename().string())
+        own ? fmt::format("{} is the scene that is open, on which its edits build: it stays.",
+                          path.filename().string())
             : fmt::format("There is a {} already. Replacing it cannot be undone.", path.filename().string()),
         std::move(answers));
 }
@@ -139,11 +150,16 @@ void Application::write_scene(const std::filesystem::path& path) {
         const bool all = scene->gaussians.shares_all_with(shown);
         const auto rest = [&](const auto& values) {
             const auto there = on_screen(values, shown);
-            return there && !all ? std::make_shared<const std::vector<float>>(seen_values(*there, hidden_rows(shown))) : there;
+            return there && !all
+                       ? std::make_shared<const std::vector<float>>(seen_values(*there, hidden_rows(shown)))
+                       : there;
         };
-        const auto bits = rest(std::make_shared<const std::vector<float>>(named->bits->begin(), named->bits->end()));
-        const auto weight = rest(named->weight);   // one made by hand has none
-        if (bits) *label = {named->name, weight ? weight : bits, std::make_shared<const std::vector<std::uint8_t>>(bits->begin(), bits->end())};
+        const auto bits =
+            rest(std::make_shared<const std::vector<float>>(named->bits->begin(), named->bits->end()));
+        const auto weight = rest(named->weight);  // one made by hand has none
+        if (bits)
+            *label = {named->name, weight ? weight : bits,
+                      std::make_shared<const std::vector<std::uint8_t>>(bits->begin(), bits->end())};
     }
     auto work = [=, spz_version = model_.exports.spz_version](const JobControl& control) {
         control.report("writing", 0, 0);
@@ -158,7 +174,9 @@ void Application::export_viewpoints() {
     if (!require_scene()) return;
     if (document_.state().views.empty()) return toast("Add viewpoints first.");
     const auto path = free_place(model_.exports.viewpoints_path);
-    start_export("Viewpoints", path, [path, views = document_.state().views](const JobControl&) { save_cameras(path, views); }, {});
+    start_export("Viewpoints", path,
+                 [path, views = document_.state().views](const JobControl&) { save_cameras(path, views); },
+                 {});
 }
 
 void Application::add_camera_key() {

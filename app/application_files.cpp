@@ -49,12 +49,12 @@ void Application::open_recipe(const std::filesystem::path& picture) {
         const EditRecipe recipe = recipe_from_json(json, picture.parent_path());
         const bool here = !document_.empty() && std::filesystem::path(recipe.job.scene) == scene_path_;
         take_recipe(recipe);
-        if (here && json.contains("camera")) set_camera(fitted(camera_from_json(json["camera"]), viewport_width_, viewport_height_));
+        if (here && json.contains("camera"))
+            set_camera(fitted(camera_from_json(json["camera"]), viewport_width_, viewport_height_));
         toast(here ? "The prompt, its settings and the camera come from the picture."
-                   : "The prompt and its settings come from the picture; it shows another scene, so the camera stays.");
-    } catch (const Error& error) {
-        report_error(error);
-    } catch (const nlohmann::json::exception&) {
+                   : "The prompt and its settings come from the picture; it shows another scene, so the "
+                     "camera stays.");
+    } catch (const Error& error) { report_error(error); } catch (const nlohmann::json::exception&) {
         report_error(Error(ErrorCode::Malformed, "the recipe in this picture cannot be read", "", picture));
     }
 }
@@ -67,9 +67,11 @@ void Application::take_recipe(const EditRecipe& recipe) {
     if (recipe.use_dreambooth) settings.learning = recipe.dreambooth;
     settings.guidance = recipe.guidance;
     settings.attention = recipe.attention;
-    settings.device = recipe.job.device, settings.rasterizer = recipe.job.rasterizer, settings.precision = recipe.job.precision;
+    settings.device = recipe.job.device, settings.rasterizer = recipe.job.rasterizer,
+    settings.precision = recipe.job.precision;
     settings.threads = recipe.job.threads, settings.front = recipe.job.front;
-    if (recipe.job.model != model_path_ || recipe.job.lora != loras_) try_model(recipe.job.model, recipe.job.lora, false);
+    if (recipe.job.model != model_path_ || recipe.job.lora != loras_)
+        try_model(recipe.job.model, recipe.job.lora, false);
 }
 
 void Application::open(const std::filesystem::path& path) {
@@ -102,7 +104,7 @@ void Application::open(const std::filesystem::path& path) {
         loaded->statistics = compute_statistics(loaded->state.current);
     };
     auto done = [this, loaded](const Error* error) {
-        if (error != nullptr) keep_ = false;   // what is open stays open
+        if (error != nullptr) keep_ = false;  // what is open stays open
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
         if (loaded->choices.size() > 1) return ask_which(loaded->path, loaded->choices);
         take_loaded(std::move(*loaded));
@@ -114,34 +116,41 @@ void Application::open(const std::filesystem::path& path) {
 
 /// Cameras without a scene are those of the scene that is open.
 void Application::open_cameras(const std::filesystem::path& path) {
-    if (document_.empty()) return toast("These are cameras: open their scene first, then drop them on it.", true);
+    if (document_.empty())
+        return toast("These are cameras: open their scene first, then drop them on it.", true);
     auto found = std::make_shared<SceneCameras>();
     auto work = [found, path, set = document_.state().current, scene = scene_path_](const JobControl&) {
         *found = cameras_of_scene(set, scene, path.string());
     };
     auto done = [this, found, opened = opened_, name = path.filename().string()](const Error* error) {
         if (error != nullptr) return report_error(*error);
-        if (opened != opened_) return;   // another scene meanwhile
-        if (found->views.empty()) return toast(found->notes.empty() ? "There are no cameras in " + name + "." : found->notes.front(), true);
+        if (opened != opened_) return;  // another scene meanwhile
+        if (found->views.empty())
+            return toast(
+                found->notes.empty() ? "There are no cameras in " + name + "." : found->notes.front(), true);
         DocumentState state = document_.state();
         const std::string note = guess_up(state.info, found->views);
         state.views = std::move(found->views);
-        toast(fmt::format("The scene has the {} cameras of {} now.{}{}", state.views.size(), name, note.empty() ? "" : " ", note));
+        toast(fmt::format("The scene has the {} cameras of {} now.{}{}", state.views.size(), name,
+                          note.empty() ? "" : " ", note));
         document_.apply("Load cameras", std::move(state));
     };
     if (!files_.start({fmt::format("Open {}", path.filename().string()), work, done}))
         toast("Another file is being read or written; wait for it.");
 }
 
-void Application::ask_which(const std::filesystem::path& folder, const std::vector<std::filesystem::path>& files) {
+void Application::ask_which(const std::filesystem::path& folder,
+                            const std::vector<std::filesystem::path>& files) {
     std::vector<AskedAnswer> answers;
     for (const auto& file : files) {
         std::error_code ignored;
         const double megabytes = static_cast<double>(std::filesystem::file_size(file, ignored)) / 1e6;
-        answers.push_back({{file.filename().string(), fmt::format("{:.1f} MB", megabytes), false, true}, [this, file] { open(file); }});
+        answers.push_back({{file.filename().string(), fmt::format("{:.1f} MB", megabytes), false, true},
+                           [this, file] { open(file); }});
     }
     answers.push_back({{"Cancel"}, [this] { keep_ = false; }});
-    ask("Which one is to be opened?", fmt::format("{} holds several scenes.", folder.string()), std::move(answers));
+    ask("Which one is to be opened?", fmt::format("{} holds several scenes.", folder.string()),
+        std::move(answers));
 }
 
 void Application::open_sample() { open(assets_path() / "scenes/bear/scene.ply"); }
@@ -182,7 +191,7 @@ void Application::take_loaded(Loaded loaded) {
     model_.orbit = scene_orbit(Scene{document_.state().base, info, {}}, RenderParameters{});
     model_.framing = framing_bounds(document_.state().current);
     camera_ = {};
-    document_seen_ = ~std::uint64_t{0};   // another document may be at the same revision
+    document_seen_ = ~std::uint64_t{0};  // another document may be at the same revision
     reach_key_.clear();
     reach_choice_.reset();
     model_.camera_keys.clear();
@@ -218,7 +227,7 @@ nlohmann::json Application::ui_json() const {
 }
 
 void Application::ui_from_json(const nlohmann::json& json) {
-    try {   // a project of another version may miss any of these
+    try {  // a project of another version may miss any of these
         if (json.contains("view")) fields_from_json(model_.view, json["view"]);
         if (json.contains("exports")) fields_from_json(model_.exports, json["exports"]);
         if (json.contains("request")) {
@@ -229,8 +238,11 @@ void Application::ui_from_json(const nlohmann::json& json) {
             // What an applied edit said already is no news, even if it was clicked once.
             if (contains_word(model_.said_words, model_.request.target)) model_.request.target.clear();
         }
-        if (json.contains("model_settings")) model_.model_settings = ui::model_settings_from_json(json["model_settings"], model_.model_settings);
-        if (json.contains("model")) try_model(json["model"].get<std::string>(), texts_of(json, "loras"), !json.contains("request"));
+        if (json.contains("model_settings"))
+            model_.model_settings =
+                ui::model_settings_from_json(json["model_settings"], model_.model_settings);
+        if (json.contains("model"))
+            try_model(json["model"].get<std::string>(), texts_of(json, "loras"), !json.contains("request"));
         if (json.contains("layout")) {
             layout_ = json["layout"].get<std::string>();
             layout_loaded_ = true;
@@ -266,7 +278,8 @@ void Application::save_project(const std::filesystem::path& path, std::function<
         saved_revision_ = revision;
         keys_unsaved_ = false;
         model_.saved_at = fmt::format("saved {}{}", clock_now(), options_.autosave ? " (autosave on)" : "");
-        autosaved_revision_ = ~std::uint64_t{0};   // what is still unsaved is written anew: the last one is older than this
+        autosaved_revision_ =
+            ~std::uint64_t{0};  // what is still unsaved is written anew: the last one is older than this
         if (!unsaved() && recovered_) gse::discard(*recovered_), recovered_.reset();
         add_recent(target);
         model_.recent.clear();
@@ -287,7 +300,7 @@ void Application::set_up_axis(const std::string& up) {
     if (!require_scene()) return;
     DocumentState state = document_.state();
     state.info.up = parse_up(up, state.info);
-    state.info.up_known = true;   // the artist says so: no guess any more, and written with the scene
+    state.info.up_known = true;  // the artist says so: no guess any more, and written with the scene
     document_.apply("Up axis", std::move(state));
     stand_up();
 }

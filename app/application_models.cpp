@@ -37,8 +37,12 @@ void Application::list_models() {
     tried.push_back(model_in_use());
     model_.models.clear();
     for (const auto& model : find_models(tried)) {
-        auto& row = model_.models.emplace_back(ui::ModelView{.name = model.name, .path = model.path, .structure = model.structure,
-                                                             .bytes = model.bytes, .usable = model.usable, .problem = model.problem});
+        auto& row = model_.models.emplace_back(ui::ModelView{.name = model.name,
+                                                             .path = model.path,
+                                                             .structure = model.structure,
+                                                             .bytes = model.bytes,
+                                                             .usable = model.usable,
+                                                             .problem = model.problem});
         row.chosen = row.path == model_in_use();
         row.checking = row.path == model_tried_;
         const auto found = model_problems_.find(row.path);
@@ -55,7 +59,8 @@ void Application::refuse_model(const std::string& path, std::string problem) {
     model_problems_[path] = problem;
     list_models();
     const auto named = [&](const std::string& wanted) {
-        const auto row = std::find_if(model_.models.begin(), model_.models.end(), [&](const auto& model) { return model.path == wanted; });
+        const auto row = std::find_if(model_.models.begin(), model_.models.end(),
+                                      [&](const auto& model) { return model.path == wanted; });
         return row == model_.models.end() || row->name.empty() ? wanted : row->name;
     };
     toast(fmt::format("The model \"{}\" cannot be used: {}. \"{}\" stays in use.", named(path), problem,
@@ -63,7 +68,8 @@ void Application::refuse_model(const std::string& path, std::string problem) {
           true);
 }
 
-void Application::use_model(const std::string& path, const neural::ModelProfile& profile, bool takes_settings) {
+void Application::use_model(const std::string& path, const neural::ModelProfile& profile,
+                            bool takes_settings) {
     model_path_ = path == starter_model_path().string() ? std::string() : path;
     model_problems_.erase(path);
     use_profile(profile, takes_settings);
@@ -106,7 +112,9 @@ void Application::take_chosen_model() {
         if (!loras_.empty()) {
             loras_.clear();
             list_loras();
-            toast(fmt::format("The LoRAs cannot be used any more: {}. The model works without them.", reason_of(error)), true);
+            toast(fmt::format("The LoRAs cannot be used any more: {}. The model works without them.",
+                              reason_of(error)),
+                  true);
             return take_chosen_model();
         }
         refuse_model(std::exchange(model_path_, {}), reason_of(error));
@@ -120,7 +128,8 @@ void Application::try_model(const std::string& path, std::vector<std::string> lo
     if (wanted == model_in_use()) return loras == loras_ ? list_models() : try_loras(std::move(loras));
     if (work_.running()) return toast("Another model can be chosen when the job is done.");
     const auto rows = find_models({wanted});
-    const auto row = std::find_if(rows.begin(), rows.end(), [&](const auto& model) { return model.path == wanted; });
+    const auto row =
+        std::find_if(rows.begin(), rows.end(), [&](const auto& model) { return model.path == wanted; });
     if (row != rows.end() && !row->usable) return refuse_model(wanted, row->problem);
     // Headers can be right where weights are not: only what has been loaded is in use.
     JobParameters job;
@@ -131,27 +140,26 @@ void Application::try_model(const std::string& path, std::vector<std::string> lo
     neural::ModelProfile profile;
     try {
         profile = profile_of(job);
-    } catch (const Error& error) {
-        return refuse_model(wanted, reason_of(error));
-    }
+    } catch (const Error& error) { return refuse_model(wanted, reason_of(error)); }
     auto model = std::make_shared<std::shared_ptr<neural::TextToImage>>();
     model_tried_ = wanted;
     model_problems_.try_emplace(wanted);
-    work_.start({fmt::format("Check the model \"{}\"", row == rows.end() ? wanted : row->name),
-                 [job, model, cache = cache_](const JobControl& control) {
-                     control.report("loading the model", 0, 0);
-                     *model = open_recipe_model(job, cache);
-                 },
-                 [this, wanted, model, profile, takes_settings, loras = std::move(loras)](const Error* error) {
-                     model_tried_.clear();
-                     if (error != nullptr) return refuse_model(wanted, reason_of(*error));
-                     loras_ = loras;
-                     list_loras();
-                     use_model(wanted, profile, takes_settings);
-                     text_model_ = *model;
-                     model_load_ = {};   // what it took was not seen
-                     text_model_key_ = model_key();
-                 }});
+    work_.start(
+        {fmt::format("Check the model \"{}\"", row == rows.end() ? wanted : row->name),
+         [job, model, cache = cache_](const JobControl& control) {
+             control.report("loading the model", 0, 0);
+             *model = open_recipe_model(job, cache);
+         },
+         [this, wanted, model, profile, takes_settings, loras = std::move(loras)](const Error* error) {
+             model_tried_.clear();
+             if (error != nullptr) return refuse_model(wanted, reason_of(*error));
+             loras_ = loras;
+             list_loras();
+             use_model(wanted, profile, takes_settings);
+             text_model_ = *model;
+             model_load_ = {};  // what it took was not seen
+             text_model_key_ = model_key();
+         }});
     list_models();
 }
 
@@ -172,15 +180,16 @@ void Application::try_loras(std::vector<std::string> loras) {
     job.precision = model_.model_settings.precision;
     job.lora = loras;
     const auto refuse = [this](const Error& error) {
-        const auto file = error.path().empty() ? std::string() : fmt::format(" \"{}\"", error.path().filename().string());
-        toast(fmt::format("The LoRA{} cannot be used: {}. The model stays as it was.", file, reason_of(error)), true);
+        const auto file =
+            error.path().empty() ? std::string() : fmt::format(" \"{}\"", error.path().filename().string());
+        toast(
+            fmt::format("The LoRA{} cannot be used: {}. The model stays as it was.", file, reason_of(error)),
+            true);
     };
     neural::ModelProfile profile;
     try {
         profile = profile_of(job);
-    } catch (const Error& error) {
-        return refuse(error);
-    }
+    } catch (const Error& error) { return refuse(error); }
     auto model = std::make_shared<std::shared_ptr<neural::TextToImage>>();
     model_.loras_checking = true;
     work_.start({"Merge the LoRAs",
@@ -204,7 +213,8 @@ void Application::add_lora(const std::string& text) {
     auto loras = loras_;
     try {
         const auto found = neural::find_loras({text}).front();
-        loras.push_back(neural::lora_text({std::filesystem::absolute(found.file).lexically_normal(), found.strength}));
+        loras.push_back(
+            neural::lora_text({std::filesystem::absolute(found.file).lexically_normal(), found.strength}));
     } catch (const Error& error) {
         return toast(fmt::format("The LoRA cannot be used: {}.", reason_of(error)), true);
     }
@@ -215,7 +225,8 @@ void Application::set_lora_strength(std::size_t index, double strength) {
     if (index >= loras_.size()) return;
     auto loras = loras_;
     const double most = neural::MostLoraStrength;
-    loras[index] = neural::lora_text({neural::parse_lora(loras_[index]).file, std::clamp(strength, -most, most)});
+    loras[index] =
+        neural::lora_text({neural::parse_lora(loras_[index]).file, std::clamp(strength, -most, most)});
     if (loras != loras_) try_loras(std::move(loras));
 }
 
@@ -237,7 +248,8 @@ void Application::choose_segmenter(ui::SegmenterRole role, const std::string& pa
     };
     if (path.empty()) return use({});
     JobParameters job;
-    const auto chosen = (by_clicks ? job.segmenter : job.text_segmenter) = std::filesystem::absolute(path).lexically_normal().string();
+    const auto chosen = (by_clicks ? job.segmenter : job.text_segmenter) =
+        std::filesystem::absolute(path).lexically_normal().string();
     job.device = model_.model_settings.device;
     shown.checking = true;
     work_.start({"Check the segmenter",
@@ -253,15 +265,19 @@ void Application::choose_segmenter(ui::SegmenterRole role, const std::string& pa
                  }});
 }
 
-/// A model that was in use and cannot be loaded any more gives way to the one that comes with the program. LoRAs go first.
+/// A model that was in use and cannot be loaded any more gives way to the one that comes with the program.
+/// LoRAs go first.
 void Application::drop_model(const std::string& path, const Error& error) {
-    const bool of_lora = std::any_of(loras_.begin(), loras_.end(),
-                                     [&](const auto& text) { return neural::parse_lora(text).file == error.path(); });
+    const bool of_lora = std::any_of(loras_.begin(), loras_.end(), [&](const auto& text) {
+        return neural::parse_lora(text).file == error.path();
+    });
     if (path == model_path_ && of_lora) {
         loras_.clear();
         list_loras();
         take_chosen_model();
-        return toast(fmt::format("The LoRAs cannot be used any more: {}. The model works without them.", reason_of(error)), true);
+        return toast(fmt::format("The LoRAs cannot be used any more: {}. The model works without them.",
+                                 reason_of(error)),
+                     true);
     }
     if (path.empty() || path != model_path_) return;
     model_path_.clear();

@@ -1,4 +1,5 @@
-// Splats chosen by a property: measured beside the frames, shown at once, labelled or deleted when the artist says so.
+// Splats chosen by a property: measured beside the frames, shown at once, labelled or deleted when the artist
+// says so.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,14 +31,18 @@ void Application::refresh_picked() {
     if (picked.working) {
         auto values = std::make_shared<std::vector<float>>();
         const auto choice = picking_->wanted();
-        counter_.start({"Measure", [=](const JobControl&) { *values = localize::row_values(set, choice.property, choice.colour, nullptr); },
-                        [=, this](const Error*) {   // where it is busy, once more with the next frame
+        counter_.start({"Measure",
+                        [=](const JobControl&) {
+                            *values = localize::row_values(set, choice.property, choice.colour, nullptr);
+                        },
+                        [=, this](const Error*) {  // where it is busy, once more with the next frame
                             if (picking_ && values->size() == set.size()) picking_->take(set, choice, values);
                         }});
         return;
     }
     const NamedLabel* label = active_label();
-    const auto hidden = hidden_.empty() ? std::vector<std::uint8_t>() : hidden_.rows(*document_.state().row_ids);
+    const auto hidden =
+        hidden_.empty() ? std::vector<std::uint8_t>() : hidden_.rows(*document_.state().row_ids);
     if (!picking_->update(label != nullptr ? label->bits : nullptr, hidden)) return;
     const auto& rows = *picking_->rows();
     picked.values = picking_->values();
@@ -52,9 +57,11 @@ void Application::use_picked(ui::PickedUse use) {
     const std::string name = localize::choice_text(picking_->chosen());
     if (use != ui::PickedUse::NewLabel) {
         const bool removes = use == ui::PickedUse::Remove;
-        return change_label(fmt::format("{}: {}", removes ? "Remove from label" : "Add to label", name), [&](NamedLabel label) {
-            return combine(std::move(label), *rows, removes ? LabelOperation::Remove : LabelOperation::Add);
-        });
+        return change_label(fmt::format("{}: {}", removes ? "Remove from label" : "Add to label", name),
+                            [&](NamedLabel label) {
+                                return combine(std::move(label), *rows,
+                                               removes ? LabelOperation::Remove : LabelOperation::Add);
+                            });
     }
     DocumentState state = document_.state();
     state.labels.push_back(combine(empty_label(name, rows->size()), *rows, LabelOperation::Add));

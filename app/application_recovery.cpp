@@ -1,4 +1,5 @@
-// Nothing is lost: autosave, what is kept when the window closes in the middle of an edit, and having it back.
+// Nothing is lost: autosave, what is kept when the window closes in the middle of an edit, and having it
+// back.
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -18,7 +19,7 @@
 namespace gse::app {
 namespace {
 
-constexpr double ThumbnailSeconds = 30;   // a picture of the scene is drawn anew this often at most
+constexpr double ThumbnailSeconds = 30;  // a picture of the scene is drawn anew this often at most
 constexpr int ThumbnailPx = 192;
 constexpr std::uint64_t WaitingEdit = std::uint64_t{1} << 63, RunningEdit = std::uint64_t{1} << 62;
 
@@ -39,7 +40,8 @@ std::string running_text(const nlohmann::json& edit) {
     const int iteration = edit.value("iteration", -1), iterations = edit.value("iterations", 0);
     if (edit.value("waits", false))
         return iteration >= 0 && iteration + 1 < iterations
-                   ? fmt::format("The edit \"{}\", stopped at iteration {} of {}, was not applied yet.", name, iteration, iterations)
+                   ? fmt::format("The edit \"{}\", stopped at iteration {} of {}, was not applied yet.", name,
+                                 iteration, iterations)
                    : fmt::format("The edit \"{}\" was not applied yet.", name);
     if (iteration < 0) return fmt::format("The edit \"{}\" had just begun.", name);
     return fmt::format("The edit \"{}\" was running, at iteration {} of {}.", name, iteration, iterations);
@@ -58,11 +60,13 @@ ui::RecoveryView view_of(const Recoverable& found) {
         std::size_t edits = summary.stack.size();
         if (const auto edit = summary.jobs.find("edit"); edit != summary.jobs.end()) {
             view.running = running_text(*edit);
-            if (!summary.stack.empty() && edit->value("id", std::uint64_t{0}) == summary.stack.back().id) --edits;
+            if (!summary.stack.empty() && edit->value("id", std::uint64_t{0}) == summary.stack.back().id)
+                --edits;
         }
         view.facts += fmt::format(", {} splats", summary.splats);
         if (edits > 0) view.facts += fmt::format(", {} edit{}", edits, edits == 1 ? "" : "s");
-        if (!summary.scene_found) view.running += (view.running.empty() ? "" : " ") + std::string("Its scene file is gone.");
+        if (!summary.scene_found)
+            view.running += (view.running.empty() ? "" : " ") + std::string("Its scene file is gone.");
     } catch (const std::exception& error) {
         log::warning("an autosave cannot be looked at: {}", error.what());
     }
@@ -72,7 +76,8 @@ ui::RecoveryView view_of(const Recoverable& found) {
 }  // namespace
 
 bool Application::unsaved() const {
-    return !document_.empty() && (document_.revision() != saved_revision_ || keys_unsaved_ || content_live() != 0);
+    return !document_.empty() &&
+           (document_.revision() != saved_revision_ || keys_unsaved_ || content_live() != 0);
 }
 
 std::uint64_t Application::content_live() const {
@@ -84,7 +89,7 @@ std::uint64_t Application::content_live() const {
 nlohmann::json Application::edit_json() const {
     if (content_live() == 0) return {};
     nlohmann::json json;
-    const auto* whole = pending_.kept();   // also while another edit runs
+    const auto* whole = pending_.kept();  // also while another edit runs
     json["waits"] = whole != nullptr;
     json["name"] = whole ? whole->name : live_->name;
     json["target"] = whole ? whole->target : live_->target;
@@ -105,7 +110,7 @@ std::function<DocumentState()> Application::state_with_live_edit() const {
     if (!whole && (!edit_running() || snapshots_.empty())) return [state] { return state; };
     GaussianSet after;
     std::shared_ptr<const std::vector<std::int64_t>> rows;
-    std::optional<edit::EditSnapshot> snapshot;   // what waits to be applied goes before what ran
+    std::optional<edit::EditSnapshot> snapshot;  // what waits to be applied goes before what ran
     if (whole) after = whole->set, rows = whole->base_to_new;
     else snapshot = snapshots_.back();
     if (snapshot && newest_set_.of == snapshot->rows) after = newest_set_.set;
@@ -121,8 +126,8 @@ std::function<DocumentState()> Application::state_with_live_edit() const {
             rows = std::make_shared<const std::vector<std::int64_t>>(snapshot->base_to_new());
         }
         if (rows->size() != state.current.size()) return state;
-        node.delta =
-            std::make_shared<const SceneDelta>(make_delta(state.current, *state.row_ids, after, *rows, node.id));
+        node.delta = std::make_shared<const SceneDelta>(
+            make_delta(state.current, *state.row_ids, after, *rows, node.id));
         auto stack = state.stack;
         stack.push_back(node);
         return with_stack(state, std::move(stack));
@@ -160,14 +165,15 @@ void Application::write_autosave(std::function<void()> then) {
     saver_.start({"Autosave",
                   [this, data, state = state_with_live_edit(), picture = thumbnail(),
                    project = project_path_](const JobControl&) {
-                      data->state = state();   // here, not on the main thread: a large edit takes a while
+                      data->state = state();  // here, not on the main thread: a large edit takes a while
                       data->thumbnail = picture();
                       autosave_->write(*data, project, *writer_);
                   },
                   [this, data, then, opened = opened_](const Error* error) {
-                      if (opened != opened_) return autosave_->discard();   // of a document that is gone
+                      if (opened != opened_) return autosave_->discard();  // of a document that is gone
                       if (error != nullptr) return report_error(*error);
-                      if (data->thumbnail != thumbnail_) thumbnail_ = data->thumbnail, thumbnail_made_ = Clock::now();
+                      if (data->thumbnail != thumbnail_)
+                          thumbnail_ = data->thumbnail, thumbnail_made_ = Clock::now();
                       if (recovered_) gse::discard(*recovered_), recovered_.reset();
                       if (then) then();
                   }});
@@ -195,7 +201,7 @@ void Application::let_go() {
     if (!std::exchange(keep_, false)) return discard_autosave();
     try {
         autosave_->leave();
-    } catch (const Error& error) {   // it stays all the same, and is offered once this program has ended
+    } catch (const Error& error) {  // it stays all the same, and is offered once this program has ended
         report_error(error);
         autosave_ = std::make_unique<Autosave>();
     }
@@ -212,11 +218,12 @@ void Application::leave_edit(bool keep, std::function<void()> then) {
 
 void Application::leave_when_stopped() {
     if (!leaving_ || work_.running() || saver_.running()) return;
-    queue_.run();   // what the edit left
+    queue_.run();  // what the edit left
     const Leaving leaving = *std::exchange(leaving_, std::nullopt);
     if (!leaving.keep) {
         discard_result();
-        model_.edit_running = model_.result_waiting = false;   // what is asked next is asked of the state as it is now
+        model_.edit_running = model_.result_waiting =
+            false;  // what is asked next is asked of the state as it is now
         model_.unsaved = unsaved();
         return leaving.then();
     }
@@ -230,7 +237,7 @@ void Application::shut_down() {
         for (; saver_.running(); queue_.run()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
         queue_.run();
     };
-    refresh_live();   // the newest snapshot
+    refresh_live();  // the newest snapshot
     save_settings();
     wait_for_saver();
     // Nobody was asked when a signal ends the program: what is not saved stays.
@@ -248,7 +255,8 @@ void Application::refresh_recoverable() {
         if (recovered_ && recovered_->file == found.file) continue;
         auto view = view_of(found);
         const bool of_this = same_file(found.scene, scene_path_) || same_file(found.project, project_path_);
-        const bool was = std::any_of(before.begin(), before.end(), [&](const auto& old) { return old.file == view.file && old.offered; });
+        const bool was = std::any_of(before.begin(), before.end(),
+                                     [&](const auto& old) { return old.file == view.file && old.offered; });
         view.offered = !document_.empty() && (of_this || was || !start_page_seen_);
         model_.recoverable.push_back(std::move(view));
     }
@@ -263,8 +271,8 @@ void Application::recover(const std::string& project) {
         for (const auto& found : find_recoverable())
             if (found.file == loaded->path) loaded->recovered = found;
         if (!loaded->recovered)
-            throw Error(ErrorCode::NotFound, "the unsaved work is not there any more", "it was recovered or discarded elsewhere",
-                        loaded->path);
+            throw Error(ErrorCode::NotFound, "the unsaved work is not there any more",
+                        "it was recovered or discarded elsewhere", loaded->path);
         loaded->project = true;
         loaded->project_path = loaded->recovered->project;
         loaded->data = gse::load_project(loaded->path);

@@ -26,19 +26,22 @@ GaussianSet Application::snapshot_set(const edit::EditSnapshot& snapshot) {
 
 /// New states came and old ones were thinned out; the one that is looked at stays, or the next later one.
 void Application::take_snapshots(const std::deque<edit::EditSnapshot>& snapshots) {
-    const int shown = model_.shown_snapshot >= 0 && model_.shown_snapshot < static_cast<int>(snapshots_.size())
-                          ? snapshots_[static_cast<std::size_t>(model_.shown_snapshot)].iteration
-                          : -1;
+    const int shown =
+        model_.shown_snapshot >= 0 && model_.shown_snapshot < static_cast<int>(snapshots_.size())
+            ? snapshots_[static_cast<std::size_t>(model_.shown_snapshot)].iteration
+            : -1;
     snapshots_ = snapshots;
     list_snapshots();
     ++content_;
     if (shown < 0) return;
-    const auto at = std::find_if(snapshots_.begin(), snapshots_.end(), [&](const auto& snapshot) { return snapshot.iteration >= shown; });
+    const auto at = std::find_if(snapshots_.begin(), snapshots_.end(),
+                                 [&](const auto& snapshot) { return snapshot.iteration >= shown; });
     show_snapshot(static_cast<int>(at - snapshots_.begin()));
 }
 
 void Application::show_snapshot(int index) {
-    const int last = static_cast<int>(snapshots_.size()) - (pending_ ? 0 : 1);   // behind all of them there is the result
+    const int last =
+        static_cast<int>(snapshots_.size()) - (pending_ ? 0 : 1);  // behind all of them there is the result
     model_.shown_snapshot = index >= last || index < 0 ? -1 : index;
     ++content_;
 }
@@ -56,8 +59,12 @@ const edit::EditSnapshot* Application::usable_snapshot(int iteration) {
 }
 
 void Application::take_snapshot(int iteration) {
-    const edit::EditSnapshot* snapshot = pending_.shows_last() && !work_.running() ? usable_snapshot(iteration) : nullptr;
-    if (snapshot == nullptr) return pending_ && !pending_.shows_last() ? toast("Those states are of the last result: show that one first.") : void();
+    const edit::EditSnapshot* snapshot =
+        pending_.shows_last() && !work_.running() ? usable_snapshot(iteration) : nullptr;
+    if (snapshot == nullptr)
+        return pending_ && !pending_.shows_last()
+                   ? toast("Those states are of the last result: show that one first.")
+                   : void();
     pending_->set = snapshot_set(*snapshot);
     pending_->base_to_new = std::make_shared<const std::vector<std::int64_t>>(snapshot->base_to_new());
     pending_->name = fmt::format("{} (iteration {})", model_.request.prompt, snapshot->iteration);
@@ -71,9 +78,10 @@ void Application::branch_from_snapshot(int iteration) {
     const edit::EditSnapshot* snapshot = usable_snapshot(iteration);
     if (snapshot == nullptr) return;
     if (const int steps = edit::planned_steps(current_recipe().request); steps <= snapshot->iteration)
-        return toast(fmt::format("The edit has {} iterations: set more than {} to go on from there.", steps, snapshot->iteration));
+        return toast(fmt::format("The edit has {} iterations: set more than {} to go on from there.", steps,
+                                 snapshot->iteration));
     branch_ = *snapshot;
-    if (work_.running()) work_.cancel();   // it ends after its step, and then the branch begins
+    if (work_.running()) work_.cancel();  // it ends after its step, and then the branch begins
     else go_on_from_branch();
 }
 

@@ -12,8 +12,9 @@ ui::TargetRound shown_round(const EditJob& job, const edit::ViewTargets& sheet) 
     ui::TargetRound round{sheet.round, sheet.rounds, {}, sheet.sentence, sheet.warnings};
     for (const auto& target : sheet.views) {
         const View& view = job.views()[target.view];
-        round.targets.push_back({target.view, view.name.empty() ? fmt::format("view {}", target.view) : view.name, target.before,
-                                 target.after, view.camera, target.attempt, target.dropped});
+        round.targets.push_back({target.view,
+                                 view.name.empty() ? fmt::format("view {}", target.view) : view.name,
+                                 target.before, target.after, view.camera, target.attempt, target.dropped});
     }
     return round;
 }
@@ -46,7 +47,8 @@ void watch_targets(const EditJob& job, LiveEdit& live, EditObserver& observer) {
             lock.unlock();
             job.control().report("waiting for your look at the redrawn views", 0, 0);
             lock.lock();
-            live.spoken.wait(lock, job.control().stop, [&live] { return !live.waits || !live.orders.empty(); });
+            live.spoken.wait(lock, job.control().stop,
+                             [&live] { return !live.waits || !live.orders.empty(); });
         }
         return std::exchange(live.orders, {});
     };

@@ -25,9 +25,10 @@ Values from_bits(const std::vector<std::uint8_t>& bits) {
 Values Application::shown_values(const GaussianSet& set) const {
     const auto& state = document_.state();
     const auto mode = static_cast<ui::DisplayMode>(model_.view.mode);
-    const NamedLabel* label = state.active_label >= 0 && state.active_label < static_cast<int>(state.labels.size())
-                                  ? &state.labels[static_cast<std::size_t>(state.active_label)]
-                                  : nullptr;
+    const NamedLabel* label =
+        state.active_label >= 0 && state.active_label < static_cast<int>(state.labels.size())
+            ? &state.labels[static_cast<std::size_t>(state.active_label)]
+            : nullptr;
     Values values;
     if (picking_ && picking_->rows()) {
         values = from_bits(*picking_->rows());
@@ -43,25 +44,28 @@ Values Application::shown_values(const GaussianSet& set) const {
     return on_screen(values, set);
 }
 
-/// Values of the document's rows on the splats that are shown; what is new there has 1. Null where they do not fit.
+/// Values of the document's rows on the splats that are shown; what is new there has 1. Null where they do
+/// not fit.
 Values Application::on_screen(const Values& values, const GaussianSet& set) const {
     const auto& current = document_.state().current;
     if (!values || values->size() != current.size()) return nullptr;
     if (set.shares_all_with(current)) return values;
     const int snapshot = model_.shown_snapshot;
-    std::vector<std::int64_t> rows;   // of `set`, of each row of the state before
+    std::vector<std::int64_t> rows;  // of `set`, of each row of the state before
     if (pending_ && snapshot < 0) rows = *pending_->base_to_new;
     else if (!snapshots_.empty())
-        rows = (snapshot < 0 ? snapshots_.back() : snapshots_[static_cast<std::size_t>(snapshot)]).base_to_new();
+        rows =
+            (snapshot < 0 ? snapshots_.back() : snapshots_[static_cast<std::size_t>(snapshot)]).base_to_new();
     if (rows.size() != current.size()) return nullptr;
     return std::make_shared<const std::vector<float>>(carried(*values, rows, set.size(), 1.0f));
 }
 
 bool Application::shows_snapshot() const {
-    return (edit_running() || pending_) && !snapshots_.empty();   // a search has none
+    return (edit_running() || pending_) && !snapshots_.empty();  // a search has none
 }
 
-/// What is to be seen: a snapshot that is looked at, the result that waits, the newest snapshot, else the document.
+/// What is to be seen: a snapshot that is looked at, the result that waits, the newest snapshot, else the
+/// document.
 GaussianSet Application::set_on_screen() {
     const int snapshot = model_.shown_snapshot;
     const bool live = shows_snapshot();
@@ -71,7 +75,8 @@ GaussianSet Application::set_on_screen() {
     return live ? snapshot_set(snapshots_.back()) : document_.state().current;
 }
 
-/// Before and after: a step that the artist chose; else a waiting or running edit is compared with the state before it, else with the scene as loaded.
+/// Before and after: a step that the artist chose; else a waiting or running edit is compared with the state
+/// before it, else with the scene as loaded.
 const GaussianSet& Application::before_on_screen() const {
     if (model_.compared_revision != 0) return compared_.set;
     return shows_snapshot() || pending_ ? document_.state().current : document_.state().base;
@@ -80,8 +85,13 @@ const GaussianSet& Application::before_on_screen() const {
 PictureRequest Application::picture_request() {
     const auto& state = document_.state();
     const int snapshot = model_.shown_snapshot;
-    const ShownKey key{document_.revision(), content_, model_.view.mode, snapshot, state.active_label,
-                       (model_.view.tint_labels || picking_) && model_.comparison == ui::Comparison::None, pending_.shown()};
+    const ShownKey key{document_.revision(),
+                       content_,
+                       model_.view.mode,
+                       snapshot,
+                       state.active_label,
+                       (model_.view.tint_labels || picking_) && model_.comparison == ui::Comparison::None,
+                       pending_.shown()};
     if (!(key == shown_key_)) {
         shown_key_ = key;
         shown_set_ = set_on_screen();
@@ -148,7 +158,8 @@ void Application::compare_as_usual() {
 void Application::look_through(std::size_t view) {
     if (document_.empty() || view >= document_.state().views.size()) return;
     // The whole view fits into the viewport, whatever their shapes are.
-    camera_ = fitted(document_.state().views[view].camera, std::max(viewport_width_, 1), std::max(viewport_height_, 1));
+    camera_ = fitted(document_.state().views[view].camera, std::max(viewport_width_, 1),
+                     std::max(viewport_height_, 1));
     ++camera_version_;
     last_move_ = Clock::now();
 }
@@ -174,7 +185,7 @@ OrbitParameters Application::export_orbit() const {
         const auto& bits = state.labels[static_cast<std::size_t>(state.active_label)].bits;
         if (bits && std::any_of(bits->begin(), bits->end(), [](auto bit) { return bit != 0; })) {
             orbit = localize::focus_orbit(state.current, *bits, orbit);
-            orbit.radius *= 1.3;   // room around
+            orbit.radius *= 1.3;  // room around
         }
     }
     orbit.radius *= model_.exports.radius_factor;

@@ -1,4 +1,5 @@
-// Words: which of the sentence the model reads, what applied edits have said already, and what a label says of the edit.
+// Words: which of the sentence the model reads, what applied edits have said already, and what a label says
+// of the edit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +17,9 @@ namespace gse::app {
 void Application::refresh_reading() {
     const auto words = edit::words_of(model_.request.prompt);
     const auto read = words.empty() ? 0
-                                    : words_read(model_path_.empty() ? starter_model_path() : std::filesystem::path(model_path_), words);
+                                    : words_read(model_path_.empty() ? starter_model_path()
+                                                                     : std::filesystem::path(model_path_),
+                                                 words);
     model_.words_read = read < words.size() ? read : 0;
 }
 
@@ -36,21 +39,27 @@ const NamedLabel* Application::active_label() const {
 /// What the next edit would change, made anew only when words, label or choice are others.
 void Application::refresh_reach() {
     const auto& request = model_.request;
-    const auto choice = reach_choice_ ? fmt::format("{} {} {}", reach_choice_->by_label, reach_choice_->label, reach_choice_->source) : "";
-    auto key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", document_.revision(), model_.search.number, request.source, request.target, model_path_, choice);
+    const auto choice = reach_choice_ ? fmt::format("{} {} {}", reach_choice_->by_label, reach_choice_->label,
+                                                    reach_choice_->source)
+                                      : "";
+    auto key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}", document_.revision(), model_.search.number,
+                           request.source, request.target, model_path_, choice);
     if (key == reach_key_) return;
     reach_key_ = std::move(key);
     const auto& labels = document_.state().labels;
     const auto& words = searched_.words;
-    model_.attention_corrected = !model_.attention.empty() && std::any_of(labels.begin(), labels.end(), [&](const NamedLabel& label) {
-        return (label.found_for == model_.attention_word || label.found_for == edit::as_told(words.source)) && !label.found_for.empty() &&
-               corrected_by_hand(label);
-    });
+    model_.attention_corrected =
+        !model_.attention.empty() && std::any_of(labels.begin(), labels.end(), [&](const NamedLabel& label) {
+            return (label.found_for == model_.attention_word ||
+                    label.found_for == edit::as_told(words.source)) &&
+                   !label.found_for.empty() && corrected_by_hand(label);
+        });
     model_.reach = {};
     model_.labelled_by_hand = false;
     const NamedLabel* label = active_label();
     if (label == nullptr || count_labelled(*label) == 0) return;
-    model_.reach = {label->name, count_labelled(*label), label_drives_edit(), !label->found_for.empty() && corrected_by_hand(*label)};
+    model_.reach = {label->name, count_labelled(*label), label_drives_edit(),
+                    !label->found_for.empty() && corrected_by_hand(*label)};
     model_.labelled_by_hand = model_.reach.by_label && stands_alone(*label, request, model_.known_words);
 }
 
@@ -61,7 +70,9 @@ void Application::set_reach(bool by_label) {
 
 /// Who makes, corrects or picks a label by hand means it to be edited.
 void Application::choose_label_by_hand() {
-    if (const NamedLabel* label = active_label(); label != nullptr && (made_by_hand(*label) || count_labelled(*label) == 0)) set_reach(true);
+    if (const NamedLabel* label = active_label();
+        label != nullptr && (made_by_hand(*label) || count_labelled(*label) == 0))
+        set_reach(true);
 }
 
 void Application::label_anyway() {
@@ -74,7 +85,8 @@ void Application::label_anyway() {
                      *attention = splat_attention(*job);
                  },
                  [this, job = job_, attention](const Error* error) {
-                     if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
+                     if (error != nullptr)
+                         return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
                      take_located(job, std::move(*attention));
                      if (job->found()) label_located(*job, {}, {});
                  },

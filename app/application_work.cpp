@@ -1,4 +1,5 @@
-// Locate and edit: jobs on the work thread, live states while they run, and the result that waits to be applied.
+// Locate and edit: jobs on the work thread, live states while they run, and the result that waits to be
+// applied.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -29,8 +30,8 @@
 namespace gse::app {
 namespace {
 
-constexpr double SnapshotSeconds = 0.7;           // a running edit is seen at least every second
-constexpr int LeastSteps = 8;                     // of a run that tells how long the next one takes
+constexpr double SnapshotSeconds = 0.7;  // a running edit is seen at least every second
+constexpr int LeastSteps = 8;            // of a run that tells how long the next one takes
 
 }  // namespace
 
@@ -46,7 +47,8 @@ EditRecipe Application::current_recipe() const {
     recipe.dreambooth = model_.model_settings.learning;
     recipe.guidance = model_.model_settings.guidance;
     recipe.attention = model_.model_settings.attention;
-    recipe.job.device = model_.model_settings.device, recipe.job.rasterizer = model_.model_settings.rasterizer;
+    recipe.job.device = model_.model_settings.device,
+    recipe.job.rasterizer = model_.model_settings.rasterizer;
     recipe.job.precision = model_.model_settings.precision;
     recipe.job.threads = model_.model_settings.threads;
     recipe.job.front = model_.model_settings.front;
@@ -80,7 +82,8 @@ EditRecipe Application::open_recipe(EditRecipe recipe) const {
 
 /// What the loaded model depends on.
 std::string Application::model_key() const {
-    return fmt::format("{}\n{}\n{}\n{}", model_path_, model_.model_settings.device, model_.model_settings.precision, fmt::join(loras_, "\n"));
+    return fmt::format("{}\n{}\n{}\n{}", model_path_, model_.model_settings.device,
+                       model_.model_settings.precision, fmt::join(loras_, "\n"));
 }
 
 Scene Application::working_scene() const {
@@ -91,7 +94,8 @@ Scene Application::working_scene() const {
 }
 
 bool Application::job_fits() const {
-    return job_ != nullptr && job_set_.shares_all_with(document_.state().current) && job_key_ == valid_search_key(current_recipe());
+    return job_ != nullptr && job_set_.shares_all_with(document_.state().current) &&
+           job_key_ == valid_search_key(current_recipe());
 }
 
 /// What the last search's model learned, where it is what this recipe's would learn.
@@ -104,33 +108,39 @@ std::optional<neural::TunedModel> Application::known_tuning(const EditRecipe& re
 void Application::locate() {
     if (!require_scene() || work_.running()) return;
     if (pending_) return toast("Apply or discard the edit first.");
-    const auto search = begin_run(text_model_, text_model_key_ == model_key(), model_load_, planned_memory(), arriving_);
-    model_.request.left_out.clear();   // of the search before
+    const auto search =
+        begin_run(text_model_, text_model_key_ == model_key(), model_load_, planned_memory(), arriving_);
+    model_.request.left_out.clear();  // of the search before
     EditRecipe recipe = current_recipe();
-    recipe.job.looked_from = looked_from_ = turned_to(camera_, document_.state().info.up);   // whatever a label was made from
-    if (recipe.request.prompt.empty() && !recipe.request.source.empty()) recipe.request.prompt = "a " + recipe.request.source;
+    recipe.job.looked_from = looked_from_ =
+        turned_to(camera_, document_.state().info.up);  // whatever a label was made from
+    if (recipe.request.prompt.empty() && !recipe.request.source.empty())
+        recipe.request.prompt = "a " + recipe.request.source;
     try {
         recipe.request = edit::validated(recipe.request);
-    } catch (const Error& error) {
-        return report_error(error);
-    }
+    } catch (const Error& error) { return report_error(error); }
     const Measured measured = measured_now();
-    auto work = [search, recipe = open_recipe(recipe), said = model_.said_words, measured, tuned = known_tuning(recipe), scene = working_scene(), cache = cache_,
+    auto work = [search, recipe = open_recipe(recipe), said = model_.said_words, measured,
+                 tuned = known_tuning(recipe), scene = working_scene(), cache = cache_,
                  views = document_.state().views](const JobControl& control) {
         const auto before = network_use();
         load_model(*search, recipe.job, cache, control);
         const PeakMemory peak;
-        search->job = std::make_shared<EditJob>(recipe, EditJobInput{scene, views, search->model, {}, {}, tuned, said, search->segmenters}, control);
+        search->job = std::make_shared<EditJob>(
+            recipe, EditJobInput{scene, views, search->model, {}, {}, tuned, said, search->segmenters},
+            control);
         look(*search);
         search->use = network_use() - before;
-        if (search->job->found() && !steps_measured(measured, *search->job)) measure_steps(search->measured, *search->job);
+        if (search->job->found() && !steps_measured(measured, *search->job))
+            measure_steps(search->measured, *search->job);
         measure_peak(*search, peak);
     };
     auto done = [this, search, recipe, recipe_key = measured_key(), key = model_key(), model = model_path_,
                  on_cpu = model_.model_settings.device == "cpu"](const Error* error) {
         model_load_ = search->loaded;
         if (search->model) text_model_ = search->model, text_model_key_ = key;
-        else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu) drop_model(model, *error);
+        else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu)
+            drop_model(model, *error);
         if (error != nullptr) return error->code() == ErrorCode::Cancelled ? void() : report_error(*error);
         remember_search(search->job);
         model_.cost = cost_of(search->use);
@@ -140,7 +150,8 @@ void Application::locate() {
         remember_measured(recipe_key, search->measured);
         take_located(search->job, std::move(search->attention));
         const auto& located = search->job->located();
-        if (!search->job->found()) return report_error(Error(ErrorCode::NotFound, located.message, located.remedy));
+        if (!search->job->found())
+            return report_error(Error(ErrorCode::NotFound, located.message, located.remedy));
         label_located(*search->job, {}, {});
     };
     const auto word = recipe.request.source.empty() ? recipe.request.target : recipe.request.source;
@@ -157,7 +168,8 @@ namespace {
 void show_gate(EditJob& job, LiveEdit& live) {
     const Gate gate = look_through_gate(job);
     ui::GateView view;
-    for (const auto& picture : gate.pictures) view.pictures.push_back(std::make_shared<const Image>(picture.after));
+    for (const auto& picture : gate.pictures)
+        view.pictures.push_back(std::make_shared<const Image>(picture.after));
     view.verdict = gate.verdict;
     view.warns = gate.warns;
     const std::lock_guard lock(live.mutex);
@@ -179,8 +191,8 @@ void describe(LiveEdit& live, const EditRecipe& recipe) {
 namespace {
 
 /// Gate, loop and what the window makes of the result, each measured.
-void run_measured(MeasuredRun& search, const std::vector<std::uint8_t>& label, LiveEdit& live, PendingResult& pending,
-                  const PeakMemory& peak) {
+void run_measured(MeasuredRun& search, const std::vector<std::uint8_t>& label, LiveEdit& live,
+                  PendingResult& pending, const PeakMemory& peak) {
     const double idea = search.job->times().seconds("gate");
     const auto idea_use = search.job->times().networks("gate");
     run_live(search.job, label, search.attention, live);
@@ -203,26 +215,27 @@ void Application::edit() {
     forget_snapshots();
     tint_before_.reset();
     model_.losses.clear();
-    if (reach_choice_) reach_choice_->source = edit::as_told(model_.request.source);   // another source is another matter
+    if (reach_choice_)
+        reach_choice_->source = edit::as_told(model_.request.source);  // another source is another matter
     start_edit(std::nullopt);
 }
 
 void Application::start_edit(std::optional<edit::EditSnapshot> start) {
-    if (job_ && !job_fits()) model_.request.left_out.clear();   // they were views of another search
+    if (job_ && !job_fits()) model_.request.left_out.clear();  // they were views of another search
     if (!job_fits()) looked_from_ = turned_to(camera_, document_.state().info.up);
     compare_as_usual();
     EditRecipe recipe = current_recipe();
     try {
         recipe.request = edit::validated(recipe.request);
-    } catch (const Error& error) {
-        return report_error(error);
-    }
-    const auto search = begin_run(text_model_, text_model_key_ == model_key(), model_load_, planned_memory(), arriving_);
+    } catch (const Error& error) { return report_error(error); }
+    const auto search =
+        begin_run(text_model_, text_model_key_ == model_key(), model_load_, planned_memory(), arriving_);
     if (job_fits()) search->job = job_;
     live_recipe_ = recipe;
     take_known_parts(search->measured, measured_now());
     const auto& state = document_.state();
-    const auto label = label_drives_edit() ? *state.labels[static_cast<std::size_t>(state.active_label)].bits : std::vector<std::uint8_t>{};
+    const auto label = label_drives_edit() ? *state.labels[static_cast<std::size_t>(state.active_label)].bits
+                                           : std::vector<std::uint8_t>{};
     live_ = std::make_shared<LiveEdit>();
     live_->wants_gate = model_.model_settings.gate && !start && !edit::edits_by_views(recipe.request);
     live_->reviews = model_.model_settings.review;
@@ -237,8 +250,9 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
     model_.shown_snapshot = -1;
     snapshot_base_ = state.current;
     auto pending = std::make_shared<PendingResult>();
-    auto work = [search, recipe, label, pending, live = live_, open = open_recipe(recipe), said = model_.said_words,
-                 tuned = known_tuning(recipe), scene = working_scene(), views = state.views, cache = cache_](const JobControl& control) {
+    auto work = [search, recipe, label, pending, live = live_, open = open_recipe(recipe),
+                 said = model_.said_words, tuned = known_tuning(recipe), scene = working_scene(),
+                 views = state.views, cache = cache_](const JobControl& control) {
         live->use_before = live->use = network_use();
         load_model(*search, recipe.job, cache, control);
         const PeakMemory peak;
@@ -247,7 +261,9 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
             search->job->take_settings(recipe, label.empty());
             if (!search->job->found() && !label.empty()) search->job->use_label(label);
         } else {
-            search->job = std::make_shared<EditJob>(open, EditJobInput{scene, views, search->model, label, {}, tuned, said, search->segmenters}, control);
+            search->job = std::make_shared<EditJob>(
+                open, EditJobInput{scene, views, search->model, label, {}, tuned, said, search->segmenters},
+                control);
             look(*search);
         }
         run_measured(*search, label, *live, *pending, peak);
@@ -257,11 +273,13 @@ void Application::start_edit(std::optional<edit::EditSnapshot> start) {
                  on_cpu = model_.model_settings.device == "cpu"](const Error* error) {
         model_load_ = search->loaded;
         if (search->model) text_model_ = search->model, text_model_key_ = key;
-        else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu) drop_model(model, *error);
+        else if (error != nullptr && error->code() != ErrorCode::Cancelled && on_cpu)
+            drop_model(model, *error);
         remember_measured(recipe_key, search->measured);
-        refresh_live();   // what was found last, and the last steps
+        refresh_live();  // what was found last, and the last steps
         if (branch_) return go_on_from_branch();
-        if (pending->set.size() > 0) pending_.add(std::move(*pending));   // also what a shortage or a failure left
+        if (pending->set.size() > 0)
+            pending_.add(std::move(*pending));  // also what a shortage or a failure left
         pending_.come_back();
         finish_edit(error);
     };
@@ -272,13 +290,14 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
               const std::vector<float>& attention, LiveEdit& live) {
     const bool adds = job->located().mode == edit::EditMode::Add;
     if (!adds && !label.empty() && label != *job->located().label.bits) job->correct_label(label);
-    if (adds && !label.empty() && label != *job->located().source_label.bits) log::warning("{}", AddsElsewhere);   // a toast, too
+    if (adds && !label.empty() && label != *job->located().source_label.bits)
+        log::warning("{}", AddsElsewhere);  // a toast, too
     {
         const std::lock_guard lock(live.mutex);
         live.adds = adds;
         live.renamed = renamed_by(*job);
     }
-    if (!attention.empty()) {   // from here on the loop leaves alone what the search found: it can be read
+    if (!attention.empty()) {  // from here on the loop leaves alone what the search found: it can be read
         const std::lock_guard lock(live.mutex);
         live.found = job;
         live.attention = attention;
@@ -292,7 +311,7 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
     observer.start = live.start;
     observer.snapshot_seconds = SnapshotSeconds;
     observer.snapshot = [&live](edit::EditSnapshot snapshot) {
-        SnapshotSet newest{snapshot.rows, snapshot.materialise()};   // here, so that the window need not
+        SnapshotSet newest{snapshot.rows, snapshot.materialise()};  // here, so that the window need not
         const std::lock_guard lock(live.mutex);
         live.newest = std::move(newest);
         live.snapshots.push_back(std::move(snapshot));
@@ -327,7 +346,7 @@ void run_live(const std::shared_ptr<EditJob>& job, const std::vector<std::uint8_
 
 void Application::finish_edit(const Error* error) {
     ++content_;
-    const bool said = job_ && !job_->found();   // with its evidence
+    const bool said = job_ && !job_->found();  // with its evidence
     if (error != nullptr && error->code() != ErrorCode::Cancelled && !said) report_error(*error);
     if (pending_) untint();
 }
@@ -345,11 +364,12 @@ void Application::apply_result() {
     node.delta = std::make_shared<const SceneDelta>(
         make_delta(result.before, *before.row_ids, result.set, *result.base_to_new, node.id));
     DocumentState state = with_result(before, std::move(node), result);
-    if (state.labels.size() > before.labels.size() || !result.renamed.to.empty()) reach_choice_.reset();   // nobody has chosen the new label, or name
+    if (state.labels.size() > before.labels.size() || !result.renamed.to.empty())
+        reach_choice_.reset();  // nobody has chosen the new label, or name
     document_.apply(fmt::format("Edit: {}", result.name), std::move(state));
     toast_step(fmt::format("The edit \"{}\" is kept.", result.name));
-    model_.request.target.clear();   // it is done: the next sentence has news of its own
-    model_.view.tint_labels = false;   // what was made is to be seen, not where
+    model_.request.target.clear();    // it is done: the next sentence has news of its own
+    model_.view.tint_labels = false;  // what was made is to be seen, not where
 }
 
 /// What is made is to be seen, not where; from here on the tint is the artist's, until the next edit.
@@ -359,7 +379,8 @@ void Application::untint() {
 
 void Application::discard_result() {
     pending_.reset();
-    model_.view.tint_labels |= std::exchange(tint_before_, std::nullopt).value_or(false);   // what is labelled can be seen again
+    model_.view.tint_labels |=
+        std::exchange(tint_before_, std::nullopt).value_or(false);  // what is labelled can be seen again
     ++content_;
 }
 
@@ -367,7 +388,7 @@ void Application::another_result() {
     if (!pending_ || work_.running()) return;
     model_.request.seed = pending_.next_seed();
     pending_.set_aside();
-    const auto tint = tint_before_;   // as before the first of them
+    const auto tint = tint_before_;  // as before the first of them
     edit();
     tint_before_ = tint;
     if (!work_.running()) pending_.come_back();

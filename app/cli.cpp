@@ -45,7 +45,9 @@ JobControl CommandContext::job() const {
     control.stop = interrupt_token();
     if (!quiet) {
         auto bar = std::make_shared<ProgressBar>();
-        control.progress = [bar](std::string_view stage, int step, int total) { bar->update(stage, step, total); };
+        control.progress = [bar](std::string_view stage, int step, int total) {
+            bar->update(stage, step, total);
+        };
     }
     return control;
 }

@@ -18,24 +18,27 @@ int run_command_line(int argc, char** argv);
 /// "guidance_scale" -> "--guidance-scale".
 std::string option_name(const std::string& field);
 
-/// Gives every option of the command that takes a number with a fraction the check that it is finite: a range alone lets
-/// NaN pass. Called once for all commands.
+/// Gives every option of the command that takes a number with a fraction the check that it is finite: a range
+/// alone lets NaN pass. Called once for all commands.
 void require_finite_numbers(CLI::App& command);
 
 /// The option of one field: its help, default and range; a flag gets its opposite too.
 template <class Value, class... Ranges>
 CLI::Option* add_field_option(CLI::App& command, const std::string& option, Value& value, const char* help,
                               const Ranges&... range) {
-    if constexpr (std::is_same_v<Value, bool>) return command.add_flag(option + ",!--no-" + option.substr(2), value, help);
+    if constexpr (std::is_same_v<Value, bool>)
+        return command.add_flag(option + ",!--no-" + option.substr(2), value, help);
     CLI::Option* added = command.add_option(option, value, help)->capture_default_str();
-    if constexpr (std::is_same_v<Value, std::vector<std::string>>) added->allow_extra_args(false);   // one text each time it is given
+    if constexpr (std::is_same_v<Value, std::vector<std::string>>)
+        added->allow_extra_args(false);  // one text each time it is given
     if constexpr (std::is_arithmetic_v<Value>) (added->check(CLI::Range(range.low, range.high)), ...);
     return added;
 }
 
 /// One option per field; a prefix ("--dreambooth-") where the names are those of other settings too.
 template <class P>
-void bind_fields(CLI::App& command, P& parameters, const std::string& group, const std::string& prefix = "--") {
+void bind_fields(CLI::App& command, P& parameters, const std::string& group,
+                 const std::string& prefix = "--") {
     P::visit_fields(parameters, [&](const char* name, auto& value, const char* help, const auto&... range) {
         add_field_option(command, prefix + option_name(name).substr(2), value, help, range...)->group(group);
     });
@@ -43,8 +46,8 @@ void bind_fields(CLI::App& command, P& parameters, const std::string& group, con
 
 /// Adds the fields whose options stand on the command line, as "request.image_size".
 template <class P>
-void note_given(const CLI::App& command, const P& parameters, const std::string& part, std::set<std::string>& given,
-                const std::string& prefix = "--") {
+void note_given(const CLI::App& command, const P& parameters, const std::string& part,
+                std::set<std::string>& given, const std::string& prefix = "--") {
     P::visit_fields(parameters, [&](const char* name, const auto&, const char*, const auto&...) {
         const auto* option = command.get_option_no_throw(prefix + option_name(name).substr(2));
         if (option != nullptr && option->count() > 0) given.insert(part + "." + name);
@@ -60,13 +63,13 @@ struct CommandContext {
 
 using Command = std::function<void()>;
 
-void add_window_command(CLI::App& app, CommandContext& context);     // open (builds with a window)
-void run_default_window();                                           // the program without a command
-void add_scene_commands(CLI::App& app, CommandContext& context);     // info, convert, render, turntable, synth
-void add_edit_commands(CLI::App& app, CommandContext& context);      // locate, edit
-void add_project_command(CLI::App& app, CommandContext& context);    // project
-void add_training_command(CLI::App& app, CommandContext& context);   // train-starter
-void add_bench_command(CLI::App& app, CommandContext& context);      // bench
-void add_eval_command(CLI::App& app, CommandContext& context);       // eval
+void add_window_command(CLI::App& app, CommandContext& context);    // open (builds with a window)
+void run_default_window();                                          // the program without a command
+void add_scene_commands(CLI::App& app, CommandContext& context);    // info, convert, render, turntable, synth
+void add_edit_commands(CLI::App& app, CommandContext& context);     // locate, edit
+void add_project_command(CLI::App& app, CommandContext& context);   // project
+void add_training_command(CLI::App& app, CommandContext& context);  // train-starter
+void add_bench_command(CLI::App& app, CommandContext& context);     // bench
+void add_eval_command(CLI::App& app, CommandContext& context);      // eval
 
 }  // namespace gse::app

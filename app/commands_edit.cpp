@@ -39,17 +39,21 @@ struct EditOptions {
 void add_options(CLI::App& command, const std::shared_ptr<EditOptions>& options) {
     options->command = &command;
     command.add_option("--out", options->output, "Folder for the results");
-    command.add_option("--recipe", options->recipe_file, "Take every setting from this recipe.json, or from a picture that an edit made; --out is still yours");
+    command.add_option("--recipe", options->recipe_file,
+                       "Take every setting from this recipe.json, or from a picture that an edit made; --out "
+                       "is still yours");
     command.add_flag("--demo", options->demo, "The bundled scene and sentence");
     command.add_flag("--headless", options->headless, "Work without a display (this version always does)");
     command.add_flag("--json", options->json, "Print the report as JSON");
-    command.add_flag("--no-cache", options->no_cache, "Ask the networks anew, and keep no answer of theirs on the disk");
+    command.add_flag("--no-cache", options->no_cache,
+                     "Ask the networks anew, and keep no answer of theirs on the disk");
     auto& job = options->recipe.job;
     command.add_option("scene", job.scene, "Scene file or folder");
-    JobParameters::visit_fields(job, [&](const char* name, auto& value, const char* help, const auto&... range) {
-        if (std::string(name) == "scene") return;
-        add_field_option(command, option_name(name), value, help, range...)->group("Files and machine");
-    });
+    JobParameters::visit_fields(
+        job, [&](const char* name, auto& value, const char* help, const auto&... range) {
+            if (std::string(name) == "scene") return;
+            add_field_option(command, option_name(name), value, help, range...)->group("Files and machine");
+        });
     bind_fields(command, options->recipe.request, "Edit");
     bind_fields(command, options->recipe.guidance, "Guidance (score distillation)");
     bind_fields(command, options->recipe.attention, "Attention", "--attention-");
@@ -73,7 +77,8 @@ void forget_sentence(EditRecipe& recipe) {
     recipe.request.target.clear();
     recipe.request.mode = "auto";
     recipe.guidance.before_prompt.clear();
-    for (const char* name : {"request.target", "request.mode", "guidance.before_prompt"}) recipe.given.erase(name);
+    for (const char* name : {"request.target", "request.mode", "guidance.before_prompt"})
+        recipe.given.erase(name);
 }
 
 /// Takes over what the model states and neither the recipe's file nor the command line does.
@@ -101,10 +106,12 @@ void complete(EditOptions& options) {
     if (options.recipe.job.scene.empty())
         throw Error(ErrorCode::InvalidArgument, "no scene is named", "give a scene file, --recipe or --demo");
     if (options.output.empty())
-        options.output = std::filesystem::path("out") / (options.demo ? "demo" : std::filesystem::path(options.recipe.job.scene).stem());
+        options.output = std::filesystem::path("out") /
+                         (options.demo ? "demo" : std::filesystem::path(options.recipe.job.scene).stem());
     apply_model(options);
     auto& request = options.recipe.request;
-    const bool open = request.target.empty() && !request.source.empty();   // the pictures say which word is new
+    const bool open =
+        request.target.empty() && !request.source.empty();  // the pictures say which word is new
     request = edit::validated(request);
     if (open) request.target.clear();
 }
@@ -116,31 +123,37 @@ void refuse_own_folder(const std::filesystem::path& scene, const std::filesystem
     const auto real_folder = std::filesystem::canonical(scene, ignored).parent_path();
     for (const auto& place : {scene, folder, real_folder})
         if (std::filesystem::equivalent(place, output, ignored))
-            throw Error(ErrorCode::InvalidArgument, "--out is the folder of the scene itself, which the results would replace",
+            throw Error(ErrorCode::InvalidArgument,
+                        "--out is the folder of the scene itself, which the results would replace",
                         "choose another folder", output);
 }
 
 void print_summary(const nlohmann::ordered_json& report, const std::filesystem::path& output) {
     const auto text = std::filesystem::absolute(output).lexically_normal().string();
     print("{} splats, {} labelled, {} added, {} removed; outside the label {} changed (PSNR {:.1f} dB)\n",
-               report["splats"].get<std::size_t>(), report["labelled"].get<long>(), report["added"].get<long>(),
-               report["removed"].get<long>(), report["changed_outside_label"].get<std::size_t>(),
-               report["psnr_outside_db"].get<double>());
+          report["splats"].get<std::size_t>(), report["labelled"].get<long>(), report["added"].get<long>(),
+          report["removed"].get<long>(), report["changed_outside_label"].get<std::size_t>(),
+          report["psnr_outside_db"].get<double>());
     print("{}\n", report["confidence_text"].get<std::string>());
     const auto& networks = report["networks"]["total"];
     const auto count = [&](const char* name) { return networks[name].get<std::uint64_t>(); };
-    print("{:.1f} s, {:.0f} MB at most; {}\n", report["seconds"]["total"].get<double>(), report["peak_rss_mb"].get<double>(),
-          use_text({count("unet"), count("encoder"), count("decoder"), networks["tflop"].get<double>() * 1e12, networks.value("cached", std::uint64_t{0})}));
-    print("edited scene   {}/scene.ply\nproject        {}/edit.gsep\nbefore, labels {}/source.ply\nfilm           {}/before_after.mp4\n"
-               "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
-               text, text, text, text, text, text, text, text);
+    print("{:.1f} s, {:.0f} MB at most; {}\n", report["seconds"]["total"].get<double>(),
+          report["peak_rss_mb"].get<double>(),
+          use_text({count("unet"), count("encoder"), count("decoder"), networks["tflop"].get<double>() * 1e12,
+                    networks.value("cached", std::uint64_t{0})}));
+    print(
+        "edited scene   {}/scene.ply\nproject        {}/edit.gsep\nbefore, labels {}/source.ply\nfilm        "
+        "   {}/before_after.mp4\n"
+        "pictures       {}/before_after.png, {}/evidence/\nreport, recipe {}/report.json, {}/recipe.json\n",
+        text, text, text, text, text, text, text, text);
 }
 
-/// Ends an edit whose words were not found. What the search saw goes beside the place of the results, which may hold earlier
-/// ones.
+/// Ends an edit whose words were not found. What the search saw goes beside the place of the results, which
+/// may hold earlier ones.
 void require_search(EditJob& job, const std::filesystem::path& output) {
     if (job.found()) return;
-    const std::filesystem::path place = std::filesystem::absolute(output).lexically_normal().string() + ".search";
+    const std::filesystem::path place =
+        std::filesystem::absolute(output).lexically_normal().string() + ".search";
     try {
         StagedFolder folder(place, {"report.json", {"report.json", "evidence"}});
         write_evidence(folder.path() / "evidence", job.painter().pool(), job.located(), job.views());
@@ -148,39 +161,45 @@ void require_search(EditJob& job, const std::filesystem::path& output) {
         report["files"] = folder.listing();
         write_file(folder.path() / "report.json", json_text(report, 2) + "\n");
         folder.commit();
-    } catch (const Error& failure) {   // what was looked for was not found all the same
+    } catch (const Error& failure) {  // what was looked for was not found all the same
         log::warning("{}", failure.what());
         throw Error(ErrorCode::NotFound, job.located().message, job.located().remedy);
     }
-    throw Error(ErrorCode::NotFound, job.located().message, job.located().remedy + "; what the views showed is in", place);
+    throw Error(ErrorCode::NotFound, job.located().message,
+                job.located().remedy + "; what the views showed is in", place);
 }
 
 /// Throws what ended an edit before its time.
 void require_finished(const EditJob& job, const std::filesystem::path& output) {
     const auto ended_by = [&](const Error& reason, ErrorCode code) {
-        return Error(code,
-                     fmt::format("{}; the edit ended after {} of {} iterations, and what it had reached is saved",
-                                 reason.message(), job.result().iterations,
-                                 edit::loop_steps(job.recipe().request, job.located().mode)),
-                     reason.hint(), output);
+        return Error(
+            code,
+            fmt::format("{}; the edit ended after {} of {} iterations, and what it had reached is saved",
+                        reason.message(), job.result().iterations,
+                        edit::loop_steps(job.recipe().request, job.located().mode)),
+            reason.hint(), output);
     };
     if (const auto& shortage = job.result().shortage) throw ended_by(*shortage, ErrorCode::Foreign);
     if (const auto& failure = job.result().failure) throw ended_by(*failure, failure->code());
-    if (job.result().stopped) throw Error(ErrorCode::Cancelled, "the edit was stopped; what it had reached is saved", "", output);
+    if (job.result().stopped)
+        throw Error(ErrorCode::Cancelled, "the edit was stopped; what it had reached is saved", "", output);
 }
 
 /// One edit, into the folder. What a finished one came to goes onto the sheet, too.
-nlohmann::ordered_json edit_into(const std::filesystem::path& output, const EditRecipe& recipe, const EditOptions& options, const CommandContext& context,
+nlohmann::ordered_json edit_into(const std::filesystem::path& output, const EditRecipe& recipe,
+                                 const EditOptions& options, const CommandContext& context,
                                  VariationSheet* sheet) {
     refuse_own_folder(recipe.job.scene, output);
-    StagedFolder folder(output, {"report.json", {"scene.ply", "source.ply", "recipe.json", "report.json", "evidence",
-                                                 "before_after.mp4", "before_after.png", "edit.gsep", "lora.safetensors"}});
+    StagedFolder folder(output, {"report.json",
+                                 {"scene.ply", "source.ply", "recipe.json", "report.json", "evidence",
+                                  "before_after.mp4", "before_after.png", "edit.gsep", "lora.safetensors"}});
     EditJob job(recipe, context.job(), options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
     folder.require_space(bytes_of_results(job));
     job.locate();
     require_search(job, output);
     std::optional<Gate> gate;
-    if (options.gate && !edit::edits_by_views(job.recipe().request)) gate = look_through_gate(job);   // redrawn views are judged anyway
+    if (options.gate && !edit::edits_by_views(job.recipe().request))
+        gate = look_through_gate(job);  // redrawn views are judged anyway
     job.run();
     job.times().begin("export");
     folder.keep_on_failure();
@@ -188,7 +207,9 @@ nlohmann::ordered_json edit_into(const std::filesystem::path& output, const Edit
     job.times().end();
     auto report = make_report(job);
     if (job.result().iterations > 0)
-        write_file(folder.path() / "edit.gsep", ProjectWriter().pack(std::filesystem::absolute(output) / "edit.gsep", project_of(job, report)));
+        write_file(
+            folder.path() / "edit.gsep",
+            ProjectWriter().pack(std::filesystem::absolute(output) / "edit.gsep", project_of(job, report)));
     add_optional_parts(report, folder.path(), job, gate);
     if (const auto& verdict = job.edited().verdict) report["gate"] = verdict_to_json(*verdict);
     report["files"] = folder.listing();
@@ -201,7 +222,8 @@ nlohmann::ordered_json edit_into(const std::filesystem::path& output, const Edit
     return report;
 }
 
-/// The edit from several seeds, each in a folder of its own, and one picture of them all. One that cannot be drawn is left out.
+/// The edit from several seeds, each in a folder of its own, and one picture of them all. One that cannot be
+/// drawn is left out.
 void run_variations(const EditOptions& options, const CommandContext& context) {
     VariationSheet sheet;
     auto reports = nlohmann::ordered_json::array();
@@ -212,9 +234,11 @@ void run_variations(const EditOptions& options, const CommandContext& context) {
         else print("to choose from {}\n", (options.output / "variations.png").string());
     };
     const auto folder = [&](int i) { return options.output / std::to_string(i + 1); };
-    for (int i = 0; i < options.variations; ++i) refuse_own_folder(options.recipe.job.scene, folder(i));   // before the first is begun
+    for (int i = 0; i < options.variations; ++i)
+        refuse_own_folder(options.recipe.job.scene, folder(i));  // before the first is begun
     for (int i = 0; i < options.variations; ++i) try {
-            reports.push_back(edit_into(folder(i), variation_of(options.recipe, i), options, context, &sheet));
+            reports.push_back(
+                edit_into(folder(i), variation_of(options.recipe, i), options, context, &sheet));
         } catch (const Error& error) {
             if (error.code() == ErrorCode::Model && (i + 1 < options.variations || !sheet.empty())) {
                 log::warning("variation {}: {}", i + 1, error.what());
@@ -236,10 +260,13 @@ void run_locate_command(EditOptions& options, const CommandContext& context) {
     complete(options);
     refuse_own_folder(options.recipe.job.scene, options.output);
     if (std::filesystem::exists(options.output / "scene.ply"))
-        throw Error(ErrorCode::Unwritable, "the folder holds an edited scene, which what is found now would not belong to",
+        throw Error(ErrorCode::Unwritable,
+                    "the folder holds an edited scene, which what is found now would not belong to",
                     "choose another place with --out", options.output);
-    StagedFolder folder(options.output, {"report.json", {"source.ply", "recipe.json", "report.json", "evidence"}});
-    EditJob job(options.recipe, context.job(), options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
+    StagedFolder folder(options.output,
+                        {"report.json", {"source.ply", "recipe.json", "report.json", "evidence"}});
+    EditJob job(options.recipe, context.job(),
+                options.no_cache ? nullptr : open_answer_cache(load_cache_settings()));
     job.locate();
     write_labelled_source(folder.path() / "source.ply", job);
     write_evidence(folder.path() / "evidence", job.painter().pool(), job.located(), job.views());
@@ -252,10 +279,13 @@ void run_locate_command(EditOptions& options, const CommandContext& context) {
     folder.commit();
     if (options.json) print_json(report, 2);
     else
-        print("{}\n{} of {} splats labelled for \"{}\" ({} mode), {} new\nlabels   {}/source.ply\nevidence {}/evidence/\n",
-                   edit::confidence_text(job.located().confidence), report["labelled"].get<long>(), report["splats"].get<std::size_t>(),
-                   report["word"].get<std::string>(), report["mode"].get<std::string>(),
-                   report["new"].get<std::size_t>(), options.output.string(), options.output.string());
+        print(
+            "{}\n{} of {} splats labelled for \"{}\" ({} mode), {} new\nlabels   {}/source.ply\nevidence "
+            "{}/evidence/\n",
+            edit::confidence_text(job.located().confidence), report["labelled"].get<long>(),
+            report["splats"].get<std::size_t>(), report["word"].get<std::string>(),
+            report["mode"].get<std::string>(), report["new"].get<std::size_t>(), options.output.string(),
+            options.output.string());
     edit::require_found(job.located());
 }
 
@@ -263,16 +293,21 @@ void run_locate_command(EditOptions& options, const CommandContext& context) {
 
 void add_edit_commands(CLI::App& app, CommandContext& context) {
     auto locate = std::make_shared<EditOptions>();
-    auto* locate_command = app.add_subcommand("locate", "Find what a word means in a scene, without changing it");
+    auto* locate_command =
+        app.add_subcommand("locate", "Find what a word means in a scene, without changing it");
     add_options(*locate_command, locate);
     locate_command->callback([locate, &context] { run_locate_command(*locate, context); });
     auto edit = std::make_shared<EditOptions>();
     auto* edit_command = app.add_subcommand("edit", "Change a scene by one sentence");
     add_options(*edit_command, edit);
-    edit_command->add_flag("--gate,!--no-gate", edit->gate,
-                           "Method sds: first show what the model makes of four views, in evidence/gate_*.png, and warn when "
-                           "they do not show the edit; redrawn views are judged as they are");
-    edit_command->add_option("--variations", edit->variations, "Make so many, each from the next seed, in folders 1, 2, ... of --out, and variations.png to choose from")
+    edit_command->add_flag(
+        "--gate,!--no-gate", edit->gate,
+        "Method sds: first show what the model makes of four views, in evidence/gate_*.png, and warn when "
+        "they do not show the edit; redrawn views are judged as they are");
+    edit_command
+        ->add_option("--variations", edit->variations,
+                     "Make so many, each from the next seed, in folders 1, 2, ... of --out, and "
+                     "variations.png to choose from")
         ->check(CLI::Range(1, MostVariations));
     edit_command->callback([edit, &context] { run_edit_command(*edit, context); });
 }

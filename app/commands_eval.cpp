@@ -33,12 +33,13 @@ void run_eval_command(EvalOptions& options, const CommandContext& context) {
     report["files"] = folder.listing();
     write_file(folder.path() / "eval.json", json_text(report, 1) + "\n");
     folder.commit();
-    if (options.json)
-        fmt::print("{}\n", json_text(report, 1));
+    if (options.json) fmt::print("{}\n", json_text(report, 1));
     else
-        fmt::print("{}\nfigures {}/eval.json\n", table, std::filesystem::absolute(options.output).lexically_normal().string());
+        fmt::print("{}\nfigures {}/eval.json\n", table,
+                   std::filesystem::absolute(options.output).lexically_normal().string());
     if (report["stopped"].get<bool>())
-        throw Error(ErrorCode::Cancelled, "the evaluation was stopped; what it had reached is saved", "", options.output);
+        throw Error(ErrorCode::Cancelled, "the evaluation was stopped; what it had reached is saved", "",
+                    options.output);
 }
 
 }  // namespace
@@ -50,10 +51,12 @@ void add_eval_command(CLI::App& app, CommandContext& context) {
     command->add_option("--out", options->output, "Folder for eval.json, the table and contact sheets")
         ->capture_default_str();
     command->add_flag("--json", options->json, "Print the figures as JSON instead of the table");
-    command->add_option("--scenes", options->run.scenes, "Real scenes to edit: PATH or PATH:source:sentence:target");
+    command->add_option("--scenes", options->run.scenes,
+                        "Real scenes to edit: PATH or PATH:source:sentence:target");
     bind_fields(*command, options->run.parameters, "Suite");
     add_eval_settings(*command, options->run.settings);
-    add_dreambooth_options(*command, options->run.settings);   // of real scenes: the suite's are of the model's own world
+    add_dreambooth_options(
+        *command, options->run.settings);  // of real scenes: the suite's are of the model's own world
     command->callback([options, command, &context] {
         apply_eval_model(*command, options->run.settings);
         run_eval_command(*options, context);

@@ -26,7 +26,8 @@ const Label& find_label(const LabelSet& set, const std::string& name) {
 }
 
 /// The scene with the edits that are on; `label`, when named, as columns.
-std::size_t export_scene(const std::filesystem::path& project, const std::filesystem::path& output, const std::string& label) {
+std::size_t export_scene(const std::filesystem::path& project, const std::filesystem::path& output,
+                         const std::string& label) {
     const Scene scene = load_scene(project);
     SaveOptions save;
     if (!label.empty()) save.from_label = &find_label(scene.labels, label);
@@ -46,7 +47,8 @@ void add_project_command(CLI::App& app, CommandContext&) {
     auto* command = app.add_subcommand("project", "Print what a project holds, or write its edited scene");
     command->add_option("project", options->input, "Project file (.gsep)")->required();
     command->add_flag("--json", options->json, "Print JSON");
-    auto* output = command->add_option("--export", options->output, "Write the scene with the edits that are on to this file");
+    auto* output = command->add_option("--export", options->output,
+                                       "Write the scene with the edits that are on to this file");
     command->add_option("--label", options->label, "With --export to a .ply: this label as columns")
         ->needs(output);
     command->callback([options] {

@@ -8,7 +8,6 @@
 #include "app/application.h"
 #include "app/cli.h"
 #include "app/engine_names.h"
-#include "ui/foreign_fonts.h"
 #include "app/viewport.h"
 #include "app/window_textures.h"
 #include "engine/base/clock.h"
@@ -21,6 +20,7 @@
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/error.h"
 #include "engine/window/window.h"
+#include "ui/foreign_fonts.h"
 #include "ui/shell.h"
 #include "ui/theme.h"
 
@@ -30,24 +30,25 @@ namespace {
 struct OpenOptions {
     std::filesystem::path path;
     std::string preview = "auto", device;
-    int width = 0, height = 0;   // 0 = as large as fits the screen
+    int width = 0, height = 0;  // 0 = as large as fits the screen
     float scale = 0;
     bool sample = false, validate = false;
 };
 
-constexpr double IdleWait = 0.5;      // nothing happens: what is due by the clock is looked after, nothing is drawn
-constexpr double WorkingWait = 0.1;   // a job runs: its numbers move, the processor belongs to it
-constexpr double MovingFrame = 0.05;  // the camera moves: the panels are drawn anew with every picture, or after this time
-constexpr double WorkingFrame = 0.04; // the same while a job runs that needs the processor too,
-constexpr double SoftwareFrame = 0.08; // and where the processor draws the window as well
-constexpr double ActiveSeconds = 0.6; // after input every frame is drawn
+constexpr double IdleWait =
+    0.5;  // nothing happens: what is due by the clock is looked after, nothing is drawn
+constexpr double WorkingWait = 0.1;  // a job runs: its numbers move, the processor belongs to it
+constexpr double MovingFrame =
+    0.05;  // the camera moves: the panels are drawn anew with every picture, or after this time
+constexpr double WorkingFrame = 0.04;   // the same while a job runs that needs the processor too,
+constexpr double SoftwareFrame = 0.08;  // and where the processor draws the window as well
+constexpr double ActiveSeconds = 0.6;   // after input every frame is drawn
 
 /// The window and everything in it.
 class Editor {
 public:
     explicit Editor(const OpenOptions& options)
-        : window_(window_options(options)),
-          viewport_(window_, parse_backend(options.preview)),
+        : window_(window_options(options)), viewport_(window_, parse_backend(options.preview)),
           textures_(window_),
           app_({.wake = [] { Window::wake(); },
                 .on_scale = [this](float scale) { window_.set_ui_scale(scale); },
@@ -98,7 +99,9 @@ private:
             });
             glyphs_dressed_ = shell_.glyphs().all().size();
         };
-        window.take_character = [this](unsigned character) -> unsigned { return shell_.glyphs().shown(static_cast<char32_t>(character)); };
+        window.take_character = [this](unsigned character) -> unsigned {
+            return shell_.glyphs().shown(static_cast<char32_t>(character));
+        };
         window.take_text = [this](const std::string& text) { return shell_.glyphs().shown(text); };
         window.give_text = [this](const std::string& text) { return shell_.glyphs().meant(text); };
         window.on_drop = [this](const std::vector<std::filesystem::path>& paths) {
@@ -128,8 +131,8 @@ private:
         app_.update(viewport_);
         lose_device_if_asked();
         const bool captures = capture_wanted();
-        at_rest_ = !woken && !moving() && !captures && !shell_.takes_text();   // a caret blinks
-        if (at_rest_) return write_map();   // the window shows what it would show
+        at_rest_ = !woken && !moving() && !captures && !shell_.takes_text();  // a caret blinks
+        if (at_rest_) return write_map();  // the window shows what it would show
         if (!window_.begin_frame()) return;
         viewport_.record();
         shell_.draw(app_.model(), app_, textures_);
@@ -149,14 +152,16 @@ private:
         const auto& model = app_.model();
         const auto path = !model.project_path.empty() ? model.project_path : model.scene_path;
         std::string title = "GSEditPro";
-        if (!path.empty()) title = std::filesystem::path(path).filename().string() + (model.unsaved ? "* - " : " - ") + title;
+        if (!path.empty())
+            title =
+                std::filesystem::path(path).filename().string() + (model.unsaved ? "* - " : " - ") + title;
         if (title == title_) return;
         title_ = title;
         window_.set_title(title);
     }
 
-    /// For scripts that drive the window: places of the widgets as JSON, a picture of the window on request, and a device
-    /// that gets lost.
+    /// For scripts that drive the window: places of the widgets as JSON, a picture of the window on request,
+    /// and a device that gets lost.
     void lose_device_if_asked() {
         const std::filesystem::path request = widget_map_.string() + ".lose_device";
         if (widget_map_.empty() || !std::filesystem::exists(request)) return;
@@ -189,22 +194,32 @@ private:
         state["sentence"] = model.request.prompt;
         state["target"] = app_.target();
         state["method"] = model.request.method;
-        state["search"] = {{"number", model.search.number},   {"confidence", model.search.confidence.value},
-                           {"message", model.search.message}, {"remedy", model.search.remedy}};
+        state["search"] = {{"number", model.search.number},
+                           {"confidence", model.search.confidence.value},
+                           {"message", model.search.message},
+                           {"remedy", model.search.remedy}};
         if (model.search.front) state["search"]["front"] = *model.search.front;
-        state["job"] = {{"running", model.job.running}, {"paused", model.job.paused},   {"title", model.job.title},
-                        {"stage", model.job.stage},     {"step", model.job.step},       {"outcome", model.job.outcome},
+        state["job"] = {{"running", model.job.running}, {"paused", model.job.paused},
+                        {"title", model.job.title},     {"stage", model.job.stage},
+                        {"step", model.job.step},       {"outcome", model.job.outcome},
                         {"error", model.job.error}};
-        state["file_job"] = {{"running", model.file_job.running}, {"title", model.file_job.title},
-                             {"outcome", model.file_job.outcome}, {"error", model.file_job.error}};
-        state["estimate"] = {{"seconds", model.estimate.seconds}, {"tflop", model.estimate.tflop}, {"memory_mb", model.estimate.memory_mb}};
+        state["file_job"] = {{"running", model.file_job.running},
+                             {"title", model.file_job.title},
+                             {"outcome", model.file_job.outcome},
+                             {"error", model.file_job.error}};
+        state["estimate"] = {{"seconds", model.estimate.seconds},
+                             {"tflop", model.estimate.tflop},
+                             {"memory_mb", model.estimate.memory_mb}};
         state["losses"] = model.losses.size();
         state["snapshots"] = model.snapshots.size();
         state["result_waiting"] = model.result_waiting;
-        state["targets"] = {{"rounds", model.target_rounds.size()}, {"waits", model.targets_wait}, {"review", model.model_settings.review}};
+        state["targets"] = {{"rounds", model.target_rounds.size()},
+                            {"waits", model.targets_wait},
+                            {"review", model.model_settings.review}};
         if (!model.target_rounds.empty())
             for (const auto& target : model.target_rounds.back().targets)
-                state["targets"]["views"].push_back({{"view", target.view}, {"redrawn", target.attempt}, {"dropped", target.dropped}});
+                state["targets"]["views"].push_back(
+                    {{"view", target.view}, {"redrawn", target.attempt}, {"dropped", target.dropped}});
         state["cost"] = {{"unet", model.cost.unet}, {"tflop", model.cost.tflop}};
         state["comparison"] = static_cast<int>(model.comparison);
         state["mode"] = model.view.mode;
@@ -235,7 +250,7 @@ private:
         std::filesystem::remove(request);
     }
 
-    ui::Shell shell_;   // before the window: dropped files reach it
+    ui::Shell shell_;  // before the window: dropped files reach it
     ui::ForeignFonts foreign_fonts_;
     std::size_t glyphs_dressed_ = 0;
     Window window_;
@@ -246,7 +261,7 @@ private:
     std::string title_;
     double last_input_ = wall_seconds(), map_written_ = 0, frame_began_ = 0;
     bool at_rest_ = false;
-    std::size_t frames_ = 0, rests_ = 0, devices_lost_ = 0;   // rests: times that nothing had to be drawn
+    std::size_t frames_ = 0, rests_ = 0, devices_lost_ = 0;  // rests: times that nothing had to be drawn
 };
 
 void run_open(const OpenOptions& options) {
@@ -256,7 +271,8 @@ void run_open(const OpenOptions& options) {
     Editor editor(options);
     editor.run();
     if (options.validate && editor.validation_messages() > 0)
-        throw Error(ErrorCode::Foreign, fmt::format("the validation layers reported {} messages", editor.validation_messages()),
+        throw Error(ErrorCode::Foreign,
+                    fmt::format("the validation layers reported {} messages", editor.validation_messages()),
                     "see the log");
 }
 
@@ -264,16 +280,24 @@ void run_open(const OpenOptions& options) {
 
 void add_window_command(CLI::App& app, CommandContext&) {
     auto options = std::make_shared<OpenOptions>();
-    auto* command = app.add_subcommand("open", "Open the editor's window (what happens without a command, too)");
+    auto* command =
+        app.add_subcommand("open", "Open the editor's window (what happens without a command, too)");
     command->add_option("file", options->path, "Scene, folder, project or a picture with a recipe in it");
     command->add_flag("--sample", options->sample, "Open the bundled scene");
-    command->add_option("--preview", options->preview, "Who paints the viewport: auto, vulkan or native")->capture_default_str();
+    command->add_option("--preview", options->preview, "Who paints the viewport: auto, vulkan or native")
+        ->capture_default_str();
     command->add_option("--device", options->device, "Graphics device: number or part of its name");
-    command->add_option("--width", options->width, "Width of the window; what fits the screen unless it is given")->check(CLI::Range(320, 16384));
+    command
+        ->add_option("--width", options->width,
+                     "Width of the window; what fits the screen unless it is given")
+        ->check(CLI::Range(320, 16384));
     command->add_option("--height", options->height, "Height of the window")->check(CLI::Range(240, 16384));
-    command->add_option("--scale", options->scale, "Size of text and controls for this start; 0 = as chosen in the window")
+    command
+        ->add_option("--scale", options->scale,
+                     "Size of text and controls for this start; 0 = as chosen in the window")
         ->check(CLI::Range(0.0, 4.0));
-    command->add_flag("--validate", options->validate, "Vulkan validation layers; any message is an error at the end");
+    command->add_flag("--validate", options->validate,
+                      "Vulkan validation layers; any message is an error at the end");
     command->callback([options] { run_open(*options); });
 }
 

@@ -7,8 +7,9 @@ namespace gse::app {
 
 void add_dreambooth_options(CLI::App& command, EditRecipe& recipe) {
     const std::string group = "DreamBooth";
-    command.add_flag("--dreambooth,!--no-dreambooth", recipe.use_dreambooth,
-                     "Let the model learn the scene from renders of it first")
+    command
+        .add_flag("--dreambooth,!--no-dreambooth", recipe.use_dreambooth,
+                  "Let the model learn the scene from renders of it first")
         ->group(group);
     bind_fields(command, recipe.dreambooth, group, "--dreambooth-");
 }

@@ -29,14 +29,16 @@ int failed(const gse::Error& error) {
     return exit_code(error.code());
 }
 
-/// Brings what was printed to its place; false, after a sentence on stderr, when that or an earlier print failed.
+/// Brings what was printed to its place; false, after a sentence on stderr, when that or an earlier print
+/// failed.
 bool flush_output() {
     errno = 0;
     std::cout.flush();
     const bool flushed = std::fflush(stdout) == 0 && std::cout.good() && std::ferror(stdout) == 0;
     if (flushed) return true;
     const std::string reason = errno != 0 ? std::string(" (") + std::strerror(errno) + ")" : std::string();
-    std::fprintf(stderr, "gseditpro: the output cannot be printed%s; files that were asked for are written\n", reason.c_str());
+    std::fprintf(stderr, "gseditpro: the output cannot be printed%s; files that were asked for are written\n",
+                 reason.c_str());
     return false;
 }
 
@@ -48,15 +50,15 @@ int main(int argc, char** argv) {
     try {
         const int code = gse::app::run_command_line(argc, argv);
         return flush_output() ? code : 1;
-    } catch (const gse::Error& error) {
-        return failed(error);
-    } catch (const std::bad_alloc&) {
+    } catch (const gse::Error& error) { return failed(error); } catch (const std::bad_alloc&) {
         return failed(gse::out_of_memory());
-    } catch (const std::filesystem::filesystem_error& error) {   // a name that the system does not take
-        return failed(gse::Error(gse::ErrorCode::NotFound, error.code().message(), "use another name", error.path1()));
+    } catch (const std::filesystem::filesystem_error& error) {  // a name that the system does not take
+        return failed(
+            gse::Error(gse::ErrorCode::NotFound, error.code().message(), "use another name", error.path1()));
     } catch (const std::exception& error) {
         if (std::ferror(stdout) != 0 && !flush_output()) return 1;  // printing failed, not the work
-        std::fprintf(stderr, "gseditpro: unexpected failure (%s); please report it\n", gse::printable(error.what()).c_str());
+        std::fprintf(stderr, "gseditpro: unexpected failure (%s); please report it\n",
+                     gse::printable(error.what()).c_str());
         return 70;
     }
 }

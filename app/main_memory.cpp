@@ -1,4 +1,5 @@
-// The program's operator new: as the standard one, but it remembers what it could not give, for the error's sentence.
+// The program's operator new: as the standard one, but it remembers what it could not give, for the error's
+// sentence.
 #include <cstdlib>
 #include <new>
 

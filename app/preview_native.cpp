@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr float LeastSolid = 0.3f;     // of a pixel, to have a depth that can be picked
+constexpr float LeastSolid = 0.3f;  // of a pixel, to have a depth that can be picked
 
 /// Distance to the middle of the splats: the middle of the depth colours.
 float depth_scale(const GaussianSet& set, const Camera& camera) {
@@ -31,7 +31,8 @@ float depth_scale(const GaussianSet& set, const Camera& camera) {
 }
 
 bool same_camera(const Camera& a, const Camera& b) {
-    bool same = a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy;
+    bool same = a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx &&
+                a.cy == b.cy;
     for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) same = same && a.rotation(r, c) == b.rotation(r, c);
     return same && length(a.translation - b.translation) == 0;
@@ -52,16 +53,14 @@ preview::Display display_of(const PictureRequest& request) {
     display.antialiased = request.antialiased;
     try {
         display.background = parse_colour(request.settings.background);
-    } catch (const Error&) {
-        display.background = {0, 0, 0};
-    }
+    } catch (const Error&) { display.background = {0, 0, 0}; }
     const bool tints = display.mode == preview::Mode::Labels || request.settings.tint_labels;
     display.tint_strength = tints && request.values ? request.settings.tint_strength : 0;
     return display;
 }
 
-void NativePainter::paint_part(const PictureRequest& request, bool original, const Camera& camera, int first_column,
-                               NativePicture& picture) {
+void NativePainter::paint_part(const PictureRequest& request, bool original, const Camera& camera,
+                               int first_column, NativePicture& picture) {
     const auto& set = original ? request.original : request.set;
     preview::Display display = display_of(request);
     const bool has_values = !original && request.values && request.values->size() == set.size();
@@ -69,20 +68,22 @@ void NativePainter::paint_part(const PictureRequest& request, bool original, con
         display.tint_strength = 0;
         if (preview::needs_value(display)) display.mode = preview::Mode::Beauty;
     }
-    raster::Settings settings;   // over black: the resolve adds the background
+    raster::Settings settings;  // over black: the resolve adds the background
     settings.sh_degree = display.sh_degree;
     settings.antialiased = display.antialiased;
     const bool wants_value = preview::needs_value(display);
-    if (wants_value) painter_.rasterizer().forward_values(set.spans(), camera, settings, *request.values, values_);
+    if (wants_value)
+        painter_.rasterizer().forward_values(set.spans(), camera, settings, *request.values, values_);
     const auto& light = painter_.paint(set.spans(), camera, settings);
     const float middle = display.mode == preview::Mode::Depth ? depth_scale(set, camera) : 1.0f;
-    preview::resolve({&light.colour, &light.alpha, &light.depth, wants_value ? &values_ : nullptr}, display, middle,
-                     painter_.pool(), part_);
+    preview::resolve({&light.colour, &light.alpha, &light.depth, wants_value ? &values_ : nullptr}, display,
+                     middle, painter_.pool(), part_);
     for (int y = 0; y < camera.height; ++y) {
         const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(camera.width);
         std::copy_n(&part_[row * 4], static_cast<std::size_t>(camera.width) * 4,
                     &picture.rgba[(static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
-                                   static_cast<std::size_t>(first_column)) * 4]);
+                                   static_cast<std::size_t>(first_column)) *
+                                  4]);
         for (int x = 0; x < camera.width; ++x) {
             const float alpha = light.alpha.data[row + static_cast<std::size_t>(x)];
             picture.depth.at(first_column + x, y, 0) =
@@ -100,12 +101,15 @@ void NativePainter::paint(const PictureRequest& request, int width, int height, 
     picture.rgba.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4);
     picture.depth.resize(width, height, 1);
     Camera whole = request.camera.resized(width, height);
-    whole.fy = request.camera.fy * height / request.camera.height;   // rounding of the height must not bend the picture
+    whole.fy = request.camera.fy * height /
+               request.camera.height;  // rounding of the height must not bend the picture
     whole.cy = request.camera.cy * height / request.camera.height;
-    const int split = request.comparison == ui::Comparison::Original ? width
-                      : request.comparison == ui::Comparison::Wipe
-                          ? std::clamp(static_cast<int>(std::lround(request.settings.wipe * static_cast<float>(width))), 0, width)
-                          : 0;
+    const int split =
+        request.comparison == ui::Comparison::Original ? width
+        : request.comparison == ui::Comparison::Wipe
+            ? std::clamp(static_cast<int>(std::lround(request.settings.wipe * static_cast<float>(width))), 0,
+                         width)
+            : 0;
     // Columns of one camera are a camera themselves: only what is shown is rendered.
     if (split > 0) {
         Camera left = whole;

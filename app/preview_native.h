@@ -1,4 +1,5 @@
-// The viewport painted by the own rasterizer on a thread of its own: newest request wins, resolution drops while moving.
+// The viewport painted by the own rasterizer on a thread of its own: newest request wins, resolution drops
+// while moving.
 #pragma once
 
 #include <condition_variable>
@@ -12,20 +13,20 @@
 #include <vector>
 
 #include "app/engine_names.h"
-#include "engine/preview/moving_scale.h"
 #include "app/preview_host.h"
 #include "engine/pipeline/scene_tools.h"
+#include "engine/preview/moving_scale.h"
 #include "engine/preview/resolve.h"
 
 namespace gse::app {
 
 struct NativePicture {
-    std::vector<std::uint8_t> rgba;        // [height,width,4]
+    std::vector<std::uint8_t> rgba;  // [height,width,4]
     int width = 0, height = 0;
-    Camera camera;                         // at the size of the request, not of the picture
-    Image depth;                           // [height,width,1] alpha-normalised, 0 = nothing
+    Camera camera;  // at the size of the request, not of the picture
+    Image depth;    // [height,width,1] alpha-normalised, 0 = nothing
     double milliseconds = 0;
-    bool full = false;                     // at the size asked for
+    bool full = false;  // at the size asked for
 };
 
 /// Settings of the request in the preview's terms. Throws nothing: a colour that cannot be read is black.
@@ -40,7 +41,8 @@ public:
     std::string name() { return painter_.rasterizer().name(); }
 
 private:
-    void paint_part(const PictureRequest& request, bool original, const Camera& camera, int first_column, NativePicture& picture);
+    void paint_part(const PictureRequest& request, bool original, const Camera& camera, int first_column,
+                    NativePicture& picture);
     Painter painter_;
     Image values_;
     std::vector<std::uint8_t> part_;
@@ -65,10 +67,11 @@ public:
     NativePreview& operator=(const NativePreview&) = delete;
 
     void want(const PictureRequest& request);
-    /// The newest picture that has not been taken yet, or null. Its memory is used again once nobody holds it.
+    /// The newest picture that has not been taken yet, or null. Its memory is used again once nobody holds
+    /// it.
     std::shared_ptr<const NativePicture> take();
     bool busy() const;
-    bool painting() const;   // something is being painted or waits for it
+    bool painting() const;  // something is being painted or waits for it
     /// What the window needs for a frame beside the picture: the resolution while moving leaves room for it.
     void set_window_ms(double milliseconds);
     std::string name() const;
@@ -83,7 +86,7 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable_any changed_;
     Wanted wanted_;
-    std::optional<PictureRequest> painted_;   // what the newest picture shows
+    std::optional<PictureRequest> painted_;  // what the newest picture shows
     bool painted_full_ = false, painting_ = false;
     std::shared_ptr<const NativePicture> ready_;
     std::shared_ptr<PictureStore> store_ = std::make_shared<PictureStore>();

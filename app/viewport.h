@@ -29,8 +29,8 @@ public:
     void record();
     /// A picture is being made or uploaded: draw another frame soon.
     bool busy() const;
-    /// The camera moves and the newest picture is still being painted, by threads that wake the window when it is there:
-    /// frames before that would show nothing new and take the processor from it.
+    /// The camera moves and the newest picture is still being painted, by threads that wake the window when
+    /// it is there: frames before that would show nothing new and take the processor from it.
     bool waits_for_picture() const;
     /// What a frame of the window takes beside the picture.
     void set_window_ms(double milliseconds);
@@ -60,7 +60,7 @@ private:
     PreviewBackend backend_;
     NativePreview native_;
     StreamedPicture picture_;
-    std::shared_ptr<const NativePicture> painted_, uploaded_;   // the newest one; what picture_ holds
+    std::shared_ptr<const NativePicture> painted_, uploaded_;  // the newest one; what picture_ holds
     PictureRequest request_;
     PictureState state_;
     Side current_, original_;

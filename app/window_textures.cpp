@@ -130,7 +130,7 @@ void StreamedPicture::update(std::span<const std::uint8_t> rgba, int width, int 
     if (!texture_ || width != width_ || height != height_) {
         texture_ = make_picture(device, width, height);
         const auto view = static_cast<VkImageView>(texture_.view());
-        if (id_ != 0) window_.replace_texture(id_, view);   // panels may hold the handle already
+        if (id_ != 0) window_.replace_texture(id_, view);  // panels may hold the handle already
         else id_ = window_.add_texture(view);
         width_ = width;
         height_ = height;

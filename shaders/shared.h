@@ -24,7 +24,8 @@ GSE_CONSTANT(float, Log2Of255, 7.99435343685885793770f);  // log2 alpha below mi
 GSE_CONSTANT(float, TransmittanceCut, 1e-4f);
 GSE_CONSTANT(float, DeterminantCut, 1e-12f);  // px^4
 GSE_CONSTANT(float, Log2E, 1.44269504088896340736f);
-GSE_CONSTANT(float, FootprintLimit, 1e7f);  // px; longer axes are as good as endless, and float could overflow
+GSE_CONSTANT(float, FootprintLimit,
+             1e7f);  // px; longer axes are as good as endless, and float could overflow
 GSE_CONSTANT(uint, CulledKey, 0xFFFFFFFFu);
 
 // Scene arrays: texels of 4 floats, and of 4 halfs for the spherical harmonics.
@@ -59,11 +60,11 @@ GSE_CONSTANT(uint, ModeChanged, 9u);
 GSE_CONSTANT(float, RingReach, 2.8853900817779268f);  // u^2 + v^2 at two standard deviations, log2 units
 GSE_CONSTANT(float, RingWidthPx, 1.3f);
 GSE_CONSTANT(float, RingAlpha, 0.85f);
-GSE_CONSTANT(float, RingFill, 0.12f);        // of the splat's own alpha inside its ring
+GSE_CONSTANT(float, RingFill, 0.12f);  // of the splat's own alpha inside its ring
 GSE_CONSTANT(float, CentreAlpha, 0.9f);
 GSE_CONSTANT(float, EllipsoidShade, 0.55f);  // how much darker the rim is than the middle
 GSE_CONSTANT(float, DimmedBeauty, 0.35f);    // brightness of the picture under a colour map
-GSE_CONSTANT(float, LeastSolid, 0.3f);        // alpha of a pixel to have a depth that can be picked
+GSE_CONSTANT(float, LeastSolid, 0.3f);       // alpha of a pixel to have a depth that can be picked
 GSE_CONSTANT(float, MapCoverage, 0.85f);     // how much of the map shows where the value is 1
 
 struct FrameData {

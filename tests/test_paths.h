@@ -1,5 +1,5 @@
-// Where tests find the shared third-party data, the reference numbers and a scratch folder. Absent data is a skip that CTest
-// shows; where CI is set it is a failure.
+// Where tests find the shared third-party data, the reference numbers and a scratch folder. Absent data is a
+// skip that CTest shows; where CI is set it is a failure.
 #pragma once
 
 #include <unistd.h>
@@ -22,7 +22,9 @@ inline std::filesystem::path from_environment(const char* name, const std::files
 std::filesystem::path shared_folder();
 
 /// Reference outputs of the networks (GSE_GOLDENS).
-inline std::filesystem::path goldens_folder() { return from_environment("GSE_GOLDENS", shared_folder() / "goldens"); }
+inline std::filesystem::path goldens_folder() {
+    return from_environment("GSE_GOLDENS", shared_folder() / "goldens");
+}
 
 /// Reference outputs of the rasterizer, beside the networks' folder.
 inline std::filesystem::path raster_goldens_folder() {
@@ -50,7 +52,8 @@ constexpr int SkipCode = 77;  // as CTest is told in CMakeLists.txt
 /// True when `path` exists; otherwise the case is to return: it counts as skipped, in CI as failed.
 inline bool available(const std::filesystem::path& path) {
     if (std::filesystem::exists(path)) return true;
-    if (runs_in_ci()) throw std::runtime_error(path.string() + " is not there, and CI is set: nothing may be skipped");
+    if (runs_in_ci())
+        throw std::runtime_error(path.string() + " is not there, and CI is set: nothing may be skipped");
     std::printf("[skip] %s is not there\n", path.c_str());
     skipped().push_back(path);
     return false;

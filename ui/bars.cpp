@@ -32,16 +32,23 @@ void draw_tools(Context& context) {
             set_tool(context, which);
     };
     tool_button("tool.orbit", Icon::Pointer, Tool::Orbit, "Orbit: left drag turns the view (Esc)");
-    tool_button("tool.brush", Icon::Brush, Tool::Brush, with_key(context, "Brush: paint the label", Command::Brush));
-    tool_button("tool.rectangle", Icon::Rectangle, Tool::Rectangle, with_key(context, "Rectangle: label what is inside", Command::Rectangle));
-    tool_button("tool.lasso", Icon::Lasso, Tool::Lasso, with_key(context, "Lasso: label what is inside", Command::Lasso));
-    tool_button("tool.cut_out", Icon::CutOut, Tool::CutOut, with_key(context, "Cut out: label the thing in a box, all its sides", Command::CutOut));
+    tool_button("tool.brush", Icon::Brush, Tool::Brush,
+                with_key(context, "Brush: paint the label", Command::Brush));
+    tool_button("tool.rectangle", Icon::Rectangle, Tool::Rectangle,
+                with_key(context, "Rectangle: label what is inside", Command::Rectangle));
+    tool_button("tool.lasso", Icon::Lasso, Tool::Lasso,
+                with_key(context, "Lasso: label what is inside", Command::Lasso));
+    tool_button("tool.cut_out", Icon::CutOut, Tool::CutOut,
+                with_key(context, "Cut out: label the thing in a box, all its sides", Command::CutOut));
     gap(context);
     const bool front = context.view.front_only;
-    if (icon_button(context, {.name = "tool.front",
-                              .icon = front ? Icon::FrontOnly : Icon::Through,
-                              .tooltip = with_key(context, front ? "Front only: what is behind is not touched" : "All the way through", Command::FrontOnly),
-                              .active = front})) {
+    if (icon_button(context,
+                    {.name = "tool.front",
+                     .icon = front ? Icon::FrontOnly : Icon::Through,
+                     .tooltip = with_key(
+                         context, front ? "Front only: what is behind is not touched" : "All the way through",
+                         Command::FrontOnly),
+                     .active = front})) {
         context.view.front_only = !front;
         context.view_changed = true;
     }
@@ -146,13 +153,16 @@ void draw_tool_bar(Context& context) {
     gap(context);
     const bool open = context.scene_open();
     const std::string why = open ? "" : "Open a scene first";
-    if (icon_button(context, {.name = "tool.frame",
-                              .icon = Icon::Frame,
-                              .tooltip = with_key(context, "Frame what is labelled, else the scene", Command::Frame),
-                              .why_off = why}))
-        frame_selection(context);
     if (icon_button(context,
-                    {.name = "tool.home", .icon = Icon::Home, .tooltip = with_key(context, "All of the scene", Command::Home), .why_off = why}))
+                    {.name = "tool.frame",
+                     .icon = Icon::Frame,
+                     .tooltip = with_key(context, "Frame what is labelled, else the scene", Command::Frame),
+                     .why_off = why}))
+        frame_selection(context);
+    if (icon_button(context, {.name = "tool.home",
+                              .icon = Icon::Home,
+                              .tooltip = with_key(context, "All of the scene", Command::Home),
+                              .why_off = why}))
         go_home(context);
     gap(context);
     const bool undo = open && context.model.document->can_undo(),
@@ -177,10 +187,8 @@ void draw_tool_bar(Context& context) {
 
 void draw_job_bar(Context& context) {
     ImGui::AlignTextToFramePadding();
-    if (context.model.job.running)
-        draw_running(context);
-    else
-        draw_idle(context);
+    if (context.model.job.running) draw_running(context);
+    else draw_idle(context);
     draw_file_job(context);
 }
 

@@ -33,15 +33,16 @@ void ask_about_edit(Context& context, const std::string& what, const std::functi
     const auto& model = context.model;
     const bool running = model.edit_running;
     question.title = running ? "An edit is running" : "An edit is not applied";
-    question.text =
-        running ? fmt::format("{} \"{}\" is at step {} of {}.", what, model.job.title, model.job.step, model.job.total)
-                : fmt::format("{} A finished edit waits to be applied or discarded.", what);
-    if (running && model.job.total <= 0) question.text = fmt::format("{} \"{}\" still works.", what, model.job.title);
+    question.text = running ? fmt::format("{} \"{}\" is at step {} of {}.", what, model.job.title,
+                                          model.job.step, model.job.total)
+                            : fmt::format("{} A finished edit waits to be applied or discarded.", what);
+    if (running && model.job.total <= 0)
+        question.text = fmt::format("{} \"{}\" still works.", what, model.job.title);
     question.text += " What is kept is offered when the scene is opened again or the program starts.";
     question.answers = {
-        {!running                    ? "Keep it for later"
+        {!running                  ? "Keep it for later"
          : model.snapshots.empty() ? "Stop and keep the settings"
-                                     : "Stop and keep the snapshot",
+                                   : "Stop and keep the snapshot",
          false, [&actions, act] { actions.leave_edit(true, act); }},
         {running ? "Wait" : "Stay", false, {}},
         // What else is unsaved is asked about next.
@@ -91,7 +92,9 @@ const std::vector<std::string>& film_extensions() {
     return Endings;
 }
 
-std::string keys_of(const Context& context, Command command) { return chord_text(context.state.keymap.of(command)); }
+std::string keys_of(const Context& context, Command command) {
+    return chord_text(context.state.keymap.of(command));
+}
 
 std::string with_key(const Context& context, std::string text, Command command) {
     const std::string keys = keys_of(context, command);
@@ -167,7 +170,8 @@ std::string why_not_export(const Context& context, const std::string& path) {
 
 std::string views_text(const Context& context) {
     const auto there = static_cast<int>(context.document().views.size()), used = context.request.views;
-    if (there < static_cast<int>(LeastViewpoints)) return fmt::format("{} automatic view{}", used, used == 1 ? "" : "s");
+    if (there < static_cast<int>(LeastViewpoints))
+        return fmt::format("{} automatic view{}", used, used == 1 ? "" : "s");
     if (there > used) return fmt::format("{} of {} views", used, there);
     return fmt::format("{} view{}", there, there == 1 ? "" : "s");
 }
@@ -180,7 +184,7 @@ void roll_seed(Context& context) {
 
 void run_locate(Context& context) {
     if (!why_not_locate(context).empty()) return;
-    context.request.left_out.clear();   // views of the search before
+    context.request.left_out.clear();  // views of the search before
     // Only this run sees the sentence that was made up for it.
     context.actions.set_request(locate_request(context.request, context.state.prompt.problem));
     context.actions.locate();
@@ -216,8 +220,10 @@ void cancel_job(Context& context) {
 
 void open_path(Context& context, const std::string& path) {
     auto& actions = context.actions;
-    if (has_extension(path, std::vector<std::string>{".png"})) return actions.open(path_of(path));   // a prompt, no scene
-    if (context.scene_open() && only_cameras(path_of(path))) return actions.open(path_of(path));   // for this scene
+    if (has_extension(path, std::vector<std::string>{".png"}))
+        return actions.open(path_of(path));  // a prompt, no scene
+    if (context.scene_open() && only_cameras(path_of(path)))
+        return actions.open(path_of(path));  // for this scene
     with_unsaved_work(context, "Another scene is to be opened.",
                       [&actions, path] { actions.open(path_of(path)); });
 }
@@ -250,8 +256,8 @@ void discard_recovery(Context& context, const RecoveryView& found) {
     auto& question = context.state.question;
     question.title = "Discard the unsaved work?";
     question.text = fmt::format("{}, {}. It cannot be brought back.", found.name, found.facts);
-    question.answers = {
-        {"Discard", true, [&actions, file = found.file] { actions.discard_recovery(file); }}, {"Keep", false, {}}};
+    question.answers = {{"Discard", true, [&actions, file = found.file] { actions.discard_recovery(file); }},
+                        {"Keep", false, {}}};
     question.pending = true;
 }
 
@@ -261,14 +267,15 @@ void save_as(Context& context, std::function<void()> then) {
     std::filesystem::path start = path_of(context.model.project_path);
     if (start.empty() && !context.model.scene_path.empty()) start = path_of(context.model.suggested_project);
     if (start.empty()) start = home_folder() / "scene.gsep";
-    context.state.files.ask(
-        {.title = "Save the project",
-         .confirm = "Save",
-         .extensions = {".gsep"},
-         .saves = true,
-         .folder_allowed = false,
-         .start = utf8_of(start),
-         .answer = [&actions, then](const std::filesystem::path& path) { actions.save_project(path, then); }});
+    context.state.files.ask({.title = "Save the project",
+                             .confirm = "Save",
+                             .extensions = {".gsep"},
+                             .saves = true,
+                             .folder_allowed = false,
+                             .start = utf8_of(start),
+                             .answer = [&actions, then](const std::filesystem::path& path) {
+                                 actions.save_project(path, then);
+                             }});
 }
 
 void save(Context& context) {
@@ -280,15 +287,17 @@ void save(Context& context) {
 void quit(Context& context) {
     auto& actions = context.actions;
     const auto& files = context.model.file_job;
-    if (!files.running) return with_unsaved_work(context, "The window is to be closed.", [&actions] { actions.quit(); });
+    if (!files.running)
+        return with_unsaved_work(context, "The window is to be closed.", [&actions] { actions.quit(); });
     auto& question = context.state.question;
     question.title = "A file is not done";
     question.text = fmt::format("\"{}\" is still at work.", files.title);
-    question.answers = {{"Wait", false, {}},
-                        {"Stop it", true, [&actions, state = &context.state] {
-                             actions.cancel_file_job();
-                             state->leave_asked = {"The window is to be closed.", [&actions] { actions.quit(); }};
-                         }}};
+    question.answers = {
+        {"Wait", false, {}},
+        {"Stop it", true, [&actions, state = &context.state] {
+             actions.cancel_file_job();
+             state->leave_asked = {"The window is to be closed.", [&actions] { actions.quit(); }};
+         }}};
     question.pending = true;
 }
 
@@ -310,13 +319,13 @@ void add_label(Context& context) {
 void label_by_hand(Context& context, const std::string& name) {
     if (!context.scene_open()) return;
     const auto& labels = context.document().labels;
-    const auto found = std::find_if(labels.begin(), labels.end(), [&](const NamedLabel& label) { return label.name == name; });
-    if (found == labels.end())
-        context.actions.add_label(name);
-    else
-        context.actions.set_active_label(static_cast<int>(found - labels.begin()));
+    const auto found = std::find_if(labels.begin(), labels.end(),
+                                    [&](const NamedLabel& label) { return label.name == name; });
+    if (found == labels.end()) context.actions.add_label(name);
+    else context.actions.set_active_label(static_cast<int>(found - labels.begin()));
     show_labelled(context);
-    context.state.viewport.tool = Tool::CutOut;   // a box is the quickest way to a thing; the other tools correct it
+    context.state.viewport.tool =
+        Tool::CutOut;  // a box is the quickest way to a thing; the other tools correct it
     context.state.viewport.stroke = false;
     show_panel(context.state, PanelId::Labels);
 }

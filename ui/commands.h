@@ -21,7 +21,8 @@ std::string why_not_label(const Context& context);  // there is no label, or a j
 std::string why_not_save(const Context& context);
 /// The request with the word that is taken to be new where none is chosen: what an edit will be.
 edit::EditRequest as_planned(const Context& context);
-/// Why what is labelled cannot be hidden or isolated; empty = it can. Both change what is seen, never the scene.
+/// Why what is labelled cannot be hidden or isolated; empty = it can. Both change what is seen, never the
+/// scene.
 std::string why_not_hide(Context& context);
 void hide_label(Context& context);
 void isolate_label(Context& context);
@@ -48,7 +49,8 @@ void open_sample(Context& context);
 void save(Context& context);
 /// `then` (may be empty) is called once it is saved.
 void save_as(Context& context, std::function<void()> then = {});
-/// Acts; asks first when there is unsaved work, a running or waiting edit included. `what` is to happen, as a sentence.
+/// Acts; asks first when there is unsaved work, a running or waiting edit included. `what` is to happen, as a
+/// sentence.
 void with_unsaved_work(Context& context, const std::string& what, std::function<void()> act);
 void recover(Context& context, const std::string& file);
 void discard_recovery(Context& context, const RecoveryView& found);

@@ -39,7 +39,8 @@ struct Context {
     edit::EditRequest request;
     ExportSettings exports;
     ModelSettings model_settings;
-    bool view_changed = false, request_changed = false, exports_changed = false, model_settings_changed = false;
+    bool view_changed = false, request_changed = false, exports_changed = false,
+         model_settings_changed = false;
 
     bool scene_open() const { return model.document != nullptr && !model.document->empty(); }
     const DocumentState& document() const { return model.document->state(); }

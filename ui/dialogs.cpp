@@ -14,7 +14,7 @@
 namespace gse::ui {
 namespace {
 
-constexpr float AnswersEm = 30;   // a line of a question
+constexpr float AnswersEm = 30;  // a line of a question
 
 void draw_about(Context& context) {
     bool& open = context.state.about_open;
@@ -51,7 +51,8 @@ int draw_answers(Context& context, const std::vector<Question::Answer>& answers)
         for (std::size_t index = 0; index < answers.size(); ++index) {
             if (!answers[index].listed) continue;
             ImGui::PushID(static_cast<int>(index));
-            if (ImGui::Selectable(shortened(answers[index].text, context.em * 20).c_str())) chosen = static_cast<int>(index);
+            if (ImGui::Selectable(shortened(answers[index].text, context.em * 20).c_str()))
+                chosen = static_cast<int>(index);
             note(context, fmt::format("question.{}", index));
             ImGui::SameLine(context.em * 22);
             ImGui::TextDisabled("%s", answers[index].detail.c_str());
@@ -60,8 +61,9 @@ int draw_answers(Context& context, const std::vector<Question::Answer>& answers)
         ImGui::EndChild();
     }
     const bool appears = ImGui::IsWindowAppearing();
-    const auto harmless = std::find_if(answers.begin(), answers.end(),
-                                       [](const auto& answer) { return !answer.dangerous && !answer.listed; });
+    const auto harmless = std::find_if(answers.begin(), answers.end(), [](const auto& answer) {
+        return !answer.dangerous && !answer.listed;
+    });
     bool first = true;
     for (std::size_t index = 0; index < answers.size(); ++index) {
         const auto& answer = answers[index];
@@ -70,9 +72,9 @@ int draw_answers(Context& context, const std::vector<Question::Answer>& answers)
         if (!first) flow(button_width(answer.text), context.em * AnswersEm);
         if (button(context, {.name = fmt::format("question.{}", index),
                              .text = answer.text,
-                             .look = answer.dangerous          ? Look::Danger
+                             .look = answer.dangerous       ? Look::Danger
                                      : first && listed == 0 ? Look::Primary
-                                                               : Look::Normal}))
+                                                            : Look::Normal}))
             chosen = static_cast<int>(index);
         if (appears && harmless == answers.begin() + static_cast<std::ptrdiff_t>(index))
             focus_last_item(context);  // Enter chooses what loses nothing
@@ -96,7 +98,8 @@ void draw_question(Context& context) {
     ImGui::Spacing();
     const bool done = ImGui::IsKeyPressed(key::Escape, false) && !ImGui::IsWindowAppearing();
     const int chosen = draw_answers(context, question.answers);
-    const auto act = chosen >= 0 ? question.answers[static_cast<std::size_t>(chosen)].act : std::function<void()>();
+    const auto act =
+        chosen >= 0 ? question.answers[static_cast<std::size_t>(chosen)].act : std::function<void()>();
     if (done || chosen >= 0) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
     if (act) act();

@@ -17,15 +17,15 @@ namespace gse::ui {
 namespace {
 
 constexpr char32_t FirstEmoji = 0x1F000;
-constexpr float EmShare = 0.86f;   // of the line's height, as in the panels' own fonts
+constexpr float EmShare = 0.86f;  // of the line's height, as in the panels' own fonts
 constexpr float EmojiShare = 1.0f;
 
 using Fonts = std::unique_ptr<FcFontSet, void (*)(FcFontSet*)>;
 
 /// Installed fonts, those that suit the pattern best first.
 Fonts sorted_fonts(const char* name) {
-    const std::unique_ptr<FcPattern, void (*)(FcPattern*)> wanted(FcNameParse(reinterpret_cast<const FcChar8*>(name)),
-                                                                  FcPatternDestroy);
+    const std::unique_ptr<FcPattern, void (*)(FcPattern*)> wanted(
+        FcNameParse(reinterpret_cast<const FcChar8*>(name)), FcPatternDestroy);
     if (!wanted) return {nullptr, FcFontSetDestroy};
     FcConfigSubstitute(nullptr, wanted.get(), FcMatchPattern);
     FcDefaultSubstitute(wanted.get());
@@ -42,20 +42,25 @@ ui::PaintedGlyph picture_of(const FT_Bitmap& bitmap) {
     glyph.width = static_cast<int>(bitmap.width);
     glyph.height = static_cast<int>(bitmap.rows);
     glyph.coloured = bitmap.pixel_mode == FT_PIXEL_MODE_BGRA;
-    glyph.rgba.assign(static_cast<std::size_t>(glyph.width) * static_cast<std::size_t>(glyph.height) * 4, 255);
+    glyph.rgba.assign(static_cast<std::size_t>(glyph.width) * static_cast<std::size_t>(glyph.height) * 4,
+                      255);
     for (int y = 0; y < glyph.height; ++y) {
         const unsigned char* row = bitmap.buffer + static_cast<std::ptrdiff_t>(y) * bitmap.pitch;
         for (int x = 0; x < glyph.width; ++x) {
-            std::uint8_t* to = glyph.rgba.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(glyph.width) +
-                                                    static_cast<std::size_t>(x)) * 4;
+            std::uint8_t* to =
+                glyph.rgba.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(glyph.width) +
+                                     static_cast<std::size_t>(x)) *
+                                        4;
             if (bitmap.pixel_mode == FT_PIXEL_MODE_MONO) {
                 to[3] = (row[x / 8] >> (7 - x % 8) & 1) != 0 ? 255 : 0;
             } else if (!glyph.coloured) {
                 to[3] = row[x];
             } else {
-                const unsigned char* from = row + x * 4;   // premultiplied
+                const unsigned char* from = row + x * 4;  // premultiplied
                 for (int c = 0; c < 3; ++c)
-                    to[c] = from[3] == 0 ? 0 : static_cast<std::uint8_t>(std::min(255, from[2 - c] * 255 / from[3]));
+                    to[c] = from[3] == 0
+                                ? 0
+                                : static_cast<std::uint8_t>(std::min(255, from[2 - c] * 255 / from[3]));
                 to[3] = from[3];
             }
         }
@@ -80,13 +85,18 @@ ui::PaintedGlyph scaled(const ui::PaintedGlyph& large, float factor) {
             int sum[4] = {};
             for (int v = y0; v < y1; ++v)
                 for (int u = x0; u < x1; ++u) {
-                    const std::uint8_t* from = large.rgba.data() + (static_cast<std::size_t>(v) * static_cast<std::size_t>(large.width) +
-                                                                    static_cast<std::size_t>(u)) * 4;
+                    const std::uint8_t* from =
+                        large.rgba.data() +
+                        (static_cast<std::size_t>(v) * static_cast<std::size_t>(large.width) +
+                         static_cast<std::size_t>(u)) *
+                            4;
                     for (int c = 0; c < 3; ++c) sum[c] += from[c] * from[3];
                     sum[3] += from[3];
                 }
-            std::uint8_t* to = small.rgba.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(small.width) +
-                                                    static_cast<std::size_t>(x)) * 4;
+            std::uint8_t* to =
+                small.rgba.data() + (static_cast<std::size_t>(y) * static_cast<std::size_t>(small.width) +
+                                     static_cast<std::size_t>(x)) *
+                                        4;
             for (int c = 0; c < 3; ++c) to[c] = sum[3] == 0 ? 0 : static_cast<std::uint8_t>(sum[c] / sum[3]);
             to[3] = static_cast<std::uint8_t>(sum[3] / ((y1 - y0) * (x1 - x0)));
         }
@@ -98,13 +108,13 @@ ui::PaintedGlyph scaled(const ui::PaintedGlyph& large, float factor) {
 struct ForeignFonts::State {
     FT_Library library = nullptr;
     Fonts text = sorted_fonts("sans-serif"), emoji = sorted_fonts("emoji");
-    std::map<std::pair<std::string, int>, FT_Face> faces;   // null = cannot be read
+    std::map<std::pair<std::string, int>, FT_Face> faces;  // null = cannot be read
 
     State() {
         if (FT_Init_FreeType(&library) != 0) library = nullptr;
     }
     ~State() {
-        if (library != nullptr) FT_Done_FreeType(library);   // with its faces
+        if (library != nullptr) FT_Done_FreeType(library);  // with its faces
     }
     State(const State&) = delete;
     State& operator=(const State&) = delete;
@@ -128,14 +138,16 @@ struct ForeignFonts::State {
         float factor = 1;
         if (FT_IS_SCALABLE(font)) {
             FT_Set_Pixel_Sizes(font, 0, static_cast<FT_UInt>(std::max(4L, std::lround(size_px * EmShare))));
-        } else {   // pictures of one size
+        } else {  // pictures of one size
             if (font->num_fixed_sizes == 0 || FT_Select_Size(font, 0) != 0) return std::nullopt;
-            factor = size_px * EmojiShare / static_cast<float>(std::max<FT_Short>(1, font->available_sizes[0].height));
+            factor = size_px * EmojiShare /
+                     static_cast<float>(std::max<FT_Short>(1, font->available_sizes[0].height));
         }
         if (FT_Load_Glyph(font, index, FT_LOAD_RENDER | FT_LOAD_COLOR) != 0) return std::nullopt;
         const FT_GlyphSlot slot = font->glyph;
         const bool drawn = slot->bitmap.width > 0 && slot->bitmap.rows > 0 && slot->bitmap.buffer != nullptr;
-        if (!drawn && !is_space(character)) return std::nullopt;   // colours in a form that FreeType does not paint
+        if (!drawn && !is_space(character))
+            return std::nullopt;  // colours in a form that FreeType does not paint
         ui::PaintedGlyph glyph = picture_of(slot->bitmap);
         glyph.left = static_cast<float>(slot->bitmap_left);
         glyph.top = static_cast<float>(slot->bitmap_top);
@@ -163,7 +175,8 @@ std::optional<ui::PaintedGlyph> ForeignFonts::paint(char32_t character, float si
     if (!state_) state_ = std::make_unique<State>();
     if (state_->library == nullptr) return std::nullopt;
     const bool emoji = character >= FirstEmoji;
-    if (auto glyph = state_->paint_from(emoji ? state_->emoji : state_->text, character, size_px)) return glyph;
+    if (auto glyph = state_->paint_from(emoji ? state_->emoji : state_->text, character, size_px))
+        return glyph;
     return state_->paint_from(emoji ? state_->text : state_->emoji, character, size_px);
 }
 

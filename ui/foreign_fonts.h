@@ -20,7 +20,7 @@ public:
 
 private:
     struct State;
-    std::unique_ptr<State> state_;   // made when the first character is asked for
+    std::unique_ptr<State> state_;  // made when the first character is asked for
 };
 
 }  // namespace gse::ui

@@ -43,13 +43,16 @@ void append(std::string& text, char32_t c) {
 }
 
 /// Changes the look of the character before it, or joins two; nothing to be seen of its own.
-bool invisible(char32_t c) { return c == 0x200D || (c >= 0xFE00 && c <= 0xFE0F) || (c >= 0x1F3FB && c <= 0x1F3FF); }
+bool invisible(char32_t c) {
+    return c == 0x200D || (c >= 0xFE00 && c <= 0xFE0F) || (c >= 0x1F3FB && c <= 0x1F3FF);
+}
 
 void paint(unsigned char* pixels, int width, const ImFontAtlasCustomRect& rect, const PaintedGlyph& glyph) {
     for (int y = 0; y < glyph.height; ++y)
-        std::memcpy(pixels + (static_cast<std::size_t>(rect.Y + y) * static_cast<std::size_t>(width) + rect.X) * 4,
-                    glyph.rgba.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(glyph.width) * 4,
-                    static_cast<std::size_t>(glyph.width) * 4);
+        std::memcpy(
+            pixels + (static_cast<std::size_t>(rect.Y + y) * static_cast<std::size_t>(width) + rect.X) * 4,
+            glyph.rgba.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(glyph.width) * 4,
+            static_cast<std::size_t>(glyph.width) * 4);
 }
 
 }  // namespace
@@ -60,7 +63,8 @@ ImWchar ForeignGlyphs::shown(char32_t character) {
     if (character <= LargestShort) {
         const auto code = static_cast<ImWchar>(character);
         const ImFont* font = ImGui::GetCurrentContext() != nullptr ? ImGui::GetFont() : nullptr;
-        if (character > 0x7F && font != nullptr && font->FindGlyphNoFallback(code) == nullptr) want(character, code);
+        if (character > 0x7F && font != nullptr && font->FindGlyphNoFallback(code) == nullptr)
+            want(character, code);
         return code;
     }
     if (large_.size() > static_cast<std::size_t>(LastCode - FirstCode)) return static_cast<ImWchar>(Broken);
@@ -85,14 +89,16 @@ std::string ForeignGlyphs::meant(std::string_view text) const {
     std::string result;
     for (std::size_t at = 0; at < text.size();) {
         const char32_t character = next_character(text, at);
-        const auto large = character <= LargestShort ? large_.find(static_cast<ImWchar>(character)) : large_.end();
+        const auto large =
+            character <= LargestShort ? large_.find(static_cast<ImWchar>(character)) : large_.end();
         append(result, large == large_.end() ? character : large->second);
     }
     return result;
 }
 
 ForeignGlyphs* foreign_glyphs() {
-    return ImGui::GetCurrentContext() == nullptr ? nullptr : static_cast<ForeignGlyphs*>(ImGui::GetIO().UserData);
+    return ImGui::GetCurrentContext() == nullptr ? nullptr
+                                                 : static_cast<ForeignGlyphs*>(ImGui::GetIO().UserData);
 }
 
 void set_foreign_glyphs(ForeignGlyphs* glyphs) { ImGui::GetIO().UserData = glyphs; }

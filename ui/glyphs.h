@@ -1,5 +1,5 @@
-// Characters that the fonts of the panels do not have (Chinese, Japanese, Korean, emoji, ...): which texts have asked for, and
-// what stands for those that do not fit into ImGui's 16 bits.
+// Characters that the fonts of the panels do not have (Chinese, Japanese, Korean, emoji, ...): which texts
+// have asked for, and what stands for those that do not fit into ImGui's 16 bits.
 #pragma once
 
 #include <imgui.h>
@@ -17,7 +17,7 @@ namespace gse::ui {
 /// A character as a picture, found in some other font.
 struct PaintedGlyph {
     int width = 0, height = 0;
-    float left = 0, top = 0;         // of the picture, from the pen and up from the base line
+    float left = 0, top = 0;  // of the picture, from the pen and up from the base line
     float advance = 0;
     bool coloured = false;
     std::vector<std::uint8_t> rgba;  // [height,width,4]; white where it takes the text's colour
@@ -42,8 +42,8 @@ private:
     void want(char32_t character, ImWchar code);
 
     std::vector<std::pair<char32_t, ImWchar>> all_;
-    std::map<char32_t, ImWchar> codes_;   // of `all_`
-    std::map<ImWchar, char32_t> large_;   // what stands for characters beyond 16 bits
+    std::map<char32_t, ImWchar> codes_;  // of `all_`
+    std::map<ImWchar, char32_t> large_;  // what stands for characters beyond 16 bits
 };
 
 /// The table of the present ImGui context; null = none: texts are shown as they are.

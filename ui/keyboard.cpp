@@ -31,12 +31,14 @@ const ImGuiWindow* keeper() {
 
 /// Panel, tool bar, viewport...: what lies directly in the host window, or the window itself.
 const ImGuiWindow* area_of(const ImGuiWindow* window) {
-    while (window->ParentWindow != nullptr && window->ParentWindow->ParentWindow != nullptr) window = window->ParentWindow;
+    while (window->ParentWindow != nullptr && window->ParentWindow->ParentWindow != nullptr)
+        window = window->ParentWindow;
     return window;
 }
 
 int index_of(const std::vector<FocusStop>& stops, ImGuiID id) {
-    const auto found = std::find_if(stops.begin(), stops.end(), [id](const FocusStop& stop) { return stop.id == id; });
+    const auto found =
+        std::find_if(stops.begin(), stops.end(), [id](const FocusStop& stop) { return stop.id == id; });
     return found == stops.end() ? -1 : static_cast<int>(found - stops.begin());
 }
 
@@ -46,8 +48,10 @@ void focus(Context& context, const FocusStop& stop) {
     if (g.NavWindow != stop.window) ImGui::FocusWindow(stop.window);
     const ImRect rect(stop.low, stop.high);
     ImGui::SetNavID(stop.id, ImGuiNavLayer_Main, 0, ImGui::WindowRectAbsToRel(stop.window, rect));
-    ImGui::ScrollToRect(stop.window, rect, ImGuiScrollFlags_KeepVisibleEdgeX | ImGuiScrollFlags_KeepVisibleEdgeY);
-    g.NavInitRequest = false;  // of a window that has just come up: its first control is not the one that is meant
+    ImGui::ScrollToRect(stop.window, rect,
+                        ImGuiScrollFlags_KeepVisibleEdgeX | ImGuiScrollFlags_KeepVisibleEdgeY);
+    g.NavInitRequest =
+        false;  // of a window that has just come up: its first control is not the one that is meant
     g.NavInitResultId = 0;
     g.NavDisableHighlight = false;
     g.NavDisableMouseHover = true;
@@ -59,8 +63,7 @@ void focus(Context& context, const FocusStop& stop) {
 }
 
 /// `step` stops further among those that `wanted` lets through, around the end; nothing when there is none.
-template <class Wanted>
-void move_focus(Context& context, int from, int step, Wanted&& wanted) {
+template <class Wanted> void move_focus(Context& context, int from, int step, Wanted&& wanted) {
     const auto& stops = context.state.keyboard.stops;
     const int count = static_cast<int>(stops.size());
     for (int tried = 1; tried <= count; ++tried) {
@@ -94,7 +97,8 @@ void next_area(Context& context) {
     const auto& stops = context.state.keyboard.stops;
     if (stops.empty() || keeper() != nullptr) return;
     const int from = start_of(context, 1), step = ImGui::GetIO().KeyShift ? -1 : 1;
-    const ImGuiWindow* here = from >= 0 && focus_shown() ? area_of(stops[static_cast<std::size_t>(from)].window) : nullptr;
+    const ImGuiWindow* here =
+        from >= 0 && focus_shown() ? area_of(stops[static_cast<std::size_t>(from)].window) : nullptr;
     move_focus(context, from, step, [&](const FocusStop& stop) { return area_of(stop.window) != here; });
 }
 
@@ -131,7 +135,8 @@ void watch_alt(Context& context) {
 void press_focused(Context& context) {
     ImGuiContext& g = *ImGui::GetCurrentContext();
     const auto& io = ImGui::GetIO();
-    const bool held = ImGui::IsKeyDown(key::Space) || ImGui::IsKeyDown(key::Enter) || ImGui::IsKeyDown(key::KeypadEnter);
+    const bool held =
+        ImGui::IsKeyDown(key::Space) || ImGui::IsKeyDown(key::Enter) || ImGui::IsKeyDown(key::KeypadEnter);
     if (io.KeyCtrl || io.KeyShift || io.KeyAlt) {
         if (held) g.NavActivateId = g.NavActivateDownId = g.NavActivatePressedId = g.NavActivateInputId = 0;
         return;
@@ -152,10 +157,8 @@ void walk_menus(Context& context) {
     constexpr int Frames = 6;  // until ImGui has moved
     const ImGuiWindow* top = g.OpenPopupStack.Size > 0 ? g.OpenPopupStack.back().Window : nullptr;
     const bool in_menu = top != nullptr && (top->Flags & ImGuiWindowFlags_ChildMenu) != 0;
-    if (in_menu && (pressed(key::Left) || pressed(key::Right)))
-        keyboard.menu_walk = Frames;
-    else if (keyboard.menu_walk > 0)
-        --keyboard.menu_walk;
+    if (in_menu && (pressed(key::Left) || pressed(key::Right))) keyboard.menu_walk = Frames;
+    else if (keyboard.menu_walk > 0) --keyboard.menu_walk;
     if (pressed(key::Escape)) keyboard.menu_walk = 0;
 }
 
@@ -179,11 +182,13 @@ void begin_keyboard(Context& context) {
         // The arrows that mean nothing else bring the focus back; in a dialog they are its own.
         if (ImGui::GetTopMostPopupModal() == nullptr) {
             keyboard.on = true;
-            if (keeper() == nullptr) move_focus(context, start_of(context, 1), 1, [](const FocusStop&) { return true; });
+            if (keeper() == nullptr)
+                move_focus(context, start_of(context, 1), 1, [](const FocusStop&) { return true; });
         }
     }
     const bool field_uses_tab = g.ActiveId != 0 && ImGui::IsActiveIdUsingKey(ImGuiKey_Tab);
-    if (pressed(key::Tab, true) && !io.KeyCtrl && !io.KeyAlt && !field_uses_tab && !keyboard.stops.empty()) tab(context);
+    if (pressed(key::Tab, true) && !io.KeyCtrl && !io.KeyAlt && !field_uses_tab && !keyboard.stops.empty())
+        tab(context);
     if (pressed(key::F6, true)) next_area(context);
     keyboard.escape_taken = pressed(key::Escape) && keyboard.on && !keyboard.popup_before && g.ActiveId == 0;
     if (keyboard.escape_taken) leave(context);
@@ -201,14 +206,16 @@ void end_keyboard(Context& context) {
     keyboard.popup_before = keeper() != nullptr;
     auto& flags = ImGui::GetIO().ConfigFlags;
     // Without it ImGui leaves arrows, Space and Enter to the editor.
-    flags = keyboard.on ? flags | ImGuiConfigFlags_NavEnableKeyboard : flags & ~ImGuiConfigFlags_NavEnableKeyboard;
+    flags = keyboard.on ? flags | ImGuiConfigFlags_NavEnableKeyboard
+                        : flags & ~ImGuiConfigFlags_NavEnableKeyboard;
 }
 
 void note_stop(Context& context, std::string_view name) {
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     const auto& item = g.LastItemData;
     if (item.ID == 0 || (item.InFlags & (ImGuiItemFlags_Disabled | ImGuiItemFlags_NoNav)) != 0) return;
-    if ((g.CurrentWindow->Flags & ImGuiWindowFlags_ChildMenu) != 0 || g.CurrentWindow->DC.NavLayerCurrent != ImGuiNavLayer_Main)
+    if ((g.CurrentWindow->Flags & ImGuiWindowFlags_ChildMenu) != 0 ||
+        g.CurrentWindow->DC.NavLayerCurrent != ImGuiNavLayer_Main)
         return;  // menus have their own way
     context.state.keyboard.stops.push_back({name, item.ID, g.CurrentWindow, item.Rect.Min, item.Rect.Max,
                                             (item.InFlags & ImGuiItemFlags_Inputable) != 0, false});
@@ -231,7 +238,9 @@ void focus_last_item(Context& context) {
 
 bool has_focus() { return focus_shown() && ImGui::GetItemID() == ImGui::GetCurrentContext()->NavId; }
 
-bool has_focus(const FocusStop& stop) { return focus_shown() && stop.id == ImGui::GetCurrentContext()->NavId; }
+bool has_focus(const FocusStop& stop) {
+    return focus_shown() && stop.id == ImGui::GetCurrentContext()->NavId;
+}
 
 bool has_focus(const Context& context, std::string_view name) {
     const auto& stops = context.state.keyboard.stops;

@@ -1,5 +1,6 @@
-// The window without a mouse: which control has the focus, and the keys that move it. Tab goes through all controls in the
-// order they are drawn, arrows to the nearest one (ImGui's own navigation), Space and Enter press, Alt opens the menus.
+// The window without a mouse: which control has the focus, and the keys that move it. Tab goes through all
+// controls in the order they are drawn, arrows to the nearest one (ImGui's own navigation), Space and Enter
+// press, Alt opens the menus.
 #pragma once
 
 #include <imgui.h>
@@ -51,7 +52,8 @@ bool has_focus();
 /// The same for a control of the last frame, and by its name.
 bool has_focus(const FocusStop& stop);
 bool has_focus(const Context& context, std::string_view name);
-/// The last item is a closed menu of the bar: opens it when Alt asked for it, or when arrows came from another one.
+/// The last item is a closed menu of the bar: opens it when Alt asked for it, or when arrows came from
+/// another one.
 void open_menu_by_key(Context& context, const char* menu);
 /// Arrow pressed while the last item has the focus: -1, 1 or 0. The focus stays.
 int focus_step_sideways();

@@ -11,7 +11,7 @@ namespace gse::ui {
 
 /// A key with the modifiers that are held with it.
 struct Chord {
-    int key = 0;   // GLFW; 0 = none
+    int key = 0;  // GLFW; 0 = none
     bool ctrl = false, shift = false, alt = false;
     bool operator==(const Chord&) const = default;
 };
@@ -38,7 +38,8 @@ public:
     bool changed(Command command) const;
     /// The command that has these keys.
     std::optional<Command> user_of(const Chord& chord) const;
-    /// Gives a command its keys; the one that had them has none any more, and is returned. Keys with a fixed meaning are refused: `why_not`.
+    /// Gives a command its keys; the one that had them has none any more, and is returned. Keys with a fixed
+    /// meaning are refused: `why_not`.
     std::optional<Command> bind(Command command, const Chord& chord);
     /// Why these keys cannot be chosen: "W flies"; empty = they can.
     static std::string why_not(const Chord& chord);

@@ -1,5 +1,5 @@
-// Key numbers as GLFW reports them (printable keys are their US-layout ASCII), and the table of all keys: those of commands, which can be
-// chosen (keymap.h), and fixed ones.
+// Key numbers as GLFW reports them (printable keys are their US-layout ASCII), and the table of all keys:
+// those of commands, which can be chosen (keymap.h), and fixed ones.
 #pragma once
 
 #include <array>
@@ -10,13 +10,41 @@ namespace gse::ui {
 namespace key {
 inline constexpr int Space = 32, LeftBracket = 91, RightBracket = 93, Grave = 96, Escape = 256, Enter = 257,
                      Tab = 258, Backspace = 259, Delete = 261, Right = 262, Left = 263, Down = 264, Up = 265,
-                     Home = 268, End = 269, F1 = 290, F5 = 294, F6 = 295, F11 = 300, F12 = 301, KeypadEnter = 335;
+                     Home = 268, End = 269, F1 = 290, F5 = 294, F6 = 295, F11 = 300, F12 = 301,
+                     KeypadEnter = 335;
 }  // namespace key
 
 /// What keys can be chosen for (keymap.h).
 enum class Command {
-    Frame, Home, Brush, Rectangle, Lasso, CutOut, FrontOnly, Invert, Clear, Hide, Isolate, ShowHidden, Delete, Evidence, Tint, Wipe, Panels, Fullscreen,
-    Prompt, Locate, Undo, Redo, Open, Save, SaveAs, Export, Screenshot, Turntable, Quit
+    Frame,
+    Home,
+    Brush,
+    Rectangle,
+    Lasso,
+    CutOut,
+    FrontOnly,
+    Invert,
+    Clear,
+    Hide,
+    Isolate,
+    ShowHidden,
+    Delete,
+    Evidence,
+    Tint,
+    Wipe,
+    Panels,
+    Fullscreen,
+    Prompt,
+    Locate,
+    Undo,
+    Redo,
+    Open,
+    Save,
+    SaveAs,
+    Export,
+    Screenshot,
+    Turntable,
+    Quit
 };
 inline constexpr std::size_t CommandCount = 29;
 inline constexpr Command NoCommand = static_cast<Command>(-1);
@@ -24,10 +52,10 @@ inline constexpr Command NoCommand = static_cast<Command>(-1);
 /// One line of the list of keys.
 struct KeyHelp {
     const char* group;
-    const char* keys;   // of a command: those that it has by default
+    const char* keys;  // of a command: those that it has by default
     const char* what;
-    Command command = NoCommand;   // those without one are fixed
-    const char* name = nullptr;    // of the command, in the settings
+    Command command = NoCommand;  // those without one are fixed
+    const char* name = nullptr;   // of the command, in the settings
 };
 
 /// All keys; what the shortcuts and the camera do must agree with it.
@@ -56,7 +84,8 @@ inline constexpr std::array<KeyHelp, 52> KeyTable{{
     {"Labels", "I", "Isolate what is labelled: hide all else", Command::Isolate, "isolate"},
     {"Labels", "Shift + H", "Show what is hidden", Command::ShowHidden, "show_hidden"},
     {"Labels", "Delete", "Delete the labelled splats", Command::Delete, "delete"},
-    {"Show", "M", "Chosen view of the search: its attention, its mask, nothing", Command::Evidence, "evidence"},
+    {"Show", "M", "Chosen view of the search: its attention, its mask, nothing", Command::Evidence,
+     "evidence"},
     {"Show", "T", "Tint of what is labelled on, off", Command::Tint, "tint"},
     {"Show", "V", "Wipe between before and after", Command::Wipe, "wipe"},
     {"Show", "hold `", "Flip to the original"},

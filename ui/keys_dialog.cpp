@@ -25,10 +25,11 @@ void choose_keys(Context& context) {
         if (code == key::Escape) return keys.choosing.reset();
         const Chord chord{code, io.KeyCtrl, io.KeyShift, io.KeyAlt};
         keys.note = Keymap::why_not(chord);
-        if (!keys.note.empty()) return;   // it waits for others
+        if (!keys.note.empty()) return;  // it waits for others
         keys.choosing.reset();
         if (const auto had = context.state.keymap.bind(command, chord))
-            keys.note = fmt::format("{} was \"{}\", which has no key now", chord_text(chord), help_of(*had).what);
+            keys.note =
+                fmt::format("{} was \"{}\", which has no key now", chord_text(chord), help_of(*had).what);
         return send(context);
     }
 }
@@ -37,10 +38,14 @@ void draw_command_key(Context& context, const KeyHelp& line) {
     auto& keys = context.state.keys;
     const bool chooses = keys.choosing == line.command;
     const std::string chord = keys_of(context, line.command);
-    if (button(context, {.name = fmt::format("keys.{}", line.name),
-                         .text = chooses ? "Press the keys" : chord.empty() ? "none" : chord,
-                         .tooltip = "Click, then press other keys (Esc leaves it). Right click: back to the convention's.",
-                         .look = chooses ? Look::Primary : Look::Normal})) {
+    if (button(context,
+               {.name = fmt::format("keys.{}", line.name),
+                .text = chooses         ? "Press the keys"
+                        : chord.empty() ? "none"
+                                        : chord,
+                .tooltip =
+                    "Click, then press other keys (Esc leaves it). Right click: back to the convention's.",
+                .look = chooses ? Look::Primary : Look::Normal})) {
         keys.choosing = chooses ? std::nullopt : std::optional(line.command);
         keys.note.clear();
     }
@@ -72,11 +77,14 @@ void draw_group(Context& context, const char* group) {
 void centre_next(ImVec2 size) {
     const ImVec2 screen = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({screen.x * 0.5f, screen.y * 0.5f}, ImGuiCond_Always, {0.5f, 0.5f});
-    if (size.x > 0) ImGui::SetNextWindowSize({std::min(size.x, screen.x * 0.96f), std::min(size.y, screen.y * 0.92f)});
+    if (size.x > 0)
+        ImGui::SetNextWindowSize({std::min(size.x, screen.x * 0.96f), std::min(size.y, screen.y * 0.92f)});
 }
 
 void draw_key_preset(Context& context, const char* name) {
-    row_label(context, "As in", "Splat: as splat editors have them. Blender: its letters. Maya: Alt and the mouse buttons move the camera, with a tool in hand, too.");
+    row_label(context, "As in",
+              "Splat: as splat editors have them. Blender: its letters. Maya: Alt and the mouse buttons move "
+              "the camera, with a tool in hand, too.");
     int preset = static_cast<int>(context.state.keymap.preset());
     ImGui::BeginGroup();
     if (segmented(context, name, KeyPresetNames, preset)) {
@@ -110,7 +118,8 @@ void draw_keys_dialog(Context& context) {
         for (const char* group : {"Show", "Work", "Files", "Numbers"}) draw_group(context, group);
         ImGui::EndTable();
     }
-    const bool escaped = !chose && (ImGui::IsKeyPressed(key::Escape, false) || (ImGui::IsKeyPressed(key::F1, false) && !ImGui::IsWindowAppearing()));
+    const bool escaped = !chose && (ImGui::IsKeyPressed(key::Escape, false) ||
+                                    (ImGui::IsKeyPressed(key::F1, false) && !ImGui::IsWindowAppearing()));
     if (escaped) open = false;
     if (!open) {
         keys.choosing.reset();

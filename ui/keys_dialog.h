@@ -5,7 +5,8 @@
 
 namespace gse::ui {
 
-/// The next window comes to the middle of the screen, at most that large; a width of 0 = as large as what is in it.
+/// The next window comes to the middle of the screen, at most that large; a width of 0 = as large as what is
+/// in it.
 void centre_next(ImVec2 size);
 
 /// While UiState::help_open.

@@ -22,9 +22,9 @@ enum class PanelId {
     Log
 };
 inline constexpr std::size_t PanelCount = 12;
-inline constexpr std::array<const char*, PanelCount> PanelNames{"Prompt",    "Labels",   "Scene",  "Models",
-                                                                "History",   "Views",    "Export", "Settings",
-                                                                "Attention", "Targets",  "Progress", "Log"};
+inline constexpr std::array<const char*, PanelCount> PanelNames{
+    "Prompt", "Labels",   "Scene",     "Models",  "History",  "Views",
+    "Export", "Settings", "Attention", "Targets", "Progress", "Log"};
 
 /// Where a tab can be: the right column is split in two, the bottom area runs below the viewport.
 enum class Area { RightTop, RightBottom, Bottom };

@@ -47,7 +47,8 @@ void file_menu(Context& context) {
     }
     ImGui::Separator();
     if (item(context, {"menu.save", "Save project", keys_of(context, Command::Save), why})) save(context);
-    if (item(context, {"menu.save_as", "Save project as...", keys_of(context, Command::SaveAs), why})) save_as(context);
+    if (item(context, {"menu.save_as", "Save project as...", keys_of(context, Command::SaveAs), why}))
+        save_as(context);
     if (item(context, {"menu.export", "Export...", keys_of(context, Command::Export), why}))
         show_panel(context.state, PanelId::Export);
     ImGui::Separator();
@@ -66,10 +67,11 @@ void edit_menu(Context& context) {
                redo = document != nullptr && document->can_redo();
     const std::string undo_text = named("Undo", document != nullptr ? document->position() : 0, undo);
     const std::string redo_text = named("Redo", document != nullptr ? document->position() + 1 : 0, redo);
-    if (item(context, {"menu.undo", undo_text.c_str(), keys_of(context, Command::Undo), undo ? "" : "There is nothing to undo"}))
+    if (item(context, {"menu.undo", undo_text.c_str(), keys_of(context, Command::Undo),
+                       undo ? "" : "There is nothing to undo"}))
         context.actions.undo();
-    if (item(context,
-             {"menu.redo", redo_text.c_str(), keys_of(context, Command::Redo), redo ? "" : "There is nothing to redo"}))
+    if (item(context, {"menu.redo", redo_text.c_str(), keys_of(context, Command::Redo),
+                       redo ? "" : "There is nothing to redo"}))
         context.actions.redo();
     ImGui::Separator();
     std::string why = why_not_label(context);
@@ -88,26 +90,34 @@ void select_menu(Context& context) {
     const Tool tool = context.state.viewport.tool;
     if (item(context, {"menu.brush", "Brush", keys_of(context, Command::Brush), open, tool == Tool::Brush}))
         set_tool(context, Tool::Brush);
-    if (item(context, {"menu.rectangle", "Rectangle", keys_of(context, Command::Rectangle), open, tool == Tool::Rectangle}))
+    if (item(context, {"menu.rectangle", "Rectangle", keys_of(context, Command::Rectangle), open,
+                       tool == Tool::Rectangle}))
         set_tool(context, Tool::Rectangle);
     if (item(context, {"menu.lasso", "Lasso", keys_of(context, Command::Lasso), open, tool == Tool::Lasso}))
         set_tool(context, Tool::Lasso);
-    if (item(context, {"menu.cut_out", "Cut out", keys_of(context, Command::CutOut), open, tool == Tool::CutOut}))
+    if (item(context,
+             {"menu.cut_out", "Cut out", keys_of(context, Command::CutOut), open, tool == Tool::CutOut}))
         set_tool(context, Tool::CutOut);
-    if (item(context, {"menu.front", "Front only", keys_of(context, Command::FrontOnly), "", context.view.front_only})) {
+    if (item(context, {"menu.front", "Front only", keys_of(context, Command::FrontOnly), "",
+                       context.view.front_only})) {
         context.view.front_only = !context.view.front_only;
         context.view_changed = true;
     }
     ImGui::Separator();
     if (item(context, {"menu.grow", "Grow", "", label})) context.actions.grow_label(1);
     if (item(context, {"menu.shrink", "Shrink", "", label})) context.actions.grow_label(-1);
-    if (item(context, {"menu.invert", "Invert", keys_of(context, Command::Invert), label})) context.actions.invert_label();
-    if (item(context, {"menu.clear", "Clear", keys_of(context, Command::Clear), label})) context.actions.clear_label();
+    if (item(context, {"menu.invert", "Invert", keys_of(context, Command::Invert), label}))
+        context.actions.invert_label();
+    if (item(context, {"menu.clear", "Clear", keys_of(context, Command::Clear), label}))
+        context.actions.clear_label();
     ImGui::Separator();
     const std::string shown = why_not_hide(context);
-    if (item(context, {"menu.hide_label", "Hide", keys_of(context, Command::Hide), shown})) hide_label(context);
-    if (item(context, {"menu.isolate", "Isolate", keys_of(context, Command::Isolate), shown})) isolate_label(context);
-    if (item(context, {"menu.show_hidden", "Show all", keys_of(context, Command::ShowHidden), context.model.hidden > 0 ? "" : "Nothing is hidden"}))
+    if (item(context, {"menu.hide_label", "Hide", keys_of(context, Command::Hide), shown}))
+        hide_label(context);
+    if (item(context, {"menu.isolate", "Isolate", keys_of(context, Command::Isolate), shown}))
+        isolate_label(context);
+    if (item(context, {"menu.show_hidden", "Show all", keys_of(context, Command::ShowHidden),
+                       context.model.hidden > 0 ? "" : "Nothing is hidden"}))
         context.actions.show_hidden();
     ImGui::Separator();
     if (item(context, {"menu.new_label", "New label", "", open})) add_label(context);
@@ -146,10 +156,11 @@ void view_menu(Context& context) {
     if (item(context, {"menu.next", "Next view", "Right", why})) step_view(context, 1);
     if (item(context, {"menu.add_view", "Add this view", "", why})) context.actions.add_view();
     ImGui::Separator();
-    if (item(context,
-             {"menu.wipe", "Wipe before and after", keys_of(context, Command::Wipe), why, context.model.comparison == Comparison::Wipe}))
+    if (item(context, {"menu.wipe", "Wipe before and after", keys_of(context, Command::Wipe), why,
+                       context.model.comparison == Comparison::Wipe}))
         toggle_wipe(context);
-    flag(context, "menu.tint", "Tint what is labelled", context.view.tint_labels, keys_of(context, Command::Tint));
+    flag(context, "menu.tint", "Tint what is labelled", context.view.tint_labels,
+         keys_of(context, Command::Tint));
     flag(context, "menu.axes", "Axes", context.view.show_axes);
     flag(context, "menu.bounds", "Bounds", context.view.show_bounds);
     flag(context, "menu.cameras", "Cameras", context.view.show_views);
@@ -159,7 +170,8 @@ void view_menu(Context& context) {
 void prompt_menu(Context& context) {
     const auto& job = context.model.job;
     const std::string why_waiting = context.model.result_waiting ? "" : "No finished edit waits";
-    if (item(context, {"menu.locate", "Locate", keys_of(context, Command::Locate), why_not_locate(context)})) run_locate(context);
+    if (item(context, {"menu.locate", "Locate", keys_of(context, Command::Locate), why_not_locate(context)}))
+        run_locate(context);
     if (item(context, {"menu.edit", "Edit", "Shift + Enter", why_not_edit(context)})) run_edit(context);
     ImGui::Separator();
     if (item(context, {"menu.pause", job.paused ? "Resume" : "Pause", "",
@@ -171,7 +183,8 @@ void prompt_menu(Context& context) {
     if (item(context, {"menu.apply", "Apply the result", "", why_waiting})) context.actions.apply_result();
     if (item(context, {"menu.discard", "Discard the result", "", why_waiting}))
         context.actions.discard_result();
-    if (item(context, {"menu.another", "Another result, with another seed", "", why_waiting})) context.actions.another_result();
+    if (item(context, {"menu.another", "Another result, with another seed", "", why_waiting}))
+        context.actions.another_result();
     ImGui::Separator();
     if (item(context, {"menu.seed", "Another seed"})) roll_seed(context);
     if (item(context, {"menu.models", "Models"})) show_panel(context.state, PanelId::Models);
@@ -199,15 +212,15 @@ void window_menu(Context& context) {
         if (!item(context,
                   {fmt::format("menu.panel.{}", PanelNames[index]).c_str(), PanelNames[index], "", "", open}))
             continue;
-        if (open)
-            layout.close(panel);
-        else
-            show_panel(context.state, panel);
+        if (open) layout.close(panel);
+        else show_panel(context.state, panel);
     }
     ImGui::Separator();
-    if (item(context, {"menu.hide", "Hide the panels", keys_of(context, Command::Panels), "", layout.panels_hidden}))
+    if (item(context,
+             {"menu.hide", "Hide the panels", keys_of(context, Command::Panels), "", layout.panels_hidden}))
         layout.panels_hidden = !layout.panels_hidden;
-    if (item(context, {"menu.fullscreen", "Full screen", keys_of(context, Command::Fullscreen)})) context.actions.toggle_fullscreen();
+    if (item(context, {"menu.fullscreen", "Full screen", keys_of(context, Command::Fullscreen)}))
+        context.actions.toggle_fullscreen();
     if (item(context, {"menu.larger", "Larger", "Ctrl + +"})) scale_ui(context, 1.1f);
     if (item(context, {"menu.smaller", "Smaller", "Ctrl + -"})) scale_ui(context, 1 / 1.1f);
     ImGui::Separator();

@@ -9,7 +9,8 @@ namespace gse::ui {
 
 nlohmann::ordered_json model_settings_to_json(const ModelSettings& settings) {
     auto json = fields_to_json(settings);
-    ModelSettings::visit_parts(settings, [&](const char* name, const auto& part) { json[name] = fields_to_json(part); });
+    ModelSettings::visit_parts(
+        settings, [&](const char* name, const auto& part) { json[name] = fields_to_json(part); });
     return json;
 }
 

@@ -31,11 +31,14 @@ std::string unknown_source(const std::string& source, const SentenceGround& grou
                        edit::unknown_word(ground.known, source));
 }
 
-/// Instead of a target that cannot be made: words near to it; where there are none, all of them would fill the panel.
-std::string what_to_say(const std::string& target, const std::vector<std::string>& known, bool dyes, const std::string& hint) {
+/// Instead of a target that cannot be made: words near to it; where there are none, all of them would fill
+/// the panel.
+std::string what_to_say(const std::string& target, const std::vector<std::string>& known, bool dyes,
+                        const std::string& hint) {
     const auto word = edit::unknown_word(known, target);
     if (!edit::nearest_words(word, known).empty()) return hint;
-    return std::string("the words that it knows are under Models") + (dyes ? "; colours and patterns go by their names" : "");
+    return std::string("the words that it knows are under Models") +
+           (dyes ? "; colours and patterns go by their names" : "");
 }
 
 /// Whether the word number `index` of the sentence belongs to the phrase.
@@ -60,32 +63,39 @@ std::string problem_of(const edit::EditRequest& request, const SentenceGround& g
         return first_letter_up(error.message());
     }
     facts.guessed_target = request.target.empty() ? valid.target : std::string();
-    if (!facts.source_known && !ground.labelled_by_hand)   // the words to use stand beside the source already
+    if (!facts.source_known && !ground.labelled_by_hand)  // the words to use stand beside the source already
         return unknown_source(valid.source, ground);
     const auto drawn = request.method == "sds" ? std::vector<std::string>{} : ground.drawn;
     try {
         edit::require_known_words(valid, ground.known, drawn, ground.labelled_by_hand);
     } catch (const Error& error) {
-        return fmt::format("{}: {}", first_letter_up(error.message()), what_to_say(valid.target, edit::words_to_say(ground.known, drawn), !drawn.empty(), error.hint()));
+        return fmt::format(
+            "{}: {}", first_letter_up(error.message()),
+            what_to_say(valid.target, edit::words_to_say(ground.known, drawn), !drawn.empty(), error.hint()));
     }
     for (const auto& word : {valid.source, valid.target})
         if (unread(valid.prompt, word, ground))
-            return fmt::format("The model stops reading before \"{}\": shorten the sentence, or move the word forward", word);
+            return fmt::format(
+                "The model stops reading before \"{}\": shorten the sentence, or move the word forward",
+                word);
     return {};
 }
 
 /// Why the source on its own cannot be looked for.
-std::string locate_problem_of(const std::string& source, const SentenceGround& ground, const SentenceFacts& facts) {
+std::string locate_problem_of(const std::string& source, const SentenceGround& ground,
+                              const SentenceFacts& facts) {
     if (source.empty()) return facts.problem;
     return facts.source_known ? std::string() : unknown_source(source, ground);
 }
 
 }  // namespace
 
-edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::string>& said, const std::string& read_target) {
+edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::string>& said,
+                              const std::string& read_target) {
     const auto source = edit::as_told(request.source);
     if (request.target.empty() && !source.empty())
-        request.target = read_target.empty() ? edit::guessed_target(request.prompt, source, said) : read_target;
+        request.target =
+            read_target.empty() ? edit::guessed_target(request.prompt, source, said) : read_target;
     return request;
 }
 
@@ -137,9 +147,11 @@ std::string target_to(const std::string& sentence, const std::string& target, st
     const auto words = edit::words_of(sentence);
     if (index >= words.size()) return target;
     if (!edit::has_word(sentence, target)) return words[index];
-    const std::size_t first = edit::first_word(sentence, target), last = first + edit::words_of(target).size() - 1;
+    const std::size_t first = edit::first_word(sentence, target),
+                      last = first + edit::words_of(target).size() - 1;
     std::string phrase;
-    for (std::size_t i = std::min(first, index); i <= std::max(last, index); ++i) phrase += (phrase.empty() ? "" : " ") + words[i];
+    for (std::size_t i = std::min(first, index); i <= std::max(last, index); ++i)
+        phrase += (phrase.empty() ? "" : " ") + words[i];
     return phrase;
 }
 

@@ -14,30 +14,34 @@ namespace gse::ui {
 struct SentenceGround {
     std::vector<std::string> known = {};  // words of the model; empty = it takes any word
     std::vector<std::string> said = {};   // words that the scene shows already, from the edits applied
-    bool labelled_by_hand = false;   // the label says where: nothing has to be found
-    std::size_t words_read = 0;      // of the sentence, by the text encoder; 0 = not known, all of them
-    std::string read_target = {};    // the word that a search of this sentence saw to be new; empty = none has looked
-    std::vector<std::string> drawn = {};   // words that the model draws besides and does not look for
+    bool labelled_by_hand = false;        // the label says where: nothing has to be found
+    std::size_t words_read = 0;           // of the sentence, by the text encoder; 0 = not known, all of them
+    std::string read_target =
+        {};  // the word that a search of this sentence saw to be new; empty = none has looked
+    std::vector<std::string> drawn = {};  // words that the model draws besides and does not look for
 };
 
 struct SentenceFacts {
-    std::vector<Chip> chips;                       // one per word of the sentence
-    std::string problem;                           // why the request cannot be run, one sentence; empty = it can
-    std::string locate_problem;                    // why the source cannot be looked for
-    std::vector<std::string> source_suggestions;   // the source with the nearest known words for its unknown one
-    std::string source_help;                       // what to use instead of it
+    std::vector<Chip> chips;     // one per word of the sentence
+    std::string problem;         // why the request cannot be run, one sentence; empty = it can
+    std::string locate_problem;  // why the source cannot be looked for
+    std::vector<std::string>
+        source_suggestions;   // the source with the nearest known words for its unknown one
+    std::string source_help;  // what to use instead of it
     bool source_known = true;
     std::string guessed_target;  // the target when none is chosen
     std::string cut_at;          // first word that the text encoder does not read; empty = it reads all
 };
 
-/// The request with a target: the chosen one, else the one that a search has read off the scene, else the one that the
-/// sentence implies against what the scene shows already. Without a source it stays open.
-edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::string>& said, const std::string& read_target);
+/// The request with a target: the chosen one, else the one that a search has read off the scene, else the one
+/// that the sentence implies against what the scene shows already. Without a source it stays open.
+edit::EditRequest with_target(edit::EditRequest request, const std::vector<std::string>& said,
+                              const std::string& read_target);
 
 SentenceFacts facts_of(const edit::EditRequest& request, const SentenceGround& ground);
 
-/// The request that Locate runs: with a sentence that cannot be run (`problem`), the source alone is looked for.
+/// The request that Locate runs: with a sentence that cannot be run (`problem`), the source alone is looked
+/// for.
 edit::EditRequest locate_request(const edit::EditRequest& request, const std::string& problem);
 
 /// The target grown to the word number `index` of the sentence: all words from the one to the other.

@@ -48,13 +48,15 @@ void update_sentence(Context& context) {
     auto& prompt = context.state.prompt;
     const auto& request = context.request;
     const auto& model = context.model;
-    std::string key = fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.source, request.prompt, request.target,
-                                  request.mode, model.known_words.size(), model.labelled_by_hand, model.words_read, model.read_target, model.drawn_words.size());
+    std::string key =
+        fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.source, request.prompt, request.target,
+                    request.mode, model.known_words.size(), model.labelled_by_hand, model.words_read,
+                    model.read_target, model.drawn_words.size());
     for (const auto& word : model.said_words) key += "\n" + word;
     if (key == prompt.key) return;
     prompt.key = std::move(key);
-    SentenceFacts facts =
-        facts_of(request, {model.known_words, model.said_words, model.labelled_by_hand, model.words_read, model.read_target, model.drawn_words});
+    SentenceFacts facts = facts_of(request, {model.known_words, model.said_words, model.labelled_by_hand,
+                                             model.words_read, model.read_target, model.drawn_words});
     prompt.chips = std::move(facts.chips);
     prompt.problem = std::move(facts.problem);
     prompt.locate_problem = std::move(facts.locate_problem);
@@ -77,7 +79,9 @@ void show_failed_search(Context& context) {
 /// An edit that waits for the artist's look at the redrawn views shows them.
 void show_waiting_targets(Context& context) {
     auto& shown = context.state.targets.waited_for;
-    const int round = context.model.targets_wait && !context.model.target_rounds.empty() ? context.model.target_rounds.back().round : -1;
+    const int round = context.model.targets_wait && !context.model.target_rounds.empty()
+                          ? context.model.target_rounds.back().round
+                          : -1;
     if (round >= 0 && round != shown) show_panel(context.state, PanelId::Targets);
     shown = round;
 }
@@ -238,8 +242,8 @@ void Shell::draw_area(Context& context, Area area) {
                                                   ImGuiTabBarFlags_FittingPolicyScroll |
                                                   ImGuiTabBarFlags_NoTooltip))
         return;
-    // Taken first: a panel drawn below may bring another one to the front. SetSelected takes effect in the frame after, so
-    // the front is only read again then.
+    // Taken first: a panel drawn below may bring another one to the front. SetSelected takes effect in the
+    // frame after, so the front is only read again then.
     const bool bring = std::exchange(state_->front_changed[index], false);
     for (std::size_t at = 0; at < PanelCount; ++at) {
         const auto panel = static_cast<PanelId>(at);
@@ -254,7 +258,8 @@ void Shell::draw_area(Context& context, Area area) {
         draw_tab_menu(context, panel);
         if (!shown) continue;
         if (!bring) layout.front[index] = static_cast<int>(at);
-        if (ImGui::BeginChild(PanelNames[at], {0, 0}, false, ImGuiWindowFlags_NavFlattened)) draw_panel(context, panel);
+        if (ImGui::BeginChild(PanelNames[at], {0, 0}, false, ImGuiWindowFlags_NavFlattened))
+            draw_panel(context, panel);
         ImGui::EndChild();
         note(context, fmt::format("panel.{}", PanelNames[at]));
         ImGui::EndTabItem();
@@ -304,8 +309,17 @@ void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
     const float em = ImGui::GetFontSize();
     if (em != styled_em_) apply_theme(ImGui::GetStyle(), em);
     styled_em_ = em;
-    Context context{model,           *deferred_, textures,   *state_,       widgets_,
-                    current_fonts(), em,         model.view, model.request, model.exports, model.model_settings};
+    Context context{model,
+                    *deferred_,
+                    textures,
+                    *state_,
+                    widgets_,
+                    current_fonts(),
+                    em,
+                    model.view,
+                    model.request,
+                    model.exports,
+                    model.model_settings};
     state_->animating = false;
     set_foreign_glyphs(&glyphs_);
     if (model.keymap != state_->keys.read) {
@@ -334,30 +348,18 @@ void Shell::draw(const ViewModel& model, Actions& actions, Textures& textures) {
 
 void draw_panel(Context& context, PanelId panel) {
     switch (panel) {
-        case PanelId::Prompt:
-            return draw_prompt_panel(context);
-        case PanelId::Labels:
-            return draw_labels_panel(context);
-        case PanelId::Scene:
-            return draw_scene_panel(context);
-        case PanelId::Models:
-            return draw_models_panel(context);
-        case PanelId::History:
-            return draw_history_panel(context);
-        case PanelId::Views:
-            return draw_views_panel(context);
-        case PanelId::Export:
-            return draw_export_panel(context);
-        case PanelId::Settings:
-            return draw_settings_panel(context);
-        case PanelId::Attention:
-            return draw_attention_panel(context);
-        case PanelId::Targets:
-            return draw_targets_panel(context);
-        case PanelId::Progress:
-            return draw_progress_panel(context);
-        case PanelId::Log:
-            return draw_log_panel(context);
+        case PanelId::Prompt: return draw_prompt_panel(context);
+        case PanelId::Labels: return draw_labels_panel(context);
+        case PanelId::Scene: return draw_scene_panel(context);
+        case PanelId::Models: return draw_models_panel(context);
+        case PanelId::History: return draw_history_panel(context);
+        case PanelId::Views: return draw_views_panel(context);
+        case PanelId::Export: return draw_export_panel(context);
+        case PanelId::Settings: return draw_settings_panel(context);
+        case PanelId::Attention: return draw_attention_panel(context);
+        case PanelId::Targets: return draw_targets_panel(context);
+        case PanelId::Progress: return draw_progress_panel(context);
+        case PanelId::Log: return draw_log_panel(context);
     }
 }
 

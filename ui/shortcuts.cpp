@@ -19,7 +19,8 @@ bool enter_pressed() { return pressed(key::Enter) || pressed(key::KeypadEnter); 
 bool hit(const Context& context, Command command) {
     const Chord chord = context.state.keymap.of(command);
     const auto& io = ImGui::GetIO();
-    return chord.key != 0 && io.KeyCtrl == chord.ctrl && io.KeyShift == chord.shift && io.KeyAlt == chord.alt && pressed(chord.key);
+    return chord.key != 0 && io.KeyCtrl == chord.ctrl && io.KeyShift == chord.shift &&
+           io.KeyAlt == chord.alt && pressed(chord.key);
 }
 
 void export_shot(Context& context) {
@@ -87,8 +88,10 @@ void step_evidence(Context& context) {
 }
 
 void tool_keys(Context& context) {
-    constexpr std::array<std::pair<Command, Tool>, 4> Tools{
-        {{Command::Brush, Tool::Brush}, {Command::Rectangle, Tool::Rectangle}, {Command::Lasso, Tool::Lasso}, {Command::CutOut, Tool::CutOut}}};
+    constexpr std::array<std::pair<Command, Tool>, 4> Tools{{{Command::Brush, Tool::Brush},
+                                                             {Command::Rectangle, Tool::Rectangle},
+                                                             {Command::Lasso, Tool::Lasso},
+                                                             {Command::CutOut, Tool::CutOut}}};
     for (const auto& [command, tool] : Tools)
         if (hit(context, command)) set_tool(context, tool);
     if (ImGui::GetIO().KeyCtrl || ImGui::GetIO().KeyAlt) return;
@@ -103,7 +106,8 @@ void label_keys(Context& context) {
     if (hit(context, Command::Hide)) hide_label(context);
     if (hit(context, Command::ShowHidden)) context.actions.show_hidden();
     if (hit(context, Command::Isolate)) isolate_label(context);
-    if (hit(context, Command::Delete) && labelled && label_count(context) > 0) context.actions.delete_labelled_splats();
+    if (hit(context, Command::Delete) && labelled && label_count(context) > 0)
+        context.actions.delete_labelled_splats();
 }
 
 void view_keys(Context& context) {
@@ -127,7 +131,8 @@ void free_keys(Context& context) {
     }
     if (hit(context, Command::Undo)) context.actions.undo();
     if (redo_hit(context)) context.actions.redo();
-    if (hit(context, Command::Panels)) context.state.layout.panels_hidden = !context.state.layout.panels_hidden;
+    if (hit(context, Command::Panels))
+        context.state.layout.panels_hidden = !context.state.layout.panels_hidden;
     if (!context.scene_open()) return;
     tool_keys(context);
     label_keys(context);
@@ -160,8 +165,8 @@ void escape(Context& context) {
 
 void handle_keys(Context& context) {
     const auto& io = ImGui::GetIO();
-    const bool dialog = context.state.keyboard.popup_before || context.state.files.is_open() || context.state.help_open ||
-                        context.state.about_open ||
+    const bool dialog = context.state.keyboard.popup_before || context.state.files.is_open() ||
+                        context.state.help_open || context.state.about_open ||
                         ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     const bool typing = io.WantTextInput;
     hold_to_flip(context, !dialog && !typing && !io.KeyCtrl);

@@ -54,7 +54,8 @@ struct ViewportState {
     Comparison before_flip = Comparison::None;
     bool wipe_dragged = false;
     float bars_bottom = 0;  // lower edge of what floated at the top in the last frame
-    ImVec2 foot_low{};      // upper left corner of what floated at the foot; its y is that of `high` where nothing did
+    ImVec2 foot_low{};      // upper left corner of what floated at the foot; its y is that of `high` where
+                            // nothing did
     double moved_at = -10;  // ImGui time of the last move
     int drag_button = -1;   // mouse button that navigates, -1 = none
 };
@@ -68,9 +69,9 @@ struct PromptState {
     std::vector<std::string> source_suggestions;
     std::string source_help;
     bool source_known = true;
-    std::string settings_filter;   // what "All settings" is searched for
+    std::string settings_filter;  // what "All settings" is searched for
     std::string guessed_target;
-    std::string cut_at;  // first word that the text encoder does not read
+    std::string cut_at;       // first word that the text encoder does not read
     bool seed_locked = true;  // open: every edit gets another seed
     bool advanced = false;
 };
@@ -81,13 +82,13 @@ enum class Over : std::uint8_t { Nothing, Attention, Mask };
 struct AttentionState {
     int chosen = 0;
     Over over = Over::Nothing;
-    std::shared_ptr<const Image> layer;    // [H,W,4] over the picture
-    std::shared_ptr<const void> layer_of;  // map or mask it was made from
+    std::shared_ptr<const Image> layer;       // [H,W,4] over the picture
+    std::shared_ptr<const void> layer_of;     // map or mask it was made from
     double threshold = -1;                    // while dragged, else negative
     std::shared_ptr<const Image> picture;     // thresholded map over the render
     std::shared_ptr<const Image> picture_of;  // the map it was made from
     double picture_threshold = -1;
-    double above = 0;  // share of the picture above the threshold
+    double above = 0;                 // share of the picture above the threshold
     std::uint64_t problem_shown = 0;  // number of the failed search that was brought to the front
     bool points = true;
 };
@@ -107,13 +108,21 @@ struct LabelsState {
 struct PickState {
     int property = 0;
     bool within = false;
-    int frames_to_bring = 0;   // in which it is scrolled to, after it was unfolded
-    bool seen = false;   // in this frame: what is chosen is only shown while its controls are
+    int frames_to_bring = 0;  // in which it is scrolled to, after it was unfolded
+    bool seen = false;        // in this frame: what is chosen is only shown while its controls are
     std::array<localize::RowChoice, 4> choices{
         {{localize::RowProperty::Opacity, {}, 0.1f, false, false},
-         {localize::RowProperty::Size, {}, static_cast<float>(localize::property_value(localize::RowProperty::Size, 0.05)), true, false},
+         {localize::RowProperty::Size,
+          {},
+          static_cast<float>(localize::property_value(localize::RowProperty::Size, 0.05)),
+          true,
+          false},
          {localize::RowProperty::Colour, {0.5f, 0.5f, 0.5f}, 0.15f, false, false},
-         {localize::RowProperty::Isolation, {}, static_cast<float>(localize::property_value(localize::RowProperty::Isolation, 4)), true, false}}};
+         {localize::RowProperty::Isolation,
+          {},
+          static_cast<float>(localize::property_value(localize::RowProperty::Isolation, 4)),
+          true,
+          false}}};
     WeightHistogram histogram;
 };
 
@@ -126,9 +135,9 @@ struct AdjustState {
 
 /// Keys as the artist has them.
 struct KeysState {
-    std::string read;                    // ViewModel::keymap that `keymap` was read from
-    std::optional<Command> choosing;     // its next keys are those of this command
-    std::string note;                    // what came of the last choice
+    std::string read;                 // ViewModel::keymap that `keymap` was read from
+    std::optional<Command> choosing;  // its next keys are those of this command
+    std::string note;                 // what came of the last choice
 };
 
 struct ProgressState {
@@ -177,13 +186,13 @@ struct UiState {
     bool quit_asked = false;
     struct {
         std::string what;
-        std::function<void()> act;   // empty = none
-    } leave_asked;                   // asked about once more: an edit was discarded, other work may be left
-    std::uint64_t question_seen = 0;   // number of the application's last question that was shown
-    std::string open_asked;  // path to open, from outside; empty = none
+        std::function<void()> act;    // empty = none
+    } leave_asked;                    // asked about once more: an edit was discarded, other work may be left
+    std::uint64_t question_seen = 0;  // number of the application's last question that was shown
+    std::string open_asked;           // path to open, from outside; empty = none
     std::string model_path, lora_text;
-    std::array<std::string, 2> segmenter_paths;   // typed, by SegmenterRole
-    std::string focus;  // widget that takes the keyboard next frame
+    std::array<std::string, 2> segmenter_paths;  // typed, by SegmenterRole
+    std::string focus;                           // widget that takes the keyboard next frame
     bool animating = false;
 };
 

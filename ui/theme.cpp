@@ -166,7 +166,8 @@ void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale) {
     apply_theme(style, std::round(BaseFontPx * scale));
 }
 
-void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale, const ForeignGlyphs& glyphs, const GlyphPainter& painter) {
+void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale, const ForeignGlyphs& glyphs,
+           const GlyphPainter& painter) {
     dress(atlas, style, scale);
     if (!glyphs.all().empty()) add_foreign_glyphs(atlas, glyphs, painter);
 }

@@ -62,7 +62,8 @@ void apply_theme(ImGuiStyle& style, float em);
 /// Fonts of the system and the style for a scale: what a window calls when its scale changes.
 void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale);
 /// The same with characters that other fonts have; builds the atlas.
-void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale, const ForeignGlyphs& glyphs, const GlyphPainter& painter);
+void dress(ImFontAtlas& atlas, ImGuiStyle& style, float scale, const ForeignGlyphs& glyphs,
+           const GlyphPainter& painter);
 
 /// The same colour with another opacity in [0,1].
 ImU32 with_alpha(ImU32 colour, float alpha);

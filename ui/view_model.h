@@ -1,4 +1,5 @@
-// What the panels show: plain data that the application refreshes before every frame. No Vulkan, no torch, no threads.
+// What the panels show: plain data that the application refreshes before every frame. No Vulkan, no torch, no
+// threads.
 #pragma once
 
 #include <array>
@@ -35,9 +36,21 @@ public:
 };
 
 /// How the viewport shows splats; the order is that of the menu.
-enum class DisplayMode { Beauty, Centres, Rings, Ellipsoids, Depth, Opacity, Labels, LabelWeight, Attention, Changed };
-constexpr std::array<const char*, 10> DisplayModeNames{"Beauty",  "Centres", "Rings",        "Ellipsoids", "Depth",
-                                                       "Opacity", "Labels",  "Label weight", "Attention",  "Changed"};
+enum class DisplayMode {
+    Beauty,
+    Centres,
+    Rings,
+    Ellipsoids,
+    Depth,
+    Opacity,
+    Labels,
+    LabelWeight,
+    Attention,
+    Changed
+};
+constexpr std::array<const char*, 10> DisplayModeNames{"Beauty",    "Centres", "Rings",  "Ellipsoids",
+                                                       "Depth",     "Opacity", "Labels", "Label weight",
+                                                       "Attention", "Changed"};
 
 enum class Tool { Orbit, Brush, Rectangle, Lasso, CutOut, PickColour };
 enum class SetOperation { Add, Remove, Intersect, Replace };
@@ -45,23 +58,22 @@ enum class Comparison { None, Wipe, Original };
 
 /// Everything of the window an artist sets; saved in the project. One list of fields.
 struct ViewSettings {
-    int mode = 0;                   // DisplayMode
+    int mode = 0;  // DisplayMode
     int sh_degree = 3;
-    bool tint_labels = true;        // labels over the beauty picture
+    bool tint_labels = true;  // labels over the beauty picture
     float tint_strength = 0.6f;
     bool show_axes = true;
     bool show_bounds = false;
-    bool show_views = false;        // camera frusta
+    bool show_views = false;  // camera frusta
     bool show_hud = true;
-    bool front_only = true;         // selection touches what is seen, not what is behind
+    bool front_only = true;  // selection touches what is seen, not what is behind
     float brush_px = 24;
     std::string background = "#1d1f24";
     float wipe = 0.5f;
     double fov_degrees = 50;
     double move_speed = 1;
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("mode", self.mode, "How splats are shown.", Range{0, 9});
         f("sh_degree", self.sh_degree, "Highest spherical-harmonics degree shown.", Range{0, 3});
         f("tint_labels", self.tint_labels, "Tint the labelled splats over the picture.");
@@ -84,13 +96,13 @@ struct JobView {
     bool running = false;
     bool paused = false;
     bool can_pause = false;
-    std::string title;              // "Edit: a red bear", "Locate", "Turntable turn.mp4"
-    std::string stage;              // "render", "attention", ...
-    int step = 0, total = 0;        // of the stage, total 0 = unknown
+    std::string title;        // "Edit: a red bear", "Locate", "Turntable turn.mp4"
+    std::string stage;        // "render", "attention", ...
+    int step = 0, total = 0;  // of the stage, total 0 = unknown
     double seconds = 0;
-    double eta_seconds = -1;        // negative = unknown
-    std::string outcome;            // empty while it runs; then "done in 61 s", "stopped", ...
-    std::string error;              // one sentence, with what to do; empty = none
+    double eta_seconds = -1;  // negative = unknown
+    std::string outcome;      // empty while it runs; then "done in 61 s", "stopped", ...
+    std::string error;        // one sentence, with what to do; empty = none
 };
 
 /// A point of the curves in Progress.
@@ -110,24 +122,24 @@ using AttentionView = pipeline::SeenView;
 
 /// What came of the last search.
 struct SearchView {
-    std::uint64_t number = 0;                    // another one for each search; 0 = there was none
+    std::uint64_t number = 0;  // another one for each search; 0 = there was none
     edit::Confidence confidence;
     edit::SearchProblem problem = edit::SearchProblem::None;
-    std::string message, remedy;                 // of the problem
-    std::optional<double> front;                 // azimuth in degrees, [0, 360), where the pictures said it
-    bool on_ground = false;                      // the model was shown a ground that the scene does not have
+    std::string message, remedy;  // of the problem
+    std::optional<double> front;  // azimuth in degrees, [0, 360), where the pictures said it
+    bool on_ground = false;       // the model was shown a ground that the scene does not have
 };
 
 /// A place where a model was looked for.
 struct ModelView {
     std::string name;
     std::string path;
-    std::string structure;       // "Stable Diffusion 1.x", "starter", ...
+    std::string structure;  // "Stable Diffusion 1.x", "starter", ...
     std::uint64_t bytes = 0;
     bool usable = false;
-    std::string problem;         // what is missing or not supported, and what to do
+    std::string problem;  // what is missing or not supported, and what to do
     bool chosen = false;
-    bool checking = false;       // it is being loaded, to see whether it can be used
+    bool checking = false;  // it is being loaded, to see whether it can be used
 };
 
 /// A LoRA that is merged into the model in use.
@@ -142,23 +154,24 @@ enum class SegmenterRole : std::uint8_t { Clicks, Words };
 
 /// What cuts masks out of pictures.
 struct SegmenterView {
-    std::string path;        // of its weights; empty = none: GrabCut follows clicks, and nouns are left to the attention
-    bool checking = false;   // others are being loaded, to see whether they can be used
+    std::string
+        path;  // of its weights; empty = none: GrabCut follows clicks, and nouns are left to the attention
+    bool checking = false;  // others are being loaded, to see whether they can be used
 };
 
 struct LogLine {
     log::Level level = log::Level::Info;
-    std::string time;            // "14:02:07"
+    std::string time;  // "14:02:07"
     std::string text;
 };
 
 /// What an edit will cost, before it starts.
 struct Estimate {
-    double seconds = -1;         // negative = not known yet
-    double tflop = -1;           // 10^12 operations of the networks
+    double seconds = -1;  // negative = not known yet
+    double tflop = -1;    // 10^12 operations of the networks
     double memory_mb = -1;
     double memory_free_mb = -1;
-    std::array<double, edit::Qualities.size()> quality_seconds{-1, -1, -1};   // of each quality
+    std::array<double, edit::Qualities.size()> quality_seconds{-1, -1, -1};  // of each quality
 };
 
 /// A short message over the viewport, with an optional button.
@@ -166,7 +179,7 @@ struct Toast {
     std::string text;
     bool is_error = false;
     double age_seconds = 0;
-    std::string button;          // empty = none
+    std::string button;  // empty = none
 };
 
 /// Something the application wants to know; what is chosen goes to Actions::answer.
@@ -174,22 +187,22 @@ struct AskedQuestion {
     struct Answer {
         std::string text, detail = {};
         bool dangerous = false;
-        bool listed = false;     // one of many, in a list above the buttons
+        bool listed = false;  // one of many, in a list above the buttons
     };
-    std::uint64_t number = 0;    // another one for every question; 0 = none
+    std::uint64_t number = 0;  // another one for every question; 0 = none
     std::string title, text;
     std::vector<Answer> answers;
 };
 
 /// Work of a session that ended without saving it.
 struct RecoveryView {
-    std::string file;            // for recover() and discard_recovery()
-    std::string name;            // of the project or scene: "scene.ply"
-    std::string place;           // its whole path
-    std::string facts;           // "today 14:02, 4,914 splats, 2 edits"
-    std::string running;         // what ran or waited then; empty = nothing
-    std::shared_ptr<const Image> thumbnail;   // may be null
-    bool offered = false;        // also over an open scene
+    std::string file;                        // for recover() and discard_recovery()
+    std::string name;                        // of the project or scene: "scene.ply"
+    std::string place;                       // its whole path
+    std::string facts;                       // "today 14:02, 4,914 splats, 2 edits"
+    std::string running;                     // what ran or waited then; empty = nothing
+    std::shared_ptr<const Image> thumbnail;  // may be null
+    bool offered = false;                    // also over an open scene
 };
 
 /// Settings of a picture or film to be written (Export panel and dialogs).
@@ -197,25 +210,24 @@ struct ExportSettings {
     int width = 1920, height = 1080;
     bool transparent = false;
     std::string picture_path = "screenshot.png";
-    std::string film_path = "turntable.mp4";     // .mp4, .webm, or a folder for PNGs
+    std::string film_path = "turntable.mp4";  // .mp4, .webm, or a folder for PNGs
     int frames = 120;
     double fps = 30;
     double degrees = 360;
     double start_degrees = 0;
     bool ease = false;
-    double radius_factor = 1;                    // of the fitted distance
+    double radius_factor = 1;  // of the fitted distance
     double elevation_degrees = 12;
-    bool around_label = true;                    // centre: what is labelled, else the scene
+    bool around_label = true;  // centre: what is labelled, else the scene
     bool before_after = false;
-    std::string scene_path = "edited.ply";       // format by extension
+    std::string scene_path = "edited.ply";  // format by extension
     bool with_labels = false;
     bool visible_only = false;
     int spz_version = 3;
-    std::string viewpoints_path = "cameras.json";   // format by name: transforms... is nerfstudio's
+    std::string viewpoints_path = "cameras.json";  // format by name: transforms... is nerfstudio's
     std::string camera_path_path = "camera_path.json";
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("width", self.width, "Width in pixels.", Range{16, 16384});
         f("height", self.height, "Height in pixels.", Range{16, 16384});
         f("transparent", self.transparent, "Transparent background (PNG).");
@@ -234,147 +246,150 @@ struct ExportSettings {
         f("with_labels", self.with_labels, "Write the label as a float column (PLY).");
         f("visible_only", self.visible_only, "Leave out what is hidden in the window.");
         f("spz_version", self.spz_version, "Version of a .spz file.", Range{2, 4});
-        f("viewpoints_path", self.viewpoints_path, "File of the viewpoints: cameras.json or transforms.json.");
+        f("viewpoints_path", self.viewpoints_path,
+          "File of the viewpoints: cameras.json or transforms.json.");
         f("camera_path_path", self.camera_path_path, "File of the camera path.");
     }
 };
 
 /// What the model made of a few views before the loop.
 struct GateView {
-    std::vector<std::shared_ptr<const Image>> pictures;   // [S,S,3]
-    std::string verdict;                                  // empty = nobody can judge them
-    bool warns = false;                                   // they do not show the edit
+    std::vector<std::shared_ptr<const Image>> pictures;  // [S,S,3]
+    std::string verdict;                                 // empty = nobody can judge them
+    bool warns = false;                                  // they do not show the edit
 };
-
 
 /// A view as the model has redrawn it.
 struct TargetView {
-    std::size_t view = 0;                        // of the edit's views
+    std::size_t view = 0;  // of the edit's views
     std::string name;
     std::shared_ptr<const Image> before, after;  // [H,W,3]
     Camera camera;
-    int attempt = 0;                             // how often it was redrawn anew
-    bool dropped = false;                        // the fit does not use it
-    bool ordered = false;                        // something was said about it that is not done yet
+    int attempt = 0;       // how often it was redrawn anew
+    bool dropped = false;  // the fit does not use it
+    bool ordered = false;  // something was said about it that is not done yet
 };
 
 /// The redrawn views of a round.
 struct TargetRound {
     int round = 0, rounds = 1;
     std::vector<TargetView> targets;
-    std::string sentence = {};   // that the model was told, where it is not the artist's own
+    std::string sentence = {};  // that the model was told, where it is not the artist's own
     std::vector<std::string> warnings = {};
 };
 
 /// What the next edit may change: what the active label marks, or what a search finds.
 struct EditReach {
-    std::string label;        // active, with splats in it; empty = there is none
-    std::size_t splats = 0;   // of it
-    bool by_label = false;    // it says what may change; else the words are looked for
-    bool corrected = false;   // something of it was set by hand
+    std::string label;       // active, with splats in it; empty = there is none
+    std::size_t splats = 0;  // of it
+    bool by_label = false;   // it says what may change; else the words are looked for
+    bool corrected = false;  // something of it was set by hand
 };
 
 /// Splats that are chosen by a property, to be seen before anything is done with them.
 struct PickedRows {
-    bool shown = false;                                 // they take the place of the label's tint
-    bool working = false;                               // the property is being measured
+    bool shown = false;    // they take the place of the label's tint
+    bool working = false;  // the property is being measured
     std::size_t count = 0;
-    std::shared_ptr<const std::vector<float>> values;   // [N] of the property, NaN where there is none; null until it is measured
+    std::shared_ptr<const std::vector<float>>
+        values;  // [N] of the property, NaN where there is none; null until it is measured
 };
 
 /// What the networks were asked for by the running or last job.
 struct NetworkCost {
-    std::uint64_t unet = 0, encoder = 0, decoder = 0;   // passes over one picture
-    double tflop = 0;                                   // 10^12 operations
+    std::uint64_t unet = 0, encoder = 0, decoder = 0;  // passes over one picture
+    double tflop = 0;                                  // 10^12 operations
 };
 
 /// Everything the panels read. Pointers are valid for the frame.
 /// One of several results that can be applied.
 struct ResultView {
-    std::shared_ptr<const Image> thumbnail;   // may be null
+    std::shared_ptr<const Image> thumbnail;  // may be null
     std::uint64_t seed = 0;
 };
 
 struct ViewModel {
     // Document
-    const Document* document = nullptr;          // null or empty() = nothing open
+    const Document* document = nullptr;  // null or empty() = nothing open
     SceneStatistics statistics;
     std::string scene_path, project_path;
-    std::string suggested_project;               // where a first save goes unless the artist says otherwise
-    bool unsaved = false;                        // a running or waiting edit counts
-    std::string saved_at;                        // "saved 14:02 (autosave on)"
-    std::vector<std::string> recent;             // paths, newest first
-    std::vector<RecoveryView> recoverable;       // newest first
+    std::string suggested_project;          // where a first save goes unless the artist says otherwise
+    bool unsaved = false;                   // a running or waiting edit counts
+    std::string saved_at;                   // "saved 14:02 (autosave on)"
+    std::vector<std::string> recent;        // paths, newest first
+    std::vector<RecoveryView> recoverable;  // newest first
     AskedQuestion question;
     // Viewport
-    TextureId viewport = 0;                      // the rendered picture
-    TextureId viewport_original = 0;             // to draw left of the wipe; 0 = the picture holds both sides already
-    int viewport_width = 0, viewport_height = 0; // pixels of `camera`; the texture may have fewer while moving
-    std::shared_ptr<const Image> viewport_depth; // [H,W,1] may be null; for front-only selection and picking
-    Camera camera;                               // of the picture shown
-    OrbitParameters orbit;                       // home: the fitted orbit,
-    Bounds framing;                              // and what is to be seen from there
+    TextureId viewport = 0;           // the rendered picture
+    TextureId viewport_original = 0;  // to draw left of the wipe; 0 = the picture holds both sides already
+    int viewport_width = 0,
+        viewport_height = 0;  // pixels of `camera`; the texture may have fewer while moving
+    std::shared_ptr<const Image> viewport_depth;  // [H,W,1] may be null; for front-only selection and picking
+    Camera camera;                                // of the picture shown
+    OrbitParameters orbit;                        // home: the fitted orbit,
+    Bounds framing;                               // and what is to be seen from there
     double frames_per_second = 0, render_ms = 0;
-    std::string renderer;                        // "native AVX-512", "Vulkan: llvmpipe"
+    std::string renderer;  // "native AVX-512", "Vulkan: llvmpipe"
     std::size_t labelled = 0;
-    std::size_t hidden = 0;                      // splats of the scene that the artist does not want to see at present
+    std::size_t hidden = 0;  // splats of the scene that the artist does not want to see at present
     // Prompt
-    edit::EditRequest request;                   // as edited by the panel, echoed by the application
-    edit::EditRequest request_defaults;          // what suits the model in use
-    std::vector<std::string> known_words;        // of the chosen model; empty = open vocabulary
-    std::vector<std::string> drawn_words;        // that it draws besides and does not look for
-    bool words_known = false;                    // known_words has been read
-    std::vector<std::string> said_words;         // what the applied edits say of the scene: no news any more
-    std::string read_target;                     // what a search of this very sentence saw to be new; empty = none has looked
+    edit::EditRequest request;             // as edited by the panel, echoed by the application
+    edit::EditRequest request_defaults;    // what suits the model in use
+    std::vector<std::string> known_words;  // of the chosen model; empty = open vocabulary
+    std::vector<std::string> drawn_words;  // that it draws besides and does not look for
+    bool words_known = false;              // known_words has been read
+    std::vector<std::string> said_words;   // what the applied edits say of the scene: no news any more
+    std::string read_target;  // what a search of this very sentence saw to be new; empty = none has looked
     EditReach reach;
     PickedRows picked;
-    std::string keymap;       // Keymap::text(); empty = as it is by default
-    bool adjusting = false;   // the last step is an adjustment of colours, which more of it changes
-    bool labelled_by_hand = false;               // nothing has to be found: the active label says what may change
-    std::size_t words_read = 0;                  // of the sentence, by the text encoder; 0 = all, or not known
+    std::string keymap;             // Keymap::text(); empty = as it is by default
+    bool adjusting = false;         // the last step is an adjustment of colours, which more of it changes
+    bool labelled_by_hand = false;  // nothing has to be found: the active label says what may change
+    std::size_t words_read = 0;     // of the sentence, by the text encoder; 0 = all, or not known
     ModelSettings model_settings, model_settings_defaults;
     Estimate estimate;
-    std::string cannot_edit;                     // why Locate and Edit are off; empty = they are on
+    std::string cannot_edit;  // why Locate and Edit are off; empty = they are on
     // Localization
     std::vector<AttentionView> attention;
     std::string attention_word, attention_mode;  // "bear", "modify: ..."
     double attention_threshold = 0.5;
-    bool attention_arriving = false;             // a search is under way: views come in as they are attended
-    bool voting = false;                         // the job only votes anew: more views can be left out meanwhile
-    bool attention_corrected = false;            // the label was set by hand since: the masks are older than it
+    bool attention_arriving = false;   // a search is under way: views come in as they are attended
+    bool voting = false;               // the job only votes anew: more views can be left out meanwhile
+    bool attention_corrected = false;  // the label was set by hand since: the masks are older than it
     SearchView search;
     // Work
-    JobView job;                                 // locate, edit
-    bool edit_running = false;                   // the job is an edit
-    JobView file_job;                            // load, export, save
+    JobView job;                // locate, edit
+    bool edit_running = false;  // the job is an edit
+    JobView file_job;           // load, export, save
     GateView gate;
-    std::vector<TargetRound> target_rounds;      // of the running or last edit that views lead, in their order
-    bool targets_wait = false;                   // the fit of the last round begins when the artist says so
+    std::vector<TargetRound> target_rounds;  // of the running or last edit that views lead, in their order
+    bool targets_wait = false;               // the fit of the last round begins when the artist says so
     NetworkCost cost;
     std::vector<LossPoint> losses;
     std::vector<SnapshotView> snapshots;
-    int shown_snapshot = -1;                     // index into snapshots, -1 = the result that waits, else the newest
-    bool result_waiting = false;                 // an edit is done and asks: apply or discard
-    std::size_t result_splats = 0;               // of the result that waits
-    std::size_t result_changed_outside = 0;      // splats outside the label that are not as they were
+    int shown_snapshot = -1;        // index into snapshots, -1 = the result that waits, else the newest
+    bool result_waiting = false;    // an edit is done and asks: apply or discard
+    std::size_t result_splats = 0;  // of the result that waits
+    std::size_t result_changed_outside = 0;  // splats outside the label that are not as they were
     double result_psnr_outside_db = 0;
-    double result_seconds = 0;                   // that it took
-    std::vector<ResultView> results;             // of which one waits, the others beside it
-    std::size_t shown_result = 0;                // index into results
+    double result_seconds = 0;        // that it took
+    std::vector<ResultView> results;  // of which one waits, the others beside it
+    std::size_t shown_result = 0;     // index into results
     // Rest
     std::vector<ModelView> models;
-    bool edits_by_instruction = false;           // the model in use is told what to do, too
+    bool edits_by_instruction = false;  // the model in use is told what to do, too
     std::vector<LoraView> loras;
-    bool loras_checking = false;                 // others are being loaded, to see whether they can be used
-    std::array<SegmenterView, 2> segmenters;     // by SegmenterRole
+    bool loras_checking = false;              // others are being loaded, to see whether they can be used
+    std::array<SegmenterView, 2> segmenters;  // by SegmenterRole
     std::vector<LogLine> log;
     std::vector<Toast> toasts;
     ViewSettings view;
     ExportSettings exports;
     std::vector<CameraKey> camera_keys;
     Comparison comparison = Comparison::None;
-    std::uint64_t compared_revision = 0;         // of the step that comparisons show as before; 0 = what an edit began with, or the original
-    std::string compared_name;                   // of that step
+    std::uint64_t compared_revision =
+        0;  // of the step that comparisons show as before; 0 = what an edit began with, or the original
+    std::string compared_name;  // of that step
     float ui_scale = 1;
     int cache_mb = 0;               // most that answers of the networks take on the disk; 0 = none are kept
     std::uint64_t cache_bytes = 0;  // what they take

@@ -10,10 +10,12 @@
 namespace gse {
 namespace {
 
-constexpr std::size_t HugePage = std::size_t{2} << 20;       // of x86-64 and most others
+constexpr std::size_t HugePage = std::size_t{2} << 20;  // of x86-64 and most others
 constexpr std::size_t WorthHugePages = 2 * HugePage;
 
-std::align_val_t alignment(std::size_t bytes) { return std::align_val_t{bytes >= WorthHugePages ? HugePage : CacheLine}; }
+std::align_val_t alignment(std::size_t bytes) {
+    return std::align_val_t{bytes >= WorthHugePages ? HugePage : CacheLine};
+}
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// Arrays for what is walked through from end to end: they begin at a cache line, and large ones lie in huge pages where the system
-// has some, so that fewer addresses have to be looked up.
+// Arrays for what is walked through from end to end: they begin at a cache line, and large ones lie in huge
+// pages where the system has some, so that fewer addresses have to be looked up.
 #pragma once
 
 #include <cstddef>
@@ -8,21 +8,21 @@
 
 namespace gse {
 
-inline constexpr std::size_t CacheLine = 64;   // bytes
+inline constexpr std::size_t CacheLine = 64;  // bytes
 
-/// Asks for huge pages where whole ones fit into memory that was not written to yet. Where the system has none, nothing happens.
+/// Asks for huge pages where whole ones fit into memory that was not written to yet. Where the system has
+/// none, nothing happens.
 void prefer_huge_pages(void* memory, std::size_t bytes) noexcept;
 
-/// `bytes` at a multiple of CacheLine, uninitialised; free_lines() gives them back and is told the same number. Throws std::bad_alloc.
+/// `bytes` at a multiple of CacheLine, uninitialised; free_lines() gives them back and is told the same
+/// number. Throws std::bad_alloc.
 void* allocate_lines(std::size_t bytes);
 void free_lines(void* memory, std::size_t bytes) noexcept;
 
-template <class T>
-struct LineAllocator {
+template <class T> struct LineAllocator {
     using value_type = T;
     LineAllocator() = default;
-    template <class U>
-    LineAllocator(const LineAllocator<U>&) {}
+    template <class U> LineAllocator(const LineAllocator<U>&) {}
     T* allocate(std::size_t count) {
         if (count > static_cast<std::size_t>(-1) / sizeof(T)) throw std::bad_array_new_length();
         return static_cast<T*>(allocate_lines(count * sizeof(T)));
@@ -31,8 +31,7 @@ struct LineAllocator {
     friend bool operator==(const LineAllocator&, const LineAllocator&) { return true; }
 };
 
-template <class T>
-using LineVector = std::vector<T, LineAllocator<T>>;
+template <class T> using LineVector = std::vector<T, LineAllocator<T>>;
 using LineFloats = LineVector<float>;
 
 }  // namespace gse

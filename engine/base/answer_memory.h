@@ -7,7 +7,8 @@
 
 namespace gse {
 
-/// Questions and answers are bytes; a question names all that its answer follows from. May be used from several threads.
+/// Questions and answers are bytes; a question names all that its answer follows from. May be used from
+/// several threads.
 class AnswerMemory {
 public:
     virtual ~AnswerMemory() = default;

@@ -3,7 +3,8 @@
 
 namespace gse {
 
-std::filesystem::path assets_beside(const std::filesystem::path& program, const std::filesystem::path& checkout) {
+std::filesystem::path assets_beside(const std::filesystem::path& program,
+                                    const std::filesystem::path& checkout) {
     const auto installed = (program / "../share/gseditpro").lexically_normal();
     std::error_code ignored;
     return std::filesystem::is_directory(installed, ignored) ? installed : checkout;

@@ -6,7 +6,8 @@
 namespace gse {
 
 /// ../share/gseditpro of the folder `program` where that is there (an installed program), else `checkout`.
-std::filesystem::path assets_beside(const std::filesystem::path& program, const std::filesystem::path& checkout);
+std::filesystem::path assets_beside(const std::filesystem::path& program,
+                                    const std::filesystem::path& checkout);
 
 /// The same for the program that runs.
 std::filesystem::path assets_folder(const std::filesystem::path& checkout);

@@ -12,13 +12,13 @@
 
 namespace gse {
 
-/// Two lanes of multiply and rotate that feed each other, over words of 8 bytes. Not for secrets: two different contents have
-/// the same digest by chance with a probability of about 2^-128.
+/// Two lanes of multiply and rotate that feed each other, over words of 8 bytes. Not for secrets: two
+/// different contents have the same digest by chance with a probability of about 2^-128.
 class Digest : public HashInput<Digest> {
 public:
     void bytes(const void* data, std::size_t size) {
         const auto* at = add_words(data, size);
-        std::uint64_t rest = size;   // how many bytes are left counts too
+        std::uint64_t rest = size;  // how many bytes are left counts too
         for (; size > 0; --size) rest = rest << 8 | *at++;
         add(rest);
     }
@@ -32,7 +32,9 @@ public:
         first_ = std::rotl(first_ ^ word * 0x9e3779b97f4a7c15ULL, 29) * 0xbf58476d1ce4e5b9ULL + second_;
         second_ = std::rotl(second_ + word, 37) * 0x94d049bb133111ebULL ^ first_;
     }
-    std::array<std::uint64_t, 2> value() const { return {mixed(first_ + std::rotl(second_, 17)), mixed(second_ ^ mixed(first_))}; }
+    std::array<std::uint64_t, 2> value() const {
+        return {mixed(first_ + std::rotl(second_, 17)), mixed(second_ ^ mixed(first_))};
+    }
     /// 32 hexadecimal digits.
     std::string hex() const {
         std::string text;

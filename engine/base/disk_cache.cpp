@@ -23,9 +23,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view Magic = "GSECACH1";   // the last letter is the version of the layout
+constexpr std::string_view Magic = "GSECACH1";  // the last letter is the version of the layout
 constexpr std::string_view Ending = ".answer", PendingEnding = ".pending";
-constexpr auto PendingAge = std::chrono::hours(1);   // a file being written that is older was left by a killed writer
+constexpr auto PendingAge =
+    std::chrono::hours(1);  // a file being written that is older was left by a killed writer
 
 struct Header {
     char magic[8] = {};
@@ -60,7 +61,8 @@ std::optional<std::string> answer_in(std::string_view bytes, std::string_view qu
     Header header;
     if (bytes.size() < sizeof header + question.size()) return std::nullopt;
     std::memcpy(&header, bytes.data(), sizeof header);
-    if (header.question_bytes != question.size() || bytes.substr(sizeof header, question.size()) != question) return std::nullopt;
+    if (header.question_bytes != question.size() || bytes.substr(sizeof header, question.size()) != question)
+        return std::nullopt;
     const auto answer = bytes.substr(sizeof header + question.size());
     Header wanted;
     seal(wanted, question, answer);
@@ -78,12 +80,13 @@ std::vector<Entry> entries_of(const fs::path& folder) {
     std::vector<Entry> entries;
     std::error_code failure;
     for (fs::directory_iterator at(folder, failure), end; !failure && at != end; at.increment(failure)) {
-        std::error_code gone;   // another process may be clearing the folder
+        std::error_code gone;  // another process may be clearing the folder
         const auto used = at->last_write_time(gone);
         const auto bytes = gone || !at->is_regular_file(gone) ? 0 : at->file_size(gone);
         if (gone) continue;
         if (is_named_so(at->path(), Ending)) entries.push_back({at->path(), used, bytes});
-        else if (is_named_so(at->path(), PendingEnding) && fs::file_time_type::clock::now() - used > PendingAge)
+        else if (is_named_so(at->path(), PendingEnding) &&
+                 fs::file_time_type::clock::now() - used > PendingAge)
             fs::remove(at->path(), gone);
     }
     return entries;
@@ -107,8 +110,8 @@ bool write_entry(const fs::path& path, std::string_view question, std::string_vi
     pending += "." + writer_mark() + std::string(PendingEnding);
     const int descriptor = open(pending.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (descriptor < 0) return false;
-    bool whole = write_all(descriptor, {reinterpret_cast<const char*>(&header), sizeof header}) && write_all(descriptor, question) &&
-                 write_all(descriptor, answer);
+    bool whole = write_all(descriptor, {reinterpret_cast<const char*>(&header), sizeof header}) &&
+                 write_all(descriptor, question) && write_all(descriptor, answer);
     whole = close(descriptor) == 0 && whole;
     if (whole && rename(pending.c_str(), path.c_str()) == 0) return true;
     unlink(pending.c_str());
@@ -132,7 +135,8 @@ std::uint64_t shrink(const fs::path& folder, std::uint64_t most) {
 
 }  // namespace
 
-DiskCache::DiskCache(fs::path folder, std::uint64_t most_bytes) : folder_(std::move(folder)), most_(most_bytes) {}
+DiskCache::DiskCache(fs::path folder, std::uint64_t most_bytes)
+    : folder_(std::move(folder)), most_(most_bytes) {}
 
 std::optional<std::string> DiskCache::find(std::string_view question) {
     if (most_ == 0) return std::nullopt;
@@ -141,16 +145,14 @@ std::optional<std::string> DiskCache::find(std::string_view question) {
         const FileBytes file(path);
         auto answer = answer_in(file.text(), question);
         if (answer) {
-            utimensat(AT_FDCWD, path.c_str(), nullptr, 0);   // used now; a read-only folder keeps its order
+            utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // used now; a read-only folder keeps its order
         } else {
             log::debug("{} is damaged and was removed", path.string());
             std::error_code ignored;
             fs::remove(path, ignored);
         }
         return answer;
-    } catch (const Error&) {
-        return std::nullopt;
-    }
+    } catch (const Error&) { return std::nullopt; }
 }
 
 void DiskCache::keep(std::string_view question, std::string_view answer) {

@@ -1,4 +1,5 @@
-// Answers that are dear to work out, kept in a folder from one run of the program to the next (method.md E12).
+// Answers that are dear to work out, kept in a folder from one run of the program to the next (method.md
+// E12).
 #pragma once
 
 #include <atomic>
@@ -13,12 +14,14 @@
 
 namespace gse {
 
-/// One file per answer, named by the digest of its question, which it holds too. Nothing here is ever an error: a folder that
-/// cannot be read or written remembers nothing, and a file that is not whole is removed and counts as not there. Entries appear
-/// whole (written beside their place and renamed), so processes may share a folder; threads may share an object.
+/// One file per answer, named by the digest of its question, which it holds too. Nothing here is ever an
+/// error: a folder that cannot be read or written remembers nothing, and a file that is not whole is removed
+/// and counts as not there. Entries appear whole (written beside their place and renamed), so processes may
+/// share a folder; threads may share an object.
 class DiskCache final : public AnswerMemory {
 public:
-    /// Entries beyond `most_bytes` together are removed, those used least recently first. The folder is made when something is kept.
+    /// Entries beyond `most_bytes` together are removed, those used least recently first. The folder is made
+    /// when something is kept.
     DiskCache(std::filesystem::path folder, std::uint64_t most_bytes);
 
     /// What was kept for this question; the entry counts as used now.
@@ -37,7 +40,8 @@ private:
     const std::filesystem::path folder_;
     std::atomic<std::uint64_t> most_;
     std::mutex mutex_;
-    std::optional<std::uint64_t> held_;   // bytes in the folder as far as this object knows; empty = not looked yet
+    std::optional<std::uint64_t>
+        held_;  // bytes in the folder as far as this object knows; empty = not looked yet
 };
 
 /// Bytes of all entries in a folder; 0 where there is none.

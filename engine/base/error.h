@@ -20,8 +20,8 @@ enum class ErrorCode {
     Foreign,          // another library threw
 };
 
-/// World or user error. `message` says what failed, `hint` what to do (may be empty), `path` where (may be empty).
-/// what() is "message; hint: path" on one line.
+/// World or user error. `message` says what failed, `hint` what to do (may be empty), `path` where (may be
+/// empty). what() is "message; hint: path" on one line.
 class Error : public std::runtime_error {
 public:
     Error(ErrorCode code, std::string message, std::string hint = {}, std::filesystem::path path = {});
@@ -39,8 +39,7 @@ private:
 };
 
 /// Adds the path to errors of `body` that name none: readers know only bytes.
-template <class F>
-auto with_path(const std::filesystem::path& path, F&& body) {
+template <class F> auto with_path(const std::filesystem::path& path, F&& body) {
     try {
         return body();
     } catch (const Error& error) {

@@ -13,11 +13,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 std::string range_text(const Range* range) {
-    return range != nullptr ? fmt::format("a number from {} to {}", range->low, range->high) : "a finite number";
+    return range != nullptr ? fmt::format("a number from {} to {}", range->low, range->high)
+                            : "a finite number";
 }
 
 [[noreturn]] void refuse(const char* name, const std::string& wanted, const std::string& found) {
-    throw Error(ErrorCode::InvalidArgument, fmt::format("the setting \"{}\" must be {}, not {}", name, wanted, found));
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("the setting \"{}\" must be {}, not {}", name, wanted, found));
 }
 
 /// A value as a message shows it, cut where it is long.
@@ -36,16 +38,17 @@ double number(const char* name, const Json& json, const Range* range) {
 }
 
 /// A whole number, whichever way it is written (12 or 12.0), that T holds.
-template <class T>
-T whole(const char* name, const Json& json, const Range* range) {
+template <class T> T whole(const char* name, const Json& json, const Range* range) {
     const double value = number(name, json, range);
     using Limits = std::numeric_limits<T>;
     if (std::floor(value) != value) refuse(name, "a whole number", shown(json));
     if (!(value >= static_cast<double>(Limits::lowest()) && value < std::ldexp(1.0, Limits::digits)) &&
         !(json.is_number_unsigned() && std::is_unsigned_v<T>))
-        refuse(name, fmt::format("a whole number from {} to {}", Limits::lowest(), Limits::max()), shown(json));
+        refuse(name, fmt::format("a whole number from {} to {}", Limits::lowest(), Limits::max()),
+               shown(json));
     if (json.is_number_float()) return static_cast<T>(value);
-    return json.is_number_unsigned() ? static_cast<T>(json.get<std::uint64_t>()) : static_cast<T>(json.get<std::int64_t>());
+    return json.is_number_unsigned() ? static_cast<T>(json.get<std::uint64_t>())
+                                     : static_cast<T>(json.get<std::int64_t>());
 }
 
 /// The limits as a float meets them: 0.1f lies above 0.1.
@@ -62,7 +65,8 @@ void check_field(const char* name, float value, const Range* range) {
 }
 
 void check_field(const char* name, double value, const Range* range) {
-    const bool fits = std::isfinite(value) && (range == nullptr || (value >= range->low && value <= range->high));
+    const bool fits =
+        std::isfinite(value) && (range == nullptr || (value >= range->low && value <= range->high));
     if (!fits) refuse(name, range_text(range), fmt::format("{:g}", value));
 }
 
@@ -71,7 +75,9 @@ void read_field(const char* name, bool& value, const Json& json) {
     value = json.get<bool>();
 }
 
-void read_field(const char* name, int& value, const Json& json, const Range* range) { value = whole<int>(name, json, range); }
+void read_field(const char* name, int& value, const Json& json, const Range* range) {
+    value = whole<int>(name, json, range);
+}
 
 void read_field(const char* name, std::uint64_t& value, const Json& json, const Range* range) {
     value = whole<std::uint64_t>(name, json, range);
@@ -80,11 +86,14 @@ void read_field(const char* name, std::uint64_t& value, const Json& json, const 
 void read_field(const char* name, float& value, const Json& json, const Range* range) {
     const Range rounded = range != nullptr ? as_floats(*range) : Range{};
     const double wide = number(name, json, range != nullptr ? &rounded : nullptr);
-    if (std::abs(wide) > static_cast<double>(std::numeric_limits<float>::max())) refuse(name, range_text(range), shown(json));
+    if (std::abs(wide) > static_cast<double>(std::numeric_limits<float>::max()))
+        refuse(name, range_text(range), shown(json));
     value = static_cast<float>(wide);
 }
 
-void read_field(const char* name, double& value, const Json& json, const Range* range) { value = number(name, json, range); }
+void read_field(const char* name, double& value, const Json& json, const Range* range) {
+    value = number(name, json, range);
+}
 
 void read_field(const char* name, std::string& value, const Json& json) {
     if (!json.is_string()) refuse(name, "text", shown(json));
@@ -93,7 +102,8 @@ void read_field(const char* name, std::string& value, const Json& json) {
 
 void read_field(const char* name, std::vector<std::string>& value, const Json& json) {
     const auto is_text = [](const Json& entry) { return entry.is_string(); };
-    if (!json.is_array() || !std::all_of(json.begin(), json.end(), is_text)) refuse(name, "a list of texts", shown(json));
+    if (!json.is_array() || !std::all_of(json.begin(), json.end(), is_text))
+        refuse(name, "a list of texts", shown(json));
     value = json.get<std::vector<std::string>>();
 }
 

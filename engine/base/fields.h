@@ -2,8 +2,8 @@
 //
 // A struct P offers   template <class Self, class F> static void visit_fields(Self& self, F&& f)
 // that calls          f("name", self.member, "What it does.", Range{low, high})   once per member;
-// the range is left out where there is none. Members are bool, int, std::uint64_t, float, double, std::string or a list of texts
-// (std::vector<std::string>).
+// the range is left out where there is none. Members are bool, int, std::uint64_t, float, double, std::string
+// or a list of texts (std::vector<std::string>).
 #pragma once
 
 #include <cstdint>
@@ -24,19 +24,24 @@ struct Range {
 };
 
 /// All fields as a JSON object, in the order of the list.
-template <class P>
-nlohmann::ordered_json fields_to_json(const P& parameters) {
+template <class P> nlohmann::ordered_json fields_to_json(const P& parameters) {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    P::visit_fields(parameters, [&](const char* name, const auto& value, const char*, auto...) { json[name] = value; });
+    P::visit_fields(parameters,
+                    [&](const char* name, const auto& value, const char*, auto...) { json[name] = value; });
     return json;
 }
 
-/// Sets `value` from JSON. Throws Error that names the setting: wrong type, not a whole number, not finite, out of its range.
+/// Sets `value` from JSON. Throws Error that names the setting: wrong type, not a whole number, not finite,
+/// out of its range.
 void read_field(const char* name, bool& value, const nlohmann::ordered_json& json);
-void read_field(const char* name, int& value, const nlohmann::ordered_json& json, const Range* range = nullptr);
-void read_field(const char* name, std::uint64_t& value, const nlohmann::ordered_json& json, const Range* range = nullptr);
-void read_field(const char* name, float& value, const nlohmann::ordered_json& json, const Range* range = nullptr);
-void read_field(const char* name, double& value, const nlohmann::ordered_json& json, const Range* range = nullptr);
+void read_field(const char* name, int& value, const nlohmann::ordered_json& json,
+                const Range* range = nullptr);
+void read_field(const char* name, std::uint64_t& value, const nlohmann::ordered_json& json,
+                const Range* range = nullptr);
+void read_field(const char* name, float& value, const nlohmann::ordered_json& json,
+                const Range* range = nullptr);
+void read_field(const char* name, double& value, const nlohmann::ordered_json& json,
+                const Range* range = nullptr);
 void read_field(const char* name, std::string& value, const nlohmann::ordered_json& json);
 void read_field(const char* name, std::vector<std::string>& value, const nlohmann::ordered_json& json);
 
@@ -45,23 +50,23 @@ void check_field(const char* name, double value, const Range* range);
 void check_field(const char* name, float value, const Range* range);
 
 /// Checks every number of the struct, wherever it came from.
-template <class P>
-void check_fields(const P& parameters) {
+template <class P> void check_fields(const P& parameters) {
     P::visit_fields(parameters, [&](const char* name, const auto& value, const char*, const auto&... range) {
         if constexpr (std::is_arithmetic_v<std::remove_cvref_t<decltype(value)>>) {
             const Range* limits = nullptr;
             ((limits = &range), ...);
-            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, float>) check_field(name, value, limits);
+            if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, float>)
+                check_field(name, value, limits);
             else check_field(name, static_cast<double>(value), limits);
         }
     });
 }
 
-/// Sets the fields named in `json`; absent ones keep their value. Throws Error for an unknown name, a wrong type or a
-/// number that is not finite or out of its range; then nothing is set.
-template <class P>
-void fields_from_json(P& parameters, const nlohmann::ordered_json& json) {
-    if (!json.is_object()) throw Error(ErrorCode::InvalidArgument, "the settings are not an object of names and values");
+/// Sets the fields named in `json`; absent ones keep their value. Throws Error for an unknown name, a wrong
+/// type or a number that is not finite or out of its range; then nothing is set.
+template <class P> void fields_from_json(P& parameters, const nlohmann::ordered_json& json) {
+    if (!json.is_object())
+        throw Error(ErrorCode::InvalidArgument, "the settings are not an object of names and values");
     P read = parameters;
     std::size_t known = 0;
     P::visit_fields(read, [&](const char* name, auto& value, const char*, const auto&... range) {
@@ -80,9 +85,10 @@ void fields_from_json(P& parameters, const nlohmann::ordered_json& json) {
     for (const auto& [key, ignored] : json.items()) {
         if (known == json.size()) break;
         bool found = false;
-        P::visit_fields(parameters, [&found, &wanted = key](const char* name, const auto&, const char*, auto...) {
-            found |= wanted == name;  // renamed: clang 14 cannot capture a structured binding
-        });
+        P::visit_fields(parameters,
+                        [&found, &wanted = key](const char* name, const auto&, const char*, auto...) {
+                            found |= wanted == name;  // renamed: clang 14 cannot capture a structured binding
+                        });
         if (!found) throw Error(ErrorCode::InvalidArgument, "there is no setting \"" + key + "\"");
     }
     parameters = std::move(read);

@@ -21,7 +21,8 @@ constexpr std::size_t LargestRead = std::size_t{1} << 30;  // bytes the system i
 [[noreturn]] void throw_open_error(const std::filesystem::path& path) {
     const int reason = errno;
     if (reason == ENOENT) throw Error(ErrorCode::NotFound, "the file does not exist", "check the name", path);
-    throw Error(ErrorCode::Unreadable, std::string("the file cannot be opened (") + std::strerror(reason) + ")", "", path);
+    throw Error(ErrorCode::Unreadable,
+                std::string("the file cannot be opened (") + std::strerror(reason) + ")", "", path);
 }
 
 }  // namespace
@@ -33,7 +34,8 @@ InputFile::InputFile(const std::filesystem::path& path) : path_(path) {
     struct stat status {};
     if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) {
         close(descriptor);
-        throw Error(ErrorCode::Unreadable, "this is a folder, pipe or device, not a file that can be read", "name a file", path);
+        throw Error(ErrorCode::Unreadable, "this is a folder, pipe or device, not a file that can be read",
+                    "name a file", path);
     }
     descriptor_ = descriptor;
     size_ = static_cast<std::uint64_t>(status.st_size);
@@ -48,10 +50,12 @@ InputFile::InputFile(InputFile&& other) noexcept
 
 void InputFile::read(std::uint64_t offset, std::span<std::byte> target) const {
     while (!target.empty()) {
-        const ssize_t got = pread(descriptor_, target.data(), std::min(target.size(), LargestRead), static_cast<off_t>(offset));
+        const ssize_t got = pread(descriptor_, target.data(), std::min(target.size(), LargestRead),
+                                  static_cast<off_t>(offset));
         if (got < 0 && errno == EINTR) continue;
         if (got < 0)
-            throw Error(ErrorCode::Unreadable, std::string("the file cannot be read (") + std::strerror(errno) + ")",
+            throw Error(ErrorCode::Unreadable,
+                        std::string("the file cannot be read (") + std::strerror(errno) + ")",
                         "check the disk", path_);
         if (got == 0)
             throw Error(ErrorCode::Unreadable, "the file became shorter while it was read",

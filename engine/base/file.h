@@ -25,8 +25,8 @@ public:
 
     /// Bytes it had when it was opened.
     std::uint64_t size() const { return size_; }
-    /// Fills `target` with the bytes from `offset` on. Throws Error (Unreadable) when the disk fails or the file has been cut
-    /// off since it was opened.
+    /// Fills `target` with the bytes from `offset` on. Throws Error (Unreadable) when the disk fails or the
+    /// file has been cut off since it was opened.
     void read(std::uint64_t offset, std::span<std::byte> target) const;
 
 private:
@@ -35,8 +35,9 @@ private:
     std::uint64_t size_ = 0;
 };
 
-/// A whole file, read into memory: what happens to it on the disk meanwhile does not matter. (A memory map would end the
-/// program when somebody cuts the file off.) Throws Error (NotFound, Unreadable) or OutOfMemory.
+/// A whole file, read into memory: what happens to it on the disk meanwhile does not matter. (A memory map
+/// would end the program when somebody cuts the file off.) Throws Error (NotFound, Unreadable) or
+/// OutOfMemory.
 class FileBytes {
 public:
     explicit FileBytes(const std::filesystem::path& path);
@@ -49,8 +50,8 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Calls `write` with a temporary name beside `path` (same extension), then renames it over `path` (PendingFile has the
-/// rules). If `write` throws, the temporary file is removed and `path` is as it was.
+/// Calls `write` with a temporary name beside `path` (same extension), then renames it over `path`
+/// (PendingFile has the rules). If `write` throws, the temporary file is removed and `path` is as it was.
 /// Throws Error (Unwritable).
 void write_atomically(const std::filesystem::path& path,
                       const std::function<void(const std::filesystem::path& temporary)>& write);

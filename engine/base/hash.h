@@ -9,8 +9,8 @@
 
 namespace gse {
 
-/// FNV-1a over 8-byte words with a final mix: a question has a few hundred kilobytes, and chance collisions over the few
-/// hundred questions of a session are below 1e-14.
+/// FNV-1a over 8-byte words with a final mix: a question has a few hundred kilobytes, and chance collisions
+/// over the few hundred questions of a session are below 1e-14.
 class Hash : public HashInput<Hash> {
 public:
     void bytes(const void* data, std::size_t size) {

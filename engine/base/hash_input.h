@@ -9,8 +9,7 @@
 namespace gse {
 
 /// `Self` has add(std::uint64_t) and bytes(const void*, std::size_t).
-template <class Self>
-class HashInput {
+template <class Self> class HashInput {
 public:
     /// Length first: "ab", "c" is not "a", "bc".
     void text(std::string_view text) {

@@ -8,7 +8,8 @@
 
 namespace gse {
 
-/// Float image [height, width, channels], interleaved; colours are display values in [0,1] unless said otherwise.
+/// Float image [height, width, channels], interleaved; colours are display values in [0,1] unless said
+/// otherwise.
 struct Image {
     int width = 0;
     int height = 0;
@@ -17,16 +18,17 @@ struct Image {
 
     Image() = default;
     Image(int width_px, int height_px, int channel_count, float fill = 0.0f)
-        : width(width_px),
-          height(height_px),
-          channels(channel_count),
+        : width(width_px), height(height_px), channels(channel_count),
           data(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px) *
                    static_cast<std::size_t>(channel_count),
                fill) {}
 
-    std::size_t pixel_count() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+    std::size_t pixel_count() const {
+        return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    }
     float& at(int x, int y, int c) {
-        return data[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) *
+        return data[(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                     static_cast<std::size_t>(x)) *
                         static_cast<std::size_t>(channels) +
                     static_cast<std::size_t>(c)];
     }
@@ -48,12 +50,12 @@ struct Mask {
 
     Mask() = default;
     Mask(int width_px, int height_px, std::uint8_t fill = 0)
-        : width(width_px),
-          height(height_px),
+        : width(width_px), height(height_px),
           data(static_cast<std::size_t>(width_px) * static_cast<std::size_t>(height_px), fill) {}
 
     std::uint8_t& at(int x, int y) {
-        return data[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+        return data[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                    static_cast<std::size_t>(x)];
     }
     std::uint8_t at(int x, int y) const { return const_cast<Mask*>(this)->at(x, y); }
     std::size_t count() const {

@@ -41,8 +41,8 @@ std::size_t MainQueue::run() {
 
 namespace {
 
-/// Linux gives every thread its own nice value, and threads inherit it from the one that starts them. Ten of them leave a
-/// tenth of a contended processor.
+/// Linux gives every thread its own nice value, and threads inherit it from the one that starts them. Ten of
+/// them leave a tenth of a contended processor.
 void yield_to_others() {
     constexpr int patience = 10;
     setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), patience);
@@ -127,7 +127,7 @@ void JobThread::report(std::string_view stage, int step, int total) {
     }
     status_.step = step;
     status_.total = total;
-    changed_.wait(lock, [this] { return !status_.paused; });   // a paused job waits here, between two steps
+    changed_.wait(lock, [this] { return !status_.paused; });  // a paused job waits here, between two steps
 }
 
 void JobThread::loop(const std::stop_token& end) {
@@ -152,16 +152,17 @@ void JobThread::run(Job job, const std::stop_token& stop) {
     try {
         JobControl control;
         control.stop = stop;
-        control.progress = [this](std::string_view stage, int step, int total) { report(stage, step, total); };
+        control.progress = [this](std::string_view stage, int step, int total) {
+            report(stage, step, total);
+        };
         job.work(control);
-    } catch (const Error& error) {
-        failure = error;
-    } catch (const std::bad_alloc&) {
+    } catch (const Error& error) { failure = error; } catch (const std::bad_alloc&) {
         failure = out_of_memory();
     } catch (const std::exception& error) {
-        failure = Error(ErrorCode::Foreign, std::string("unexpected failure (") + error.what() + ")", "please report it");
+        failure = Error(ErrorCode::Foreign, std::string("unexpected failure (") + error.what() + ")",
+                        "please report it");
     }
-    job.work = nullptr;   // what it held is released on this thread
+    job.work = nullptr;  // what it held is released on this thread
     if (failure && failure->code() != ErrorCode::Cancelled) log::error("{}: {}", job.title, failure->what());
     auto shared = std::make_shared<std::optional<Error>>(failure);
     {
@@ -174,7 +175,7 @@ void JobThread::run(Job job, const std::stop_token& stop) {
         else status_.outcome = "failed", status_.error = failure->what();
         *handing_over_ = true;
         queue_.post([done = std::move(job.done), shared, waits = handing_over_] {
-            *waits = false;   // the next job may begin with what this one leaves
+            *waits = false;  // the next job may begin with what this one leaves
             if (done) done(shared->has_value() ? &**shared : nullptr);
         });
     }

@@ -1,4 +1,5 @@
-// One background job at a time: progress to look at, pause, cancel; what it leaves is handed to the main thread.
+// One background job at a time: progress to look at, pause, cancel; what it leaves is handed to the main
+// thread.
 #pragma once
 
 #include <atomic>
@@ -16,7 +17,8 @@
 
 namespace gse {
 
-/// Closures from other threads for the main thread, which runs them between frames. `wake` is called after each post.
+/// Closures from other threads for the main thread, which runs them between frames. `wake` is called after
+/// each post.
 class MainQueue {
 public:
     void set_wake(std::function<void()> wake);
@@ -35,8 +37,8 @@ struct JobStatus {
     bool running = false, paused = false, can_pause = false;
     std::string title, stage, outcome, error;
     int step = 0, total = 0;
-    double seconds = 0;        // without pauses
-    double eta_seconds = -1;   // of the stage; negative = unknown
+    double seconds = 0;       // without pauses
+    double eta_seconds = -1;  // of the stage; negative = unknown
 };
 
 /// A thread of its own for jobs of one kind.
@@ -49,11 +51,12 @@ public:
     struct Job {
         std::string title;
         Work work;
-        Done done;              // may be empty
+        Done done;  // may be empty
         bool can_pause = false;
     };
 
-    /// Patient jobs, and the threads they start, leave the processor to the window and to what the user waits for.
+    /// Patient jobs, and the threads they start, leave the processor to the window and to what the user waits
+    /// for.
     enum class Priority { Normal, Patient };
     explicit JobThread(MainQueue& queue, Priority priority = Priority::Normal);
     ~JobThread();

@@ -24,7 +24,7 @@ bool json_depth_fits(std::string_view text) {
 std::string place_in_text(std::string_view text, std::size_t byte) {
     const std::string_view before = text.substr(0, std::min(text.size(), byte > 0 ? byte - 1 : 0));
     const auto line = std::count(before.begin(), before.end(), '\n') + 1;
-    const std::size_t start = before.rfind('\n') + 1;   // npos + 1 = 0
+    const std::size_t start = before.rfind('\n') + 1;  // npos + 1 = 0
     return "line " + std::to_string(line) + ", column " + std::to_string(before.size() - start + 1);
 }
 

@@ -19,31 +19,34 @@ bool json_depth_fits(std::string_view text);
 std::string place_in_text(std::string_view text, std::size_t byte);
 
 /// The value in `text`; a discarded one when it is not valid or nested too deep.
-template <class Json = nlohmann::json>
-Json try_parse_json(std::string_view text) {
+template <class Json = nlohmann::json> Json try_parse_json(std::string_view text) {
     if (!json_depth_fits(text)) return Json(Json::value_t::discarded);
     return Json::parse(text.begin(), text.end(), nullptr, false);
 }
 
-/// The value in `text`. Throws Error (Malformed), which begins with `what` ("the recipe") and says where the text breaks.
+/// The value in `text`. Throws Error (Malformed), which begins with `what` ("the recipe") and says where the
+/// text breaks.
 template <class Json = nlohmann::json>
-Json parse_json(std::string_view text, std::string_view what, const char* hint = "the file is damaged or of another kind") {
+Json parse_json(std::string_view text, std::string_view what,
+                const char* hint = "the file is damaged or of another kind") {
     if (!json_depth_fits(text))
-        throw Error(ErrorCode::Malformed,
-                    std::string(what) + " is nested more than " + std::to_string(DeepestJson) + " levels deep", hint);
+        throw Error(
+            ErrorCode::Malformed,
+            std::string(what) + " is nested more than " + std::to_string(DeepestJson) + " levels deep", hint);
     try {
         return Json::parse(text.begin(), text.end());
     } catch (const typename Json::parse_error& failure) {
         throw Error(ErrorCode::Malformed,
-                    std::string(what) + " is not valid JSON (" + place_in_text(text, failure.byte) + ")", hint);
-    } catch (const typename Json::exception&) {   // a number that no double holds
+                    std::string(what) + " is not valid JSON (" + place_in_text(text, failure.byte) + ")",
+                    hint);
+    } catch (const typename Json::exception&) {  // a number that no double holds
         throw Error(ErrorCode::Malformed, std::string(what) + " holds a number that is too large", hint);
     }
 }
 
-/// The value as text; bytes that are not UTF-8 become U+FFFD. With `ascii`, all else is escaped too, as a terminal likes it.
-template <class Json>
-std::string json_text(const Json& json, int indent = -1, bool ascii = false) {
+/// The value as text; bytes that are not UTF-8 become U+FFFD. With `ascii`, all else is escaped too, as a
+/// terminal likes it.
+template <class Json> std::string json_text(const Json& json, int indent = -1, bool ascii = false) {
     return json.dump(indent, ' ', ascii, Json::error_handler_t::replace);
 }
 

@@ -39,7 +39,8 @@ bool parse_mark(std::string_view text, Mark& mark) {
     const std::string copy(text);
     long number = 0;
     int used = 0;
-    if (std::sscanf(copy.c_str(), "%ld-%ld%n-%8x%n", &mark.process, &number, &used, &mark.boot, &used) < 2) return false;
+    if (std::sscanf(copy.c_str(), "%ld-%ld%n-%8x%n", &mark.process, &number, &used, &mark.boot, &used) < 2)
+        return false;
     return static_cast<std::size_t>(used) == copy.size() && mark.process > 0;
 }
 
@@ -53,7 +54,8 @@ Holder holder_of(const std::filesystem::path& path, double& age_seconds) {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
     age_seconds = std::chrono::duration<double>(now).count() - static_cast<double>(status.st_mtim.tv_sec);
     Holder holder = Holder::Nobody;
-    if (flock(descriptor, LOCK_EX | LOCK_NB) != 0) holder = errno == EWOULDBLOCK ? Holder::Somebody : Holder::Unknown;
+    if (flock(descriptor, LOCK_EX | LOCK_NB) != 0)
+        holder = errno == EWOULDBLOCK ? Holder::Somebody : Holder::Unknown;
     close(descriptor);
     return holder;
 }

@@ -24,7 +24,8 @@ struct State {
     std::shared_ptr<spdlog::logger> console = make_console();
 
     static std::shared_ptr<spdlog::logger> make_console() {
-        auto logger = std::make_shared<spdlog::logger>("gseditpro", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+        auto logger = std::make_shared<spdlog::logger>(
+            "gseditpro", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
         logger->set_pattern("%^%l%$: %v");
         logger->set_level(spdlog::level::debug);
         return logger;
@@ -61,12 +62,10 @@ Quiet::~Quiet() { --quiet_depth; }
 
 void write(Level level, std::string_view raw) {
     if (level < state().level.load() || (quiet_depth > 0 && level < Level::Error)) return;
-    const std::string text = printable(raw, true);   // names and comments of files stand in it
+    const std::string text = printable(raw, true);  // names and comments of files stand in it
     const std::lock_guard lock(state().mutex);
-    if (state().sink)
-        state().sink(level, text);
-    else
-        state().console->log(to_spdlog(level), "{}", text);
+    if (state().sink) state().sink(level, text);
+    else state().console->log(to_spdlog(level), "{}", text);
 }
 
 }  // namespace gse::log

@@ -1,4 +1,5 @@
-// What Linux says about memory: the machine's, the control groups' (both versions) and the process's own limits.
+// What Linux says about memory: the machine's, the control groups' (both versions) and the process's own
+// limits.
 #include "engine/base/memory.h"
 
 #include <fmt/format.h>
@@ -49,20 +50,22 @@ std::uint64_t machine_memory() {
 struct GroupFiles {
     const char* limit;
     const char* usage;
-    const char* cache;   // in memory.stat: files that can be dropped
+    const char* cache;  // in memory.stat: files that can be dropped
 };
 constexpr GroupFiles Version1{"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file "};
 constexpr GroupFiles Version2{"memory.max", "memory.current", "inactive_file "};
 
 /// The least that a group and those above it leave; "max" is no number, so it counts as no limit.
-std::uint64_t group_memory(const std::filesystem::path& root, std::filesystem::path group, const GroupFiles& files) {
+std::uint64_t group_memory(const std::filesystem::path& root, std::filesystem::path group,
+                           const GroupFiles& files) {
     std::uint64_t least = Unlimited;
     group = group.relative_path();
     while (true) {
         const auto folder = root / group;
         const std::uint64_t usage = number_of(folder / files.usage, "", 0);
         const std::uint64_t cache = number_of(folder / "memory.stat", files.cache, 0);
-        least = std::min(least, difference(number_of(folder / files.limit, "", Unlimited), usage - std::min(usage, cache)));
+        least = std::min(least, difference(number_of(folder / files.limit, "", Unlimited),
+                                           usage - std::min(usage, cache)));
         if (group.empty()) return least;
         group = group.parent_path();
     }
@@ -71,12 +74,14 @@ std::uint64_t group_memory(const std::filesystem::path& root, std::filesystem::p
 std::uint64_t control_groups() {
     std::uint64_t least = Unlimited;
     std::ifstream stream("/proc/self/cgroup");
-    for (std::string line; std::getline(stream, line);) {   // "4:memory:/path" or "0::/path"
+    for (std::string line; std::getline(stream, line);) {  // "4:memory:/path" or "0::/path"
         const auto first = line.find(':'), second = line.find(':', first + 1);
         if (first == std::string::npos || second == std::string::npos) continue;
-        const std::string controllers = line.substr(first + 1, second - first - 1), path = line.substr(second + 1);
+        const std::string controllers = line.substr(first + 1, second - first - 1),
+                          path = line.substr(second + 1);
         if (controllers.empty()) least = std::min(least, group_memory("/sys/fs/cgroup", path, Version2));
-        if (controllers == "memory") least = std::min(least, group_memory("/sys/fs/cgroup/memory", path, Version1));
+        if (controllers == "memory")
+            least = std::min(least, group_memory("/sys/fs/cgroup/memory", path, Version1));
     }
     return least;
 }
@@ -85,7 +90,7 @@ std::uint64_t control_groups() {
 std::uint64_t process_limits() {
     std::uint64_t least = Unlimited;
     const auto page = static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
-    std::array<std::uint64_t, 7> pages{};   // size resident shared text library data dirty
+    std::array<std::uint64_t, 7> pages{};  // size resident shared text library data dirty
     std::ifstream stream("/proc/self/statm");
     for (auto& count : pages) stream >> count;
     for (const auto& [resource, used] : {std::pair{RLIMIT_AS, pages[0]}, std::pair{RLIMIT_DATA, pages[5]}}) {
@@ -106,18 +111,21 @@ void require_memory(std::uint64_t bytes, std::string_view purpose) {
     if (bytes <= SmallRequest) return;
     const std::uint64_t free = free_memory();
     if (bytes <= free) return;
-    throw OutOfMemory(fmt::format("{} needs {} of memory, and {} are free", purpose, memory_text(bytes), memory_text(free)));
+    throw OutOfMemory(fmt::format("{} needs {} of memory, and {} are free", purpose, memory_text(bytes),
+                                  memory_text(free)));
 }
 
 std::string memory_text(std::uint64_t bytes) {
     const double megabytes = static_cast<double>(bytes) / 1e6;
-    return megabytes < 999.5 ? fmt::format("{:.0f} MB", megabytes) : fmt::format("{:.3g} GB", std::round(megabytes) / 1e3);
+    return megabytes < 999.5 ? fmt::format("{:.0f} MB", megabytes)
+                             : fmt::format("{:.3g} GB", std::round(megabytes) / 1e3);
 }
 
 OutOfMemory out_of_memory(std::uint64_t bytes) {
     const std::string free = memory_text(free_memory());
     if (bytes == 0) return OutOfMemory(fmt::format("there is not enough memory; {} are free", free));
-    return OutOfMemory(fmt::format("there is not enough memory: {} more were needed, and {} are free", memory_text(bytes), free));
+    return OutOfMemory(fmt::format("there is not enough memory: {} more were needed, and {} are free",
+                                   memory_text(bytes), free));
 }
 
 OutOfMemory out_of_memory() { return out_of_memory(std::exchange(refused_bytes, 0)); }

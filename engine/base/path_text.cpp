@@ -11,7 +11,8 @@ namespace {
 constexpr std::string_view Scheme = "file:";
 
 bool stays(char letter) {
-    return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') || (letter >= '0' && letter <= '9') ||
+    return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+           (letter >= '0' && letter <= '9') ||
            std::string_view("/-._~").find(letter) != std::string_view::npos;
 }
 
@@ -21,16 +22,15 @@ bool is_utf8(std::string_view text) {
     try {
         static_cast<void>(nlohmann::json(text).dump());
         return true;
-    } catch (const nlohmann::json::exception&) {
-        return false;
-    }
+    } catch (const nlohmann::json::exception&) { return false; }
 }
 
 std::string text_of_path(const std::string& path) {
     if (is_utf8(path) && !path.starts_with(Scheme)) return path;
     std::string text(Scheme);
     for (const char letter : path)
-        text += stays(letter) ? std::string(1, letter) : fmt::format("%{:02X}", static_cast<unsigned char>(letter));
+        text += stays(letter) ? std::string(1, letter)
+                              : fmt::format("%{:02X}", static_cast<unsigned char>(letter));
     return text;
 }
 

@@ -1,4 +1,5 @@
-// JSON of text that may not be UTF-8: file names come back as they were, other text gets replacement characters.
+// JSON of text that may not be UTF-8: file names come back as they were, other text gets replacement
+// characters.
 #pragma once
 
 #include <string>
@@ -10,7 +11,8 @@ namespace gse {
 
 bool is_utf8(std::string_view text);
 
-/// The text itself when it is UTF-8 (and does not begin with "file:"), else "file:" and its bytes percent-encoded.
+/// The text itself when it is UTF-8 (and does not begin with "file:"), else "file:" and its bytes
+/// percent-encoded.
 std::string text_of_path(const std::string& path);
 
 /// The way back; also takes "file:///..." as other programs write it.

@@ -24,15 +24,18 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* TemporaryMark = ".tmp";  // ".NAME.tmpMARK.EXTENSION"
-constexpr double ForeignAgeSeconds = 60;       // after which another machine's temporary file counts as given up
-constexpr std::size_t LongestStem = 180;       // a name has 255 bytes, the mark needs some
+constexpr double ForeignAgeSeconds = 60;  // after which another machine's temporary file counts as given up
+constexpr std::size_t LongestStem = 180;  // a name has 255 bytes, the mark needs some
 constexpr std::size_t LongestExtension = 16;
-constexpr int MostLinks = 40;                  // as the kernel's
+constexpr int MostLinks = 40;  // as the kernel's
 constexpr mode_t PermissionBits = 0777;
 
-fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : fs::path("."); }
+fs::path folder_of(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
 
-/// Once per folder and process: looking through a folder for every frame of a film would cost more than the frames.
+/// Once per folder and process: looking through a folder for every frame of a film would cost more than the
+/// frames.
 void tidy_once(const fs::path& folder) {
     static std::mutex mutex;
     static std::set<fs::path> seen;
@@ -57,8 +60,10 @@ int sync_and_close(int descriptor) {
 Error write_error(const std::string& what, int code, const fs::path& path) {
     const char* hint = "choose another place";
     if (code == ENOSPC || code == EDQUOT) hint = "free some space or choose another place";
-    if (code == EFBIG) hint = "the limit for the size of a file is reached; raise it (ulimit -f) or choose another place";
-    return {ErrorCode::Unwritable, fmt::format("{} cannot be written ({})", what, std::strerror(code)), hint, path};
+    if (code == EFBIG)
+        hint = "the limit for the size of a file is reached; raise it (ulimit -f) or choose another place";
+    return {ErrorCode::Unwritable, fmt::format("{} cannot be written ({})", what, std::strerror(code)), hint,
+            path};
 }
 
 fs::path end_of_links(fs::path path) {
@@ -66,7 +71,8 @@ fs::path end_of_links(fs::path path) {
     const fs::path start = path;
     for (int step = 0; fs::is_symlink(fs::symlink_status(path, failure)); ++step) {
         const fs::path next = fs::read_symlink(path, failure);
-        if (failure || step == MostLinks) throw write_error("the link", failure ? failure.value() : ELOOP, start);
+        if (failure || step == MostLinks)
+            throw write_error("the link", failure ? failure.value() : ELOOP, start);
         path = folder_of(path) / next;  // an absolute `next` stands alone
     }
     return path;
@@ -75,14 +81,17 @@ fs::path end_of_links(fs::path path) {
 void check_replaceable(const fs::path& path) {
     struct stat status {};
     if (stat(path.c_str(), &status) != 0) return;
-    const auto refuse = [&](const char* message, const char* hint) { throw Error(ErrorCode::Unwritable, message, hint, path); };
+    const auto refuse = [&](const char* message, const char* hint) {
+        throw Error(ErrorCode::Unwritable, message, hint, path);
+    };
     if (S_ISDIR(status.st_mode)) refuse("the output is a folder", "name a file");
     if (!S_ISREG(status.st_mode)) refuse("the output is a device or pipe", "name a file");
     // The mode, too: the superuser may write everything, but what is marked read-only is meant to stay.
     if ((status.st_mode & 0222) == 0 || (access(path.c_str(), W_OK) != 0 && errno == EACCES))
         refuse("the file is read-only", "choose another name, or make it writable first");
     if (status.st_nlink > 1)
-        log::warning("{} has {} names; the others keep the content of before", path.string(), status.st_nlink);
+        log::warning("{} has {} names; the others keep the content of before", path.string(),
+                     status.st_nlink);
 }
 
 void sync_folder(const fs::path& folder) {

@@ -1,4 +1,5 @@
-// Libraries of the program that are only loaded when they are needed: starting it would take longer than what most commands do.
+// Libraries of the program that are only loaded when they are needed: starting it would take longer than what
+// most commands do.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +15,8 @@ struct PluginName {
     const char* needs;     // said where it cannot be loaded: what it needs
 };
 
-/// The library beside the program, above it (tests: up to two folders) or in ../lib/gseditpro; empty where there is none.
+/// The library beside the program, above it (tests: up to two folders) or in ../lib/gseditpro; empty where
+/// there is none.
 std::filesystem::path find_plugin(const char* file);
 
 /// Loads the library and finds its entry point. Throws Error (NotFound, Foreign).

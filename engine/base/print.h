@@ -1,4 +1,5 @@
-// Output of the commands: what comes from files is escaped, so that no name or comment reaches a terminal as an order.
+// Output of the commands: what comes from files is escaped, so that no name or comment reaches a terminal as
+// an order.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,10 +17,10 @@
 namespace gse {
 
 /// Text as printable() gives it, everything else as it is.
-template <class T>
-auto shown(const T& value) {
+template <class T> auto shown(const T& value) {
     if constexpr (std::is_same_v<T, std::filesystem::path>) return printable(value.string());
-    else if constexpr (std::is_convertible_v<const T&, std::string_view>) return printable(std::string_view(value));
+    else if constexpr (std::is_convertible_v<const T&, std::string_view>)
+        return printable(std::string_view(value));
     else return value;
 }
 
@@ -30,8 +31,7 @@ void print(fmt::format_string<decltype(shown(std::declval<const Args&>()))...> f
 }
 
 /// The value and a line end, in ASCII.
-template <class Json>
-void print_json(const Json& json, int indent = 2) {
+template <class Json> void print_json(const Json& json, int indent = 2) {
     fmt::print("{}\n", json_text(json, indent, true));
 }
 

@@ -18,7 +18,10 @@ struct Decoded {
 Decoded decode(std::string_view text) {
     const auto first = static_cast<unsigned char>(text[0]);
     if (first < 0x80) return {first, 1};
-    const std::size_t bytes = first >= 0xf0 && first < 0xf5 ? 4 : first >= 0xe0 && first < 0xf0 ? 3 : first >= 0xc2 && first < 0xe0 ? 2 : 0;
+    const std::size_t bytes = first >= 0xf0 && first < 0xf5   ? 4
+                              : first >= 0xe0 && first < 0xf0 ? 3
+                              : first >= 0xc2 && first < 0xe0 ? 2
+                                                              : 0;
     if (bytes == 0 || bytes > text.size()) return {};
     std::uint32_t code = first & (0x7fu >> bytes);
     for (std::size_t i = 1; i < bytes; ++i) {
@@ -45,8 +48,7 @@ std::string printable(std::string_view text, bool lines) {
         const Decoded letter = decode(text);
         const bool kept = letter.bytes > 0 && (!is_control(letter.code) ||
                                                (lines && (letter.code == '\n' || letter.code == '\t')));
-        if (kept)
-            result += text.substr(0, letter.bytes);
+        if (kept) result += text.substr(0, letter.bytes);
         else if (letter.bytes > 0 && letter.code > 0xff)
             fmt::format_to(std::back_inserter(result), "\\u{:04x}", letter.code);
         else

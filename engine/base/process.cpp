@@ -51,10 +51,11 @@ std::stop_token interrupt_token() {
 void let_writes_fail() {
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
-    // A file opened while stdout is closed would get its number, and what is printed with it. What is opened here
-    // cannot be used in the direction that counts, so the failure is seen.
+    // A file opened while stdout is closed would get its number, and what is printed with it. What is opened
+    // here cannot be used in the direction that counts, so the failure is seen.
     for (int standard = STDIN_FILENO; standard <= STDERR_FILENO; ++standard)
-        if (fcntl(standard, F_GETFD) < 0) static_cast<void>(open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+        if (fcntl(standard, F_GETFD) < 0)
+            static_cast<void>(open("/dev/null", standard == STDIN_FILENO ? O_WRONLY : O_RDONLY));
 }
 
 void prefer_fast_blas(char** argv) {
@@ -62,10 +63,11 @@ void prefer_fast_blas(char** argv) {
     setenv("OMP_WAIT_POLICY", "passive", 0);
 #if defined(__x86_64__) && !defined(GSE_SANITIZED)
     __builtin_cpu_init();
-    if (!__builtin_cpu_is("amd") || !__builtin_cpu_supports("avx512f") || !__builtin_cpu_supports("avx512vl")) return;
+    if (!__builtin_cpu_is("amd") || !__builtin_cpu_supports("avx512f") || !__builtin_cpu_supports("avx512vl"))
+        return;
     if (std::getenv("OPENBLAS_CORETYPE") != nullptr) return;
     setenv("OPENBLAS_CORETYPE", "SkylakeX", 1);
-    execv("/proc/self/exe", argv);   // on failure the program just goes on with the slower kernels
+    execv("/proc/self/exe", argv);  // on failure the program just goes on with the slower kernels
 #else
     (void)argv;
 #endif

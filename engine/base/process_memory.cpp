@@ -19,7 +19,8 @@ double peak_rss_mb() {
 }
 
 double process_seconds() {
-    // Start of the process in clock ticks since boot: field 22 of /proc/self/stat, counted after the name in parentheses.
+    // Start of the process in clock ticks since boot: field 22 of /proc/self/stat, counted after the name in
+    // parentheses.
     std::ifstream file("/proc/self/stat");
     std::string text;
     std::getline(file, text);
@@ -28,12 +29,12 @@ double process_seconds() {
     std::istringstream fields(text.substr(close + 2));
     std::string field;
     constexpr int start_field = 20;
-    for (int i = 0; i < start_field && fields >> field; ++i) {
-    }
+    for (int i = 0; i < start_field && fields >> field; ++i) {}
     struct timespec now {};
     clock_gettime(CLOCK_BOOTTIME, &now);
     const double ticks = static_cast<double>(sysconf(_SC_CLK_TCK));
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - std::atof(field.c_str()) / ticks;
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) -
+           std::atof(field.c_str()) / ticks;
 }
 
 double current_rss_mb() {
@@ -45,7 +46,7 @@ double current_rss_mb() {
 
 PeakMemory::PeakMemory() {
     std::ofstream file("/proc/self/clear_refs");
-    file << "5" << std::flush;   // proc(5): the peak becomes what is resident now
+    file << "5" << std::flush;  // proc(5): the peak becomes what is resident now
 }
 
 double PeakMemory::mb() const {

@@ -12,11 +12,12 @@ double process_seconds();
 /// Memory of this process now, in MB.
 double current_rss_mb();
 
-/// The most memory since it was made. Where the kernel lets nobody set its mark back, since the process began.
+/// The most memory since it was made. Where the kernel lets nobody set its mark back, since the process
+/// began.
 class PeakMemory {
 public:
     PeakMemory();
-    double mb() const;   // MiB
+    double mb() const;  // MiB
 };
 
 }  // namespace gse

@@ -48,8 +48,9 @@ void ProgressBar::draw(int step, int total, Clock::time_point now) {
         const double share = std::clamp(static_cast<double>(step) / total, 0.0, 1.0);
         constexpr int width = 30;
         const int full = static_cast<int>(share * width);
-        line = fmt::format("{:<22} [{}{}] {:3.0f} %", stage_, std::string(static_cast<std::size_t>(full), '#'),
-                           std::string(static_cast<std::size_t>(width - full), '.'), share * 100);
+        line =
+            fmt::format("{:<22} [{}{}] {:3.0f} %", stage_, std::string(static_cast<std::size_t>(full), '#'),
+                        std::string(static_cast<std::size_t>(width - full), '.'), share * 100);
         const double elapsed = std::chrono::duration<double>(now - stage_start_).count();
         const int done = step - first_step_;
         if (done > 0 && step < total) line += ", " + duration_text(elapsed / done * (total - step)) + " left";

@@ -28,8 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* PartialMark = ".partial-";        // ".NAME.partial-MARK"
-constexpr double ForeignRunSeconds = 24 * 3600;         // an edit on another machine may take hours before it writes
+constexpr const char* PartialMark = ".partial-";  // ".NAME.partial-MARK"
+constexpr double ForeignRunSeconds = 24 * 3600;  // an edit on another machine may take hours before it writes
 constexpr std::size_t LongestName = 180;
 constexpr mode_t FolderModeBits = 07777;
 
@@ -51,8 +51,8 @@ void remove_left_overs(const fs::path& folder, const std::string& prefix) {
     }
 }
 
-/// Regular files below `folder`, relative, sorted; those of hidden partial folders are left out. False when there is
-/// anything else than files and folders.
+/// Regular files below `folder`, relative, sorted; those of hidden partial folders are left out. False when
+/// there is anything else than files and folders.
 bool list_files(const fs::path& folder, const std::string& hidden, std::vector<std::string>& files) {
     std::error_code failure;
     bool plain = true;
@@ -79,7 +79,8 @@ std::string fingerprint_of(const fs::path& path) {
     std::uint64_t value = 0xcbf29ce484222325ULL;
     while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())), stream.gcount() > 0)
         for (std::streamsize i = 0; i < stream.gcount(); ++i)
-            value = (value ^ static_cast<unsigned char>(piece[static_cast<std::size_t>(i)])) * 0x100000001b3ULL;
+            value =
+                (value ^ static_cast<unsigned char>(piece[static_cast<std::size_t>(i)])) * 0x100000001b3ULL;
     return fmt::format("{:016x}", value);
 }
 
@@ -96,8 +97,8 @@ bool same_place(const fs::path& a, const fs::path& b) {
 
 void sync_tree(const fs::path& folder) {
     std::error_code failure;
-    for (fs::recursive_directory_iterator entry(folder, failure); !failure && entry != fs::recursive_directory_iterator();
-         entry.increment(failure))
+    for (fs::recursive_directory_iterator entry(folder, failure);
+         !failure && entry != fs::recursive_directory_iterator(); entry.increment(failure))
         if (entry->is_directory(failure)) sync_folder(entry->path());
     sync_folder(folder);
 }
@@ -106,7 +107,8 @@ void sync_tree(const fs::path& folder) {
 fs::path first_missing(const fs::path& folder) {
     std::error_code failure;
     fs::path missing;
-    for (fs::path path = folder; !fs::exists(path, failure) && path.has_relative_path(); path = path.parent_path())
+    for (fs::path path = folder; !fs::exists(path, failure) && path.has_relative_path();
+         path = path.parent_path())
         missing = path;
     return missing;
 }
@@ -143,7 +145,8 @@ int move_into_place(Move& move) {
 bool move_back(const std::vector<Move>& moves) {
     bool all = true;
     for (auto move = moves.rbegin(); move != moves.rend(); ++move) {
-        const int code = move->exchanged ? renameat2(AT_FDCWD, move->from.c_str(), AT_FDCWD, move->to.c_str(), RENAME_EXCHANGE)
+        const int code = move->exchanged ? renameat2(AT_FDCWD, move->from.c_str(), AT_FDCWD, move->to.c_str(),
+                                                     RENAME_EXCHANGE)
                                          : std::rename(move->to.c_str(), move->from.c_str());
         all &= code == 0;
     }
@@ -154,7 +157,8 @@ bool move_back(const std::vector<Move>& moves) {
 
 StagedFolder::StagedFolder(const fs::path& target, FolderContents contents) : contents_(std::move(contents)) {
     std::error_code failure;
-    target_ = fs::absolute(end_of_links(target.has_filename() ? target : target.parent_path())).lexically_normal();
+    target_ =
+        fs::absolute(end_of_links(target.has_filename() ? target : target.parent_path())).lexically_normal();
     if (fs::exists(target_, failure)) target_ = fs::canonical(target_, failure);
     if (!target_.has_filename() && target_.has_relative_path()) target_ = target_.parent_path();
     const auto refuse = [&](const std::string& reason) {
@@ -168,7 +172,8 @@ StagedFolder::StagedFolder(const fs::path& target, FolderContents contents) : co
     made_ = first_missing(place);
     fs::create_directories(place, failure);
     if (failure) refuse(failure.message());
-    for (const fs::path& folder : {target_, target_.parent_path()}) remove_left_overs(folder, hidden_prefix(target_));
+    for (const fs::path& folder : {target_, target_.parent_path()})
+        remove_left_overs(folder, hidden_prefix(target_));
     remove_stale_temporaries(target_);
     staging_ = place / (hidden_prefix(target_) + writer_mark());
     fs::create_directory(staging_, failure);
@@ -198,15 +203,18 @@ void StagedFolder::check_contents() const {
             throw Error(ErrorCode::Unwritable, message, hint, path);
         };
         if (fs::is_symlink(status))
-            refuse("a link is where a result goes, and would be replaced", "remove it or choose another folder");
+            refuse("a link is where a result goes, and would be replaced",
+                   "remove it or choose another folder");
         if (fs::is_regular_file(status)) check_replaceable(path);
         if (fs::is_regular_file(status) && !earlier_run)
-            refuse("the folder holds a file of this name that no earlier run wrote", "choose another folder, or move it away");
+            refuse("the folder holds a file of this name that no earlier run wrote",
+                   "choose another folder, or move it away");
     };
     for (const std::string& name : contents_.names) {
         check(target_ / name);
         if (!fs::is_directory(target_ / name, failure)) continue;
-        for (const auto& entry : fs::recursive_directory_iterator(target_ / name, failure)) check(entry.path());
+        for (const auto& entry : fs::recursive_directory_iterator(target_ / name, failure))
+            check(entry.path());
     }
 }
 
@@ -236,7 +244,7 @@ std::set<std::string> StagedFolder::earlier_files() const {
     const Json report = read_report(target_ / contents_.report);
     const auto files = report.is_object() ? report.find("files") : report.end();
     if (files == report.end() || !files->is_object()) return names;
-    for (const auto& [name, ignored] : files->items()) 
+    for (const auto& [name, ignored] : files->items())
         if (is_below(name)) names.insert(name);
     names.insert(contents_.report);
     return names;
@@ -258,12 +266,14 @@ void StagedFolder::commit() {
         if (!take_free_name() && !swap_with_target(files)) move_file_by_file(files);
     } catch (const Error& error) {
         keep_results();
-        throw Error(error.code(), error.message() + "; the results are whole in " + kept_.string(), error.hint(), error.path());
+        throw Error(error.code(), error.message() + "; the results are whole in " + kept_.string(),
+                    error.hint(), error.path());
     } catch (const fs::filesystem_error& error) {
         keep_results();
         throw Error(ErrorCode::Unwritable,
-                    "the results cannot be put in place (" + error.code().message() + "); they are whole in " + kept_.string(), "",
-                    target_);
+                    "the results cannot be put in place (" + error.code().message() +
+                        "); they are whole in " + kept_.string(),
+                    "", target_);
     }
     sync_folder(target_.parent_path());
     keep_ = false;
@@ -278,13 +288,16 @@ bool StagedFolder::take_free_name() {
 bool StagedFolder::swap_with_target(const std::vector<std::string>& files) {
     const std::string hidden = hidden_prefix(target_);
     for (const auto& entry : fs::directory_iterator(target_))
-        if (entry.path() != staging_ && entry.path().filename().string().starts_with(hidden)) return false;  // another run's
+        if (entry.path() != staging_ && entry.path().filename().string().starts_with(hidden))
+            return false;  // another run's
     std::vector<std::string> there;
     std::set<std::string> ours = earlier_files();
     ours.insert(files.begin(), files.end());
     if (!list_files(target_, hidden, there)) return false;
-    if (!std::all_of(there.begin(), there.end(), [&](const auto& name) { return ours.contains(name); })) return false;
-    if (same_place(target_, fs::path("."))) return false;  // whoever stands in the folder would be left in the old one
+    if (!std::all_of(there.begin(), there.end(), [&](const auto& name) { return ours.contains(name); }))
+        return false;
+    if (same_place(target_, fs::path(".")))
+        return false;  // whoever stands in the folder would be left in the old one
     const fs::path beside = target_.parent_path() / staging_.filename();
     if (beside != staging_ && std::rename(staging_.c_str(), beside.c_str()) != 0) return false;
     staging_ = beside;
@@ -301,8 +314,9 @@ void StagedFolder::move_file_by_file(const std::vector<std::string>& files) {
     Json names = Json::object();
     for (const std::string& name : stale) names[name] = Json::object();
     for (const std::string& name : files) names[name] = Json::object();
-    const Json unfinished{{"unfinished", "a run ended while it put its results here; they do not belong together"},
-                          {"files", std::move(names)}};
+    const Json unfinished{
+        {"unfinished", "a run ended while it put its results here; they do not belong together"},
+        {"files", std::move(names)}};
     write_file(report, json_text(unfinished, 1) + "\n");
     std::vector<Move> moves;
     std::set<fs::path> touched;
@@ -311,12 +325,15 @@ void StagedFolder::move_file_by_file(const std::vector<std::string>& files) {
             stale.erase(name);
             if (name == contents_.report) continue;
             Move move{staging_ / name, target_ / name, false};
-            if (const int code = move_into_place(move); code != 0) throw write_error("a result", code, move.to);
+            if (const int code = move_into_place(move); code != 0)
+                throw write_error("a result", code, move.to);
             moves.push_back(move);
         }
         for (const Move& move : moves) touched.insert(move.to.parent_path());
-        for (const fs::path& folder : touched) sync_folder(folder);  // before the report says that all is there
-        if (std::rename((staging_ / contents_.report).c_str(), report.c_str()) != 0) throw write_error("the report", errno, report);
+        for (const fs::path& folder : touched)
+            sync_folder(folder);  // before the report says that all is there
+        if (std::rename((staging_ / contents_.report).c_str(), report.c_str()) != 0)
+            throw write_error("the report", errno, report);
     } catch (...) {
         const bool as_before = move_back(moves);
         if (as_before && had_report) write_file(report, old_report);

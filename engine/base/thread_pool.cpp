@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdint>
 #include <condition_variable>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -83,7 +83,8 @@ void ThreadPool::parallel_for(std::size_t count, std::size_t chunk,
     chunk = std::max<std::size_t>(1, chunk);
     Shared& shared = *shared_;
     if (count <= chunk || shared.threads.empty()) {  // one chunk: not worth waking anybody
-        for (std::size_t begin = 0; begin < count; begin += chunk) body(begin, std::min(begin + chunk, count), 0);
+        for (std::size_t begin = 0; begin < count; begin += chunk)
+            body(begin, std::min(begin + chunk, count), 0);
         return;
     }
     {

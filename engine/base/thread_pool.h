@@ -7,8 +7,8 @@
 
 namespace gse {
 
-/// Runs loops over [0, count) in chunks handed out dynamically. Results must not depend on which thread takes which
-/// chunk: write to disjoint places and reduce in a fixed order afterwards.
+/// Runs loops over [0, count) in chunks handed out dynamically. Results must not depend on which thread takes
+/// which chunk: write to disjoint places and reduce in a fixed order afterwards.
 class ThreadPool {
 public:
     /// thread_count 0 = one per hardware thread (at most 64); 1 = everything on the caller.

@@ -33,13 +33,13 @@ const std::vector<std::string>& subject_names() {
 }
 
 /// Sentences: where the parameters used are not those that the subject has by itself.
-template <class P>
-std::vector<std::string> departures(const P& used) {
+template <class P> std::vector<std::string> departures(const P& used) {
     const Json now = fields_to_json(used), usual = fields_to_json(P{});
     std::string text;
     for (const auto& [name, value] : now.items())
         if (value != usual[name])
-            text += fmt::format("{}{} {} instead of {}", text.empty() ? "" : "; ", name, value.dump(), usual[name].dump());
+            text += fmt::format("{}{} {} instead of {}", text.empty() ? "" : "; ", name, value.dump(),
+                                usual[name].dump());
     if (text.empty()) return {};
     return {"Other than by default, for the sake of time: " + text + "."};
 }
@@ -54,8 +54,8 @@ std::string up_to(const std::string& list, double most) {
 
 class AllBench {
 public:
-    AllBench(const AllBenchParameters& parameters, const pipeline::EditRecipe& settings, std::filesystem::path folder,
-             const JobControl& job)
+    AllBench(const AllBenchParameters& parameters, const pipeline::EditRecipe& settings,
+             std::filesystem::path folder, const JobControl& job)
         : parameters_(parameters), settings_(settings), folder_(std::move(folder)), job_(job) {}
 
     Json run() {
@@ -63,7 +63,8 @@ public:
         const auto& known = subject_names();
         for (const auto& name : names)
             if (std::find(known.begin(), known.end(), name) == known.end())
-                throw Error(ErrorCode::InvalidArgument, "there is no subject \"" + name + "\"", "use some of " + joined(known));
+                throw Error(ErrorCode::InvalidArgument, "there is no subject \"" + name + "\"",
+                            "use some of " + joined(known));
         Json report{{"machine", machine_json()},
                     {"parameters", fields_to_json(parameters_)},
                     {"subjects", Json::object()},
@@ -76,7 +77,8 @@ public:
         }
         Json head = report["machine"];
         for (const auto& [name, seconds] : report["seconds"].items()) head["seconds of " + name] = seconds;
-        write_file(folder_ / "index.html", html_page("GSEditPro: error, time and memory, measured", head, sections_));
+        write_file(folder_ / "index.html",
+                   html_page("GSEditPro: error, time and memory, measured", head, sections_));
         return report;
     }
 
@@ -103,12 +105,11 @@ private:
         }
     }
 
-    template <class P>
-    Json take(const Subject& subject, const P& used) {
+    template <class P> Json take(const Subject& subject, const P& used) {
         const auto path = folder_ / (subject.name + ".png");
         write_png(path, subject.picture);
-        sections_.push_back(
-            {subject.title, departures(used), read_file(path), subject.tables, subject.remarks, fields_to_json(used)});
+        sections_.push_back({subject.title, departures(used), read_file(path), subject.tables,
+                             subject.remarks, fields_to_json(used)});
         return subject.report;
     }
 
@@ -144,7 +145,7 @@ private:
         const auto sheets = folder_ / "edits";
         std::filesystem::create_directories(sheets);
         auto report = bench_edit(used, settings_, sheets, job_);
-        std::filesystem::remove_all(sheets);   // the page has the picture
+        std::filesystem::remove_all(sheets);  // the page has the picture
         return take(edit_bench_subject(std::move(report)), used);
     }
     Json scale() {
@@ -163,8 +164,8 @@ private:
 
 }  // namespace
 
-Json bench_all(const AllBenchParameters& parameters, const pipeline::EditRecipe& settings, const std::filesystem::path& folder,
-               const JobControl& job) {
+Json bench_all(const AllBenchParameters& parameters, const pipeline::EditRecipe& settings,
+               const std::filesystem::path& folder, const JobControl& job) {
     Json report = AllBench(parameters, settings, folder, job).run();
     write_file(folder / "all.json", json_text(report, 1) + "\n");
     return report;

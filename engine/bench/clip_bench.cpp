@@ -73,7 +73,8 @@ private:
 class ClipBench {
 public:
     ClipBench(edit::TextImageScore& score, const ClipBenchParameters& parameters, const JobControl& job)
-        : score_(score), recognition_(std::make_unique<Borrowed>(score), {}), parameters_(parameters), job_(job) {}
+        : score_(score), recognition_(std::make_unique<Borrowed>(score), {}), parameters_(parameters),
+          job_(job) {}
 
     Json run() {
         for (int i = 0; i < parameters_.scenes; ++i) {
@@ -225,13 +226,16 @@ private:
             pictures.push_back(paint(spec, azimuths.back() - begin, 0.35));
         }
         const auto read = edit::read_front(recognition_, synth::full_caption(spec).text, pictures, azimuths);
-        const double error = std::abs(std::remainder(read.azimuth - begin - synth::turn_of(spec), 2 * std::numbers::pi));
+        const double error =
+            std::abs(std::remainder(read.azimuth - begin - synth::turn_of(spec), 2 * std::numbers::pi));
         for (const int degrees : {15, 45}) {
             auto& tally = tallies_[fmt::format("front within {} degrees", degrees)];
             ++tally.asked;
             tally.right += error < degrees * std::numbers::pi / 180 ? 1 : 0;
         }
-        fronts_.push_back({{"sentence", synth::full_caption(spec).text}, {"off_degrees", error * 180 / std::numbers::pi}, {"lead", read.lead}});
+        fronts_.push_back({{"sentence", synth::full_caption(spec).text},
+                           {"off_degrees", error * 180 / std::numbers::pi},
+                           {"lead", read.lead}});
     }
 
     edit::TextImageScore& score_;

@@ -18,8 +18,7 @@ struct ClipBenchParameters {
     int image_size = 96;
     std::uint64_t seed = 2000;
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("scenes", self.scenes, "Held-out scenes.", Range{1, 100000});
         f("views", self.views, "Views all around over which a change is averaged.", Range{1, 360});
         f("image_size", self.image_size, "Side of the pictures.", Range{16, 2048});

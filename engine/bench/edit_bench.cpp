@@ -22,8 +22,8 @@ using Json = nlohmann::ordered_json;
 /// One setting of a method.
 struct EditPoint {
     std::string method, name;
-    Json settings;           // of the request
-    bool standard = false;   // what the method does where nobody says otherwise
+    Json settings;          // of the request
+    bool standard = false;  // what the method does where nobody says otherwise
 };
 
 EditPoint pulling(int iterations) {
@@ -33,7 +33,11 @@ EditPoint pulling(int iterations) {
 EditPoint redrawing(int views, int steps, int rounds) {
     return {"views",
             fmt::format("{}x{}x{}", views, steps, rounds),
-            {{"method", "views"}, {"edited_views", views}, {"view_steps", steps}, {"restyle_steps", steps}, {"rounds", rounds}}};
+            {{"method", "views"},
+             {"edited_views", views},
+             {"view_steps", steps},
+             {"restyle_steps", steps},
+             {"rounds", rounds}}};
 }
 
 /// One of the settings' own points with another quality.
@@ -41,12 +45,11 @@ EditPoint of_quality(const char* quality) {
     return {"views", quality, {{"method", "views"}, {"quality", quality}}};
 }
 
-EditPoint stopping_at_rest() {
-    return {"sds", "until at rest", {{"method", "sds"}, {"early_stop", true}}};
-}
+EditPoint stopping_at_rest() { return {"sds", "until at rest", {{"method", "sds"}, {"early_stop", true}}}; }
 
 Error not_understood(const std::string& text, const std::string& form) {
-    return Error(ErrorCode::InvalidArgument, "the point \"" + text + "\" is not understood", "write it like " + form);
+    return Error(ErrorCode::InvalidArgument, "the point \"" + text + "\" is not understood",
+                 "write it like " + form);
 }
 
 /// The settings' own point of each method and those asked for, each once.
@@ -54,7 +57,8 @@ std::vector<EditPoint> points_of(const EditBenchParameters& parameters, const ed
     std::vector<EditPoint> points{pulling(request.iterations), of_quality(request.quality.c_str())};
     for (auto& point : points) point.standard = true;
     const auto add = [&](EditPoint point) {
-        if (std::none_of(points.begin(), points.end(), [&](const auto& other) { return other.settings == point.settings; }))
+        if (std::none_of(points.begin(), points.end(),
+                         [&](const auto& other) { return other.settings == point.settings; }))
             points.push_back(std::move(point));
     };
     char rest = 0;
@@ -64,19 +68,22 @@ std::vector<EditPoint> points_of(const EditBenchParameters& parameters, const ed
             add(stopping_at_rest());
             continue;
         }
-        if (std::sscanf(text.c_str(), "%d%c", &iterations, &rest) != 1 || iterations < 1) throw not_understood(text, "100");
+        if (std::sscanf(text.c_str(), "%d%c", &iterations, &rest) != 1 || iterations < 1)
+            throw not_understood(text, "100");
         add(pulling(iterations));
     }
     for (const auto& text : words_in_list(parameters.redraws)) {
         int views = 0, steps = 0, rounds = 0;
-        if (std::find(std::begin(edit::Qualities), std::end(edit::Qualities), text) != std::end(edit::Qualities)) {
+        if (std::find(std::begin(edit::Qualities), std::end(edit::Qualities), text) !=
+            std::end(edit::Qualities)) {
             add(of_quality(text.c_str()));
             continue;
         }
-        if (std::sscanf(text.c_str(), "%dx%dx%d%c", &views, &steps, &rounds, &rest) != 3) throw not_understood(text, "8x4x1");
+        if (std::sscanf(text.c_str(), "%dx%dx%d%c", &views, &steps, &rounds, &rest) != 3)
+            throw not_understood(text, "8x4x1");
         add(redrawing(views, steps, rounds));
     }
-    for (const auto& point : points) {   // out of range: said before anything runs
+    for (const auto& point : points) {  // out of range: said before anything runs
         auto changed = request;
         fields_from_json(changed, point.settings);
     }
@@ -93,9 +100,11 @@ EvalRun run_of(const EditBenchParameters& parameters, const pipeline::EditRecipe
     run.parameters.held_out_views = parameters.held_out_views;
     run.parameters.oracle_views = parameters.oracle_views;
     run.settings = settings;
-    fields_from_json(run.settings.request, points.front().settings);   // the evaluation's own edit is the first point
+    fields_from_json(run.settings.request,
+                     points.front().settings);  // the evaluation's own edit is the first point
     for (std::size_t i = 1; i < points.size(); ++i)
-        run.variants.push_back({fmt::format("{} {}", points[i].method, points[i].name), "", points[i].settings});
+        run.variants.push_back(
+            {fmt::format("{} {}", points[i].method, points[i].name), "", points[i].settings});
     return run;
 }
 
@@ -125,7 +134,8 @@ Json means_of(const Json& edits, std::size_t count) {
     means["per_case"]["error_removed"] = std::move(each);
     for (const char* name : {"seconds", "unet", "tflop", "leak_rate", "psnr_outside_db"})
         means[name] = ran > 0 ? Json(sums[name] / ran) : Json(nullptr);
-    for (const auto& [kind, sum] : kinds) means["error_removed_of"][kind] = sum.first / std::max(1, sum.second);
+    for (const auto& [kind, sum] : kinds)
+        means["error_removed_of"][kind] = sum.first / std::max(1, sum.second);
     return means;
 }
 
@@ -152,12 +162,15 @@ Json curves_of(const Json& evaluation, const std::vector<EditPoint>& points) {
         Json curve{{"method", method}, {"points", Json::array()}};
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (points[i].method != method) continue;
-            Json point{{"name", points[i].name}, {"settings", points[i].settings}, {"default", points[i].standard}};
-            point.update(means_of(i == 0 ? evaluation["edits"] : evaluation["ablations"][i - 1]["edits"], count));
+            Json point{
+                {"name", points[i].name}, {"settings", points[i].settings}, {"default", points[i].standard}};
+            point.update(
+                means_of(i == 0 ? evaluation["edits"] : evaluation["ablations"][i - 1]["edits"], count));
             curve["points"].push_back(std::move(point));
         }
         std::stable_sort(curve["points"].begin(), curve["points"].end(), [](const Json& a, const Json& b) {
-            return a["tflop"].is_number() && b["tflop"].is_number() && a["tflop"].get<double>() < b["tflop"].get<double>();
+            return a["tflop"].is_number() && b["tflop"].is_number() &&
+                   a["tflop"].get<double>() < b["tflop"].get<double>();
         });
         curves.push_back(std::move(curve));
     }
@@ -174,8 +187,9 @@ std::vector<SettingPoint> setting_points(const Json& curves) {
     std::vector<SettingPoint> points;
     for (const auto& curve : curves)
         for (const auto& point : curve["points"])
-            points.push_back({curve_name(curve["method"].get<std::string>()), point["name"].get<std::string>(),
-                              point["default"].get<bool>(), point["settings"], point});
+            points.push_back({curve_name(curve["method"].get<std::string>()),
+                              point["name"].get<std::string>(), point["default"].get<bool>(),
+                              point["settings"], point});
     return points;
 }
 
@@ -187,9 +201,10 @@ std::vector<SettingPoint> with_one_default(std::vector<SettingPoint> points) {
 
 const std::vector<Facet>& edit_facets() {
     static const std::vector<Facet> facets{
-        {"tflop", "error_removed", "TFLOP per edit (forward passes of the networks)", "error removed", false, ChartScale::Percent,
-         "Against arithmetic"},
-        {"seconds", "error_removed", "seconds per edit", "error removed", false, ChartScale::Percent, "Against time"}};
+        {"tflop", "error_removed", "TFLOP per edit (forward passes of the networks)", "error removed", false,
+         ChartScale::Percent, "Against arithmetic"},
+        {"seconds", "error_removed", "seconds per edit", "error removed", false, ChartScale::Percent,
+         "Against time"}};
     return facets;
 }
 
@@ -197,31 +212,35 @@ Chart chart_of(const Json& report) {
     Chart chart;
     const auto& parameters = report["parameters"];
     const auto& search = report["search"];
-    chart.title = fmt::format("What an edit removes of the error, and what it costs: {} edits, seed {}, model {}",
-                              report["edits"].get<std::size_t>(), parameters["seed"].get<std::uint64_t>(),
-                              report["model"].get<std::string>());
+    chart.title =
+        fmt::format("What an edit removes of the error, and what it costs: {} edits, seed {}, model {}",
+                    report["edits"].get<std::size_t>(), parameters["seed"].get<std::uint64_t>(),
+                    report["model"].get<std::string>());
     chart.mark = "default of a method";
     for (const auto& facet : edit_facets()) {
         chart.panels.push_back(panel_of(setting_points(report["curves"]), facet));
         chart.panels.back().line = ChartLine::OwnFront;
     }
     chart.notes = {
-        "Error: mean absolute difference to the true edited scene inside the true part, on views between those of the edit. "
+        "Error: mean absolute difference to the true edited scene inside the true part, on views between "
+        "those of the edit. "
         "Lines: the front of each method.",
-        fmt::format("The search before an edit comes on top: {:.2g} TFLOP, {:.2g} s, {:.0f} UNet passes. Kinds: {}.",
-                    search["tflop"].get<double>(), search["seconds"].get<double>(), search["unet"].get<double>(),
-                    parameters["kinds"].get<std::string>())};
+        fmt::format(
+            "The search before an edit comes on top: {:.2g} TFLOP, {:.2g} s, {:.0f} UNet passes. Kinds: {}.",
+            search["tflop"].get<double>(), search["seconds"].get<double>(), search["unet"].get<double>(),
+            parameters["kinds"].get<std::string>())};
     return chart;
 }
 
 }  // namespace
 
-Json bench_edit(const EditBenchParameters& parameters, const pipeline::EditRecipe& settings, const std::filesystem::path& folder,
-                const JobControl& job) {
+Json bench_edit(const EditBenchParameters& parameters, const pipeline::EditRecipe& settings,
+                const std::filesystem::path& folder, const JobControl& job) {
     const auto points = points_of(parameters, settings.request);
     Json evaluation = run_eval(run_of(parameters, settings, points), folder, job);
-    Json report{
-        {"model", evaluation["model"]}, {"parameters", fields_to_json(parameters)}, {"edits", evaluation["edits"].size()}};
+    Json report{{"model", evaluation["model"]},
+                {"parameters", fields_to_json(parameters)},
+                {"edits", evaluation["edits"].size()}};
     report["stopped"] = evaluation["stopped"];
     report["search"] = search_means(evaluation["edits"]);
     report["curves"] = curves_of(evaluation, points);
@@ -245,9 +264,10 @@ Subject edit_bench_subject(Json report) {
                                     {"psnr_outside_db", "dB outside"}})};
     const auto& search = report["search"];
     subject.remarks = front_remarks(report["fronts"], {"Against arithmetic", "Against time"});
-    subject.remarks.push_back(fmt::format("The search before each edit: {} TFLOP, {} UNet passes, {} seconds.",
-                                          number_text(search["tflop"].get<double>()), number_text(search["unet"].get<double>()),
-                                          number_text(search["seconds"].get<double>())));
+    subject.remarks.push_back(
+        fmt::format("The search before each edit: {} TFLOP, {} UNet passes, {} seconds.",
+                    number_text(search["tflop"].get<double>()), number_text(search["unet"].get<double>()),
+                    number_text(search["seconds"].get<double>())));
     report.erase("evaluation");
     subject.report = std::move(report);
     return subject;

@@ -126,7 +126,8 @@ HeldOut look(const EvalSetting& setting, const GaussianSet& edited, pipeline::Pa
         seen.after.push_back(picture(painter, edited, view.camera));
         seen.truth.push_back(picture(painter, setting.target.scene.gaussians, view.camera));
         seen.part.push_back(part_mask(painter, owner, setting.edit.part, view.camera, PartShare));
-        Mask inside = seen.part.back(), traces = part_mask(painter, owner, setting.edit.part, view.camera, TraceShare);
+        Mask inside = seen.part.back(),
+             traces = part_mask(painter, owner, setting.edit.part, view.camera, TraceShare);
         if (setting.edit.kind == "replace") {
             seen.old.push_back(part_mask(painter, setting.source, setting.edit.part, view.camera, PartShare));
             inside = joined(std::move(inside), seen.old.back());
@@ -187,8 +188,8 @@ void add_changed(const HeldOut& seen, Json& json) {
     json["changed_precision"] = overlap.precision();
 }
 
-/// How well the outline of the new thing is the true one: of all rows that were allowed to change, but for the ground that the old thing
-/// hid, as seen from the held-out views, pooled over them.
+/// How well the outline of the new thing is the true one: of all rows that were allowed to change, but for
+/// the ground that the old thing hid, as seen from the held-out views, pooled over them.
 void add_silhouette(const EvalSetting& setting, const edit::EditResult& result, const HeldOut& seen,
                     pipeline::Painter& painter, Json& json) {
     PooledOverlap overlap;
@@ -203,8 +204,9 @@ void add_silhouette(const EvalSetting& setting, const edit::EditResult& result, 
     json["silhouette_precision"] = overlap.precision();
 }
 
-/// Of the old thing's pixels that should be clearly another: the share that is still nearer to what it was than to what it should be (a
-/// white dot in another place of a mushroom's cap is nearer to gold than the green there), and the share that has not clearly changed.
+/// Of the old thing's pixels that should be clearly another: the share that is still nearer to what it was
+/// than to what it should be (a white dot in another place of a mushroom's cap is nearer to gold than the
+/// green there), and the share that has not clearly changed.
 void add_old_left(const HeldOut& seen, Json& json) {
     double left = 0, unchanged = 0, pixels = 0;
     for (std::size_t v = 0; v < seen.old.size(); ++v) {
@@ -226,21 +228,25 @@ void add_old_left(const HeldOut& seen, Json& json) {
     json["old_unchanged"] = pixels > 0 ? unchanged / pixels : 0;
 }
 
-/// Share of the old thing's pixels that still mainly show splats of it: what the edit has overlooked, whatever the new thing covers.
-void add_old_shown(const EvalSetting& setting, const edit::EditResult& result, const HeldOut& seen, pipeline::Painter& painter, Json& json) {
+/// Share of the old thing's pixels that still mainly show splats of it: what the edit has overlooked,
+/// whatever the new thing covers.
+void add_old_shown(const EvalSetting& setting, const edit::EditResult& result, const HeldOut& seen,
+                   pipeline::Painter& painter, Json& json) {
     const auto old = rows_of(setting.source, setting.edit.part);
     GSE_CHECK_EQ(result.base_to_new.size(), old.size());
     std::vector<std::uint8_t> left(result.set.size(), 0);
     for (std::size_t row = 0; row < old.size(); ++row)
-        if (old[row] != 0 && result.base_to_new[row] >= 0) left[static_cast<std::size_t>(result.base_to_new[row])] = 1;
+        if (old[row] != 0 && result.base_to_new[row] >= 0)
+            left[static_cast<std::size_t>(result.base_to_new[row])] = 1;
     PooledOverlap overlap;
     for (std::size_t v = 0; v < seen.old.size(); ++v)
-        overlap.add(mask_of_rows(painter, result.set, left, setting.held_out.views[v].camera, PartShare), seen.old[v]);
+        overlap.add(mask_of_rows(painter, result.set, left, setting.held_out.views[v].camera, PartShare),
+                    seen.old[v]);
     json["old_shown"] = overlap.recall();
 }
 
-/// What another true scene of the same sentence is measured at, in the heading and the size in which it comes nearest: how much of the truth the
-/// sentence leaves open, and what no model could know.
+/// What another true scene of the same sentence is measured at, in the heading and the size in which it comes
+/// nearest: how much of the truth the sentence leaves open, and what no model could know.
 Json figures_of_another_truth(const EvalSetting& setting, const EvalTools& tools) {
     EvalSetting other = setting;
     auto spec = setting.edit.target;
@@ -253,14 +259,16 @@ Json figures_of_another_truth(const EvalSetting& setting, const EvalTools& tools
     json["l1_reduction"] = inside["l1_reduction"];
     PooledOverlap overlap;
     for (std::size_t v = 0; v < seen.part.size(); ++v)
-        overlap.add(part_mask(tools.painter, twin, setting.edit.part, setting.held_out.views[v].camera, PartShare), seen.part[v]);
+        overlap.add(
+            part_mask(tools.painter, twin, setting.edit.part, setting.held_out.views[v].camera, PartShare),
+            seen.part[v]);
     json["silhouette_iou"] = overlap.iou();
     add_old_left(seen, json);
     return json;
 }
 
-/// The mean of the pictures of several other true scenes in the pose that the edit is compared in: about the best guess that the sentence
-/// allows, though no picture of anything.
+/// The mean of the pictures of several other true scenes in the pose that the edit is compared in: about the
+/// best guess that the sentence allows, though no picture of anything.
 Json figures_of_mean_truth(const EvalSetting& setting, const EvalTools& tools) {
     constexpr int Scenes = 16;
     HeldOut seen = look(setting, setting.target.scene.gaussians, tools.painter);
@@ -270,8 +278,10 @@ Json figures_of_mean_truth(const EvalSetting& setting, const EvalTools& tools) {
         spec.variant = static_cast<std::uint64_t>(variant);
         const auto other = synth::generate(spec);
         for (std::size_t v = 0; v < seen.after.size(); ++v) {
-            const Image shown = picture(tools.painter, other.scene.gaussians, setting.held_out.views[v].camera);
-            for (std::size_t i = 0; i < shown.data.size(); ++i) seen.after[v].data[i] += shown.data[i] / Scenes;
+            const Image shown =
+                picture(tools.painter, other.scene.gaussians, setting.held_out.views[v].camera);
+            for (std::size_t i = 0; i < shown.data.size(); ++i)
+                seen.after[v].data[i] += shown.data[i] / Scenes;
         }
     }
     Json json, inside;
@@ -308,7 +318,8 @@ void add_direction(const EvalSetting& setting, const HeldOut& seen, edit::TextIm
 void add_existing(const EvalSetting& setting, const edit::LocateResult& located, pipeline::Painter& painter,
                   Json& json) {
     const auto truth = rows_of(setting.source, setting.edit.part);
-    // A search that took the sentence for an addition labels nothing that is there, and has no evidence of it.
+    // A search that took the sentence for an addition labels nothing that is there, and has no evidence of
+    // it.
     const auto bits = located.label.bits ? *located.label.bits : std::vector<std::uint8_t>(truth.size());
     const auto plain = evaluate::row_overlap(bits, truth);
     json["iou"] = plain.iou;
@@ -323,8 +334,7 @@ void add_existing(const EvalSetting& setting, const edit::LocateResult& located,
         const Camera& camera = setting.seen.views[v].camera;
         const Mask wanted = part_mask(painter, setting.source, setting.edit.part, camera, PartShare);
         const Mask& mask = located.views[v].mask;
-        const Mask label =
-            mask_of_rows(painter, setting.source.scene.gaussians, bits, camera, PartShare);
+        const Mask label = mask_of_rows(painter, setting.source.scene.gaussians, bits, camera, PartShare);
         mask_iou += evaluate::mask_overlap(mask, wanted).iou / count;
         mask_outline += outline_score(mask, wanted) / count;
         label_iou += evaluate::mask_overlap(label, wanted).iou / count;
@@ -337,7 +347,8 @@ void add_existing(const EvalSetting& setting, const edit::LocateResult& located,
 }
 
 /// The place of an added thing, pooled over the edit's views, and how well the thing it belongs to was found.
-void add_place(const EvalSetting& setting, const edit::LocateResult& located, pipeline::Painter& painter, Json& json) {
+void add_place(const EvalSetting& setting, const edit::LocateResult& located, pipeline::Painter& painter,
+               Json& json) {
     PooledOverlap place;
     double outline = 0;
     const auto count = static_cast<double>(setting.seen.views.size());
@@ -388,7 +399,8 @@ void settle_pose(EvalSetting& setting, const GaussianSet& edited, const EvalTool
     if (setting.edit.kind != "replace") return;
     constexpr int Headings = 8;
     std::vector<Image> shown;
-    for (const auto& view : setting.held_out.views) shown.push_back(picture(tools.painter, edited, view.camera));
+    for (const auto& view : setting.held_out.views)
+        shown.push_back(picture(tools.painter, edited, view.camera));
     double least = std::numeric_limits<double>::infinity();
     const auto try_pose = [&](synth::SceneSpec spec) {
         auto scene = synth::generate(spec);
@@ -413,8 +425,8 @@ void settle_pose(EvalSetting& setting, const GaussianSet& edited, const EvalTool
     }
 }
 
-Mask part_mask(pipeline::Painter& painter, const synth::SynthScene& scene, synth::Part part, const Camera& camera,
-               double share) {
+Mask part_mask(pipeline::Painter& painter, const synth::SynthScene& scene, synth::Part part,
+               const Camera& camera, double share) {
     return mask_of_rows(painter, scene.scene.gaussians, rows_of(scene, part), camera, share);
 }
 
@@ -424,10 +436,8 @@ Json located_figures(const EvalSetting& setting, const edit::LocateResult& locat
     json["mode"] = edit::mode_name(located.mode);
     json["mode_right"] = located.mode == right_mode(setting.edit);
     json["failed_views"] = located.failed_views;
-    if (added)
-        add_place(setting, located, tools.painter, json);
-    else
-        add_existing(setting, located, tools.painter, json);
+    if (added) add_place(setting, located, tools.painter, json);
+    else add_existing(setting, located, tools.painter, json);
     return json;
 }
 

@@ -27,9 +27,9 @@ struct EvalViews {
 struct EvalSetting {
     EvalCase edit;
     synth::SynthScene source;
-    synth::SynthScene target;   // what a new thing's heading and size are is for settle_pose() to say
-    EvalViews seen;      // the edit's views
-    EvalViews held_out;  // between them
+    synth::SynthScene target;  // what a new thing's heading and size are is for settle_pose() to say
+    EvalViews seen;            // the edit's views
+    EvalViews held_out;        // between them
     edit::EditRequest request;
 };
 
@@ -45,16 +45,17 @@ EvalSetting make_setting(const EvalCase& edit, const edit::EditRequest& settings
 /// The kind of edit that the case's sentence asks for.
 edit::EditMode right_mode(const EvalCase& edit);
 
-/// What the sentence leaves open is no error: of the true scenes with the new thing in eight headings, then in three sizes, takes
-/// the one that is nearest to the edited scene on the held-out views. Nothing changes for edits in which no thing is replaced.
+/// What the sentence leaves open is no error: of the true scenes with the new thing in eight headings, then
+/// in three sizes, takes the one that is nearest to the edited scene on the held-out views. Nothing changes
+/// for edits in which no thing is replaced.
 void settle_pose(EvalSetting& setting, const GaussianSet& edited, const EvalTools& tools);
 
 /// [rows] 1 where a row belongs to the part.
 std::vector<std::uint8_t> rows_of(const synth::SynthScene& scene, synth::Part part);
 
 /// Mask of a part of a scene as a camera sees it: where its splats make up more than `share` of the pixel.
-Mask part_mask(pipeline::Painter& painter, const synth::SynthScene& scene, synth::Part part, const Camera& camera,
-               double share);
+Mask part_mask(pipeline::Painter& painter, const synth::SynthScene& scene, synth::Part part,
+               const Camera& camera, double share);
 
 /// Localization against the truth, over the edit's views. Existing things: Gaussian IoU, masks, label
 /// renders; added ones: how much of the true place the masks cover.

@@ -74,11 +74,10 @@ Json case_json(const EvalCase& edit, std::size_t index) {
 class Evaluation {
 public:
     Evaluation(const EvalRun& run, const std::filesystem::path& folder, const JobControl& job)
-        : run_(run),
-          job_(job),
-          sheets_(folder, "edits", run.parameters.sheet_rows),
+        : run_(run), job_(job), sheets_(folder, "edits", run.parameters.sheet_rows),
           scene_sheets_(folder, "scenes", run.parameters.sheet_rows) {
-        suite_ = make_suite(run.parameters.seed, run.parameters.edits, edit::words_of(run.parameters.kinds), run.parameters.drawn_words);
+        suite_ = make_suite(run.parameters.seed, run.parameters.edits, edit::words_of(run.parameters.kinds),
+                            run.parameters.drawn_words);
         if (run.parameters.mode != "auto" && run.parameters.mode != "right")
             throw Error(ErrorCode::InvalidArgument, "the mode \"" + run.parameters.mode + "\" is not known",
                         "use auto or right");
@@ -151,8 +150,8 @@ private:
         }
     }
 
-    /// A case as a user begins it: the scene and the words that are typed. `oracle_views`: with cameras that know the
-    /// scene's framing and front, the word that is new, and what each camera sees.
+    /// A case as a user begins it: the scene and the words that are typed. `oracle_views`: with cameras that
+    /// know the scene's framing and front, the word that is new, and what each camera sees.
     pipeline::EditJobInput input(const EvalSetting& setting) const {
         pipeline::EditJobInput input{setting.source.scene, {}, model_};
         if (!run_.parameters.oracle_views) return input;
@@ -180,7 +179,8 @@ private:
         try {
             job.locate();
             setting.request = job.recipe().request;
-            entry["guessed"] = {{"target", setting.request.target}, {"right", setting.request.target == edit.target_word}};
+            entry["guessed"] = {{"target", setting.request.target},
+                                {"right", setting.request.target == edit.target_word}};
             setting.seen = {job.views(), job.view_words()};
             entry["confidence"] = job.located().confidence.value;
             edit::require_found(job.located());
@@ -225,7 +225,8 @@ private:
                                                   result.base_to_new, *job.located().label.bits);
         figures["iterations"] = result.iterations;
         const auto& use = job.edited().use;
-        figures["cost"] = {{"seconds", job.edited().seconds}, {"unet", use.unet}, {"tflop", use.flop * 1e-12}};
+        figures["cost"] = {
+            {"seconds", job.edited().seconds}, {"unet", use.unet}, {"tflop", use.flop * 1e-12}};
         figures["edit_seconds"] = result.seconds;
         if (result.redrawn_views > 0) figures["redrawing"] = redrawing_figures(result);
         if (const auto& verdict = job.edited().verdict) figures["gate"] = pipeline::verdict_to_json(*verdict);
@@ -267,7 +268,8 @@ private:
     }
 
     /// Before, attention, what was found, after, truth; of new shapes the last two from the other side, too.
-    void add_row(const EvalSetting& setting, const edit::LocateResult& located, const edit::EditResult* result) {
+    void add_row(const EvalSetting& setting, const edit::LocateResult& located,
+                 const edit::EditResult* result) {
         const std::size_t view = telling_view(setting);
         const Camera& camera = setting.seen.views[view].camera;
         const auto paint = [&](const GaussianSet& set) {
@@ -284,7 +286,8 @@ private:
         if (right_mode(setting.edit) != edit::EditMode::Modify) {
             const auto& held_out = setting.held_out.views;
             const Camera& behind = held_out[opposite(held_out, camera)].camera;
-            for (const auto* set : {result != nullptr ? &result->set : nullptr, &setting.target.scene.gaussians}) {
+            for (const auto* set :
+                 {result != nullptr ? &result->set : nullptr, &setting.target.scene.gaussians}) {
                 cells.emplace_back();
                 if (set != nullptr) cells.back() = painter_.paint(set->spans(), behind, {}).colour;
             }

@@ -23,20 +23,26 @@ struct EvalParameters {
     bool ablations = false;
     int ablation_edits = 6;
     bool drawn_words = false;
-    double success_direction = 0.25;   // pictures in which something else changed score about 0.2 (`bench clip`)
+    double success_direction =
+        0.25;  // pictures in which something else changed score about 0.2 (`bench clip`)
     int sheet_rows = 6;
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("seed", self.seed, "Seed of the suite: which edits, and the scenes' shapes.");
         f("edits", self.edits, "Synthetic edits with ground truth.", Range{0, 10000});
-        f("kinds", self.kinds, "Kinds of edits, in turn: recolour material add ground replace; dye = colours that the bundled model does not look for.");
-        f("drawn_words", self.drawn_words, "What is added or comes in a thing's place is called by words that the bundled model draws and does not look for.");
-        f("mode", self.mode, "Mode the edits are asked for: auto, or right (modify, replace or add, as each needs).");
+        f("kinds", self.kinds,
+          "Kinds of edits, in turn: recolour material add ground replace; dye = colours that the bundled "
+          "model does not look for.");
+        f("drawn_words", self.drawn_words,
+          "What is added or comes in a thing's place is called by words that the bundled model draws and "
+          "does not look for.");
+        f("mode", self.mode,
+          "Mode the edits are asked for: auto, or right (modify, replace or add, as each needs).");
         f("held_out_views", self.held_out_views,
           "Views between those of the edit, on which the result is compared.", Range{1, 512});
         f("oracle_views", self.oracle_views,
-          "An ablation: the edits are given cameras that know the scene's framing and front, and the word that is new.");
+          "An ablation: the edits are given cameras that know the scene's framing and front, and the word "
+          "that is new.");
         f("ablations", self.ablations, "Also run the first edits without parts of the method, and compare.");
         f("ablation_edits", self.ablation_edits, "How many edits the ablations are run on.", Range{1, 10000});
         f("success_direction", self.success_direction,
@@ -55,9 +61,9 @@ struct EvalVariant {
 
 struct EvalRun {
     EvalParameters parameters;
-    pipeline::EditRecipe settings;              // model, machine, request (its words are the suite's), guidance
-    std::vector<EvalVariant> variants;          // beside the ablations, and reported with them
-    std::vector<std::string> scenes;  // real ones: "PATH" or "PATH:source:sentence:target"
+    pipeline::EditRecipe settings;      // model, machine, request (its words are the suite's), guidance
+    std::vector<EvalVariant> variants;  // beside the ablations, and reported with them
+    std::vector<std::string> scenes;    // real ones: "PATH" or "PATH:source:sentence:target"
 };
 
 /// Writes eval_NNN.png sheets into `folder` and returns what belongs into eval.json. Stopped early, it

@@ -129,8 +129,9 @@ RealEdit parse_real_edit(const std::string& text, const std::vector<std::string>
     return edit;
 }
 
-Json run_real_edit(const RealEdit& edit, pipeline::EditRecipe recipe, const std::shared_ptr<neural::TextToImage>& model,
-                   ContactSheets& sheets, const JobControl& job_control) {
+Json run_real_edit(const RealEdit& edit, pipeline::EditRecipe recipe,
+                   const std::shared_ptr<neural::TextToImage>& model, ContactSheets& sheets,
+                   const JobControl& job_control) {
     Json entry{
         {"scene", edit.path}, {"source", edit.source}, {"prompt", edit.prompt}, {"target", edit.target}};
     recipe.job.scene = edit.path;

@@ -26,7 +26,8 @@ struct Vocabulary {
 struct Combination {
     SceneSpec source, target;
     std::string key() const {
-        const auto words = source.object + ' ' + source.material + ' ' + target.material + ' ' + target.accessory;
+        const auto words =
+            source.object + ' ' + source.material + ' ' + target.material + ' ' + target.accessory;
         return source.object == target.object ? words : words + ' ' + target.object;
     }
 };
@@ -134,9 +135,12 @@ const std::vector<std::string>& dyed_materials() {
 }
 
 std::vector<Combination> combinations_of(const std::string& kind, bool drawn_words, Random& random) {
-    if (kind == "add") return additions(drawn_words ? synth::more_accessory_words() : synth::accessory_words());
+    if (kind == "add")
+        return additions(drawn_words ? synth::more_accessory_words() : synth::accessory_words());
     if (kind == "ground") return ground_changes();
-    if (kind == "replace") return replacements(drawn_words ? synth::more_object_words() : synth::object_words(), random.uniform() < 0.5);
+    if (kind == "replace")
+        return replacements(drawn_words ? synth::more_object_words() : synth::object_words(),
+                            random.uniform() < 0.5);
     if (kind == Dye) return material_changes(false, random.uniform() < 0.5);
     const bool with_accessory = random.uniform() < 0.5;
     return material_changes(kind == "material", with_accessory);
@@ -184,24 +188,27 @@ const std::vector<std::string>& eval_kinds() {
     return kinds;
 }
 
-std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vector<std::string>& kinds, bool drawn_words) {
+std::vector<EvalCase> make_suite(std::uint64_t seed, int count, const std::vector<std::string>& kinds,
+                                 bool drawn_words) {
     auto known = eval_kinds();
-    known.emplace_back(Dye);   // only where it is asked for
+    known.emplace_back(Dye);  // only where it is asked for
     for (const auto& kind : kinds)
         if (std::find(known.begin(), known.end(), kind) == known.end())
             throw Error(ErrorCode::InvalidArgument, "there is no kind of edit named \"" + kind + "\"",
                         "use " + list_of(known));
     if (kinds.empty())
         throw Error(ErrorCode::InvalidArgument, "no kind of edit is named", "use " + list_of(known));
-    constexpr std::uint64_t OfWhatStays = 40000, OfReplacements = 50000, OfDyes = 60000;   // random streams
+    constexpr std::uint64_t OfWhatStays = 40000, OfReplacements = 50000, OfDyes = 60000;  // random streams
     std::vector<EvalCase> suite;
     std::set<std::string> used, used_to_replace, used_to_dye;
     std::uint64_t others = 0, replacements = 0, dyes = 0;
     for (int i = 0; i < count; ++i) {
         const auto& kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
-        suite.push_back(kind == "replace" ? make_case(kind, drawn_words, used_to_replace, Random::stream(seed, OfReplacements + replacements++))
-                        : kind == Dye     ? make_case(kind, drawn_words, used_to_dye, Random::stream(seed, OfDyes + dyes++))
-                                          : make_case(kind, drawn_words, used, Random::stream(seed, OfWhatStays + others++)));
+        suite.push_back(
+            kind == "replace" ? make_case(kind, drawn_words, used_to_replace,
+                                          Random::stream(seed, OfReplacements + replacements++))
+            : kind == Dye ? make_case(kind, drawn_words, used_to_dye, Random::stream(seed, OfDyes + dyes++))
+                          : make_case(kind, drawn_words, used, Random::stream(seed, OfWhatStays + others++)));
     }
     return suite;
 }

@@ -112,7 +112,8 @@ Json success_share(const Edits& edits, const Json& report) {
 const std::vector<std::string> OfWhatStays{"recolour", "material", "add", "ground"};
 
 void add_localization(const Json& edits, Json& summary) {
-    const Edits existing = of_kinds(edits, {"recolour", "material", "ground"}), added = of_kinds(edits, {"add"});
+    const Edits existing = of_kinds(edits, {"recolour", "material", "ground"}),
+                added = of_kinds(edits, {"add"});
     summary["existing_weighted_iou"] = figure(mean(existing, "weighted_iou"), {">=", 0.85});
     for (const char* key : {"iou", "mask_iou", "mask_boundary_f", "label_iou", "label_boundary_f"})
         summary[std::string("existing_") + key] = figure(mean(existing, key), {});
@@ -156,7 +157,8 @@ void add_preservation(const Json& edits, Json& summary) {
     summary["inconsistency_of_truth"] = figure(mean(all, "inconsistency_of_truth"), {});
 }
 
-/// Of what other true scenes of each sentence are measured at ("another_truth": one, "mean_truth": the mean of several).
+/// Of what other true scenes of each sentence are measured at ("another_truth": one, "mean_truth": the mean
+/// of several).
 Json mean_of_truths(const Edits& edits, const char* which, const char* key) {
     double sum = 0;
     std::size_t count = 0;
@@ -178,9 +180,11 @@ void add_replacements(const Json& report, const Json& edits, Json& summary) {
     summary["replace_old_unchanged"] = figure(mean(done, "old_unchanged"), {});
     summary["replace_old_shown"] = figure(mean(done, "old_shown"), {});
     for (const char* key : {"silhouette_iou", "l1_reduction", "old_left"})
-        summary[std::string("replace_another_truth_") + key] = figure(mean_of_truths(done, "another_truth", key), {});
+        summary[std::string("replace_another_truth_") + key] =
+            figure(mean_of_truths(done, "another_truth", key), {});
     for (const char* key : {"l1_reduction", "old_left"})
-        summary[std::string("replace_mean_truth_") + key] = figure(mean_of_truths(done, "mean_truth", key), {});
+        summary[std::string("replace_mean_truth_") + key] =
+            figure(mean_of_truths(done, "mean_truth", key), {});
     summary["replace_success"] = figure(success_share(replaced, report), {">=", 0.8});
     summary["replace_psnr_outside_db"] = figure(mean(done, "psnr_outside_db"), {">=", 38});
     summary["replace_leak_rate"] = figure(mean(done, "leak_rate"), {});
@@ -188,7 +192,8 @@ void add_replacements(const Json& report, const Json& edits, Json& summary) {
     summary["replace_weighted_iou"] = figure(mean(replaced, "weighted_iou"), {});
 }
 
-/// How often the verdict on the redrawn views warns of an edit that brings the scene no nearer to the truth, and of the others.
+/// How often the verdict on the redrawn views warns of an edit that brings the scene no nearer to the truth,
+/// and of the others.
 void add_verdicts(const Json& edits, Json& summary) {
     std::size_t judged[2] = {0, 0}, warned[2] = {0, 0};
     for (const auto& edit : edits) {
@@ -199,7 +204,8 @@ void add_verdicts(const Json& edits, Json& summary) {
     }
     const char* const names[2] = {"gate_warned_of_failures", "gate_warned_of_successes"};
     for (std::size_t i = 0; i < 2; ++i)
-        if (judged[i] > 0) summary[names[i]] = figure(static_cast<double>(warned[i]) / static_cast<double>(judged[i]), {});
+        if (judged[i] > 0)
+            summary[names[i]] = figure(static_cast<double>(warned[i]) / static_cast<double>(judged[i]), {});
 }
 
 /// Means over the edits that add the same thing, a line per thing.
@@ -312,14 +318,15 @@ std::string ablation_lines(const Json& table) {
 
 std::string added_lines(const Json& table) {
     if (table.empty()) return {};
-    std::string text = fmt::format("\n{:<12}{:>6}{:>9}{:>9}{:>8}{:>8}{:>7}{:>9}{:>9}\n", "added", "edits", "outline", "L1 red.",
-                                   "recall", "prec.", "CLIP", "PSNR out", "leak");
+    std::string text = fmt::format("\n{:<12}{:>6}{:>9}{:>9}{:>8}{:>8}{:>7}{:>9}{:>9}\n", "added", "edits",
+                                   "outline", "L1 red.", "recall", "prec.", "CLIP", "PSNR out", "leak");
     for (const auto& entry : table)
-        text += fmt::format("{:<12}{:>6}{:>9}{:>9}{:>8}{:>8}{:>7}{:>9}{:>9}\n", entry["thing"].get<std::string>(),
-                            entry["edits"].get<std::size_t>(), number(entry, "silhouette_iou", 2),
-                            number(entry, "l1_reduction", 2), number(entry, "place_recall", 2),
-                            number(entry, "place_precision", 2), number(entry, "direction", 2),
-                            number(entry, "psnr_outside_db", 1), number(entry, "leak_rate", 4));
+        text +=
+            fmt::format("{:<12}{:>6}{:>9}{:>9}{:>8}{:>8}{:>7}{:>9}{:>9}\n", entry["thing"].get<std::string>(),
+                        entry["edits"].get<std::size_t>(), number(entry, "silhouette_iou", 2),
+                        number(entry, "l1_reduction", 2), number(entry, "place_recall", 2),
+                        number(entry, "place_precision", 2), number(entry, "direction", 2),
+                        number(entry, "psnr_outside_db", 1), number(entry, "leak_rate", 4));
     return text;
 }
 
@@ -329,8 +336,7 @@ std::string scene_lines(const Json& scenes) {
                                    "SSIM out", "leak", "drift", "s");
     for (const auto& scene : scenes) {
         const auto name = scene["scene"].get<std::string>() + ": " + scene["prompt"].get<std::string>();
-        if (failed(scene))
-            text += "FAILED: " + scene["error"].get<std::string>() + "  " + name + "\n";
+        if (failed(scene)) text += "FAILED: " + scene["error"].get<std::string>() + "  " + name + "\n";
         else
             text += fmt::format("{:>9}{:>9}{:>9}{:>9}{:>8}{:>8}  {}\n", number(scene, "labelled", 0),
                                 number(scene, "psnr_outside_db", 1), number(scene, "ssim_outside", 4),

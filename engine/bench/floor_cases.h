@@ -1,4 +1,5 @@
-// Forward and backward of the rasterizer against what this machine could do at best, for scenes and pictures of some sizes.
+// Forward and backward of the rasterizer against what this machine could do at best, for scenes and pictures
+// of some sizes.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +20,10 @@ struct FloorCase {
 /// "100000@512x512 500000@512x512"; may be empty. Throws Error (InvalidArgument).
 std::vector<FloorCase> floor_cases_in_list(const std::string& text);
 
-/// floor_report() of each with the fastest kernels and a thread per core, with "splats" and "picture". Throws Error when stopped.
-nlohmann::ordered_json bench_floor_cases(const std::vector<FloorCase>& cases, std::uint64_t seed, int views, int repetitions,
-                                         const JobControl& job);
+/// floor_report() of each with the fastest kernels and a thread per core, with "splats" and "picture". Throws
+/// Error when stopped.
+nlohmann::ordered_json bench_floor_cases(const std::vector<FloorCase>& cases, std::uint64_t seed, int views,
+                                         int repetitions, const JobControl& job);
 
 Table floor_table(const nlohmann::ordered_json& cases);
 

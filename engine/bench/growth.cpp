@@ -21,7 +21,7 @@ std::optional<double> growth_exponent(const std::vector<std::array<double, 2>>& 
         along += (x - mean_x) * (y - mean_y);
         wide += (x - mean_x) * (x - mean_x);
     }
-    constexpr double least = 1e-12;   // sizes that are all the same
+    constexpr double least = 1e-12;  // sizes that are all the same
     return wide > least ? std::optional(along / wide) : std::nullopt;
 }
 

@@ -7,8 +7,8 @@
 
 namespace gse::bench {
 
-/// Exponent p of cost ~ size^p: the slope of the least-squares line through (log size, log cost). Pairs that are not finite or
-/// not above 0 are left out; nothing with fewer than two different sizes.
+/// Exponent p of cost ~ size^p: the slope of the least-squares line through (log size, log cost). Pairs that
+/// are not finite or not above 0 are left out; nothing with fewer than two different sizes.
 std::optional<double> growth_exponent(const std::vector<std::array<double, 2>>& size_and_cost);
 
 }  // namespace gse::bench

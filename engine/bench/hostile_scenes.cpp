@@ -17,14 +17,16 @@ using Rows = std::size_t;
 struct Draft {
     HostileScene scene;
     Random random;
-    Vec3 direction;        // from the origin to the camera
-    double distance = 4;   // of the camera
-    double fov = 0.9;      // radians
+    Vec3 direction;       // from the origin to the camera
+    double distance = 4;  // of the camera
+    double fov = 0.9;     // radians
     int width = 0, height = 0;
 
     explicit Draft(const Random& numbers) : random(numbers) {}
     double uniform(double low, double high) { return random.uniform(low, high); }
-    int whole(int low, int high) { return low + static_cast<int>(random.below(static_cast<std::uint64_t>(high - low + 1))); }
+    int whole(int low, int high) {
+        return low + static_cast<int>(random.below(static_cast<std::uint64_t>(high - low + 1)));
+    }
     float normal(double mean, double spread) { return static_cast<float>(mean + spread * random.normal()); }
 };
 
@@ -66,11 +68,13 @@ void place_camera(Draft& d) {
 void stretch_row(Draft& d, std::size_t row, std::size_t is_long, double high, double low) {
     const std::size_t first = d.random.below(3);
     for (std::size_t axis = 0; axis < 3; ++axis)
-        d.scene.data.log_scale[row * 3 + (first + axis) % 3] = static_cast<float>(axis < is_long ? high : low);
+        d.scene.data.log_scale[row * 3 + (first + axis) % 3] =
+            static_cast<float>(axis < is_long ? high : low);
 }
 
 void scale_world(Draft& d, double factor) {
-    for (float& value : d.scene.data.position) value = static_cast<float>(factor * static_cast<double>(value));
+    for (float& value : d.scene.data.position)
+        value = static_cast<float>(factor * static_cast<double>(value));
     for (float& value : d.scene.data.log_scale) value += static_cast<float>(std::log(factor));
     d.scene.camera.translation = d.scene.camera.translation * factor;
 }
@@ -80,8 +84,8 @@ void move_world(Draft& d, const Vec3& by) {
     GaussianData& data = d.scene.data;
     for (std::size_t row = 0; row < data.size(); ++row)
         for (std::size_t axis = 0; axis < 3; ++axis)
-            data.position[row * 3 + axis] =
-                static_cast<float>(static_cast<double>(data.position[row * 3 + axis]) + by[static_cast<int>(axis)]);
+            data.position[row * 3 + axis] = static_cast<float>(
+                static_cast<double>(data.position[row * 3 + axis]) + by[static_cast<int>(axis)]);
     d.scene.camera.translation = d.scene.camera.translation - d.scene.camera.rotation * by;
 }
 
@@ -93,16 +97,22 @@ void put(Draft& d, std::size_t row, const Vec3& place) {
 /// What a cause changes of one row; used for a whole scene and, row by row, for mixtures.
 using RowChange = void (*)(Draft&, std::size_t row);
 
-constexpr RowChange Needle = [](Draft& d, std::size_t row) { stretch_row(d, row, 1, d.uniform(-1, 3), d.uniform(-14, -6)); };
-constexpr RowChange Pancake = [](Draft& d, std::size_t row) { stretch_row(d, row, 2, d.uniform(-2, 1), d.uniform(-16, -8)); };
+constexpr RowChange Needle = [](Draft& d, std::size_t row) {
+    stretch_row(d, row, 1, d.uniform(-1, 3), d.uniform(-14, -6));
+};
+constexpr RowChange Pancake = [](Draft& d, std::size_t row) {
+    stretch_row(d, row, 2, d.uniform(-2, 1), d.uniform(-16, -8));
+};
 constexpr RowChange Giant = [](Draft& d, std::size_t row) {
-    for (std::size_t i = row * 3; i < row * 3 + 3; ++i) d.scene.data.log_scale[i] = static_cast<float>(d.uniform(1, 5));
+    for (std::size_t i = row * 3; i < row * 3 + 3; ++i)
+        d.scene.data.log_scale[i] = static_cast<float>(d.uniform(1, 5));
     d.scene.data.opacity_logit[row] = static_cast<float>(d.uniform(-5, 1));
 };
 constexpr RowChange Speck = [](Draft& d, std::size_t row) {
-    for (std::size_t i = row * 3; i < row * 3 + 3; ++i) d.scene.data.log_scale[i] = static_cast<float>(d.uniform(-18, -7));
+    for (std::size_t i = row * 3; i < row * 3 + 3; ++i)
+        d.scene.data.log_scale[i] = static_cast<float>(d.uniform(-18, -7));
 };
-constexpr RowChange Faint = [](Draft& d, std::size_t row) {   // around the cut at 1/255, logit -5.54
+constexpr RowChange Faint = [](Draft& d, std::size_t row) {  // around the cut at 1/255, logit -5.54
     d.scene.data.opacity_logit[row] = static_cast<float>(d.uniform(-5.6, -4));
 };
 constexpr RowChange Opaque = [](Draft& d, std::size_t row) {
@@ -119,11 +129,11 @@ constexpr RowChange OddTurn = [](Draft& d, std::size_t row) {
 };
 /// On a coarse grid: many rows have the same depth.
 constexpr RowChange Tie = [](Draft& d, std::size_t row) {
-    for (std::size_t i = row * 3; i < row * 3 + 3; ++i) d.scene.data.position[i] = std::round(2 * d.scene.data.position[i]) / 2;
+    for (std::size_t i = row * 3; i < row * 3 + 3; ++i)
+        d.scene.data.position[i] = std::round(2 * d.scene.data.position[i]) / 2;
 };
 
-template <RowChange change>
-void every_row(Draft& d) {
+template <RowChange change> void every_row(Draft& d) {
     for (std::size_t row = 0; row < d.scene.data.size(); ++row) change(d, row);
 }
 
@@ -133,7 +143,7 @@ void coincident(Draft& d) {
     begin(d, 10000);
     d.width = d.whole(8, 20), d.height = d.whole(8, 20);
     for (std::size_t row = 0; row < d.scene.data.size(); ++row) put(d, row, {0.1, -0.2, 0.3});
-    if (d.random.below(2) == 0)   // faint enough that thousands are blended before the light ends
+    if (d.random.below(2) == 0)  // faint enough that thousands are blended before the light ends
         for (float& logit : d.scene.data.opacity_logit) logit = static_cast<float>(d.uniform(-5.5, -4.8));
 }
 
@@ -151,7 +161,9 @@ void inside(Draft& d) {
     d.scene.settings.near_plane = static_cast<float>(std::pow(10.0, d.uniform(-6, -3)));
     const double spread = std::pow(10.0, d.uniform(-3, 0));
     for (std::size_t row = 0; row < d.scene.data.size(); ++row)
-        put(d, row, d.direction * d.distance + Vec3{d.random.normal(), d.random.normal(), d.random.normal()} * spread);
+        put(d, row,
+            d.direction * d.distance +
+                Vec3{d.random.normal(), d.random.normal(), d.random.normal()} * spread);
 }
 
 void near_cut(Draft& d) {
@@ -174,14 +186,15 @@ void fisheye(Draft& d) {
 
 void few_pixels(Draft& d) { d.width = d.whole(1, 3), d.height = d.whole(1, 3); }
 
-/// As wide or as high as a 4k picture, and a few pixels across: coordinates are as large, at a price that can be paid.
+/// As wide or as high as a 4k picture, and a few pixels across: coordinates are as large, at a price that can
+/// be paid.
 void strip(Draft& d) {
     const bool wide = d.random.below(2) == 0;
     d.width = wide ? 4096 : d.whole(1, 5), d.height = wide ? d.whole(1, 5) : 4096;
     d.fov = wide ? d.uniform(0.3, 0.8) : 1e-3;
     for (std::size_t row = 0; row < d.scene.data.size(); ++row) {
         Vec3 place{d.uniform(-1.5, 1.5), d.uniform(-1.5, 1.5), d.uniform(-1.5, 1.5)};
-        (wide ? place.y : place.x) *= 0.01;   // rows lie on the strip
+        (wide ? place.y : place.x) *= 0.01;  // rows lie on the strip
         put(d, row, place);
         for (std::size_t i = row * 3; i < row * 3 + 3; ++i) d.scene.data.log_scale[i] = d.normal(-6, 0.8);
     }
@@ -191,7 +204,8 @@ void strip(Draft& d) {
 void compensated(Draft& d) {
     d.scene.settings.antialiased = true;
     for (std::size_t row = 0; row < d.scene.data.size(); ++row)
-        for (std::size_t i = row * 3; i < row * 3 + 3; ++i) d.scene.data.log_scale[i] += static_cast<float>(d.uniform(-5, 0));
+        for (std::size_t i = row * 3; i < row * 3 + 3; ++i)
+            d.scene.data.log_scale[i] += static_cast<float>(d.uniform(-5, 0));
 }
 
 void little_blur(Draft& d) {
@@ -200,7 +214,8 @@ void little_blur(Draft& d) {
 }
 
 void no_blur(Draft& d) {
-    d.scene.settings.blur_px2 = d.random.below(2) == 0 ? 0.0f : static_cast<float>(std::pow(10.0, d.uniform(-6, -3)));
+    d.scene.settings.blur_px2 =
+        d.random.below(2) == 0 ? 0.0f : static_cast<float>(std::pow(10.0, d.uniform(-6, -3)));
     for (std::size_t row = 0; row < d.scene.data.size(); row += 2) Needle(d, row);
 }
 
@@ -209,23 +224,22 @@ void dark(Draft& d) {
     d.scene.settings.background = {static_cast<float>(d.uniform(0, 1)), 1.0f, 0.0f};
     const std::size_t stride = d.scene.data.sh_stride();
     for (std::size_t row = 0; row < d.scene.data.size(); ++row)
-        for (std::size_t c = 0; c < 3; ++c) d.scene.data.sh[row * stride + c] -= 1.8f;   // about 0 after the offset
+        for (std::size_t c = 0; c < 3; ++c)
+            d.scene.data.sh[row * stride + c] -= 1.8f;  // about 0 after the offset
 }
 
 void mixture(Draft& d) {
     constexpr std::array<RowChange, 8> changes{Needle, Pancake, Giant, Speck, Faint, Opaque, OddTurn, Tie};
     for (std::size_t row = 0; row < d.scene.data.size(); ++row)
-        if (const std::size_t which = d.random.below(changes.size() + 2); which < changes.size()) changes[which](d, row);
+        if (const std::size_t which = d.random.below(changes.size() + 2); which < changes.size())
+            changes[which](d, row);
     d.scene.settings.antialiased = d.random.below(3) == 0;
     d.scene.settings.sh_degree = d.whole(0, MaxShDegree);
     if (d.random.below(4) == 0) d.distance = d.uniform(0.3, 1.5);
     if (d.random.below(6) == 0) few_pixels(d);
 }
 
-template <int power>
-void world(Draft& d) {
-    scale_world(d, std::pow(10.0, power));
-}
+template <int power> void world(Draft& d) { scale_world(d, std::pow(10.0, power)); }
 
 void far_origin(Draft& d) {
     const double size = std::pow(10.0, d.uniform(2, 5));
@@ -284,7 +298,8 @@ const std::vector<HostileCause>& hostile_causes() {
 
 HostileScene hostile_scene(const std::string& cause, std::uint64_t seed) {
     const auto& all = recipes();
-    const auto found = std::find_if(all.begin(), all.end(), [&](const Recipe& recipe) { return recipe.cause.name == cause; });
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const Recipe& recipe) { return recipe.cause.name == cause; });
     if (found == all.end())
         throw Error(ErrorCode::InvalidArgument, "there is no kind of scene \"" + cause + "\"",
                     "use all, or one of the table's names");

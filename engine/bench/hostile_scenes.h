@@ -25,7 +25,8 @@ struct HostileCause {
 /// All causes; the first is an ordinary scene, the last a mixture of the others.
 const std::vector<HostileCause>& hostile_causes();
 
-/// The scene of that cause and seed: the same on every machine. Throws Error (InvalidArgument) for an unknown cause.
+/// The scene of that cause and seed: the same on every machine. Throws Error (InvalidArgument) for an unknown
+/// cause.
 HostileScene hostile_scene(const std::string& cause, std::uint64_t seed);
 
 }  // namespace gse::bench

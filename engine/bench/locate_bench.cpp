@@ -1,4 +1,5 @@
-// One search per scene and setting, as an artist's is; where it labels nothing because it is not sure, nothing was found.
+// One search per scene and setting, as an artist's is; where it labels nothing because it is not sure,
+// nothing was found.
 #include "engine/bench/locate_bench.h"
 
 #include <fmt/format.h>
@@ -6,8 +7,8 @@
 #include <algorithm>
 #include <sstream>
 
-#include "engine/base/error.h"
 #include "engine/base/clock.h"
+#include "engine/base/error.h"
 #include "engine/bench/eval_figures.h"
 #include "engine/bench/setting_points.h"
 #include "engine/edit/words.h"
@@ -20,15 +21,17 @@ using Json = nlohmann::ordered_json;
 
 const std::vector<Facet>& locate_facets() {
     static const std::vector<Facet> facets{
-        {"unet", "error", "UNet passes of a search", "1 - IoU of label and truth, weighted by contribution", true,
-         ChartScale::Logarithmic, "Against the networks' passes"},
-        {"processor_seconds", "error", "processor seconds of a search", "1 - IoU of label and truth, weighted by contribution",
-         true, ChartScale::Logarithmic, "Against time"}};
+        {"unet", "error", "UNet passes of a search", "1 - IoU of label and truth, weighted by contribution",
+         true, ChartScale::Logarithmic, "Against the networks' passes"},
+        {"processor_seconds", "error", "processor seconds of a search",
+         "1 - IoU of label and truth, weighted by contribution", true, ChartScale::Logarithmic,
+         "Against time"}};
     return facets;
 }
 
 /// A point of a search: what is changed of request and attention.
-SettingPoint search_point(const std::string& curve, const std::string& name, const Json& request, const Json& attention) {
+SettingPoint search_point(const std::string& curve, const std::string& name, const Json& request,
+                          const Json& attention) {
     return {curve, name, false, {{"request", request}, {"attention", attention}}, {}};
 }
 
@@ -43,24 +46,26 @@ std::vector<std::string> level_sets(const std::string& text) {
     return sets;
 }
 
-std::vector<SettingPoint> search_points(const LocateBenchParameters& parameters, const pipeline::EditRecipe& settings) {
+std::vector<SettingPoint> search_points(const LocateBenchParameters& parameters,
+                                        const pipeline::EditRecipe& settings) {
     std::vector<SettingPoint> points{search_point("as it is set", "as set", Json::object(), Json::object())};
     points.front().standard = true;
     for (const double count : numbers_in_list("views", parameters.views, 3, 512))
         if (const int views = static_cast<int>(count); views != settings.request.views)
-            points.push_back(search_point("views", fmt::format("{}", views), {{"views", views}}, Json::object()));
+            points.push_back(
+                search_point("views", fmt::format("{}", views), {{"views", views}}, Json::object()));
     for (const double count : numbers_in_list("repeats", parameters.repeats, 1, 100))
         if (const int repeats = static_cast<int>(count); repeats != settings.request.attention_repeats)
-            points.push_back(
-                search_point("passes per view", fmt::format("x{}", repeats), {{"attention_repeats", repeats}}, Json::object()));
+            points.push_back(search_point("passes per view", fmt::format("x{}", repeats),
+                                          {{"attention_repeats", repeats}}, Json::object()));
     for (const auto& set : level_sets(parameters.levels)) {
         numbers_in_list("levels", set, 0, 1);
         points.push_back(search_point("noise levels", set, Json::object(), {{"levels", set}}));
     }
     for (const double count : numbers_in_list("img2img", parameters.img2img, 1, 1000)) {
         const int steps = static_cast<int>(count);
-        points.push_back(
-            search_point("img2img", fmt::format("{} steps", steps), Json::object(), {{"method", "img2img"}, {"steps", steps}}));
+        points.push_back(search_point("img2img", fmt::format("{} steps", steps), Json::object(),
+                                      {{"method", "img2img"}, {"steps", steps}}));
     }
     if (parameters.parts) {
         points.push_back(search_point("parts", "no second look", {{"second_look", 0}}, Json::object()));
@@ -72,14 +77,15 @@ std::vector<SettingPoint> search_points(const LocateBenchParameters& parameters,
 
 class LocateBench {
 public:
-    LocateBench(const LocateBenchParameters& parameters, const pipeline::EditRecipe& settings, const JobControl& job)
+    LocateBench(const LocateBenchParameters& parameters, const pipeline::EditRecipe& settings,
+                const JobControl& job)
         : job_(job), settings_(settings), points_(search_points(parameters, settings)),
           suite_(make_suite(parameters.seed, parameters.scenes, edit::words_of(parameters.kinds))) {
         for (const auto& edit : suite_)
             if (edit.kind == "add")
                 throw Error(ErrorCode::InvalidArgument, "what is added is not there to be found",
                             "use recolour material ground replace");
-        for (const auto& point : points_) recipe_of(point);   // out of range: said before anything runs
+        for (const auto& point : points_) recipe_of(point);  // out of range: said before anything runs
         model_ = pipeline::load_recipe_model(settings.job);
         pipeline::use_threads(settings.job);
     }
@@ -119,12 +125,18 @@ private:
         const double took = processor_seconds() - start;
         const auto& label = job.located().label.bits;
         const auto& evidence = job.located().weights.evidence;
-        const bool labelled = label && label->size() == scene.parts.size() && evidence.size() == scene.parts.size();
-        const auto overlap =
-            labelled ? evaluate::row_overlap(*label, rows_of(scene, edit.part), evidence) : evaluate::Overlap{0, 0, 0, 0};
+        const bool labelled =
+            label && label->size() == scene.parts.size() && evidence.size() == scene.parts.size();
+        const auto overlap = labelled ? evaluate::row_overlap(*label, rows_of(scene, edit.part), evidence)
+                                      : evaluate::Overlap{0, 0, 0, 0};
         const auto use = job.times().networks();
-        return {{"iou", overlap.iou}, {"error", 1 - overlap.iou}, {"precision", overlap.precision}, {"recall", overlap.recall},
-                {"unet", use.unet}, {"tflop", use.flop * 1e-12}, {"processor_seconds", took},
+        return {{"iou", overlap.iou},
+                {"error", 1 - overlap.iou},
+                {"precision", overlap.precision},
+                {"recall", overlap.recall},
+                {"unet", use.unet},
+                {"tflop", use.flop * 1e-12},
+                {"processor_seconds", took},
                 {"seconds", job.times().seconds("locate")}};
     }
 
@@ -151,7 +163,8 @@ private:
 
 }  // namespace
 
-Subject bench_locate(const LocateBenchParameters& parameters, const pipeline::EditRecipe& settings, const JobControl& job) {
+Subject bench_locate(const LocateBenchParameters& parameters, const pipeline::EditRecipe& settings,
+                     const JobControl& job) {
     LocateBench bench(parameters, settings, job);
     const auto points = bench.run();
     Subject subject{"locate", "Search: overlap with the truth against cost", {}, {}, {}, {}};
@@ -166,8 +179,10 @@ Subject bench_locate(const LocateBenchParameters& parameters, const pipeline::Ed
     chart.mark = "as everything is set by default";
     for (const auto& facet : locate_facets()) chart.panels.push_back(panel_of(points, facet));
     chart.notes = {fmt::format(
-        "{} scenes with true labels that training never saw (seed {}; {}), model {}; means over them. Points change one "
-        "setting of the default: {} views, {} pass{} per view; \"noise levels\" are shares of the schedule, img2img "
+        "{} scenes with true labels that training never saw (seed {}; {}), model {}; means over them. Points "
+        "change one "
+        "setting of the default: {} views, {} pass{} per view; \"noise levels\" are shares of the schedule, "
+        "img2img "
         "looks at the steps of an image-to-image run as the paper does.",
         parameters.scenes, parameters.seed, parameters.kinds, bench.model(), settings.request.views,
         settings.request.attention_repeats, settings.request.attention_repeats == 1 ? "" : "es")};

@@ -43,7 +43,7 @@ std::string vulkan_device() {
     try {
         vulkan::Instance instance;
         return vulkan::Device(instance).info().name;
-    } catch (const Error&) {   // there is none: a fact about the machine
+    } catch (const Error&) {  // there is none: a fact about the machine
         return "none";
     }
 #else
@@ -57,7 +57,8 @@ nlohmann::ordered_json machine_json() {
     const auto model = processor_line("model name");
     std::string kernels;
     for (const auto& name : raster::usable_kernels()) kernels += (kernels.empty() ? "" : " ") + name;
-    const double bytes = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    const double bytes =
+        static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     return {{"processor", model.empty() ? "unknown" : model},
             {"cores", std::thread::hardware_concurrency()},
             {"memory_mb", static_cast<std::uint64_t>(bytes / (1024.0 * 1024.0))},

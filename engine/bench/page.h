@@ -22,7 +22,8 @@ struct PageSection {
 };
 
 /// An HTML page with the pictures in it. `machine`: names and values at the top.
-std::string html_page(const std::string& title, const nlohmann::ordered_json& machine, std::span<const PageSection> sections);
+std::string html_page(const std::string& title, const nlohmann::ordered_json& machine,
+                      std::span<const PageSection> sections);
 
 /// RFC 4648, with padding.
 std::string base64_text(std::string_view bytes);

@@ -15,12 +15,15 @@ namespace {
 
 using Point = std::array<double, 2>;
 
-constexpr double Letter = 11, Small = 9.5, Line = 22;   // heights of capitals and of a line, pixels
+constexpr double Letter = 11, Small = 9.5, Line = 22;  // heights of capitals and of a line, pixels
 constexpr int Columns = 2;
-constexpr double Left = 78, Right = 20, Above = 14, Below = 62, Margin = 16;   // around a plot, and around all
-constexpr DrawColour Ink{0.12f, 0.12f, 0.14f}, Dim{0.42f, 0.42f, 0.45f}, Grid{0.88f, 0.88f, 0.9f}, Front{0.62f, 0.62f, 0.66f};
+constexpr double Left = 78, Right = 20, Above = 14, Below = 62, Margin = 16;  // around a plot, and around all
+constexpr DrawColour Ink{0.12f, 0.12f, 0.14f}, Dim{0.42f, 0.42f, 0.45f}, Grid{0.88f, 0.88f, 0.9f},
+    Front{0.62f, 0.62f, 0.66f};
 
-bool drawable(const ChartPoint& point) { return std::isfinite(point.x) && std::isfinite(point.y) && point.x > 0; }
+bool drawable(const ChartPoint& point) {
+    return std::isfinite(point.x) && std::isfinite(point.y) && point.x > 0;
+}
 
 bool drawable_on(const ChartPanel& panel, const ChartPoint& point) {
     return drawable(point) && (panel.y_scale != ChartScale::Logarithmic || point.y > 0);
@@ -38,7 +41,7 @@ struct Box {
 
 /// From values to pixels.
 struct Scale {
-    double x_low = 1, x_high = 10, y_low = 0, y_high = 1;   // values at the edges
+    double x_low = 1, x_high = 10, y_low = 0, y_high = 1;  // values at the edges
     bool y_logarithmic = false;
     Box plot{};
 
@@ -46,8 +49,8 @@ struct Scale {
         return plot.left + (plot.right - plot.left) * std::log(value / x_low) / std::log(x_high / x_low);
     }
     double y(double value) const {
-        const double share =
-            y_logarithmic ? std::log(value / y_low) / std::log(y_high / y_low) : (value - y_low) / (y_high - y_low);
+        const double share = y_logarithmic ? std::log(value / y_low) / std::log(y_high / y_low)
+                                           : (value - y_low) / (y_high - y_low);
         return plot.bottom - (plot.bottom - plot.top) * share;
     }
 };
@@ -60,16 +63,17 @@ struct Extent {
 };
 
 void set_y(Scale& scale, const ChartPanel& panel, Extent y) {
-    constexpr double step = 0.1, room = 0.08;   // of shares; of the height, above and below what is drawn
+    constexpr double step = 0.1, room = 0.08;  // of shares; of the height, above and below what is drawn
     if (panel.y_scale == ChartScale::Percent) {
         y.take(0), y.take(step);
-        scale.y_low = std::floor(y.low / step) * step, scale.y_high = std::ceil((y.high + step / 2) / step) * step;
+        scale.y_low = std::floor(y.low / step) * step,
+        scale.y_high = std::ceil((y.high + step / 2) / step) * step;
         return;
     }
     scale.y_logarithmic = panel.y_scale == ChartScale::Logarithmic;
     if (y.empty()) y.take(scale.y_logarithmic ? 1.0 : 0.0);
     if (scale.y_logarithmic) {
-        constexpr double least = 2;   // a lone point lies between its half and its double
+        constexpr double least = 2;  // a lone point lies between its half and its double
         const double factor = std::max(std::pow(y.high / y.low, 1.5 * room), least);
         scale.y_low = y.low / factor, scale.y_high = y.high * factor;
     } else {
@@ -86,7 +90,8 @@ Scale scale_of(const ChartPanel& panel, const Box& plot) {
     if (x.empty()) x.take(1);
     for (const auto& guide : panel.guides)
         if (guide.x > 0) x.take(guide.x);
-    const double room = std::max(1.25, std::pow(x.high / x.low, 0.1));   // beside the outermost points: their names stand there
+    const double room = std::max(
+        1.25, std::pow(x.high / x.low, 0.1));  // beside the outermost points: their names stand there
     Scale scale;
     scale.x_low = x.low / room, scale.x_high = x.high * room, scale.plot = plot;
     set_y(scale, panel, y);
@@ -112,12 +117,13 @@ void draw_dot(Image& image, Point centre, double radius, const DrawColour& colou
     for (double r = radius; r > 0; r -= 1) draw_ring(image, centre, r, 1.5, colour);
 }
 
-void draw_centred(Image& image, double x, double y, const std::string& text, double height, const DrawColour& colour) {
+void draw_centred(Image& image, double x, double y, const std::string& text, double height,
+                  const DrawColour& colour) {
     draw_text(image, x - text_width(text, height) / 2, y, text, height, colour);
 }
 
 std::vector<double> y_ticks(const ChartPanel& panel, const Scale& scale) {
-    constexpr double spacing = 42;   // pixels between ticks, about
+    constexpr double spacing = 42;  // pixels between ticks, about
     const int count = std::max(2, static_cast<int>((scale.plot.bottom - scale.plot.top) / spacing));
     return panel.y_scale == ChartScale::Logarithmic ? logarithmic_ticks(scale.y_low, scale.y_high)
                                                     : linear_ticks(scale.y_low, scale.y_high, count);
@@ -125,12 +131,14 @@ std::vector<double> y_ticks(const ChartPanel& panel, const Scale& scale) {
 
 void draw_axes(Image& image, const ChartPanel& panel, const Scale& scale) {
     const Box& plot = scale.plot;
-    double free_below = 1e9;   // names of ticks must not run into each other
+    double free_below = 1e9;  // names of ticks must not run into each other
     for (const double value : y_ticks(panel, scale)) {
         draw_line(image, {plot.left, scale.y(value)}, {plot.right, scale.y(value)}, 1, Grid);
-        const std::string text = panel.y_scale == ChartScale::Percent ? fmt::format("{:.3g} %", 100 * value) : number_text(value);
+        const std::string text =
+            panel.y_scale == ChartScale::Percent ? fmt::format("{:.3g} %", 100 * value) : number_text(value);
         if (scale.y(value) + Small > free_below) continue;
-        draw_text(image, plot.left - 8 - text_width(text, Small), scale.y(value) + Small / 2, text, Small, Dim);
+        draw_text(image, plot.left - 8 - text_width(text, Small), scale.y(value) + Small / 2, text, Small,
+                  Dim);
         free_below = scale.y(value) - Small;
     }
     double free_from = 0;
@@ -169,7 +177,8 @@ struct Place {
 std::optional<Place> free_place(const Point& at, double width, const Box& plot, std::vector<Box>& taken) {
     const auto try_place = [&](const Point& place, bool far) -> std::optional<Place> {
         const Box box{place[0] - 2, place[1] - Small - 2, place[0] + width + 2, place[1] + 3};
-        if (!plot.holds(box) || std::any_of(taken.begin(), taken.end(), [&](const Box& other) { return box.meets(other); }))
+        if (!plot.holds(box) ||
+            std::any_of(taken.begin(), taken.end(), [&](const Box& other) { return box.meets(other); }))
             return {};
         taken.push_back(box);
         return Place{place, far};
@@ -177,17 +186,22 @@ std::optional<Place> free_place(const Point& at, double width, const Box& plot, 
     constexpr double near = 15, ring = 15, outermost = 64;
     for (double away = near; away <= outermost; away += ring) {
         const double middle = at[0] - width / 2, beside = at[0] + away, before = at[0] - away - width;
-        const std::array<Point, 8> places{{{beside, at[1] + Small / 2}, {middle, at[1] - away}, {middle, at[1] + away + Small},
-                                           {before, at[1] + Small / 2}, {beside, at[1] - away}, {beside, at[1] + away + Small},
-                                           {before, at[1] - away}, {before, at[1] + away + Small}}};
+        const std::array<Point, 8> places{{{beside, at[1] + Small / 2},
+                                           {middle, at[1] - away},
+                                           {middle, at[1] + away + Small},
+                                           {before, at[1] + Small / 2},
+                                           {beside, at[1] - away},
+                                           {beside, at[1] + away + Small},
+                                           {before, at[1] - away},
+                                           {before, at[1] + away + Small}}};
         for (const auto& place : places)
             if (const auto found = try_place(place, away > near)) return found;
     }
     return {};
 }
 
-void draw_name(Image& image, const ChartPoint& point, const Point& at, const Box& plot, const DrawColour& colour,
-               std::vector<Box>& taken) {
+void draw_name(Image& image, const ChartPoint& point, const Point& at, const Box& plot,
+               const DrawColour& colour, std::vector<Box>& taken) {
     if (point.name.empty()) return;
     const double width = text_width(point.name, Small);
     const auto place = free_place(at, width, plot, taken);
@@ -201,7 +215,8 @@ void draw_name(Image& image, const ChartPoint& point, const Point& at, const Box
     draw_text(image, place->at[0], place->at[1], point.name, Small, colour);
 }
 
-std::vector<Point> line_of(const ChartPanel& panel, const std::vector<ChartPoint>& points, const Scale& scale) {
+std::vector<Point> line_of(const ChartPanel& panel, const std::vector<ChartPoint>& points,
+                           const Scale& scale) {
     std::vector<ChartPoint> shown;
     for (const auto& point : points)
         if (drawable_on(panel, point)) shown.push_back(point);
@@ -233,7 +248,8 @@ void draw_lines(Image& image, const ChartPanel& panel, const Scale& scale, std::
     };
     if (panel.line == ChartLine::CommonFront) {
         std::vector<ChartPoint> all;
-        for (const auto& curve : panel.curves) all.insert(all.end(), curve.points.begin(), curve.points.end());
+        for (const auto& curve : panel.curves)
+            all.insert(all.end(), curve.points.begin(), curve.points.end());
         draw(line_of(panel, all, scale), Front);
         return;
     }
@@ -253,7 +269,7 @@ void draw_curves(Image& image, const ChartPanel& panel, const Scale& scale) {
             if (point.marked) draw_ring(image, at, 10, 1.5, Ink);
             taken.push_back({at[0] - room, at[1] - room, at[0] + room, at[1] + room});
         }
-    for (const bool marked : {true, false})   // what is marked is named first
+    for (const bool marked : {true, false})  // what is marked is named first
         for (const auto& curve : panel.curves)
             for (const auto& point : curve.points)
                 if (point.marked == marked && drawable_on(panel, point))
@@ -262,13 +278,13 @@ void draw_curves(Image& image, const ChartPanel& panel, const Scale& scale) {
 
 /// What a legend explains.
 struct Legend {
-    std::vector<ChartCurve> curves;    // without points
+    std::vector<ChartCurve> curves;  // without points
     bool front = false, mark = false;
     friend bool operator==(const Legend& a, const Legend& b) {
         return a.front == b.front && a.mark == b.mark && a.curves.size() == b.curves.size() &&
-               std::equal(a.curves.begin(), a.curves.end(), b.curves.begin(), [](const auto& x, const auto& y) {
-                   return x.name == y.name && x.colour == y.colour;
-               });
+               std::equal(
+                   a.curves.begin(), a.curves.end(), b.curves.begin(),
+                   [](const auto& x, const auto& y) { return x.name == y.name && x.colour == y.colour; });
     }
 };
 
@@ -283,7 +299,8 @@ Legend legend_of(const ChartPanel& panel) {
 }
 
 /// From (x, y) on, breaking lines at `right`; returns the y of the last line. Draws nothing without an image.
-double draw_legend(Image* image, const Legend& legend, const std::string& mark, double left, double right, double y) {
+double draw_legend(Image* image, const Legend& legend, const std::string& mark, double left, double right,
+                   double y) {
     constexpr double sample = 26, gap = 8, between = 24;
     double x = left;
     const auto entry = [&](const std::string& name, const auto& draw) {
@@ -296,14 +313,16 @@ double draw_legend(Image* image, const Legend& legend, const std::string& mark, 
         x += width + between;
     };
     const auto stroke = [&](const Point& middle, const DrawColour& colour) {
-        draw_line(*image, {middle[0] - sample / 2, middle[1]}, {middle[0] + sample / 2, middle[1]}, 2, colour);
+        draw_line(*image, {middle[0] - sample / 2, middle[1]}, {middle[0] + sample / 2, middle[1]}, 2,
+                  colour);
     };
     for (const auto& curve : legend.curves)
         entry(curve.name, [&](const Point& middle) {
             if (!legend.front) stroke(middle, curve.colour);
             draw_dot(*image, middle, 5, curve.colour);
         });
-    if (legend.front) entry("front: nothing cheaper is better", [&](const Point& middle) { stroke(middle, Front); });
+    if (legend.front)
+        entry("front: nothing cheaper is better", [&](const Point& middle) { stroke(middle, Front); });
     if (legend.mark) entry(mark, [&](const Point& middle) { draw_ring(*image, middle, 10, 1.5, Ink); });
     return y;
 }
@@ -341,17 +360,21 @@ double head_of_row(const Chart& chart, std::size_t first, double width, bool sha
     for (std::size_t i = first; i < std::min(first + Columns, chart.panels.size()); ++i) {
         const auto& panel = chart.panels[i];
         double own = Above + Line + (panel.title.empty() ? 0 : Line);
-        if (!shared) own += Line + draw_legend(nullptr, legend_of(panel), chart.mark, Margin, width - Right, 0);
+        if (!shared)
+            own += Line + draw_legend(nullptr, legend_of(panel), chart.mark, Margin, width - Right, 0);
         height = std::max(height, own);
     }
     return height;
 }
 
 void draw_panel(Image& image, const Chart& chart, const ChartPanel& panel, const Box& cell, bool shared) {
-    const Box plot{cell.left + Left, cell.bottom - Below - chart.plot_height, cell.right - Right, cell.bottom - Below};
+    const Box plot{cell.left + Left, cell.bottom - Below - chart.plot_height, cell.right - Right,
+                   cell.bottom - Below};
     double y = cell.top + Letter + 4;
-    if (!panel.title.empty()) draw_text(image, cell.left + Margin, y, panel.title, Letter + 1, Ink), y += Line;
-    if (!shared) draw_legend(&image, legend_of(panel), chart.mark, cell.left + Margin, cell.right - Right, y + 2);
+    if (!panel.title.empty())
+        draw_text(image, cell.left + Margin, y, panel.title, Letter + 1, Ink), y += Line;
+    if (!shared)
+        draw_legend(&image, legend_of(panel), chart.mark, cell.left + Margin, cell.right - Right, y + 2);
     draw_text(image, cell.left + Margin, plot.top - 12, panel.y_title, Letter, Ink);
     const Scale scale = scale_of(panel, plot);
     draw_axes(image, panel, scale);
@@ -377,24 +400,27 @@ std::vector<std::size_t> pareto_front(const std::vector<ChartPoint>& points, boo
 Image draw_chart(const Chart& chart) {
     const auto notes = broken_lines(chart.notes);
     const auto count = chart.panels.size();
-    const double width = static_cast<double>(ChartWidth) / static_cast<double>(std::clamp<std::size_t>(count, 1, Columns));
+    const double width =
+        static_cast<double>(ChartWidth) / static_cast<double>(std::clamp<std::size_t>(count, 1, Columns));
     const bool shared = one_legend(chart);
     double top = 48;
     const double legend_y = top + 8;
     if (shared && count > 0)
-        top =
-            Line * 0.8 + draw_legend(nullptr, legend_of(chart.panels.front()), chart.mark, Margin, ChartWidth - Margin, legend_y);
-    std::vector<double> rows{top};   // tops of the rows of panels, and the end of the last
+        top = Line * 0.8 + draw_legend(nullptr, legend_of(chart.panels.front()), chart.mark, Margin,
+                                       ChartWidth - Margin, legend_y);
+    std::vector<double> rows{top};  // tops of the rows of panels, and the end of the last
     for (std::size_t first = 0; first < count; first += Columns)
         rows.push_back(rows.back() + head_of_row(chart, first, width, shared) + chart.plot_height + Below);
     const double height = rows.back() + Line * static_cast<double>(notes.size()) + Margin;
     Image image(ChartWidth, static_cast<int>(height), 3, 1.0f);
     draw_text(image, Margin, 30, chart.title, Letter + 2, Ink);
     if (shared && count > 0)
-        draw_legend(&image, legend_of(chart.panels.front()), chart.mark, Margin, ChartWidth - Margin, legend_y);
+        draw_legend(&image, legend_of(chart.panels.front()), chart.mark, Margin, ChartWidth - Margin,
+                    legend_y);
     for (std::size_t i = 0; i < count; ++i) {
         const double left = width * static_cast<double>(i % Columns);
-        draw_panel(image, chart, chart.panels[i], {left, rows[i / Columns], left + width, rows[i / Columns + 1]}, shared);
+        draw_panel(image, chart, chart.panels[i],
+                   {left, rows[i / Columns], left + width, rows[i / Columns + 1]}, shared);
     }
     double y = rows.back() + Letter;
     for (const auto& note : notes) draw_text(image, Margin, y, note, Small, Dim), y += Line;

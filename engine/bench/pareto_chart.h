@@ -10,9 +10,9 @@
 namespace gse::bench {
 
 struct ChartPoint {
-    double x = 0, y = 0;       // x above 0; y too where its axis is logarithmic
+    double x = 0, y = 0;  // x above 0; y too where its axis is logarithmic
     std::string name;
-    bool marked = false;       // gets a ring
+    bool marked = false;  // gets a ring
 };
 
 struct ChartCurve {
@@ -21,8 +21,8 @@ struct ChartCurve {
     std::vector<ChartPoint> points;
 };
 
-/// What a panel's lines go through: of each curve the points that no cheaper one reaches, the same of all curves together, or
-/// all points.
+/// What a panel's lines go through: of each curve the points that no cheaper one reaches, the same of all
+/// curves together, or all points.
 enum class ChartLine { OwnFront, CommonFront, AllPoints };
 
 enum class ChartScale { Percent, Linear, Logarithmic };
@@ -34,27 +34,28 @@ struct ChartGuide {
 };
 
 struct ChartPanel {
-    std::string x_title, y_title;        // with units
+    std::string x_title, y_title;  // with units
     std::vector<ChartCurve> curves;
     ChartLine line = ChartLine::OwnFront;
-    ChartScale y_scale = ChartScale::Percent;   // Percent: shares, from 0 on; the cost axis is always logarithmic
-    bool less_is_better = false;         // of y
-    std::string title = {};              // above it, where there are several
+    ChartScale y_scale =
+        ChartScale::Percent;      // Percent: shares, from 0 on; the cost axis is always logarithmic
+    bool less_is_better = false;  // of y
+    std::string title = {};       // above it, where there are several
     std::vector<ChartGuide> guides = {};
 };
 
 struct Chart {
     std::string title;
-    std::vector<std::string> notes;      // below; what is too long for a line is broken
-    std::vector<ChartPanel> panels;      // two beside each other
-    int plot_height = 430;               // of a panel, pixels
-    std::string mark = "default";        // what a ring means
+    std::vector<std::string> notes;  // below; what is too long for a line is broken
+    std::vector<ChartPanel> panels;  // two beside each other
+    int plot_height = 430;           // of a panel, pixels
+    std::string mark = "default";    // what a ring means
 };
 
-constexpr int ChartWidth = 1200;   // pixels
+constexpr int ChartWidth = 1200;  // pixels
 
-/// [H,ChartWidth,3]; points that the axes cannot show (not finite, or not above 0 on a logarithmic axis) are left out. Names of
-/// points never lie on each other: one that finds no place is left out.
+/// [H,ChartWidth,3]; points that the axes cannot show (not finite, or not above 0 on a logarithmic axis) are
+/// left out. Names of points never lie on each other: one that finds no place is left out.
 Image draw_chart(const Chart& chart);
 
 /// Indices of the points that no cheaper point reaches, by ascending x.
@@ -64,7 +65,8 @@ std::vector<std::size_t> pareto_front(const std::vector<ChartPoint>& points, boo
 std::vector<double> linear_ticks(double low, double high, int count);
 /// The same for a logarithmic one: powers of ten, with their double and fivefold where there are few.
 std::vector<double> logarithmic_ticks(double low, double high);
-/// A number on an axis or in a table: three digits, thousands grouped, powers of ten where it is very small or large.
+/// A number on an axis or in a table: three digits, thousands grouped, powers of ten where it is very small
+/// or large.
 std::string number_text(double value);
 
 }  // namespace gse::bench

@@ -45,8 +45,7 @@ double median(std::vector<double> values) {
 /// Times of the frames of one renderer.
 struct Times {
     std::vector<double> wall, cpu;
-    template <class Body>
-    void measure(Body&& body) {
+    template <class Body> void measure(Body&& body) {
         const double wall_before = wall_ms(), cpu_before = cpu_ms();
         body();
         wall.push_back(wall_ms() - wall_before);
@@ -91,8 +90,7 @@ Json error_json(const Error2& error) { return {{"psnr_db", error.psnr_db}, {"max
 class VulkanBench {
 public:
     VulkanBench(const Scene& scene, bool validation)
-        : instance_(vulkan::InstanceOptions{.extensions = {}, .validation = validation}),
-          device_(instance_),
+        : instance_(vulkan::InstanceOptions{.extensions = {}, .validation = validation}), device_(instance_),
           renderer_(device_) {
         const double start = wall_ms();
         renderer_.upload(scene.gaussians);
@@ -151,7 +149,7 @@ preview::FrameRequest frame_request(const Camera& camera) {
 Json bench_vulkan(const Scene& scene, const PreviewBenchOptions& options, const std::vector<Camera>& views,
                   pipeline::Painter& painter, std::optional<Image>& first_light) {
     VulkanBench bench(scene, options.validation);
-    for (const auto& view : views) {   // to warm up: buffers grow in the first picture of each view
+    for (const auto& view : views) {  // to warm up: buffers grow in the first picture of each view
         bench.renderer().invalidate();
         bench.draw(frame_request(view));
     }
@@ -181,7 +179,7 @@ Json bench_native(const Scene& scene, const std::vector<Camera>& views, pipeline
         const auto& output = painter.paint(scene.gaussians.spans(), camera, {});
         preview::resolve({&output.colour, &output.alpha}, display, 1, painter.pool(), rgba);
     };
-    for (const auto& view : views) draw(view);   // to warm up
+    for (const auto& view : views) draw(view);  // to warm up
     for (const auto& view : views) times.measure([&] { draw(view); });
     Json json = times.json();
     json["kernels"] = painter.rasterizer().name();
@@ -193,7 +191,8 @@ Json bench_native(const Scene& scene, const std::vector<Camera>& views, pipeline
 Json bench_preview(const Scene& scene, const PreviewBenchOptions& options) {
     auto views = options.cameras;
     if (views.empty())
-        for (const auto& view : orbit_views(pipeline::scene_orbit(scene, {}), options.frames, options.width, options.height))
+        for (const auto& view :
+             orbit_views(pipeline::scene_orbit(scene, {}), options.frames, options.width, options.height))
             views.push_back(view.camera);
     Json json;
     json["splats"] = scene.gaussians.size();

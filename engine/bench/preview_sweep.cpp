@@ -31,7 +31,7 @@ using Json = nlohmann::ordered_json;
 struct PreviewSetting {
     int sh_degree = 3;
     bool antialiased = false;
-    double scale = 1;       // of the full width and height
+    double scale = 1;  // of the full width and height
     bool full() const { return sh_degree == 3 && !antialiased && scale >= 1; }
 };
 
@@ -97,7 +97,7 @@ public:
         renderer_.finish_upload();
     }
     void draw(const Camera& camera, const PreviewSetting& setting) override {
-        constexpr int attempts = 4;   // of a picture that met more pairs than expected
+        constexpr int attempts = 4;  // of a picture that met more pairs than expected
         renderer_.invalidate();
         for (int i = 0; i < attempts; ++i) {
             device_.run([&](vk::raii::CommandBuffer& commands) {
@@ -124,14 +124,16 @@ private:
     preview::SplatRenderer renderer_;
 };
 
-/// Root mean square of the difference of red, green and blue; a smaller picture is shown as large as the truth, as the window does.
+/// Root mean square of the difference of red, green and blue; a smaller picture is shown as large as the
+/// truth, as the window does.
 double rms_error(const Image& shown, const Image& truth) {
     const Image full = localize::resize_image(shown, truth.width, truth.height);
     double squares = 0;
     for (int y = 0; y < truth.height; ++y)
         for (int x = 0; x < truth.width; ++x)
             for (int c = 0; c < 3; ++c) {
-                const double d = static_cast<double>(full.at(x, y, c)) - static_cast<double>(truth.at(x, y, c));
+                const double d =
+                    static_cast<double>(full.at(x, y, c)) - static_cast<double>(truth.at(x, y, c));
                 squares += d * d;
             }
     return std::sqrt(squares / (3.0 * static_cast<double>(truth.pixel_count())));
@@ -143,8 +145,8 @@ struct PreviewTruth {
     PreviewTruth(const Scene& scene, const Camera& camera) {
         raster::ForwardOutput output;
         for (const bool compensated : {false, true}) {
-            raster::make_plain_rasterizer()->forward(scene.gaussians.spans(), camera, image_settings({3, compensated, 1}),
-                                                     output);
+            raster::make_plain_rasterizer()->forward(scene.gaussians.spans(), camera,
+                                                     image_settings({3, compensated, 1}), output);
             (compensated ? antialiased : plain) = output.colour;
         }
     }
@@ -188,22 +190,29 @@ private:
             job_.report("drawing previews", static_cast<int>(points_.size()),
                         static_cast<int>(settings_.size() * (parameters_.backend == "both" ? 2 : 1)));
             SettingPoint point{name, setting_name(setting), usual && setting.full(), {}, {}};
-            point.settings = {{"sh_degree", setting.sh_degree}, {"antialiased", setting.antialiased}, {"scale", setting.scale}};
+            point.settings = {{"sh_degree", setting.sh_degree},
+                              {"antialiased", setting.antialiased},
+                              {"scale", setting.scale}};
             const auto error = rms_error(renderer.light(scaled(cameras_.front(), setting), setting),
                                          setting.antialiased ? truth.antialiased : truth.plain);
             const auto times = timer.time(cameras_.size(), [&](std::size_t view) {
                 renderer.draw(scaled(cameras_[view], setting), setting);
             });
-            point.figures = {{"ms", times.front()}, {"median_ms", times[times.size() / 2]}, {"rms_error", error},
+            point.figures = {{"ms", times.front()},
+                             {"median_ms", times[times.size() / 2]},
+                             {"rms_error", error},
                              {"psnr_db", error > 0 ? Json(-20 * std::log10(error)) : Json(nullptr)}};
             points_.push_back(std::move(point));
         }
     }
 
     static Camera scaled(const Camera& camera, const PreviewSetting& setting) {
-        const auto side = [&](int full) { return std::max(1, static_cast<int>(std::lround(full * setting.scale))); };
+        const auto side = [&](int full) {
+            return std::max(1, static_cast<int>(std::lround(full * setting.scale)));
+        };
         Camera small = camera.resized(side(camera.width), side(camera.height));
-        small.fy = camera.fy * small.height / camera.height;   // rounding of the height must not bend the picture
+        small.fy =
+            camera.fy * small.height / camera.height;  // rounding of the height must not bend the picture
         return small;
     }
 
@@ -221,10 +230,13 @@ private:
 Subject bench_preview_sweep(const PreviewSweepParameters& parameters, const JobControl& job) {
     PreviewSweep sweep(parameters, job);
     const auto points = sweep.run();
-    const std::vector<Facet> facets{{"ms", "rms_error", "ms per picture", "root mean square error (display value 0 to 1)", true,
+    const std::vector<Facet> facets{{"ms", "rms_error", "ms per picture",
+                                     "root mean square error (display value 0 to 1)", true,
                                      ChartScale::Logarithmic, ""}};
     Subject subject{"preview", "Preview: error against time, by renderer and quality", {}, {}, {}, {}};
-    subject.report = {{"parameters", fields_to_json(parameters)}, {"device", sweep.device()}, {"points", points_json(points)}};
+    subject.report = {{"parameters", fields_to_json(parameters)},
+                      {"device", sweep.device()},
+                      {"points", points_json(points)}};
     subject.report["fronts"] = fronts_of(points, facets);
     Chart chart;
     chart.title = subject.title;
@@ -232,18 +244,21 @@ Subject bench_preview_sweep(const PreviewSweepParameters& parameters, const JobC
     chart.plot_height = 520;
     chart.panels = {panel_of(points, facets.front())};
     chart.panels.front().guides = {
-        {preview::MovingScale::FrameMs, fmt::format("{:g} ms: limit while the camera moves", preview::MovingScale::FrameMs)}};
+        {preview::MovingScale::FrameMs,
+         fmt::format("{:g} ms: limit while the camera moves", preview::MovingScale::FrameMs)}};
     chart.notes = {
-        fmt::format(
-            "{} splats, {} pixels, wall time, least of {} pictures. Error: to the double-precision picture of SH degree 3 at "
-            "full size, of the first of them; \"size\" is drawn smaller and enlarged, \"antialiased\" (opacity "
-            "compensation, for scenes made with it) is compared with the truth that has it.{}",
-            number_text(parameters.splats), parameters.size, parameters.frames,
-            sweep.device().empty() ? "" : " Vulkan device: " + sweep.device() + "."),
+        fmt::format("{} splats, {} pixels, wall time, least of {} pictures. Error: to the double-precision "
+                    "picture of SH degree 3 at "
+                    "full size, of the first of them; \"size\" is drawn smaller and enlarged, "
+                    "\"antialiased\" (opacity "
+                    "compensation, for scenes made with it) is compared with the truth that has it.{}",
+                    number_text(parameters.splats), parameters.size, parameters.frames,
+                    sweep.device().empty() ? "" : " Vulkan device: " + sweep.device() + "."),
         "While the camera moves, the window draws the largest size that stays within the limit."};
     subject.picture = draw_chart(chart);
-    subject.tables = {points_table("", subject.report["points"],
-                                   {{"ms", "ms"}, {"median_ms", "median ms"}, {"rms_error", "rms error"}, {"psnr_db", "dB"}})};
+    subject.tables = {points_table(
+        "", subject.report["points"],
+        {{"ms", "ms"}, {"median_ms", "median ms"}, {"rms_error", "rms error"}, {"psnr_db", "dB"}})};
     subject.remarks = front_remarks(subject.report["fronts"], {"A still picture"});
     return subject;
 }

@@ -14,7 +14,8 @@ Json times_json(const raster::BenchTimes& times) {
 }
 
 Json skip_times_json(const raster::SkipTimes& times, std::size_t pairs) {
-    return {{"forward_cpu_ms", times.forward_ms}, {"backward_cpu_ms", times.backward_ms}, {"tile_pairs", pairs}};
+    return {
+        {"forward_cpu_ms", times.forward_ms}, {"backward_cpu_ms", times.backward_ms}, {"tile_pairs", pairs}};
 }
 
 }  // namespace
@@ -28,7 +29,8 @@ Json floor_report(const raster::RasterBench& bench) {
     Json json;
     json["threads"] = bench.threads;
     json["ns_per_block"] = {{"forward", kernel.forward_ns}, {"backward_by_blocks_per_tile_pair", backward}};
-    json["ns_per_tile_pair"] = {{"mask", kernel.mask_ns}, {"gather", kernel.scene_gather_ns},
+    json["ns_per_tile_pair"] = {{"mask", kernel.mask_ns},
+                                {"gather", kernel.scene_gather_ns},
                                 {"gather_in_first_cache", kernel.gather_ns}};
     json["gigabytes_per_second"] = kernel.gigabytes_per_second;
     json["tile_pairs_reached"] = bench.pairs_reached;
@@ -40,8 +42,9 @@ Json floor_report(const raster::RasterBench& bench) {
                   {"parameter_gradients", step.parameter_gradients},
                   {"total", step.total()},
                   {"total_with_records_in_first_cache", step.total() - step.lists + step.lists_in_cache}};
-    json["measured_ms"] = {{"wall", bench.forward_min_ms + bench.backward_min_ms},
-                           {"processor_per_thread", (bench.forward.cpu_min_ms + bench.backward.cpu_min_ms) / bench.threads}};
+    json["measured_ms"] = {
+        {"wall", bench.forward_min_ms + bench.backward_min_ms},
+        {"processor_per_thread", (bench.forward.cpu_min_ms + bench.backward.cpu_min_ms) / bench.threads}};
     json["ratio"] = {{"wall", bench.floor_ratio}, {"processor", bench.floor_ratio_cpu}};
     return json;
 }
@@ -73,7 +76,8 @@ Json raster_report(const raster::RasterBench& bench) {
 
 Json skip_report(const std::vector<raster::SkipBench>& shares) {
     Json json;
-    json["labelled"] = "the rows nearest to the one in the middle of the scene, as the rows of an edit lie together";
+    json["labelled"] =
+        "the rows nearest to the one in the middle of the scene, as the rows of an edit lie together";
     for (const auto& bench : shares)
         json["shares"].push_back({{"share", bench.share},
                                   {"rows", bench.labelled},

@@ -9,10 +9,12 @@
 
 namespace gse::bench {
 
-/// Times in milliseconds, per pair of splat and tile in nanoseconds, memory in MiB, errors against the plain version.
+/// Times in milliseconds, per pair of splat and tile in nanoseconds, memory in MiB, errors against the plain
+/// version.
 nlohmann::ordered_json raster_report(const raster::RasterBench& bench);
 
-/// Of an edit's iterations with and without skips: processor time in milliseconds, memory in MiB, and what they differ by.
+/// Of an edit's iterations with and without skips: processor time in milliseconds, memory in MiB, and what
+/// they differ by.
 nlohmann::ordered_json skip_report(const std::vector<raster::SkipBench>& shares);
 
 /// The floor of forward and backward, what it is made of, and how far the rasterizer is from it.

@@ -9,10 +9,10 @@
 #include <limits>
 #include <map>
 
+#include "engine/base/clock.h"
 #include "engine/base/error.h"
 #include "engine/base/process_memory.h"
 #include "engine/base/thread_pool.h"
-#include "engine/base/clock.h"
 #include "engine/bench/growth.h"
 #include "engine/bench/setting_points.h"
 #include "engine/raster/rasterizer.h"
@@ -38,10 +38,8 @@ struct GrowthSeries {
 class ScaleScene {
 public:
     ScaleScene(const Scene& scene, int side)
-        : scene_(scene),
-          rasterizer_(raster::make_fast_rasterizer(pool_)),
-          camera_(synth::timing_cameras(1, side, side).front()),
-          slope_(side, side, 3, 1.0f) {}
+        : scene_(scene), rasterizer_(raster::make_fast_rasterizer(pool_)),
+          camera_(synth::timing_cameras(1, side, side).front()), slope_(side, side, 3, 1.0f) {}
     void forward() { rasterizer_->forward(scene_.gaussians.spans(), camera_, {}, picture_); }
     void backward(std::size_t first_row) { rasterizer_->backward(slope_, {}, first_row, gradients_); }
 
@@ -57,7 +55,8 @@ private:
 
 class ScaleBench {
 public:
-    ScaleBench(const ScaleBenchParameters& parameters, const pipeline::EditRecipe& settings, const JobControl& job)
+    ScaleBench(const ScaleBenchParameters& parameters, const pipeline::EditRecipe& settings,
+               const JobControl& job)
         : parameters_(parameters), settings_(settings), job_(job), base_mb_(current_rss_mb()) {
         sizes_["splats"] = numbers_in_list("splats", parameters.splats, 1, 2e7);
         sizes_["side"] = numbers_in_list("sizes", parameters.sizes, 16, 8192);
@@ -68,15 +67,18 @@ public:
     std::vector<GrowthSeries> run() {
         std::vector<GrowthSeries> list;
         list.push_back(series("splats", "splats", "By number of splats", 1, [this](double count) {
-            return raster_costs(synth::timing_scene(static_cast<std::size_t>(count), parameters_.seed), parameters_.usual_size);
+            return raster_costs(synth::timing_scene(static_cast<std::size_t>(count), parameters_.seed),
+                                parameters_.usual_size);
         }));
-        const Scene scene = synth::timing_scene(static_cast<std::size_t>(parameters_.usual_splats), parameters_.seed);
+        const Scene scene =
+            synth::timing_scene(static_cast<std::size_t>(parameters_.usual_splats), parameters_.seed);
         list.push_back(series("side", "pixels a side", "By size of the picture", 2,
                               [&](double side) { return raster_costs(scene, static_cast<int>(side)); }));
-        list.push_back(
-            series("share", "labelled share", "By labelled share", 1, [&](double share) { return label_costs(scene, share); }));
-        list.push_back(series("views", "views", "By number of views", 1,
-                              [&](double views) { return back_projection_costs(scene, static_cast<int>(views)); }));
+        list.push_back(series("share", "labelled share", "By labelled share", 1,
+                              [&](double share) { return label_costs(scene, share); }));
+        list.push_back(series("views", "views", "By number of views", 1, [&](double views) {
+            return back_projection_costs(scene, static_cast<int>(views));
+        }));
         if (parameters_.search) add_search(list.back());
         return list;
     }
@@ -100,8 +102,8 @@ private:
     }
 
     /// Goes on while the next size, grown with that power, keeps the limits. The first one always runs.
-    GrowthSeries series(const std::string& of, const std::string& unit, const std::string& title, double power,
-                        const std::function<Costs(double)>& measure) {
+    GrowthSeries series(const std::string& of, const std::string& unit, const std::string& title,
+                        double power, const std::function<Costs(double)>& measure) {
         GrowthSeries result{of, title, unit, {}, {}};
         const auto& sizes = sizes_[of];
         double took = 0, memory = 0;
@@ -127,15 +129,17 @@ private:
         ScaleScene drawn(scene, side);
         const double forward = least_seconds([&] { drawn.forward(); });
         const double backward = least_seconds([&] { drawn.backward(0); });
-        return {{"forward", 1e3 * forward}, {"backward", 1e3 * backward}, {"memory", std::max(0.0, peak.mb() - base_mb_)}};
+        return {{"forward", 1e3 * forward},
+                {"backward", 1e3 * backward},
+                {"memory", std::max(0.0, peak.mb() - base_mb_)}};
     }
 
     Costs label_costs(const Scene& scene, double share) const {
         ScaleScene drawn(scene, parameters_.usual_size);
         drawn.forward();
         const auto count = scene.gaussians.size();
-        const auto labelled =
-            std::clamp<std::size_t>(static_cast<std::size_t>(share * static_cast<double>(count) + 0.5), 1, count);
+        const auto labelled = std::clamp<std::size_t>(
+            static_cast<std::size_t>(share * static_cast<double>(count) + 0.5), 1, count);
         return {{"backward", 1e3 * least_seconds([&] { drawn.backward(count - labelled); })}};
     }
 
@@ -150,7 +154,8 @@ private:
         const auto cameras = synth::timing_cameras(views, side, side);
         return {{"back-projection", 1e3 * least_seconds([&] {
                                         for (const auto& camera : cameras)
-                                            rasterizer->contributions(scene.gaussians.spans(), camera, {}, mask, masked, total);
+                                            rasterizer->contributions(scene.gaussians.spans(), camera, {},
+                                                                      mask, masked, total);
                                     })}};
     }
 
@@ -210,29 +215,39 @@ Json exponent_json(const std::vector<std::array<double, 2>>& pairs) {
     return exponent ? Json(*exponent) : Json(nullptr);
 }
 
-std::string unit_of(const std::string& cost) { return cost == "memory" ? "MiB" : cost == "UNet passes" ? "passes" : "ms"; }
+std::string unit_of(const std::string& cost) {
+    return cost == "memory" ? "MiB" : cost == "UNet passes" ? "passes" : "ms";
+}
 
 Json series_json(const GrowthSeries& series) {
     Json json{{"of", series.of}, {"left_out", series.left_out}, {"costs", Json::array()}};
     for (const auto& name : cost_names(series)) {
         const auto pairs = pairs_of(series, name);
-        const auto upper = std::vector(pairs.begin() + static_cast<std::ptrdiff_t>(pairs.size() / 2), pairs.end());
-        json["costs"].push_back({{"what", name}, {"unit", unit_of(name)}, {"points", pairs}, {"exponent", exponent_json(pairs)},
+        const auto upper =
+            std::vector(pairs.begin() + static_cast<std::ptrdiff_t>(pairs.size() / 2), pairs.end());
+        json["costs"].push_back({{"what", name},
+                                 {"unit", unit_of(name)},
+                                 {"points", pairs},
+                                 {"exponent", exponent_json(pairs)},
                                  {"upper_exponent", exponent_json(upper)}});
     }
     return json;
 }
 
 /// A panel of the costs in one unit; nothing to draw makes none.
-void add_panel(Chart& chart, const Json& series, const std::string& title, const std::string& x_title, const std::string& unit) {
+void add_panel(Chart& chart, const Json& series, const std::string& title, const std::string& x_title,
+               const std::string& unit) {
     ChartPanel panel{x_title, unit, {}, ChartLine::AllPoints, ChartScale::Logarithmic, true, title, {}};
     for (const auto& cost : series["costs"]) {
         if (cost["unit"] != unit) continue;
         std::string name = cost["what"].get<std::string>();
-        if (cost["exponent"].is_number()) name += fmt::format(": power {:.2f}", cost["exponent"].get<double>());
-        if (cost["upper_exponent"].is_number()) name += fmt::format(", upper half {:.2f}", cost["upper_exponent"].get<double>());
+        if (cost["exponent"].is_number())
+            name += fmt::format(": power {:.2f}", cost["exponent"].get<double>());
+        if (cost["upper_exponent"].is_number())
+            name += fmt::format(", upper half {:.2f}", cost["upper_exponent"].get<double>());
         ChartCurve curve{name, curve_colour(unit == "ms" ? panel.curves.size() : 3), {}};
-        for (const auto& pair : cost["points"]) curve.points.push_back({pair[0].get<double>(), pair[1].get<double>(), "", false});
+        for (const auto& pair : cost["points"])
+            curve.points.push_back({pair[0].get<double>(), pair[1].get<double>(), "", false});
         panel.curves.push_back(std::move(curve));
     }
     if (!panel.curves.empty()) chart.panels.push_back(std::move(panel));
@@ -271,18 +286,23 @@ Chart scale_chart(const ScaleBenchParameters& parameters, const Json& report) {
     add_panel(chart, list[1], "Memory by size of the picture", "pixels a side", "MiB");
     add_panel(chart, list[3], "Time by number of views", "views", "ms");
     add_panel(chart, list[2], "Backward pass by labelled share", "labelled share of the splats", "ms");
-    chart.notes = {fmt::format(
-        "Where something else grows: {} splats, SH degree 3, {} x {} pixels. Wall time, least of {} timed runs (a search: "
-        "processor time of one run, of a scene of some thousand splats). Memory: most that the process held, above what it held "
-        "before. "
-        "Power p: cost grows as size to the p, by least squares over all points; \"upper half\": over the larger sizes.",
-        number_text(parameters.usual_splats), parameters.usual_size, parameters.usual_size, parameters.repetitions)};
+    chart.notes = {
+        fmt::format("Where something else grows: {} splats, SH degree 3, {} x {} pixels. Wall time, least of "
+                    "{} timed runs (a search: "
+                    "processor time of one run, of a scene of some thousand splats). Memory: most that the "
+                    "process held, above what it held "
+                    "before. "
+                    "Power p: cost grows as size to the p, by least squares over all points; \"upper half\": "
+                    "over the larger sizes.",
+                    number_text(parameters.usual_splats), parameters.usual_size, parameters.usual_size,
+                    parameters.repetitions)};
     return chart;
 }
 
 }  // namespace
 
-Subject bench_scale(const ScaleBenchParameters& parameters, const pipeline::EditRecipe& settings, const JobControl& job) {
+Subject bench_scale(const ScaleBenchParameters& parameters, const pipeline::EditRecipe& settings,
+                    const JobControl& job) {
     const auto list = ScaleBench(parameters, settings, job).run();
     Subject subject{"scale", "Scale: growth of time and memory", {}, {}, {}, {}};
     subject.report = {{"parameters", fields_to_json(parameters)}, {"series", Json::array()}};
@@ -292,7 +312,8 @@ Subject bench_scale(const ScaleBenchParameters& parameters, const pipeline::Edit
         std::string missing;
         for (const double size : series.left_out) missing += fmt::format(" {}", number_text(size));
         if (!missing.empty())
-            subject.remarks.push_back(fmt::format("Left out for the limits of time and memory, {}:{}.", series.unit, missing));
+            subject.remarks.push_back(
+                fmt::format("Left out for the limits of time and memory, {}:{}.", series.unit, missing));
     }
     subject.picture = draw_chart(scale_chart(parameters, subject.report));
     return subject;

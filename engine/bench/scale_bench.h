@@ -23,26 +23,29 @@ struct ScaleBenchParameters {
     int limit_mb = 8192;
     bool search = true;
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("seed", self.seed, "Seed of the generated scenes.");
         f("splats", self.splats, "Numbers of splats.");
         f("sizes", self.sizes, "Sides of the picture, pixels.");
-        f("views", self.views, "Numbers of views of a search, and of a back-projection of masks onto splats.");
+        f("views", self.views,
+          "Numbers of views of a search, and of a back-projection of masks onto splats.");
         f("shares", self.shares, "Labelled shares of the splats, for the backward pass.");
         f("usual_splats", self.usual_splats, "Splats where something else grows.", Range{1, 2e7});
-        f("usual_size", self.usual_size, "Side of the picture where something else grows, pixels.", Range{16, 8192});
-        f("repetitions", self.repetitions, "Timed runs of a point, after one to warm up; the least counts.", Range{1, 1000});
-        f("limit_seconds", self.limit_seconds, "Points that would take longer, all runs together, are left out.",
-          Range{0.001, 1e6});
+        f("usual_size", self.usual_size, "Side of the picture where something else grows, pixels.",
+          Range{16, 8192});
+        f("repetitions", self.repetitions, "Timed runs of a point, after one to warm up; the least counts.",
+          Range{1, 1000});
+        f("limit_seconds", self.limit_seconds,
+          "Points that would take longer, all runs together, are left out.", Range{0.001, 1e6});
         f("limit_mb", self.limit_mb, "The same for memory, MiB.", Range{1, 1e7});
         f("search", self.search, "Also search with growing numbers of views (asks the model).");
     }
 };
 
-/// Wall times, the most memory above what the process held before, and growth exponents: slopes of least-squares lines through
-/// the logarithms, over all points and over the larger half of them. Generated scenes. Throws Error for wrong parameters, a model
-/// that cannot be read, and when stopped.
-Subject bench_scale(const ScaleBenchParameters& parameters, const pipeline::EditRecipe& settings, const JobControl& job);
+/// Wall times, the most memory above what the process held before, and growth exponents: slopes of
+/// least-squares lines through the logarithms, over all points and over the larger half of them. Generated
+/// scenes. Throws Error for wrong parameters, a model that cannot be read, and when stopped.
+Subject bench_scale(const ScaleBenchParameters& parameters, const pipeline::EditRecipe& settings,
+                    const JobControl& job);
 
 }  // namespace gse::bench

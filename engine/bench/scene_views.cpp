@@ -7,8 +7,8 @@
 
 namespace gse::bench {
 
-std::vector<Camera> spread_cameras(const Scene& scene, const std::filesystem::path& scene_file, const std::string& cameras, int count,
-                                   int width, int height) {
+std::vector<Camera> spread_cameras(const Scene& scene, const std::filesystem::path& scene_file,
+                                   const std::string& cameras, int count, int width, int height) {
     std::vector<View> views;
     if (cameras != "none") views = pipeline::scene_cameras(scene_file, cameras);
     if (views.empty()) views = orbit_views(pipeline::scene_orbit(scene, {}), count, width, height);

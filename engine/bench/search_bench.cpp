@@ -21,11 +21,12 @@ using synth::Part;
 using synth::SceneSpec;
 
 constexpr std::array<double, 9> Thresholds{0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6};
-constexpr double AccessoryShare = 0.6;   // of the scenes have one
+constexpr double AccessoryShare = 0.6;  // of the scenes have one
 
 /// What no synthetic scene shows and no starter model knows.
 const std::vector<std::string>& unknown_words() {
-    static const std::vector<std::string> words{"sign", "zebra", "sofa", "lamp", "train", "guitar", "violin", "laptop"};
+    static const std::vector<std::string> words{"sign",  "zebra",  "sofa",   "lamp",
+                                                "train", "guitar", "violin", "laptop"};
     return words;
 }
 
@@ -61,8 +62,10 @@ std::vector<Question> present_words(const SceneSpec& spec, const std::string& ma
     list.push_back({"ground", spec.ground, sentence(changed), changed.ground, true, Part::Ground});
     if (spec.accessory.empty()) return list;
     const auto& colours = synth::accessory_colour_words(spec.accessory);
-    const auto& colour = other_than(colours.empty() ? synth::material_words() : colours, random, {spec.accessory_colour});
-    list.push_back({"accessory", spec.accessory, worn(spec, colour, spec.accessory), colour, true, Part::Accessory});
+    const auto& colour =
+        other_than(colours.empty() ? synth::material_words() : colours, random, {spec.accessory_colour});
+    list.push_back(
+        {"accessory", spec.accessory, worn(spec, colour, spec.accessory), colour, true, Part::Accessory});
     return list;
 }
 
@@ -79,15 +82,18 @@ std::vector<Question> wrong_words(const SceneSpec& spec, const std::string& mate
     const auto& accessory = other_than(synth::accessory_words(), random, {spec.accessory});
     list.push_back({"absent accessory", accessory, worn(spec, material, accessory), material});
     const auto& unknown = other_than(unknown_words(), random, {});
-    list.push_back({"unknown", unknown, fmt::format("a {} {} on the {}", material, unknown, spec.ground), material});
+    list.push_back(
+        {"unknown", unknown, fmt::format("a {} {} on the {}", material, unknown, spec.ground), material});
     return list;
 }
 
 class SearchBench {
 public:
-    SearchBench(const SearchBenchParameters& parameters, const pipeline::EditRecipe& settings, const JobControl& job)
-        : parameters_(parameters), settings_(settings), job_(job), model_(pipeline::load_recipe_model(settings.job)) {
-        settings_.request.least_confidence = 0;   // what is found is compared, however unsure
+    SearchBench(const SearchBenchParameters& parameters, const pipeline::EditRecipe& settings,
+                const JobControl& job)
+        : parameters_(parameters), settings_(settings), job_(job),
+          model_(pipeline::load_recipe_model(settings.job)) {
+        settings_.request.least_confidence = 0;  // what is found is compared, however unsure
         settings_.request.mode = "modify";
     }
 
@@ -96,12 +102,16 @@ public:
         for (int i = 0; i < parameters_.scenes; ++i) {
             Random random = Random::stream(parameters_.seed, 70000 + static_cast<std::uint64_t>(i));
             const SceneSpec spec = synth::held_out_spec(random, AccessoryShare);
-            const auto scene = parameters_.ground ? synth::generate(spec) : synth::without_ground(synth::generate(spec));
-            const auto material = other_than(synth::material_words(), random, {spec.material, spec.accessory_colour});
+            const auto scene =
+                parameters_.ground ? synth::generate(spec) : synth::without_ground(synth::generate(spec));
+            const auto material =
+                other_than(synth::material_words(), random, {spec.material, spec.accessory_colour});
             auto questions = present_words(spec, material, random);
-            for (auto& question : wrong_words(spec, material, random)) questions.push_back(std::move(question));
+            for (auto& question : wrong_words(spec, material, random))
+                questions.push_back(std::move(question));
             for (const auto& question : questions)
-                if (parameters_.ground || question.part != Part::Ground) searches.push_back(ask(scene, question));
+                if (parameters_.ground || question.part != Part::Ground)
+                    searches.push_back(ask(scene, question));
             job_.report("searching", i + 1, parameters_.scenes);
         }
         return {{"model", model_->name()}, {"summary", summary(searches)}, {"searches", searches}};
@@ -117,7 +127,7 @@ private:
         recipe.request.target = question.target;
         Json entry{{"kind", question.kind},     {"scene", sentence(scene.spec)}, {"source", question.source},
                    {"prompt", question.prompt}, {"present", question.present},   {"confidence", 0.0}};
-        if (!edit::knows(model_->known_words(), question.source)) {   // refused before any work
+        if (!edit::knows(model_->known_words(), question.source)) {  // refused before any work
             entry["overlap"] = 0.0;
             return entry;
         }
@@ -132,26 +142,32 @@ private:
         entry["recognition"] = confidence.recognition;
         entry["networks"] = job.times().networks_json()["total"];
         if (question.present)
-            entry["overlap"] = evaluate::row_overlap(*found.label.bits, rows_of(scene, question.part), found.weights.evidence).iou;
+            entry["overlap"] = evaluate::row_overlap(*found.label.bits, rows_of(scene, question.part),
+                                                     found.weights.evidence)
+                                   .iou;
         return entry;
     }
 
-    /// Per threshold: share of the words found right that would be refused, and of the wrong ones that would be labelled.
+    /// Per threshold: share of the words found right that would be refused, and of the wrong ones that would
+    /// be labelled.
     Json summary(const Json& searches) const {
         Json table = Json::array();
         for (const double threshold : Thresholds) {
-            std::map<std::string, std::pair<int, int>> kinds;   // below the threshold, all
+            std::map<std::string, std::pair<int, int>> kinds;  // below the threshold, all
             int right = 0, refused = 0;
             for (const auto& entry : searches) {
                 const bool below = entry["confidence"].get<double>() < threshold;
                 auto& [count, all] = kinds[entry["kind"].get<std::string>()];
                 count += below ? 1 : 0;
                 ++all;
-                if (!entry["present"].get<bool>() || entry["overlap"].get<double>() < parameters_.least_overlap) continue;
+                if (!entry["present"].get<bool>() ||
+                    entry["overlap"].get<double>() < parameters_.least_overlap)
+                    continue;
                 ++right;
                 refused += below ? 1 : 0;
             }
-            Json line{{"threshold", threshold}, {"false_rejects", right > 0 ? refused / static_cast<double>(right) : 0}};
+            Json line{{"threshold", threshold},
+                      {"false_rejects", right > 0 ? refused / static_cast<double>(right) : 0}};
             for (const auto& [kind, counts] : kinds)
                 line[kind] = {{"refused", counts.first}, {"of", counts.second}};
             table.push_back(std::move(line));
@@ -167,7 +183,8 @@ private:
 
 }  // namespace
 
-Json bench_search(const SearchBenchParameters& parameters, const pipeline::EditRecipe& settings, const JobControl& job) {
+Json bench_search(const SearchBenchParameters& parameters, const pipeline::EditRecipe& settings,
+                  const JobControl& job) {
     return SearchBench(parameters, settings, job).run();
 }
 

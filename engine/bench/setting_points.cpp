@@ -14,10 +14,13 @@ using Json = nlohmann::ordered_json;
 /// The figure; not a number where there is none.
 double figure_of(const SettingPoint& point, const std::string& name) {
     const auto found = point.figures.find(name);
-    return found != point.figures.end() && found->is_number() ? found->get<double>() : std::numeric_limits<double>::quiet_NaN();
+    return found != point.figures.end() && found->is_number() ? found->get<double>()
+                                                              : std::numeric_limits<double>::quiet_NaN();
 }
 
-std::string full_name(const SettingPoint& point) { return point.curve.empty() ? point.name : point.curve + ", " + point.name; }
+std::string full_name(const SettingPoint& point) {
+    return point.curve.empty() ? point.name : point.curve + ", " + point.name;
+}
 
 ChartPoint chart_point(const SettingPoint& point, const Facet& facet) {
     return {figure_of(point, facet.x), figure_of(point, facet.y), point.name, point.standard};
@@ -49,7 +52,8 @@ std::optional<Lead> lead_of(const SettingPoint& one, const SettingPoint& other, 
     Lead lead;
     for (std::size_t i = 0; i < a.size(); ++i) lead.mean += better_by(i) / count;
     double squares = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) squares += (better_by(i) - lead.mean) * (better_by(i) - lead.mean);
+    for (std::size_t i = 0; i < a.size(); ++i)
+        squares += (better_by(i) - lead.mean) * (better_by(i) - lead.mean);
     lead.standard_error = std::sqrt(squares / (count - 1) / count);
     return lead;
 }
@@ -64,9 +68,10 @@ Json default_of(const std::vector<SettingPoint>& points, const Facet& facet) {
             if (&other == &point || !beats(chart_point(other, facet), own, facet.less_is_better)) continue;
             const auto lead = lead_of(other, point, facet);
             if (lead && lead->mean > 0 && lead->mean < LeadErrors * lead->standard_error)
-                within.push_back({{"name", full_name(other)}, {"lead", lead->mean}, {"standard_error", lead->standard_error}});
-            else
-                beaten.push_back(full_name(other));
+                within.push_back({{"name", full_name(other)},
+                                  {"lead", lead->mean},
+                                  {"standard_error", lead->standard_error}});
+            else beaten.push_back(full_name(other));
         }
         const bool measured = std::isfinite(own.x) && std::isfinite(own.y);
         return {{"name", full_name(point)},
@@ -85,8 +90,10 @@ Json fronts_of(const std::vector<SettingPoint>& points, const std::vector<Facet>
         std::vector<ChartPoint> drawn;
         for (const auto& point : points) drawn.push_back(chart_point(point, facet));
         Json front = Json::array();
-        for (const auto index : pareto_front(drawn, facet.less_is_better)) front.push_back(full_name(points[index]));
-        fronts.push_back({{"x", facet.x}, {"y", facet.y}, {"front", front}, {"default", default_of(points, facet)}});
+        for (const auto index : pareto_front(drawn, facet.less_is_better))
+            front.push_back(full_name(points[index]));
+        fronts.push_back(
+            {{"x", facet.x}, {"y", facet.y}, {"front", front}, {"default", default_of(points, facet)}});
     }
     return fronts;
 }
@@ -94,7 +101,10 @@ Json fronts_of(const std::vector<SettingPoint>& points, const std::vector<Facet>
 Json points_json(const std::vector<SettingPoint>& points) {
     Json list = Json::array();
     for (const auto& point : points) {
-        Json entry{{"curve", point.curve}, {"name", point.name}, {"default", point.standard}, {"settings", point.settings}};
+        Json entry{{"curve", point.curve},
+                   {"name", point.name},
+                   {"default", point.standard},
+                   {"settings", point.settings}};
         entry.update(point.figures);
         list.push_back(std::move(entry));
     }
@@ -115,9 +125,14 @@ ChartPanel panel_of(const std::vector<SettingPoint>& points, const Facet& facet)
 }
 
 DrawColour curve_colour(std::size_t index) {
-    static constexpr std::array<DrawColour, 8> colours{{{0.10f, 0.40f, 0.75f}, {0.80f, 0.33f, 0.10f}, {0.13f, 0.52f, 0.22f},
-                                                        {0.52f, 0.22f, 0.62f}, {0.70f, 0.50f, 0.02f}, {0.76f, 0.14f, 0.32f},
-                                                        {0.08f, 0.52f, 0.56f}, {0.35f, 0.33f, 0.30f}}};
+    static constexpr std::array<DrawColour, 8> colours{{{0.10f, 0.40f, 0.75f},
+                                                        {0.80f, 0.33f, 0.10f},
+                                                        {0.13f, 0.52f, 0.22f},
+                                                        {0.52f, 0.22f, 0.62f},
+                                                        {0.70f, 0.50f, 0.02f},
+                                                        {0.76f, 0.14f, 0.32f},
+                                                        {0.08f, 0.52f, 0.56f},
+                                                        {0.35f, 0.33f, 0.30f}}};
     return colours[index % colours.size()];
 }
 

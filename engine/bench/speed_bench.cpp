@@ -31,7 +31,8 @@ struct Row {
 };
 
 std::string line(const Row& row) {
-    return fmt::format("| {} | {} | {} | {:.0f} ms | {} |\n", row.what, grouped(row.splats), row.picture, row.cpu_ms, row.error);
+    return fmt::format("| {} | {} | {} | {:.0f} ms | {} |\n", row.what, grouped(row.splats), row.picture,
+                       row.cpu_ms, row.error);
 }
 
 std::string size_text(int width, int height) { return fmt::format("{} x {}", width, height); }
@@ -46,7 +47,8 @@ void write_scene(const SpeedBenchOptions& options, const Scene& scene, const std
     save_cameras_json(folder / "cameras.json", views);
 }
 
-std::string raster_lines(const SpeedBenchOptions& options, const Scene& scene, std::string& kernels, std::string& floors) {
+std::string raster_lines(const SpeedBenchOptions& options, const Scene& scene, std::string& kernels,
+                         std::string& floors) {
     raster::BenchSettings settings;
     settings.width = options.raster_width;
     settings.height = options.raster_height;
@@ -57,7 +59,8 @@ std::string raster_lines(const SpeedBenchOptions& options, const Scene& scene, s
     const auto bench = raster::bench_raster(scene.gaussians.spans(), cameras, settings);
     kernels = fmt::format("{} kernels, {} threads", bench.kernels, bench.threads);
     const auto picture = size_text(settings.width, settings.height);
-    floors += fmt::format("{} splats, {}: {}.\n", grouped(bench.splats), picture, floor_text(floor_report(bench)));
+    floors +=
+        fmt::format("{} splats, {}: {}.\n", grouped(bench.splats), picture, floor_text(floor_report(bench)));
     return line({"rasterizer, forward", picture, bench.splats, bench.forward.cpu_median_ms,
                  fmt::format("{:.0f} dB, largest {:.1e}", bench.psnr_db, bench.max_abs_error)}) +
            line({"rasterizer, backward", picture, bench.splats, bench.backward.cpu_median_ms,
@@ -93,9 +96,12 @@ std::string speed_table(const SpeedBenchOptions& options) {
         rows += preview_lines(options, scene);
 #endif
     }
-    return fmt::format("Scenes of seed {}, SH degree 3, {} cameras on a circle, {}; median processor time of a picture, all threads together.\n\n"
-                       "| what | splats | picture | processor time | error against double precision |\n|---|---|---|---|---|\n{}\n{}",
-                       options.seed, options.views, kernels, rows, floors);
+    return fmt::format(
+        "Scenes of seed {}, SH degree 3, {} cameras on a circle, {}; median processor time of a picture, all "
+        "threads together.\n\n"
+        "| what | splats | picture | processor time | error against double precision "
+        "|\n|---|---|---|---|---|\n{}\n{}",
+        options.seed, options.views, kernels, rows, floors);
 }
 
 }  // namespace gse::bench

@@ -18,8 +18,8 @@ struct SpeedBenchOptions {
     std::filesystem::path scenes_folder;  // where scenes and cameras are written; empty = nowhere
 };
 
-/// Processor time of all threads per picture (median), each beside its error against the double-precision version. Processor
-/// time, because wall time says what else the machine does.
+/// Processor time of all threads per picture (median), each beside its error against the double-precision
+/// version. Processor time, because wall time says what else the machine does.
 std::string speed_table(const SpeedBenchOptions& options);
 
 }  // namespace gse::bench

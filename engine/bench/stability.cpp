@@ -42,7 +42,8 @@ struct Squares {
 Squares squares_of(const float* found, const double* expected, std::size_t count, double factor) {
     Squares sum;
     for (std::size_t i = 0; i < count; ++i) {
-        const double difference = factor * (static_cast<double>(found[i]) - expected[i]), size = factor * expected[i];
+        const double difference = factor * (static_cast<double>(found[i]) - expected[i]),
+                     size = factor * expected[i];
         sum.difference += difference * difference, sum.size += size * size;
     }
     return sum;
@@ -71,8 +72,8 @@ bool same(const raster::Gradients& a, const raster::Gradients& b) {
 
 StabilityTruth::StabilityTruth(const HostileScene& scene) : scene_(scene) {
     const GaussianData& data = scene.data;
-    const auto position = widened(data.position), log_scale = widened(data.log_scale), rotation = widened(data.rotation),
-               logit = widened(data.opacity_logit), sh = widened(data.sh);
+    const auto position = widened(data.position), log_scale = widened(data.log_scale),
+               rotation = widened(data.rotation), logit = widened(data.opacity_logit), sh = widened(data.sh);
     const raster::plain::Inputs inputs{data.size(), data.sh_degree, position, log_scale, rotation, logit, sh};
     const raster::Settings settings = raster::with_depth_range(scene.settings, spans(data), scene.camera);
     const raster::plain::View view{scene.camera, settings};
@@ -89,7 +90,8 @@ StabilityTruth::StabilityTruth(const HostileScene& scene) : scene_(scene) {
     blank(d_colour_, picture.ambiguous);
     blank(d_alpha_, picture.ambiguous);
     std::vector<raster::plain::SplatGradient> splat_gradients;
-    raster::plain::composite_backward(list, view, {widened(d_colour_.data), widened(d_alpha_.data)}, splat_gradients);
+    raster::plain::composite_backward(list, view, {widened(d_colour_.data), widened(d_alpha_.data)},
+                                      splat_gradients);
     strides_ = {3, 3, 4, 1, data.sh_stride(), 1};
     for (std::size_t k = 0; k < strides_.size(); ++k) gradients_[k].assign(data.size() * strides_[k], 0.0);
     for (std::size_t row = 0; row < data.size(); ++row) {
@@ -107,7 +109,8 @@ StabilityTruth::StabilityTruth(const HostileScene& scene) : scene_(scene) {
             std::copy_n(values, strides_[k], &gradients_[k][row * strides_[k]]);
         };
         const double screen = std::hypot(d.x * 0.5 * scene.camera.width, d.y * 0.5 * scene.camera.height);
-        put(0, g.position.data()), put(1, g.log_scale.data()), put(2, g.rotation.data()), put(3, &g.opacity_logit);
+        put(0, g.position.data()), put(1, g.log_scale.data()), put(2, g.rotation.data()),
+            put(3, &g.opacity_logit);
         put(4, g.sh.data()), put(5, &screen);
     }
     colour_ = std::move(picture.colour), alpha_ = std::move(picture.alpha), depth_ = std::move(picture.depth);
@@ -115,13 +118,15 @@ StabilityTruth::StabilityTruth(const HostileScene& scene) : scene_(scene) {
 }
 
 double StabilityTruth::clear_share() const {
-    return static_cast<double>(std::count(unclear_.begin(), unclear_.end(), 0)) / static_cast<double>(unclear_.size());
+    return static_cast<double>(std::count(unclear_.begin(), unclear_.end(), 0)) /
+           static_cast<double>(unclear_.size());
 }
 
 KernelStability::KernelStability(const std::string& kernels)
     : KernelStability(kernels, [&](ThreadPool& pool) { return raster::make_rasterizer_of(kernels, pool); }) {}
 
-KernelStability::KernelStability(std::string name, const std::function<std::unique_ptr<raster::Rasterizer>(ThreadPool&)>& make)
+KernelStability::KernelStability(std::string name,
+                                 const std::function<std::unique_ptr<raster::Rasterizer>(ThreadPool&)>& make)
     : kernels_(std::move(name)), single_(make(one_)), threaded_(make(three_)) {}
 
 Disagreement KernelStability::measure(const StabilityTruth& truth) {
@@ -130,11 +135,14 @@ Disagreement KernelStability::measure(const StabilityTruth& truth) {
     Disagreement result;
     single_->forward(rows, scene.camera, scene.settings, picture_);
     single_->backward(truth.d_colour_, truth.d_alpha_, 0, gradients_);
-    result.finite = all_finite(picture_.colour.data) && all_finite(picture_.alpha.data) && all_finite(picture_.depth.data);
+    result.finite = all_finite(picture_.colour.data) && all_finite(picture_.alpha.data) &&
+                    all_finite(picture_.depth.data);
     for (std::size_t i = 0; i < truth.unclear_.size(); ++i) {
         double worst = std::abs(static_cast<double>(picture_.alpha.data[i]) - truth.alpha_[i]);
         for (std::size_t c = i * 3; c < i * 3 + 3; ++c)
-            worst = std::max(worst, std::abs(static_cast<double>(picture_.colour.data[c]) - truth.colour_[c]) / truth.brightest_);
+            worst =
+                std::max(worst, std::abs(static_cast<double>(picture_.colour.data[c]) - truth.colour_[c]) /
+                                    truth.brightest_);
         const double depth = std::abs(static_cast<double>(picture_.depth.data[i]) - truth.depth_[i]);
         if (depth > 0) worst = std::max(worst, depth / truth.deepest_);
         const bool clear = truth.unclear_[i] == 0;
@@ -145,7 +153,8 @@ Disagreement KernelStability::measure(const StabilityTruth& truth) {
     compare_gradients(truth, result);
     threaded_->forward(rows, scene.camera, scene.settings, other_picture_);
     threaded_->backward(truth.d_colour_, truth.d_alpha_, 0, other_gradients_);
-    result.same_bits = same(picture_, other_picture_) && same(gradients_, other_gradients_) && same_in_session(truth);
+    result.same_bits =
+        same(picture_, other_picture_) && same(gradients_, other_gradients_) && same_in_session(truth);
     return result;
 }
 
@@ -159,14 +168,16 @@ void KernelStability::compare_gradients(const StabilityTruth& truth, Disagreemen
         Squares all;
         double largest = 0;
         for (std::size_t row = 0; row < rows.size(); ++row) {
-            rows[row] = squares_of(found[k]->data() + row * stride, truth.gradients_[k].data() + row * stride, stride,
-                                   k == 2 ? truth.turn_[row] : 1.0);
+            rows[row] = squares_of(found[k]->data() + row * stride, truth.gradients_[k].data() + row * stride,
+                                   stride, k == 2 ? truth.turn_[row] : 1.0);
             all.difference += rows[row].difference, all.size += rows[row].size;
             largest = std::max(largest, rows[row].size);
         }
         const double error = all.relative();
-        if (result.tensor.empty() || error > result.gradient) result.gradient = error, result.tensor = GradientNames[k];
-        for (const auto& row : rows) result.row = std::max(result.row, row.relative(LeastOfLargest * LeastOfLargest * largest));
+        if (result.tensor.empty() || error > result.gradient)
+            result.gradient = error, result.tensor = GradientNames[k];
+        for (const auto& row : rows)
+            result.row = std::max(result.row, row.relative(LeastOfLargest * LeastOfLargest * largest));
     }
 }
 

@@ -22,7 +22,7 @@ std::vector<std::string> causes_of(const std::string& list) {
     for (const auto& cause : hostile_causes()) names.push_back(cause.name);
     if (list == "all") return names;
     std::vector<std::string> chosen;
-    for (std::size_t at = 0; at <= list.size();) {   // names have spaces in them
+    for (std::size_t at = 0; at <= list.size();) {  // names have spaces in them
         const auto end = std::min(list.find(',', at), list.size());
         const auto first = list.find_first_not_of(' ', at);
         if (first < end) {
@@ -53,14 +53,16 @@ Json spread_json(std::vector<double> errors) {
 template <class Figure>
 Json spread_of(const std::vector<const StabilityRecord*>& records, const Figure& figure) {
     std::vector<double> errors;
-    for (const auto* record : records) errors.push_back(record->error.finite ? figure(record->error) : INFINITY);
+    for (const auto* record : records)
+        errors.push_back(record->error.finite ? figure(record->error) : INFINITY);
     return spread_json(std::move(errors));
 }
 
 template <class Figure>
 Json worst_scene(const std::vector<const StabilityRecord*>& records, const Figure& figure) {
-    const auto* worst = *std::max_element(records.begin(), records.end(),
-                                          [&](auto* a, auto* b) { return figure(a->error) < figure(b->error); });
+    const auto* worst = *std::max_element(records.begin(), records.end(), [&](auto* a, auto* b) {
+        return figure(a->error) < figure(b->error);
+    });
     return {{"seed", worst->seed}, {"kernels", worst->kernels}, {"tensor", worst->error.tensor}};
 }
 
@@ -95,14 +97,15 @@ Json cause_json(const std::string& cause, const std::vector<const StabilityRecor
 
 Table causes_table(const Json& causes) {
     Table table{"",
-                {"cause", "scenes", "clear pixels", "picture median", "worst", "gradient median", "worst", "of", "seed",
-                 "worst row", "unclear worst"},
+                {"cause", "scenes", "clear pixels", "picture median", "worst", "gradient median", "worst",
+                 "of", "seed", "worst row", "unclear worst"},
                 {}};
     for (const auto& c : causes)
         table.rows.push_back({c["cause"], number_text(c["scenes"]),
-                              fmt::format("{:.1f} %", 100 * c["clear_pixels"].get<double>()), number_text(c["picture"]["median"]),
-                              number_text(c["picture"]["worst"]), number_text(c["gradient"]["median"]),
-                              number_text(c["gradient"]["worst"]), c["gradient_worst_scene"]["tensor"],
+                              fmt::format("{:.1f} %", 100 * c["clear_pixels"].get<double>()),
+                              number_text(c["picture"]["median"]), number_text(c["picture"]["worst"]),
+                              number_text(c["gradient"]["median"]), number_text(c["gradient"]["worst"]),
+                              c["gradient_worst_scene"]["tensor"],
                               std::to_string(c["gradient_worst_scene"]["seed"].get<std::uint64_t>()),
                               number_text(c["row"]["worst"]), number_text(c["unclear_picture"]["worst"])});
     return table;
@@ -119,25 +122,29 @@ std::vector<std::string> verdicts(const Json& causes) {
     std::size_t scenes = 0, not_finite = 0, other_bits = 0, miscounted = 0;
     for (const auto& c : causes) {
         scenes += c["scenes"].get<std::size_t>(), not_finite += c["not_finite"].get<std::size_t>();
-        other_bits += c["other_bits"].get<std::size_t>(), miscounted += c["miscounted_pixels"].get<std::size_t>();
+        other_bits += c["other_bits"].get<std::size_t>(),
+            miscounted += c["miscounted_pixels"].get<std::size_t>();
     }
-    return {fmt::format(
-        "{} pictures with gradients: {} with a value that is not finite; {} in which three threads or the view session gave "
-        "other bits than one thread; {} clear pixels with another number of splats.",
-        scenes, not_finite, other_bits, miscounted)};
+    return {
+        fmt::format("{} pictures with gradients: {} with a value that is not finite; {} in which three "
+                    "threads or the view session gave "
+                    "other bits than one thread; {} clear pixels with another number of splats.",
+                    scenes, not_finite, other_bits, miscounted)};
 }
 
 }  // namespace
 
 std::size_t error_decade(double error) {
     if (!(error < 0.1)) return ErrorDecades - 1;
-    const double decade = std::floor(std::log10(std::max(error, 1e-300)) + 1e-12) + static_cast<double>(ErrorDecades);
+    const double decade =
+        std::floor(std::log10(std::max(error, 1e-300)) + 1e-12) + static_cast<double>(ErrorDecades);
     return decade < 1 ? 0 : static_cast<std::size_t>(decade);
 }
 
 std::vector<StabilityRecord> measure_stability(const StabilityParameters& parameters, const JobControl& job) {
     std::vector<std::unique_ptr<KernelStability>> versions;
-    for (const auto& name : kernels_in_list(parameters.kernels)) versions.push_back(std::make_unique<KernelStability>(name));
+    for (const auto& name : kernels_in_list(parameters.kernels))
+        versions.push_back(std::make_unique<KernelStability>(name));
     const auto causes = causes_of(parameters.causes);
     const int total = parameters.scenes * static_cast<int>(causes.size());
     std::vector<StabilityRecord> records;
@@ -150,7 +157,8 @@ std::vector<StabilityRecord> measure_stability(const StabilityParameters& parame
             const HostileScene scene = hostile_scene(cause, seed);
             const StabilityTruth truth(scene);
             for (const auto& version : versions)
-                records.push_back({cause, version->kernels(), seed, truth.clear_share(), version->measure(truth)});
+                records.push_back(
+                    {cause, version->kernels(), seed, truth.clear_share(), version->measure(truth)});
         }
     return records;
 }
@@ -168,7 +176,9 @@ Subject bench_stability(const StabilityParameters& parameters, const JobControl&
         causes.back()["meaning"] = cause.meaning;
         names.push_back(cause.name);
     }
-    Subject subject{"stability", "Rasterizer: error on scenes that are hard on single precision, by cause", {}, {}, {}, {}};
+    Subject subject{"stability", "Rasterizer: error on scenes that are hard on single precision, by cause",
+                    {},          {},
+                    {},          {}};
     subject.report = {{"parameters", fields_to_json(parameters)}, {"causes", causes}};
     subject.tables = {causes_table(causes)};
     subject.remarks = verdicts(causes);
@@ -176,11 +186,13 @@ Subject bench_stability(const StabilityParameters& parameters, const JobControl&
         subject.title, names,
         {panel_of_causes("largest error of a picture's clear pixels", causes, "picture"),
          panel_of_causes("largest relative error of a gradient's tensors (L2)", causes, "gradient")},
-        {fmt::format("Pictures per decade of error, to the plain double version; {} scenes per cause and instruction set ({}). "
+        {fmt::format("Pictures per decade of error, to the plain double version; {} scenes per cause and "
+                     "instruction set ({}). "
                      "Clear: no pair so "
                      "near to a cut",
                      parameters.scenes, parameters.kernels),
-         "that single precision may decide it otherwise. Colour over max(1, the largest colour), depth over the largest depth."});
+         "that single precision may decide it otherwise. Colour over max(1, the largest colour), depth over "
+         "the largest depth."});
     return subject;
 }
 

@@ -30,12 +30,13 @@ std::string decade_name(std::size_t decade) {
     return "1e" + std::to_string(static_cast<int>(decade) - static_cast<int>(ErrorDecades));
 }
 
-void draw_line_of_cells(Image& image, double left, double top, double cell, const std::vector<std::size_t>& counts) {
+void draw_line_of_cells(Image& image, double left, double top, double cell,
+                        const std::vector<std::size_t>& counts) {
     const double all = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
     for (std::size_t i = 0; i < counts.size(); ++i) {
         if (counts[i] == 0) continue;
-        const auto share =
-            static_cast<float>(0.12 + 0.88 * std::sqrt(static_cast<double>(counts[i]) / all));  // one of many is seen too
+        const auto share = static_cast<float>(
+            0.12 + 0.88 * std::sqrt(static_cast<double>(counts[i]) / all));  // one of many is seen too
         DrawColour shade;
         for (std::size_t c = 0; c < 3; ++c) shade[c] = 1 + share * (Deep[c] - 1);
         const double x = left + static_cast<double>(i) * cell;
@@ -47,8 +48,8 @@ void draw_line_of_cells(Image& image, double left, double top, double cell, cons
 
 }  // namespace
 
-Image draw_histograms(const std::string& title, const std::vector<std::string>& names, const std::vector<HistogramPanel>& panels,
-                      const std::vector<std::string>& notes) {
+Image draw_histograms(const std::string& title, const std::vector<std::string>& names,
+                      const std::vector<HistogramPanel>& panels, const std::vector<std::string>& notes) {
     const double bottom = HeadHeight + CellHeight * static_cast<double>(names.size());
     Image image(ChartWidth, static_cast<int>(bottom + 30 + 20 * static_cast<double>(notes.size())), 3, 1.0f);
     draw_text(image, Edge, 34, title, 13, Black);
@@ -64,9 +65,11 @@ Image draw_histograms(const std::string& title, const std::vector<std::string>& 
         const double left = Edge + NamesWidth + static_cast<double>(p) * (width + Gap);
         draw_text(image, left, 68, panels[p].title, 10, Black);
         for (std::size_t d = 0; d < ErrorDecades; ++d)
-            centred(image, left + (static_cast<double>(d) + 0.5) * cell, HeadHeight - 10, decade_name(d), Black);
+            centred(image, left + (static_cast<double>(d) + 0.5) * cell, HeadHeight - 10, decade_name(d),
+                    Black);
         for (std::size_t i = 0; i < panels[p].counts.size(); ++i)
-            draw_line_of_cells(image, left, HeadHeight + CellHeight * static_cast<double>(i), cell, panels[p].counts[i]);
+            draw_line_of_cells(image, left, HeadHeight + CellHeight * static_cast<double>(i), cell,
+                               panels[p].counts[i]);
     }
     for (std::size_t i = 0; i < notes.size(); ++i)
         draw_text(image, Edge, bottom + 30 + 20 * static_cast<double>(i), notes[i], TextHeight, Black);

@@ -28,14 +28,16 @@ std::string cell_text(const Json& value) {
 std::string table_text(const Table& table) {
     std::vector<std::size_t> widths(table.head.size(), 0);
     const auto widen = [&](const std::vector<std::string>& row) {
-        for (std::size_t c = 0; c < std::min(row.size(), widths.size()); ++c) widths[c] = std::max(widths[c], row[c].size());
+        for (std::size_t c = 0; c < std::min(row.size(), widths.size()); ++c)
+            widths[c] = std::max(widths[c], row[c].size());
     };
     widen(table.head);
     for (const auto& row : table.rows) widen(row);
     const auto line = [&](const std::vector<std::string>& row) {
         std::string text;
         for (std::size_t c = 0; c < std::min(row.size(), widths.size()); ++c)
-            text += c == 0 ? fmt::format("{:<{}}", row[c], widths[c]) : fmt::format("  {:>{}}", row[c], widths[c]);
+            text += c == 0 ? fmt::format("{:<{}}", row[c], widths[c])
+                           : fmt::format("  {:>{}}", row[c], widths[c]);
         return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
     };
     std::string text = table.title.empty() ? "" : table.title + "\n";
@@ -53,7 +55,8 @@ Table points_table(const std::string& title, const Json& points, const std::vect
     for (const auto& point : points) {
         const auto curve = point.value("curve", ""), name = point.value("name", "");
         std::vector<std::string> row{curve.empty() ? name : curve + ", " + name};
-        for (const auto& column : columns) row.push_back(point.contains(column.key) ? cell_text(point[column.key]) : "-");
+        for (const auto& column : columns)
+            row.push_back(point.contains(column.key) ? cell_text(point[column.key]) : "-");
         row.emplace_back(point.value("default", false) ? "default" : "");
         table.rows.push_back(std::move(row));
     }
@@ -66,7 +69,8 @@ std::vector<std::string> front_remarks(const Json& fronts, const std::vector<std
         const auto& standard = fronts[i]["default"];
         if (!standard.is_object()) continue;
         std::string others;
-        for (const auto& name : standard["beaten_by"]) others += (others.empty() ? "" : "; ") + name.get<std::string>();
+        for (const auto& name : standard["beaten_by"])
+            others += (others.empty() ? "" : "; ") + name.get<std::string>();
         std::string within;
         for (const auto& lead : standard["within_scatter"])
             within += fmt::format("{}{} (by {:.2g}, standard error {:.2g})", within.empty() ? "" : "; ",
@@ -75,12 +79,15 @@ std::vector<std::string> front_remarks(const Json& fronts, const std::vector<std
         if (standard["on_front"].get<bool>() && within.empty())
             remarks.push_back(fmt::format("{}: the default lies on the front.", titles[i]));
         else if (standard["on_front"].get<bool>())
-            remarks.push_back(fmt::format("{}: the default lies on the front within the scatter of the cases; ahead by less "
-                                          "than twice the standard error: {}.", titles[i], within));
+            remarks.push_back(fmt::format(
+                "{}: the default lies on the front within the scatter of the cases; ahead by less "
+                "than twice the standard error: {}.",
+                titles[i], within));
         else if (others.empty())
             remarks.push_back(fmt::format("{}: the default could not be measured.", titles[i]));
         else
-            remarks.push_back(fmt::format("{}: the default does not lie on the front; it is beaten by: {}.", titles[i], others));
+            remarks.push_back(fmt::format("{}: the default does not lie on the front; it is beaten by: {}.",
+                                          titles[i], others));
     }
     return remarks;
 }
@@ -114,7 +121,8 @@ std::vector<std::string> words_in_list(const std::string& text) {
     return words;
 }
 
-std::vector<double> numbers_in_list(const std::string& name, const std::string& text, double low, double high) {
+std::vector<double> numbers_in_list(const std::string& name, const std::string& text, double low,
+                                    double high) {
     std::vector<double> numbers;
     for (const auto& word : words_in_list(text)) {
         char* end = nullptr;
@@ -133,9 +141,10 @@ std::vector<double> numbers_in_list(const std::string& name, const std::string& 
 void parse_picture_size(const std::string& text, int& width, int& height) {
     constexpr int most = 16384;
     char rest = 0;
-    if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 || width > most ||
-        height > most)
-        throw Error(ErrorCode::InvalidArgument, "the size \"" + text + "\" is not understood", "write it like 1280x720");
+    if (std::sscanf(text.c_str(), "%dx%d%c", &width, &height, &rest) != 2 || width < 1 || height < 1 ||
+        width > most || height > most)
+        throw Error(ErrorCode::InvalidArgument, "the size \"" + text + "\" is not understood",
+                    "write it like 1280x720");
 }
 
 }  // namespace gse::bench

@@ -1,4 +1,5 @@
-// A subject of `gseditpro bench`: figures, a picture, tables; the same for the terminal, for files and for the page of all.
+// A subject of `gseditpro bench`: figures, a picture, tables; the same for the terminal, for files and for
+// the page of all.
 #pragma once
 
 #include <filesystem>
@@ -18,11 +19,11 @@ struct Table {
 };
 
 struct Subject {
-    std::string name, title;         // "raster", "The rasterizer: ..."
-    nlohmann::ordered_json report;   // with "parameters"
+    std::string name, title;        // "raster", "The rasterizer: ..."
+    nlohmann::ordered_json report;  // with "parameters"
     Image picture;
     std::vector<Table> tables;
-    std::vector<std::string> remarks;   // sentences: where the default lies, what was left out
+    std::vector<std::string> remarks;  // sentences: where the default lies, what was left out
 };
 
 /// A column of a table over measured points: the key of the figure and what stands above it.
@@ -31,10 +32,13 @@ struct Column {
 };
 
 /// A row per point of points_json(); the default has a mark in the last column.
-Table points_table(const std::string& title, const nlohmann::ordered_json& points, const std::vector<Column>& columns);
+Table points_table(const std::string& title, const nlohmann::ordered_json& points,
+                   const std::vector<Column>& columns);
 
-/// Sentences about fronts_of(): whether the default lies on them, and if not, what beats it. `titles`: what each is about.
-std::vector<std::string> front_remarks(const nlohmann::ordered_json& fronts, const std::vector<std::string>& titles);
+/// Sentences about fronts_of(): whether the default lies on them, and if not, what beats it. `titles`: what
+/// each is about.
+std::vector<std::string> front_remarks(const nlohmann::ordered_json& fronts,
+                                       const std::vector<std::string>& titles);
 
 /// Tables and remarks as text for a terminal.
 std::string subject_text(const Subject& subject);
@@ -44,9 +48,10 @@ void leave_subject(const Subject& subject, const std::filesystem::path& folder);
 
 /// Words of a list with spaces or commas between them.
 std::vector<std::string> words_in_list(const std::string& text);
-/// The same as numbers, each once and ascending. Throws Error (InvalidArgument) that names the setting unless all are numbers
-/// from `low` to `high`.
-std::vector<double> numbers_in_list(const std::string& name, const std::string& text, double low, double high);
+/// The same as numbers, each once and ascending. Throws Error (InvalidArgument) that names the setting unless
+/// all are numbers from `low` to `high`.
+std::vector<double> numbers_in_list(const std::string& name, const std::string& text, double low,
+                                    double high);
 
 /// "1280x720". Throws Error (InvalidArgument).
 void parse_picture_size(const std::string& text, int& width, int& height);

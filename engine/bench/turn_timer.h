@@ -9,14 +9,13 @@
 
 namespace gse::bench {
 
-/// One per renderer. Buffers grow, and memory is touched for the first time, in the first picture of every view, not only in the
-/// very first picture: before anything is timed, a whole turn is drawn, else the first setting would look dearer than the others.
-/// Before the turns of other settings one picture is enough.
+/// One per renderer. Buffers grow, and memory is touched for the first time, in the first picture of every
+/// view, not only in the very first picture: before anything is timed, a whole turn is drawn, else the first
+/// setting would look dearer than the others. Before the turns of other settings one picture is enough.
 class TurnTimer {
 public:
     /// Wall milliseconds of draw(0) to draw(views - 1), ascending.
-    template <class Draw>
-    std::vector<double> time(std::size_t views, const Draw& draw) {
+    template <class Draw> std::vector<double> time(std::size_t views, const Draw& draw) {
         for (std::size_t view = warm_ ? views - 1 : 0; view < views; ++view) draw(view);
         warm_ = true;
         std::vector<double> times;

@@ -27,7 +27,7 @@ std::vector<Vec3> slice(const std::vector<Vec3>& points, double low, double high
 
 /// What the views say about one point.
 struct Vote {
-    int counted = 0, seen = 0, covered = 0;   // in the picture; of those not hidden; of those inside the mask
+    int counted = 0, seen = 0, covered = 0;  // in the picture; of those not hidden; of those inside the mask
 };
 
 Vote vote_at(const RegionSearch& search, const Vec3& world, double side) {
@@ -43,7 +43,7 @@ Vote vote_at(const RegionSearch& search, const Vec3& world, double side) {
         const int x = static_cast<int>(px), y = static_cast<int>(py);
         ++vote.counted;
         const double surface = search.depths.empty() ? 0 : search.depths[v].at(x, y, 0);
-        if (surface > 0 && p.z > surface + side) continue;   // hidden
+        if (surface > 0 && p.z > surface + side) continue;  // hidden
         ++vote.seen;
         vote.covered += mask.at(x, y) != 0 ? 1 : 0;
     }
@@ -51,8 +51,8 @@ Vote vote_at(const RegionSearch& search, const Vec3& world, double side) {
 }
 
 /// The chosen cells that touch `seed` by faces, over any number of steps; marks them in `done`.
-std::vector<std::size_t> component(const Grid& grid, const std::vector<std::uint8_t>& chosen, std::size_t seed,
-                                   std::vector<std::uint8_t>& done) {
+std::vector<std::size_t> component(const Grid& grid, const std::vector<std::uint8_t>& chosen,
+                                   std::size_t seed, std::vector<std::uint8_t>& done) {
     const auto nx = static_cast<std::size_t>(grid.count[0]), ny = static_cast<std::size_t>(grid.count[1]);
     std::vector<std::size_t> part{seed};
     const auto visit = [&](std::size_t cell) {
@@ -74,7 +74,8 @@ std::vector<std::size_t> component(const Grid& grid, const std::vector<std::uint
 }
 
 /// The largest connected set of chosen cells, and every other of at least `share` of its size: wings are two.
-std::vector<std::size_t> large_components(const Grid& grid, const std::vector<std::uint8_t>& chosen, double share) {
+std::vector<std::size_t> large_components(const Grid& grid, const std::vector<std::uint8_t>& chosen,
+                                          double share) {
     std::vector<std::uint8_t> done(chosen.size(), 0);
     std::vector<std::vector<std::size_t>> parts;
     std::size_t largest = 0;
@@ -161,12 +162,14 @@ bool on_surface(const Grid& grid, const std::vector<std::uint8_t>& inside, std::
     const std::array<std::size_t, 3> at{cell % nx, cell / nx % ny, cell / (nx * ny)}, step{1, nx, nx * ny};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         if (at[axis] == 0 || inside[cell - step[axis]] == 0) return true;
-        if (at[axis] + 1 == static_cast<std::size_t>(grid.count[axis]) || inside[cell + step[axis]] == 0) return true;
+        if (at[axis] + 1 == static_cast<std::size_t>(grid.count[axis]) || inside[cell + step[axis]] == 0)
+            return true;
     }
     return false;
 }
 
-/// The connected cells on which at least `level` of the views agree; empty when they are too few, or too many to be a place.
+/// The connected cells on which at least `level` of the views agree; empty when they are too few, or too many
+/// to be a place.
 AddRegion region_at(const Grid& grid, const Frame& frame, const std::vector<double>& agreement, double level,
                     const RegionParameters& parameters) {
     std::vector<std::uint8_t> chosen(grid.size());
@@ -194,7 +197,8 @@ double silhouette_match(const RegionSearch& search, const AddRegion& region) {
     for (std::size_t v = 0; v < search.views.size(); ++v) {
         const Mask& mask = search.masks[v];
         if (mask.data.empty()) continue;
-        sum += localize::mask_iou(mask, region_mask(region, search.views[v].camera, search.depths.empty() ? nullptr : &search.depths[v]));
+        sum += localize::mask_iou(mask, region_mask(region, search.views[v].camera,
+                                                    search.depths.empty() ? nullptr : &search.depths[v]));
         ++views;
     }
     return views > 0 ? sum / static_cast<double>(views) : 0;
@@ -217,8 +221,8 @@ std::string head_of(const std::string& phrase) {
     return words.empty() ? std::string() : words.back();
 }
 
-/// Where the votes for what the source wears or has on are counted: around it, down to its foot (a label may lack what carries a thing)
-/// and above.
+/// Where the votes for what the source wears or has on are counted: around it, down to its foot (a label may
+/// lack what carries a thing) and above.
 Box worn_box(const std::vector<Vec3>& points, const Standing& standing, const Frame& frame) {
     Box box = trimmed_box(points, BoundsTrim);
     if (standing.found()) box.low.y = std::min(box.low.y, frame.to_frame(standing.foot).y);
@@ -229,9 +233,11 @@ Box worn_box(const std::vector<Vec3>& points, const Standing& standing, const Fr
     return box;
 }
 
-/// Share of the views that see a cube whose mask covers it; 0 where too few count, or where the relation does not allow it.
-std::vector<double> agreement_of(const RegionSearch& search, const RegionParameters& parameters, const Frame& frame, const Grid& grid,
-                                 const RelatedPlace* place, std::ptrdiff_t voters) {
+/// Share of the views that see a cube whose mask covers it; 0 where too few count, or where the relation does
+/// not allow it.
+std::vector<double> agreement_of(const RegionSearch& search, const RegionParameters& parameters,
+                                 const Frame& frame, const Grid& grid, const RelatedPlace* place,
+                                 std::ptrdiff_t voters) {
     constexpr std::size_t cells_at_once = 512;
     std::vector<double> agreement(grid.size(), 0);
     const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
@@ -243,10 +249,8 @@ std::vector<double> agreement_of(const RegionSearch& search, const RegionParamet
             agreement[cell] = static_cast<double>(vote.covered) / vote.seen;
         }
     };
-    if (search.threads != nullptr)
-        search.threads->parallel_for(grid.size(), cells_at_once, some);
-    else
-        some(0, grid.size(), 0);
+    if (search.threads != nullptr) search.threads->parallel_for(grid.size(), cells_at_once, some);
+    else some(0, grid.size(), 0);
     return agreement;
 }
 
@@ -261,17 +265,22 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
                                       [](const Mask& m) { return !m.data.empty(); });
     if (points.empty() || voters == 0) return {};
     const bool related = !place_name(search.relation).empty();
-    const RelatedPlace place(search.relation, points, related ? visible_points(search, frame, false) : std::vector<Vec3>{});
+    const RelatedPlace place(search.relation, points,
+                             related ? visible_points(search, frame, false) : std::vector<Vec3>{});
     const auto worn = [&] {
         const bool known = search.standing.found();
-        return worn_box(points, known ? search.standing : standing_of(search.gaussians, search.source_bits, search.up, search.front), frame);
+        return worn_box(points,
+                        known ? search.standing
+                              : standing_of(search.gaussians, search.source_bits, search.up, search.front),
+                        frame);
     };
     const Grid grid = make_grid(related ? place.box() : worn(), parameters.cells);
     const auto agreement = agreement_of(search, parameters, frame, grid, related ? &place : nullptr, voters);
     const double best = *std::max_element(agreement.begin(), agreement.end());
     if (best < parameters.least_agreement) return {};
     std::vector<double> levels;
-    for (double level = best; level >= parameters.lowest_agreement; level -= parameters.level_step) levels.push_back(level);
+    for (double level = best; level >= parameters.lowest_agreement; level -= parameters.level_step)
+        levels.push_back(level);
     std::vector<AddRegion> candidates(levels.size());
     std::vector<double> matches(levels.size(), 0);
     const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
@@ -280,12 +289,13 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
             matches[i] = candidates[i].empty() ? 0 : silhouette_match(search, candidates[i]);
         }
     };
-    if (search.threads != nullptr)
-        search.threads->parallel_for(levels.size(), 1, some);
-    else
-        some(0, levels.size(), 0);
-    const auto chosen = std::max_element(matches.begin(), matches.end());   // of equal ones the smallest region
-    return chosen == matches.end() || *chosen <= 0 ? AddRegion{} : candidates[static_cast<std::size_t>(chosen - matches.begin())];
+    if (search.threads != nullptr) search.threads->parallel_for(levels.size(), 1, some);
+    else some(0, levels.size(), 0);
+    const auto chosen =
+        std::max_element(matches.begin(), matches.end());  // of equal ones the smallest region
+    return chosen == matches.end() || *chosen <= 0
+               ? AddRegion{}
+               : candidates[static_cast<std::size_t>(chosen - matches.begin())];
 }
 
 AddRegion anchor_region(const RegionSearch& search, const std::string& place, int cells) {
@@ -342,20 +352,26 @@ GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std:
 
 Mask region_mask(const AddRegion& region, const Camera& camera, const Image* depth) {
     Mask mask(camera.width, camera.height);
-    constexpr double Corner = 0.71;  // half the diagonal of a face of side 1: neighbours leave no gap, and reach little beyond
-    // A ray that meets an inner cube meets one of the shell before, and what is drawn of a cube reaches as far as the corners of a face.
+    constexpr double Corner =
+        0.71;  // half the diagonal of a face of side 1: neighbours leave no gap, and reach little beyond
+    // A ray that meets an inner cube meets one of the shell before, and what is drawn of a cube reaches as
+    // far as the corners of a face.
     for (const auto& centre : region.shell.empty() ? region.centres : region.shell) {
         const Vec3 p = camera.to_camera(centre);
         if (p.z <= region.side) continue;
         const double x = camera.fx * p.x / p.z + camera.cx, y = camera.fy * p.y / p.z + camera.cy;
         const double radius = Corner * region.side * camera.fx / p.z;
-        const auto limit = [](double value, int size) { return static_cast<int>(std::clamp(value, 0.0, size + 0.0)); };
+        const auto limit = [](double value, int size) {
+            return static_cast<int>(std::clamp(value, 0.0, size + 0.0));
+        };
         const double reach = std::max(radius, 0.71) * std::max(radius, 0.71);
-        for (int v = limit(y - radius, mask.height); v < limit(y + radius + 1, mask.height); ++v) {   // pixel centres in the circle
+        for (int v = limit(y - radius, mask.height); v < limit(y + radius + 1, mask.height);
+             ++v) {  // pixel centres in the circle
             const double rest = reach - (v + 0.5 - y) * (v + 0.5 - y);
             if (rest < 0) continue;
             const double half = std::sqrt(rest);
-            const int first = limit(std::ceil(x - half - 0.5), mask.width), end = limit(std::floor(x + half - 0.5) + 1, mask.width);
+            const int first = limit(std::ceil(x - half - 0.5), mask.width),
+                      end = limit(std::floor(x + half - 0.5) + 1, mask.width);
             for (int u = first; u < end; ++u) {
                 const float surface = depth != nullptr ? depth->at(u, v, 0) : 0;
                 if (surface <= 0 || p.z <= surface + region.side) mask.at(u, v) = 1;

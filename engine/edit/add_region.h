@@ -16,11 +16,12 @@ namespace gse::edit {
 
 /// A set of equal cubes.
 struct AddRegion {
-    std::vector<Vec3> centres;    // world
-    std::vector<Vec3> shell;      // those with a free face, which alone are seen; empty = not known
-    double side = 0;              // of a cube, world units
-    double agreement = 0;         // mean share, of the views that see the cubes, whose mask covers them
-    std::string origin = "none";  // "attention" or the place: "top", "front", "neck", "around", "beside", "left", ...
+    std::vector<Vec3> centres;  // world
+    std::vector<Vec3> shell;    // those with a free face, which alone are seen; empty = not known
+    double side = 0;            // of a cube, world units
+    double agreement = 0;       // mean share, of the views that see the cubes, whose mask covers them
+    std::string origin =
+        "none";  // "attention" or the place: "top", "front", "neck", "around", "beside", "left", ...
     bool empty() const { return centres.empty(); }
 };
 
@@ -33,21 +34,24 @@ struct RegionSearch {
     std::span<const Image> depths;  // per view [H,W,1] depth of the surface, 0 = nothing there
     Vec3 up{0, -1, 0};
     Vec3 front{0, 0, -1};  // where the thing looks
-    Relation relation = Relation::None;   // what the sentence says of the new thing's place: cells elsewhere do not count
-    ThreadPool* threads = nullptr;        // may be null
-    Standing standing{};                  // of the thing; not found = read off its rows
+    Relation relation =
+        Relation::None;  // what the sentence says of the new thing's place: cells elsewhere do not count
+    ThreadPool* threads = nullptr;  // may be null
+    Standing standing{};            // of the thing; not found = read off its rows
 };
 
 struct RegionParameters {
-    int cells = 28;                // along the longest side of the searched box
-    double least_agreement = 0.5;  // share of the views that see the best cube that must cover it
+    int cells = 28;                 // along the longest side of the searched box
+    double least_agreement = 0.5;   // share of the views that see the best cube that must cover it
     double lowest_agreement = 0.4;  // of all regions above which the one is taken that matches the masks best
     double level_step = 0.05;
-    double least_covered = 0.45;   // share of the views in which the cube is in the mask: few that see it prove little
-    double least_seen = 0.2;       // share of the views in which the cube is not hidden behind the surface
-    double most_volume = 0.35;     // of the searched box: a larger region means the maps agree on nothing
+    double least_covered =
+        0.45;  // share of the views in which the cube is in the mask: few that see it prove little
+    double least_seen = 0.2;    // share of the views in which the cube is not hidden behind the surface
+    double most_volume = 0.35;  // of the searched box: a larger region means the maps agree on nothing
     int least_cells = 6;
-    double least_part = 0.1;       // of the largest connected part: smaller ones are dropped (flames above a wide cap are)
+    double least_part =
+        0.1;  // of the largest connected part: smaller ones are dropped (flames above a wide cap are)
 };
 
 /// Votes a grid of cubes around the source with the masks; empty when the masks do not agree on a place.
@@ -57,7 +61,8 @@ AddRegion vote_region(const RegionSearch& search, const RegionParameters& parame
 /// (flames).
 AddRegion anchor_region(const RegionSearch& search, const std::string& place, int cells = 28);
 
-/// Where the relation puts a thing of that name when nothing else says it; without a relation, where it usually goes.
+/// Where the relation puts a thing of that name when nothing else says it; without a relation, where it
+/// usually goes.
 AddRegion usual_region(const RegionSearch& search, const std::string& thing, int cells = 28);
 
 /// The place a thing ("hat", "top hat") usually takes: "top" for what is not known.
@@ -70,8 +75,8 @@ bool has_usual_place(const std::string& thing);
 GaussianData seed_splats(const AddRegion& region, int count, int sh_degree, std::uint64_t seed,
                          double opacity = 0.1);
 
-/// Pixels that the region covers in a view; with `depth` ([H,W,1] of the surface, 0 = nothing there) those in which something of it lies
-/// before the surface, or a cube's side behind it.
+/// Pixels that the region covers in a view; with `depth` ([H,W,1] of the surface, 0 = nothing there) those in
+/// which something of it lies before the surface, or a cube's side behind it.
 Mask region_mask(const AddRegion& region, const Camera& camera, const Image* depth = nullptr);
 
 }  // namespace gse::edit

@@ -14,10 +14,12 @@ namespace {
 
 constexpr std::array<std::pair<int, int>, 4> Sides{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
 constexpr int SmoothingSteps = 100;
-constexpr float Opaque = 0.97f;   // less is in part the colour behind the scene
-constexpr int RimPx = 3;          // of a hole, at most
+constexpr float Opaque = 0.97f;  // less is in part the colour behind the scene
+constexpr int RimPx = 3;         // of a hole, at most
 
-bool within(const Image& image, int x, int y) { return x >= 0 && y >= 0 && x < image.width && y < image.height; }
+bool within(const Image& image, int x, int y) {
+    return x >= 0 && y >= 0 && x < image.width && y < image.height;
+}
 
 /// 1 where nothing is and sky is not.
 Mask holes_of(const Image& depth, const Mask& mask) {
@@ -30,7 +32,8 @@ Mask holes_of(const Image& depth, const Mask& mask) {
         }
     const Mask sky = localize::flood_fill(empty, beyond);
     Mask holes(depth.width, depth.height);
-    for (std::size_t i = 0; i < holes.data.size(); ++i) holes.data[i] = depth.data[i] <= 0 && sky.data[i] == 0 ? 1 : 0;
+    for (std::size_t i = 0; i < holes.data.size(); ++i)
+        holes.data[i] = depth.data[i] <= 0 && sky.data[i] == 0 ? 1 : 0;
     return holes;
 }
 
@@ -43,25 +46,29 @@ Mask with_rims(const Mask& holes, const Mask& mask, const Image& alpha) {
             for (int x = 0; x < mask.width; ++x)
                 if (before.at(x, y) == 0 && mask.at(x, y) != 0 && alpha.at(x, y, 0) < Opaque &&
                     std::any_of(Sides.begin(), Sides.end(), [&](const auto& side) {
-                        return within(alpha, x + side.first, y + side.second) && before.at(x + side.first, y + side.second) != 0;
+                        return within(alpha, x + side.first, y + side.second) &&
+                               before.at(x + side.first, y + side.second) != 0;
                     }))
                     wider.at(x, y) = 1;
     }
     return wider;
 }
 
-/// Mean of the neighbours that count, of all channels of both pictures, where the depth holds 1/z; false where none counts.
+/// Mean of the neighbours that count, of all channels of both pictures, where the depth holds 1/z; false
+/// where none counts.
 bool take_mean(Backdrop& backdrop, int x, int y, const Mask& counts) {
     std::array<float, 4> sum{};
     int neighbours = 0;
     for (const auto& [dx, dy] : Sides) {
         if (!within(backdrop.depth, x + dx, y + dy) || counts.at(x + dx, y + dy) == 0) continue;
-        for (int c = 0; c < 3; ++c) sum[static_cast<std::size_t>(c)] += backdrop.picture.at(x + dx, y + dy, c);
+        for (int c = 0; c < 3; ++c)
+            sum[static_cast<std::size_t>(c)] += backdrop.picture.at(x + dx, y + dy, c);
         sum[3] += backdrop.depth.at(x + dx, y + dy, 0);
         ++neighbours;
     }
     if (neighbours == 0) return false;
-    for (int c = 0; c < 3; ++c) backdrop.picture.at(x, y, c) = sum[static_cast<std::size_t>(c)] / static_cast<float>(neighbours);
+    for (int c = 0; c < 3; ++c)
+        backdrop.picture.at(x, y, c) = sum[static_cast<std::size_t>(c)] / static_cast<float>(neighbours);
     backdrop.depth.at(x, y, 0) = sum[3] / static_cast<float>(neighbours);
     return true;
 }

@@ -21,8 +21,10 @@ std::size_t mend_broken(const std::vector<RoundView>& views, std::vector<Image>&
             ++broken;
         }
         if (2 * broken > values.size())
-            throw Error(ErrorCode::Model, "the picture that the model drew of " + views[v].view.name + " is not finite",
-                        "the model's weights are damaged, or it overflows: try another model, or precision fp32");
+            throw Error(
+                ErrorCode::Model,
+                "the picture that the model drew of " + views[v].view.name + " is not finite",
+                "the model's weights are damaged, or it overflows: try another model, or precision fp32");
         all += broken;
     }
     return all;

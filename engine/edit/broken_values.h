@@ -8,8 +8,9 @@
 
 namespace gse::edit {
 
-/// Puts what `views` show now where the redrawn pictures, of the same number and sizes, hold a NaN or an infinity. Returns how
-/// many values that were. Throws Error (Model) where it is more than half of a picture: nothing was drawn there.
+/// Puts what `views` show now where the redrawn pictures, of the same number and sizes, hold a NaN or an
+/// infinity. Returns how many values that were. Throws Error (Model) where it is more than half of a picture:
+/// nothing was drawn there.
 std::size_t mend_broken(const std::vector<RoundView>& views, std::vector<Image>& pictures);
 
 }  // namespace gse::edit

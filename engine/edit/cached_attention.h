@@ -1,5 +1,5 @@
-// An attention source that remembers: the same question about the same picture is answered without the networks, so that a
-// threshold can be moved freely.
+// An attention source that remembers: the same question about the same picture is answered without the
+// networks, so that a threshold can be moved freely.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ public:
     std::size_t at_once() const override { return source_->at_once(); }
     double threshold() const override { return source_->threshold(); }
     int image_size() const override { return source_->image_size(); }
-    std::size_t asked() const { return asked_; }   // questions the source had to answer
+    std::size_t asked() const { return asked_; }  // questions the source had to answer
 
 private:
     std::unique_ptr<AttentionSource> source_;

@@ -1,5 +1,6 @@
-// A colour for a new thing of which the sentence names none: each redrawn view would invent its own, and a scene fitted to all of
-// them is speckled. One view is drawn first; the word for what it shows joins the sentence for all.
+// A colour for a new thing of which the sentence names none: each redrawn view would invent its own, and a
+// scene fitted to all of them is speckled. One view is drawn first; the word for what it shows joins the
+// sentence for all.
 #pragma once
 
 #include <string>
@@ -9,9 +10,10 @@
 
 namespace gse::edit {
 
-/// A vote of pixels on the basic colour term (Berlin and Kay 1969) that is nearest to them, in CIELAB with lightness at half weight:
-/// shading changes it most. Only words of `known` where it is not empty. Black, white and grey stand together against the hues: light and
-/// shade divide the votes for a thing that has none.
+/// A vote of pixels on the basic colour term (Berlin and Kay 1969) that is nearest to them, in CIELAB with
+/// lightness at half weight: shading changes it most. Only words of `known` where it is not empty. Black,
+/// white and grey stand together against the hues: light and shade divide the votes for a thing that has
+/// none.
 class ColourVote {
 public:
     explicit ColourVote(const std::vector<std::string>& known);
@@ -21,21 +23,24 @@ public:
     std::string winner() const;
 
 private:
-    std::vector<std::size_t> terms_, votes_;   // indices of the known ones, and of each its votes
+    std::vector<std::size_t> terms_, votes_;  // indices of the known ones, and of each its votes
 };
 
 /// That of one picture.
 std::string colour_shown(const Image& picture, const Image& share, const std::vector<std::string>& known);
 
-/// Whether the sentence says what the thing is like ("white wings"), or does not name it; "in flames" and "on fire" are states, whose
-/// colour is their own.
+/// Whether the sentence says what the thing is like ("white wings"), or does not name it; "in flames" and "on
+/// fire" are states, whose colour is their own.
 bool is_described(const std::string& sentence, const std::string& thing);
 
-/// "a bear with wings" with "white" wings; the article before it follows ("a hat", "an orange hat"). Words as as_told() has them.
+/// "a bear with wings" with "white" wings; the article before it follows ("a hat", "an orange hat"). Words as
+/// as_told() has them.
 std::string described_as(const std::string& sentence, const std::string& thing, const std::string& colour);
 
-/// The sentence of a thing that comes or is added, in the colour that such a thing mostly has where it tells none ("a frog": "a green frog"): what
-/// learned it in all colours draws it in any. Words as as_told() has them; as it was where no such colour is among `sayable`.
-std::string with_usual_colour(const std::string& sentence, const std::string& thing, const std::vector<std::string>& sayable);
+/// The sentence of a thing that comes or is added, in the colour that such a thing mostly has where it tells
+/// none ("a frog": "a green frog"): what learned it in all colours draws it in any. Words as as_told() has
+/// them; as it was where no such colour is among `sayable`.
+std::string with_usual_colour(const std::string& sentence, const std::string& thing,
+                              const std::vector<std::string>& sayable);
 
 }  // namespace gse::edit

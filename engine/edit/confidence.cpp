@@ -8,9 +8,9 @@
 namespace gse::edit {
 namespace {
 
-/// Share of what is seen that all views have one opinion of: 1 when every splat is always or never inside the masks, 0 when
-/// all are half the time. The ground that is no part of the scene counts as one splat, as that of other scenes does, which is never what was
-/// looked for.
+/// Share of what is seen that all views have one opinion of: 1 when every splat is always or never inside the
+/// masks, 0 when all are half the time. The ground that is no part of the scene counts as one splat, as that
+/// of other scenes does, which is never what was looked for.
 double agreement_of(const localize::LabelWeights& weights, const GroundEvidence& ground) {
     double decided = std::max(0.0, ground.seen - 2 * ground.inside), all = ground.seen;
     for (std::size_t row = 0; row < weights.weight.size(); ++row) {
@@ -20,7 +20,8 @@ double agreement_of(const localize::LabelWeights& weights, const GroundEvidence&
     return all > 0 ? decided / all : 0;
 }
 
-double share_of(const localize::LabelWeights& weights, const std::vector<std::uint8_t>& bits, const GroundEvidence& ground) {
+double share_of(const localize::LabelWeights& weights, const std::vector<std::uint8_t>& bits,
+                const GroundEvidence& ground) {
     double labelled = 0, all = ground.seen;
     for (std::size_t row = 0; row < bits.size(); ++row) {
         labelled += bits[row] != 0 ? weights.evidence[row] : 0;
@@ -31,13 +32,15 @@ double share_of(const localize::LabelWeights& weights, const std::vector<std::ui
 
 /// Mean over the views; one that found nothing has no attention inside, one that was left out does not count.
 struct Attention {
-    double inside = 0;       // share of the attention inside the masks
-    double focus = 0;        // attention per pixel inside, over that inside and outside: 0.5 = as strong outside as inside
+    double inside = 0;  // share of the attention inside the masks
+    double focus =
+        0;  // attention per pixel inside, over that inside and outside: 0.5 = as strong outside as inside
 };
 
 Attention attention_of(const std::vector<ViewEvidence>& views) {
     Attention mean;
-    const auto out = std::count_if(views.begin(), views.end(), [](const auto& view) { return view.step == ViewStep::LeftOut; });
+    const auto out = std::count_if(views.begin(), views.end(),
+                                   [](const auto& view) { return view.step == ViewStep::LeftOut; });
     for (const auto& view : views) {
         if (view.failed) continue;
         double inside = 0, all = 0, area = 0;
@@ -72,8 +75,8 @@ GroundEvidence ground_seen(const std::vector<ViewEvidence>& views, const std::ve
     return ground;
 }
 
-Confidence confidence_of(const std::vector<ViewEvidence>& views, const localize::LabelWeights& weights, const Label& label,
-                         double recognition, const GroundEvidence& ground) {
+Confidence confidence_of(const std::vector<ViewEvidence>& views, const localize::LabelWeights& weights,
+                         const Label& label, double recognition, const GroundEvidence& ground) {
     Confidence confidence;
     const Attention attention = attention_of(views);
     confidence.agreement = agreement_of(weights, ground);
@@ -81,7 +84,8 @@ Confidence confidence_of(const std::vector<ViewEvidence>& views, const localize:
     confidence.share = share_of(weights, *label.bits, ground);
     confidence.recognition = recognition;
     // Each part can refuse: views at odds, attention all over the picture, a word that others fit better.
-    confidence.value = above_half(confidence.agreement) * above_half(attention.focus) * (recognition < 0 ? 1 : recognition);
+    confidence.value =
+        above_half(confidence.agreement) * above_half(attention.focus) * (recognition < 0 ? 1 : recognition);
     return confidence;
 }
 

@@ -9,7 +9,7 @@ namespace gse::edit {
 GroundEvidence ground_seen(const std::vector<ViewEvidence>& views, const std::vector<Image>& grounds);
 
 /// From the views' masks and attention and what they were fused into; `recognition` as in Confidence.
-Confidence confidence_of(const std::vector<ViewEvidence>& views, const localize::LabelWeights& weights, const Label& label,
-                         double recognition, const GroundEvidence& ground = {});
+Confidence confidence_of(const std::vector<ViewEvidence>& views, const localize::LabelWeights& weights,
+                         const Label& label, double recognition, const GroundEvidence& ground = {});
 
 }  // namespace gse::edit

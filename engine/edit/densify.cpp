@@ -1,4 +1,5 @@
-// Clone, split and prune of labelled rows (3DGS adaptive density control under GaussianEditor's percent rule).
+// Clone, split and prune of labelled rows (3DGS adaptive density control under GaussianEditor's percent
+// rule).
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +12,8 @@ namespace {
 
 constexpr double SplitShrink = 1.6;
 constexpr int SplitChildren = 2;
-constexpr double GrownFactor = 2;   // an original splat counts as grown beyond this times its scale at load (F8)
+constexpr double GrownFactor =
+    2;  // an original splat counts as grown beyond this times its scale at load (F8)
 
 }  // namespace
 
@@ -21,7 +23,8 @@ float WorkingSet::largest_scale(std::size_t index) const {
 }
 
 bool WorkingSet::prunable(std::size_t index, const EditRequest& request) const {
-    const double opacity = 1 / (1 + std::exp(-static_cast<double>(table_.rows.opacity_logit[first_row() + index])));
+    const double opacity =
+        1 / (1 + std::exp(-static_cast<double>(table_.rows.opacity_logit[first_row() + index])));
     if (opacity < request.min_opacity) return true;
     const float scale = largest_scale(index);
     if (std::exp(scale) <= request.prune_scale * extent_) return false;
@@ -34,7 +37,8 @@ std::vector<std::size_t> WorkingSet::densify_candidates(const EditRequest& reque
         const double gradient = table_.gradient_sum[i] / std::max(1u, table_.gradient_count[i]);
         if (gradient > 0) ranked.emplace_back(-gradient, i);
     }
-    auto count = static_cast<std::size_t>(std::ceil(request.densify_percent * static_cast<double>(ranked.size())));
+    auto count =
+        static_cast<std::size_t>(std::ceil(request.densify_percent * static_cast<double>(ranked.size())));
     const auto limit = static_cast<std::size_t>(request.max_growth * static_cast<double>(start_count_));
     count = std::min({count, ranked.size(), limit > labelled() ? limit - labelled() : 0});
     std::nth_element(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count), ranked.end());
@@ -67,8 +71,8 @@ void WorkingSet::split(std::size_t index, int generation, Random& random) {
     }
 }
 
-std::size_t WorkingSet::keep_added(std::span<const float> weight, std::span<const double> evidence, double tau,
-                                   double least_left) {
+std::size_t WorkingSet::keep_added(std::span<const float> weight, std::span<const double> evidence,
+                                   double tau, double least_left) {
     GSE_CHECK_EQ(weight.size(), table_.rows.size());
     std::vector<std::uint8_t> keep(labelled(), 1);
     std::size_t added = 0, dropped = 0;
@@ -79,7 +83,8 @@ std::size_t WorkingSet::keep_added(std::span<const float> weight, std::span<cons
         keep[i] = 0;
         ++dropped;
     }
-    if (dropped == 0 || static_cast<double>(added - dropped) < least_left * static_cast<double>(added)) return 0;
+    if (dropped == 0 || static_cast<double>(added - dropped) < least_left * static_cast<double>(added))
+        return 0;
     table_.keep(keep);
     remember_anchor();
     return dropped;
@@ -89,7 +94,7 @@ DensifyCount WorkingSet::densify(const EditRequest& request, Random& random, boo
     DensifyCount count;
     std::vector<std::size_t> chosen;
     if (may_grow) chosen = densify_candidates(request);
-    table_.reserve(SplitChildren * chosen.size());   // the densification either happens or changes nothing
+    table_.reserve(SplitChildren * chosen.size());  // the densification either happens or changes nothing
     const int generation = schedule_.advance();
     std::vector<std::uint8_t> keep(labelled(), 1);
     for (const std::size_t index : chosen) {

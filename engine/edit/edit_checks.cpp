@@ -8,13 +8,15 @@
 namespace gse::edit {
 namespace {
 
-bool same_row(std::span<const float> a, std::size_t row_a, std::span<const float> b, std::size_t row_b, std::size_t stride) {
+bool same_row(std::span<const float> a, std::size_t row_a, std::span<const float> b, std::size_t row_b,
+              std::size_t stride) {
     return std::memcmp(a.data() + row_a * stride, b.data() + row_b * stride, stride * sizeof(float)) == 0;
 }
 
 }  // namespace
 
-std::size_t count_changed_outside(const GaussianSet& base, const std::vector<std::uint8_t>& label, const EditResult& result) {
+std::size_t count_changed_outside(const GaussianSet& base, const std::vector<std::uint8_t>& label,
+                                  const EditResult& result) {
     const auto sh = static_cast<std::size_t>(sh_coefficient_count(base.sh_degree())) * 3;
     std::size_t changed = 0;
     for (std::size_t row = 0; row < base.size(); ++row) {

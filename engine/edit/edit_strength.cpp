@@ -1,4 +1,5 @@
-// From a finished edit to a weaker or stronger one: its delta at a strength, and what every row of that came from.
+// From a finished edit to a weaker or stronger one: its delta at a strength, and what every row of that came
+// from.
 #include "engine/edit/edit_strength.h"
 
 #include <numeric>
@@ -26,9 +27,11 @@ void apply_strength(const GaussianSet& base, double strength, EditResult& result
     for (std::size_t row = 0; row < rows.size(); ++row) {
         const bool added = rows[row] >= base.size();
         if (!added) base_to_new[rows[row]] = static_cast<std::int64_t>(row);
-        const std::int64_t was = added ? static_cast<std::int64_t>(born[rows[row] & ((RowId{1} << EditIdShift) - 1)])
-                                       : result.base_to_new[rows[row]];
-        label.push_back(was < 0 ? 1 : result.label[static_cast<std::size_t>(was)]);   // removed, and back again
+        const std::int64_t was =
+            added ? static_cast<std::int64_t>(born[rows[row] & ((RowId{1} << EditIdShift) - 1)])
+                  : result.base_to_new[rows[row]];
+        label.push_back(was < 0 ? 1
+                                : result.label[static_cast<std::size_t>(was)]);  // removed, and back again
         hidden.push_back(was < 0 ? 0 : result.hidden[static_cast<std::size_t>(was)]);
         generation.push_back(was < 0 ? 0 : result.generation[static_cast<std::size_t>(was)]);
     }

@@ -20,10 +20,13 @@ namespace gse::edit {
 namespace {
 
 /// Calls visit(x, y) for the pixels of a disc around a click, at least the click's own pixel.
-template <class F>
-void for_disc(const Image& image, const PointPrompt& point, double radius_px, F&& visit) {
-    const auto from = [&](double centre, int size) { return static_cast<int>(std::clamp(centre - radius_px - 1, 0.0, static_cast<double>(size))); };
-    const auto to = [&](double centre, int size) { return static_cast<int>(std::clamp(centre + radius_px + 1, 0.0, static_cast<double>(size))); };
+template <class F> void for_disc(const Image& image, const PointPrompt& point, double radius_px, F&& visit) {
+    const auto from = [&](double centre, int size) {
+        return static_cast<int>(std::clamp(centre - radius_px - 1, 0.0, static_cast<double>(size)));
+    };
+    const auto to = [&](double centre, int size) {
+        return static_cast<int>(std::clamp(centre + radius_px + 1, 0.0, static_cast<double>(size)));
+    };
     for (int y = from(point.y, image.height); y < to(point.y, image.height); ++y)
         for (int x = from(point.x, image.width); x < to(point.x, image.width); ++x) {
             const bool own = x == static_cast<int>(point.x) && y == static_cast<int>(point.y);
@@ -61,7 +64,7 @@ private:
 
 #ifdef GSE_HAVE_OPENCV
 
-constexpr std::size_t MostAnswers = 512;   // 5 MB at 96 x 96
+constexpr std::size_t MostAnswers = 512;  // 5 MB at 96 x 96
 
 class GrabCutSegmenter : public Segmenter {
 public:
@@ -147,7 +150,7 @@ private:
 
     GrabCutParameters parameters_;
     std::mutex mutex_;
-    std::unordered_map<std::uint64_t, cv::Mat> answers_;   // marks before and after, [H,W] bytes each
+    std::unordered_map<std::uint64_t, cv::Mat> answers_;  // marks before and after, [H,W] bytes each
 };
 
 #endif

@@ -13,34 +13,38 @@
 namespace gse::edit {
 namespace {
 
-constexpr double GroundHeight = 0.25;   // of a figure's height, up from the foot: a ground is not quite level
-constexpr double Above = 20;            // radii: from so far the picture is all but a parallel projection
-constexpr int Side = 64;                // pixels
-constexpr std::size_t StandingRows = 200000;   // that tell where a scene stands
+constexpr double GroundHeight = 0.25;  // of a figure's height, up from the foot: a ground is not quite level
+constexpr double Above = 20;           // radii: from so far the picture is all but a parallel projection
+constexpr int Side = 64;               // pixels
+constexpr std::size_t StandingRows = 200000;  // that tell where a scene stands
 
 }  // namespace
 
-double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, const Standing& standing, const Vec3& up, raster::Rasterizer& rasterizer) {
+double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, const Standing& standing,
+                    const Vec3& up, raster::Rasterizer& rasterizer) {
     GSE_CHECK_EQ(bits.size(), set.size());
     if (!standing.found()) return 0;
     const double figure = figure_height(standing), inner = 0.5 * standing.width(), outer = inner + figure;
     const Vec3 above = normalized(up), foot = standing.foot;
-    std::vector<float> opacity(set.size(), -std::numeric_limits<float>::infinity());   // of the ground alone: all else is not seen
+    std::vector<float> opacity(
+        set.size(), -std::numeric_limits<float>::infinity());  // of the ground alone: all else is not seen
     bool any = false;
     for (std::size_t row = 0; row < opacity.size(); ++row) {
         const auto p = set.position().subspan(row * 3, 3);
         const Vec3 from = Vec3{p[0], p[1], p[2]} - foot;
         const double height = dot(from, above), way = length(from - above * height);
-        if (bits[row] != 0 || !(height <= GroundHeight * figure && way <= 2 * outer)) continue;   // nor what is not a number
+        if (bits[row] != 0 || !(height <= GroundHeight * figure && way <= 2 * outer))
+            continue;  // nor what is not a number
         opacity[row] = set.opacity_logit()[row];
         any = true;
     }
     if (!any) return 0;
     auto buffers = set.buffers();
     buffers.opacity_logit = std::make_shared<const std::vector<float>>(std::move(opacity));
-    const GaussianSet rows(std::move(buffers));   // a copy of its rows would be most of the scene
+    const GaussianSet rows(std::move(buffers));  // a copy of its rows would be most of the scene
     const auto across = make_frame(above, {}).front;
-    const auto camera = Camera::look_at(foot + above * (Above * outer), foot, across, 2 * std::atan(1 / Above), Side, Side);
+    const auto camera =
+        Camera::look_at(foot + above * (Above * outer), foot, across, 2 * std::atan(1 / Above), Side, Side);
     raster::ForwardOutput output;
     rasterizer.forward(rows.spans(), camera, {}, output);
     double covered = 0;
@@ -62,7 +66,8 @@ Standing standing_of_scene(const GaussianSet& set, const Vec3& up) {
     return standing_alone(set, some, up, {});
 }
 
-double ground_of_scene(const GaussianSet& set, const Standing& whole, const Vec3& up, raster::Rasterizer& rasterizer) {
+double ground_of_scene(const GaussianSet& set, const Standing& whole, const Vec3& up,
+                       raster::Rasterizer& rasterizer) {
     const Vec3 above = normalized(up);
     const std::size_t step = 1 + set.size() / StandingRows;
     std::vector<std::uint8_t> rises(set.size(), 0), some(set.size(), 0);
@@ -72,7 +77,7 @@ double ground_of_scene(const GaussianSet& set, const Standing& whole, const Vec3
         if (row % step == 0) some[row] = rises[row];
     }
     auto risen = standing_alone(set, some, up, {});
-    const double lifted = dot(risen.foot - whole.foot, above);   // above the ground that the scene would have
+    const double lifted = dot(risen.foot - whole.foot, above);  // above the ground that the scene would have
     risen.foot = risen.foot - above * lifted;
     risen.height += lifted;
     return ground_cover(set, rises, risen, up, rasterizer);

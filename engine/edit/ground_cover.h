@@ -9,15 +9,19 @@
 
 namespace gse::edit {
 
-/// How much of the ground around a thing the rows cover that `bits` [N] do not label, in [0,1]: the mean opacity, seen from straight above, of
-/// those at the height of its foot and below (a hat is worn above the ground), in a ring from the thing itself to as far out as a figure of its
-/// size is high. 0 where nothing stands.
-double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, const Standing& standing, const Vec3& up, raster::Rasterizer& rasterizer);
+/// How much of the ground around a thing the rows cover that `bits` [N] do not label, in [0,1]: the mean
+/// opacity, seen from straight above, of those at the height of its foot and below (a hat is worn above the
+/// ground), in a ring from the thing itself to as far out as a figure of its size is high. 0 where nothing
+/// stands.
+double ground_cover(const GaussianSet& set, std::span<const std::uint8_t> bits, const Standing& standing,
+                    const Vec3& up, raster::Rasterizer& rasterizer);
 
 /// Of all of a scene; of a large one some of its rows tell.
 Standing standing_of_scene(const GaussianSet& set, const Vec3& up);
 
-/// The cover of the ground around all that rises out of the lower quarter of a scene, of which `whole` is where it stands.
-double ground_of_scene(const GaussianSet& set, const Standing& whole, const Vec3& up, raster::Rasterizer& rasterizer);
+/// The cover of the ground around all that rises out of the lower quarter of a scene, of which `whole` is
+/// where it stands.
+double ground_of_scene(const GaussianSet& set, const Standing& whole, const Vec3& up,
+                       raster::Rasterizer& rasterizer);
 
 }  // namespace gse::edit

@@ -15,13 +15,15 @@ namespace {
 
 using Colour = std::array<float, 3>;
 
-constexpr double Thickness = 0.04;        // of the thing's height, up and down: the ground's rows
-constexpr double Around = 1.5;            // of the thing's half width: ground so far out is compared with
-constexpr double MostLow = 0.5;           // of the label: more of it is a ground itself, or as flat as one
-constexpr double Nearer = 0.5;            // distance to the ground's colour, over that to the thing's
-constexpr double Apart = 0.1;             // of a coefficient, 0.03 of a channel: colours of a thing nearer to a row are its own
-constexpr std::size_t LeastGround = 20;   // rows that make a ground
-constexpr std::size_t LeastBeside = 5;    // of them beyond the thing's half width, in each of four quarters: a ground reaches out on all sides
+constexpr double Thickness = 0.04;  // of the thing's height, up and down: the ground's rows
+constexpr double Around = 1.5;      // of the thing's half width: ground so far out is compared with
+constexpr double MostLow = 0.5;     // of the label: more of it is a ground itself, or as flat as one
+constexpr double Nearer = 0.5;      // distance to the ground's colour, over that to the thing's
+constexpr double Apart =
+    0.1;  // of a coefficient, 0.03 of a channel: colours of a thing nearer to a row are its own
+constexpr std::size_t LeastGround = 20;  // rows that make a ground
+constexpr std::size_t LeastBeside =
+    5;  // of them beyond the thing's half width, in each of four quarters: a ground reaches out on all sides
 constexpr std::size_t MostColours = 600;  // of each that a row is compared with
 
 /// Evenly chosen ones of many.
@@ -43,7 +45,8 @@ float nearest(const std::vector<Colour>& colours, const Colour& to) {
 
 }  // namespace
 
-std::vector<std::size_t> ground_rows(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front) {
+std::vector<std::size_t> ground_rows(const GaussianSet& set, const std::vector<std::uint8_t>& bits,
+                                     const Vec3& up, const Vec3& front) {
     GSE_CHECK_EQ(bits.size(), set.size());
     const auto standing = standing_of(set, bits, up, front);
     if (!standing.found()) return {};
@@ -74,7 +77,8 @@ std::vector<std::size_t> ground_rows(const GaussianSet& set, const std::vector<s
             thing.push_back(colour(row));
         }
     }
-    if (ground.size() < LeastGround || *std::min_element(beside.begin(), beside.end()) < LeastBeside) return {};
+    if (ground.size() < LeastGround || *std::min_element(beside.begin(), beside.end()) < LeastBeside)
+        return {};
     if (static_cast<double>(low.size()) > MostLow * static_cast<double>(low.size() + thing.size())) return {};
     thin_out(ground);
     thin_out(thing);
@@ -94,9 +98,11 @@ constexpr double LowestShare = 0.1;  // of a cell's rows, up to which they may b
 /// Heights by cells.
 class LowMap {
 public:
-    LowMap(const std::vector<Vec3>& points, const Box& box) : box_(box), lows_(Count, std::numeric_limits<double>::infinity()) {
+    LowMap(const std::vector<Vec3>& points, const Box& box)
+        : box_(box), lows_(Count, std::numeric_limits<double>::infinity()) {
         std::vector<std::vector<double>> heights(Count);
-        for (const auto& point : points) heights[index(across(point.x, 0), across(point.z, 2))].push_back(point.y);
+        for (const auto& point : points)
+            heights[index(across(point.x, 0), across(point.z, 2))].push_back(point.y);
         for (std::size_t i = 0; i < Count; ++i)
             if (!heights[i].empty()) lows_[i] = quantile(std::move(heights[i]), LowestShare);
     }
@@ -106,7 +112,8 @@ public:
         double low = std::numeric_limits<double>::infinity();
         for (int dv = -1; dv <= 1; ++dv)
             for (int du = -1; du <= 1; ++du)
-                if (u + du >= 0 && u + du < Cells && v + dv >= 0 && v + dv < Cells) low = std::min(low, lows_[index(u + du, v + dv)]);
+                if (u + du >= 0 && u + du < Cells && v + dv >= 0 && v + dv < Cells)
+                    low = std::min(low, lows_[index(u + du, v + dv)]);
         return low;
     }
 
@@ -114,7 +121,9 @@ private:
     static constexpr std::size_t Count = static_cast<std::size_t>(Cells) * Cells;
     static std::size_t index(int u, int v) { return static_cast<std::size_t>(v * Cells + u); }
     int across(double value, int axis) const {
-        return std::clamp(static_cast<int>(Cells * (value - box_.low[axis]) / std::max(box_.size()[axis], 1e-12)), 0, Cells - 1);
+        return std::clamp(
+            static_cast<int>(Cells * (value - box_.low[axis]) / std::max(box_.size()[axis], 1e-12)), 0,
+            Cells - 1);
     }
 
     Box box_;
@@ -123,7 +132,8 @@ private:
 
 }  // namespace
 
-std::vector<std::uint8_t> lowest_layer(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up) {
+std::vector<std::uint8_t> lowest_layer(const GaussianSet& set, const std::vector<std::uint8_t>& bits,
+                                       const Vec3& up) {
     GSE_CHECK_EQ(bits.size(), set.size());
     const Frame frame = make_frame(up, {});
     std::vector<std::size_t> rows;
@@ -140,7 +150,8 @@ std::vector<std::uint8_t> lowest_layer(const GaussianSet& set, const std::vector
     if (width <= box.size().y) return bits;
     const LowMap lows(points, box);
     std::vector<std::uint8_t> ground(bits.size(), 0);
-    for (std::size_t i = 0; i < rows.size(); ++i) ground[rows[i]] = points[i].y <= lows.around(points[i]) + Layer * width ? 1 : 0;
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        ground[rows[i]] = points[i].y <= lows.around(points[i]) + Layer * width ? 1 : 0;
     return ground;
 }
 

@@ -12,17 +12,18 @@
 namespace gse::edit {
 namespace {
 
-constexpr float SeenLogit = -2.2f;      // opacity 0.1: a haze above is no head
-constexpr double Steps = 50;            // slices of a thing
-constexpr double LeastHead = 0.08;     // of its height: a tip is no head
-constexpr double HeadTrim = 0.03;       // of a slice's rows, at either end: a strand, a ray of a crown
-constexpr double HeadProportion = 1;    // height over width
-// Of the head's height: with the head alone a scarf went over the mouth of a man and of a statue, with twice and a half of it over the shoulders.
+constexpr float SeenLogit = -2.2f;    // opacity 0.1: a haze above is no head
+constexpr double Steps = 50;          // slices of a thing
+constexpr double LeastHead = 0.08;    // of its height: a tip is no head
+constexpr double HeadTrim = 0.03;     // of a slice's rows, at either end: a strand, a ray of a crown
+constexpr double HeadProportion = 1;  // height over width
+// Of the head's height: with the head alone a scarf went over the mouth of a man and of a statue, with twice
+// and a half of it over the shoulders.
 constexpr double HeadAndNeck = 1.7;
 
 struct Row {
     std::size_t row;
-    Vec3 at;   // in the frame
+    Vec3 at;  // in the frame
 };
 
 std::vector<Row> seen_rows(const GaussianSet& set, std::span<const std::uint8_t> bits, const Frame& frame) {
@@ -30,14 +31,16 @@ std::vector<Row> seen_rows(const GaussianSet& set, std::span<const std::uint8_t>
     for (std::size_t row = 0; row < bits.size(); ++row) {
         const auto p = set.position().subspan(row * 3, 3);
         if (bits[row] == 0 || !(set.opacity_logit()[row] > SeenLogit)) continue;
-        if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) rows.push_back({row, frame.to_frame({p[0], p[1], p[2]})});
+        if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))
+            rows.push_back({row, frame.to_frame({p[0], p[1], p[2]})});
     }
     return rows;
 }
 
 }  // namespace
 
-Bust bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, double heads) {
+Bust bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front,
+             double heads) {
     GSE_CHECK_EQ(bits.size(), set.size());
     Bust bust{{bits.begin(), bits.end()}, 1};
     auto rows = seen_rows(set, bits, make_frame(up, front));
@@ -49,7 +52,8 @@ Bust bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const V
     const double height = all.size().y;
     points.clear();
     for (double share = LeastHead; share < 1; share += 1 / Steps) {
-        while (points.size() < rows.size() && rows[points.size()].at.y >= all.high.y - share * height) points.push_back(rows[points.size()].at);
+        while (points.size() < rows.size() && rows[points.size()].at.y >= all.high.y - share * height)
+            points.push_back(rows[points.size()].at);
         if (points.empty()) continue;
         const Vec3 size = trimmed_box(points, HeadTrim).size();
         if (share * height < HeadProportion * 0.5 * (size.x + size.z)) continue;
@@ -62,7 +66,8 @@ Bust bust_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const V
     return bust;
 }
 
-Wearer wearer_of(const EditRequest& request, const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front, bool drawn) {
+Wearer wearer_of(const EditRequest& request, const GaussianSet& set, std::span<const std::uint8_t> bits,
+                 const Vec3& up, const Vec3& front, bool drawn) {
     const bool at_head = has_usual_place(request.target) && usual_place(request.target) != "around";
     if (drawn && at_head && draws_place(request, EditMode::Add)) {
         auto bust = bust_of(set, bits, up, front, usual_place(request.target) == "neck" ? HeadAndNeck : 1);

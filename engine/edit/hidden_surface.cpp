@@ -14,18 +14,18 @@
 namespace gse::edit {
 namespace {
 
-constexpr double SquarePx = 1.5;         // side of a square, in pixels of the views
-constexpr double Slack = 2;              // sides of a square by which depths may differ and be the same surface
-constexpr std::size_t LeastWitnesses = 2;    // that have a square in a hole
-constexpr double AlongSurface = 0.6, ThroughSurface = 0.15;   // standard deviations over the side of a square
+constexpr double SquarePx = 1.5;  // side of a square, in pixels of the views
+constexpr double Slack = 2;       // sides of a square by which depths may differ and be the same surface
+constexpr std::size_t LeastWitnesses = 2;                    // that have a square in a hole
+constexpr double AlongSurface = 0.6, ThroughSurface = 0.15;  // standard deviations over the side of a square
 
 struct Point {
     Vec3 position, colour;
 };
 
 struct Holes {
-    std::vector<Point> points;   // of all views
-    double pixel = 0;            // width of a pixel there, world units, median
+    std::vector<Point> points;  // of all views
+    double pixel = 0;           // width of a pixel there, world units, median
 };
 
 Holes points_in_holes(const std::vector<RoundView>& views) {
@@ -38,7 +38,8 @@ Holes points_in_holes(const std::vector<RoundView>& views) {
             for (int x = 0; x < filled.width; ++x) {
                 const double z = depth.at(x, y, 0);
                 if (filled.at(x, y) == 0 || !(z > 0)) continue;
-                holes.points.push_back({unprojected(camera, x + 0.5, y + 0.5, z), {picture.at(x, y, 0), picture.at(x, y, 1), picture.at(x, y, 2)}});
+                holes.points.push_back({unprojected(camera, x + 0.5, y + 0.5, z),
+                                        {picture.at(x, y, 0), picture.at(x, y, 1), picture.at(x, y, 2)}});
                 pixels.push_back(z / camera.fx);
             }
     }
@@ -54,12 +55,15 @@ struct Plane {
     Vec3 origin;
     std::array<Vec3, 3> axis{};
     double along(int k, const Vec3& p) const { return dot(axis[static_cast<std::size_t>(k)], p - origin); }
-    Vec3 point(double u, double v, double height) const { return origin + axis[0] * u + axis[1] * v + axis[2] * height; }
+    Vec3 point(double u, double v, double height) const {
+        return origin + axis[0] * u + axis[1] * v + axis[2] * height;
+    }
 };
 
 Plane plane_of(const std::vector<Point>& points) {
     Plane plane;
-    for (const auto& p : points) plane.origin = plane.origin + p.position / static_cast<double>(points.size());
+    for (const auto& p : points)
+        plane.origin = plane.origin + p.position / static_cast<double>(points.size());
     Mat3 spread;
     for (const auto& p : points) {
         const Vec3 d = p.position - plane.origin;
@@ -67,13 +71,14 @@ Plane plane_of(const std::vector<Point>& points) {
             for (int column = row; column < 3; ++column) spread(row, column) += d[row] * d[column];
     }
     plane.axis = symmetric_eigen(spread).axis;
-    if (dot(cross(plane.axis[0], plane.axis[1]), plane.axis[2]) < 0) plane.axis[2] = plane.axis[2] * -1.0;   // a rotation, no mirror
+    if (dot(cross(plane.axis[0], plane.axis[1]), plane.axis[2]) < 0)
+        plane.axis[2] = plane.axis[2] * -1.0;  // a rotation, no mirror
     return plane;
 }
 
 struct Square {
     std::vector<double> heights;
-    Vec3 colour;   // sum
+    Vec3 colour;  // sum
     double height() {
         const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
         std::nth_element(heights.begin(), middle, heights.end());
@@ -95,8 +100,7 @@ bool borne_out(const std::vector<RoundView>& views, const Vec3& point, double sl
         const double z = backdrop.depth.at(x, y, 0);
         if (!backdrop.filled.data.empty() && backdrop.filled.at(x, y) != 0)
             agree += std::abs(z - p.z) <= slack ? 1 : 0;
-        else
-            against += z <= 0 || p.z < z - slack ? 1 : 0;   // it would hide the sky, or what lies behind
+        else against += z <= 0 || p.z < z - slack ? 1 : 0;  // it would hide the sky, or what lies behind
     }
     return agree >= std::min(LeastWitnesses, views.size()) && agree > against;
 }
@@ -112,16 +116,22 @@ GaussianData hidden_surface(const std::vector<RoundView>& views, int sh_degree, 
     const double side = SquarePx * holes.pixel;
     std::map<std::pair<long, long>, Square> squares;
     for (const auto& p : holes.points) {
-        auto& square = squares[{std::lround(plane.along(0, p.position) / side), std::lround(plane.along(1, p.position) / side)}];
+        auto& square = squares[{std::lround(plane.along(0, p.position) / side),
+                                std::lround(plane.along(1, p.position) / side)}];
         square.heights.push_back(plane.along(2, p.position));
         square.colour = square.colour + p.colour;
     }
     const Quat turn = quaternion(Mat3::from_columns(plane.axis[0], plane.axis[1], plane.axis[2]));
     for (auto& [place, square] : squares) {
         const auto count = static_cast<double>(square.heights.size());
-        const Vec3 centre = plane.point(static_cast<double>(place.first) * side, static_cast<double>(place.second) * side, square.height());
+        const Vec3 centre = plane.point(static_cast<double>(place.first) * side,
+                                        static_cast<double>(place.second) * side, square.height());
         if (!borne_out(views, centre, Slack * side)) continue;
-        append_splat(data, {centre, Vec3{AlongSurface, AlongSurface, ThroughSurface} * side, square.colour / count, {turn.w, turn.x, turn.y, turn.z}, opacity});
+        append_splat(data, {centre,
+                            Vec3{AlongSurface, AlongSurface, ThroughSurface} * side,
+                            square.colour / count,
+                            {turn.w, turn.x, turn.y, turn.z},
+                            opacity});
     }
     return data;
 }

@@ -1,4 +1,5 @@
-// What a thing stood on, where nobody ever saw it: rows for the holes that it leaves in the scene when it goes.
+// What a thing stood on, where nobody ever saw it: rows for the holes that it leaves in the scene when it
+// goes.
 #pragma once
 
 #include <vector>
@@ -8,9 +9,10 @@
 
 namespace gse::edit {
 
-/// One row per square of the surface that fills the holes of the views' backdrops (Backdrop::filled): a field of heights over the plane
-/// that fits the holes best, of the mean colour that they were filled with. Squares that would hide what a view shows behind them, and
-/// those that hardly any view has in a hole, get none. `opacity` in (0,1).
+/// One row per square of the surface that fills the holes of the views' backdrops (Backdrop::filled): a field
+/// of heights over the plane that fits the holes best, of the mean colour that they were filled with. Squares
+/// that would hide what a view shows behind them, and those that hardly any view has in a hole, get none.
+/// `opacity` in (0,1).
 GaussianData hidden_surface(const std::vector<RoundView>& views, int sh_degree, double opacity = 0.95);
 
 }  // namespace gse::edit

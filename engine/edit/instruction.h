@@ -7,8 +7,8 @@
 
 namespace gse::edit {
 
-/// The request's instruction; without one "turn the <source> into <prompt without its article>" (views.md 3), "make it <prompt
-/// without its article>" where no source is named.
+/// The request's instruction; without one "turn the <source> into <prompt without its article>" (views.md 3),
+/// "make it <prompt without its article>" where no source is named.
 std::string instruction_of(const EditRequest& request);
 
 }  // namespace gse::edit

@@ -19,8 +19,10 @@ std::vector<std::size_t> views_left_out(const std::string& text) {
         std::size_t view = 0;
         const auto read = std::from_chars(text.data() + begin, text.data() + end, view);
         if (read.ec != std::errc() || read.ptr != text.data() + end)
-            throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" of left_out is no number of a view", text.substr(begin, end - begin)),
-                        "list views by their numbers from 0 (\"3, 17\")");
+            throw Error(
+                ErrorCode::InvalidArgument,
+                fmt::format("\"{}\" of left_out is no number of a view", text.substr(begin, end - begin)),
+                "list views by their numbers from 0 (\"3, 17\")");
         views.push_back(view);
         begin = text.find_first_not_of(Separators, end);
     }

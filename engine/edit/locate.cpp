@@ -29,21 +29,26 @@
 namespace gse::edit {
 namespace {
 
-constexpr std::size_t RecognisedViews = 6;   // pictures that are compared with words
-constexpr int LeastViews = 3;                // fewer voting views cannot tell front from back
-constexpr std::size_t LeastSplats = 4;       // of a thing; what views at odds have in common by chance are one or two
-constexpr double IslandShare = 0.05;         // of a thing that goes: what hangs in the air without it (a bumper) and is no more
-constexpr float GroundWeight = 0.5f;         // of tau: what ground under a thing keeps of its weight at most
-constexpr double LargestLabelShare = 0.97;   // of what the views see, where the sentence names other things too
-constexpr float LabelSeen = 0.5f;           // share of a pixel from which it shows the artist's label
-constexpr std::uint64_t SearchSeed = 0;      // one for all: what is found does not follow the loop's dice
-constexpr double AtOdds = 0.6;              // IoU of a view's mask and the common label, below which the view is asked again
+constexpr std::size_t RecognisedViews = 6;  // pictures that are compared with words
+constexpr int LeastViews = 3;               // fewer voting views cannot tell front from back
+constexpr std::size_t LeastSplats =
+    4;  // of a thing; what views at odds have in common by chance are one or two
+constexpr double IslandShare =
+    0.05;  // of a thing that goes: what hangs in the air without it (a bumper) and is no more
+constexpr float GroundWeight = 0.5f;  // of tau: what ground under a thing keeps of its weight at most
+constexpr double LargestLabelShare =
+    0.97;                                // of what the views see, where the sentence names other things too
+constexpr float LabelSeen = 0.5f;        // share of a pixel from which it shows the artist's label
+constexpr std::uint64_t SearchSeed = 0;  // one for all: what is found does not follow the loop's dice
+constexpr double AtOdds =
+    0.6;  // IoU of a view's mask and the common label, below which the view is asked again
 constexpr std::uint64_t FirstAsking = 5000;
 constexpr std::uint64_t Drawing = 8000;
-constexpr std::uint64_t SecondAsking = 9000;   // other noise than the first time
-// Of the threshold (at most half-way from it to the most there is): attention of what is not there yet reaches wider than what will be.
-// Of 8 added things each on seeds 55 | 56 | 57 | 58 (`gseditpro eval --kinds add --edits 8`) 1 changed 2.5 | 2.5 | 1.9 | 1.0 % of the
-// pixels outside the true part, 1.2 changed 1.8 | 1.4 | 1.8 | 0.7 %; outlines (mean IoU .40) and error removed (13 %) were the same.
+constexpr std::uint64_t SecondAsking = 9000;  // other noise than the first time
+// Of the threshold (at most half-way from it to the most there is): attention of what is not there yet
+// reaches wider than what will be. Of 8 added things each on seeds 55 | 56 | 57 | 58 (`gseditpro eval --kinds
+// add --edits 8`) 1 changed 2.5 | 2.5 | 1.9 | 1.0 % of the pixels outside the true part, 1.2 changed 1.8
+// | 1.4 | 1.8 | 0.7 %; outlines (mean IoU .40) and error removed (13 %) were the same.
 constexpr double AbsentLevel = 1.2;
 
 /// One word to look for.
@@ -51,10 +56,11 @@ struct Search {
     std::string word;
     std::string prompt;
     std::vector<std::string> rivals;
-    bool rivals_given = false;   // by the user, not read off the sentence
+    bool rivals_given = false;  // by the user, not read off the sentence
     bool absent = false;
-    bool whole = false;   // what the request is about: views that are left out do not vote on it
-    bool alone = false;   // it goes, and the sentence names nothing that it wears or holds: what only it holds goes with it
+    bool whole = false;  // what the request is about: views that are left out do not vote on it
+    bool alone = false;  // it goes, and the sentence names nothing that it wears or holds: what only it holds
+                         // goes with it
 };
 
 /// Steps of locate() over all views.
@@ -76,14 +82,13 @@ public:
                                                      : "changing",
                   result.mode == EditMode::Add ? input_.request.target : input_.request.source,
                   result.reason);
-        if (result.mode == EditMode::Add)
-            add(result);
-        else
-            modify(result);
+        if (result.mode == EditMode::Add) add(result);
+        else modify(result);
         result.failed_views = static_cast<int>(std::count_if(
             result.views.begin(), result.views.end(), [](const ViewEvidence& view) { return view.failed; }));
         result.broken_attention = broken_;
-        if (broken_ > 0) log::warning("{} values of the attention were not finite and count as none", broken_);
+        if (broken_ > 0)
+            log::warning("{} values of the attention were not finite and count as none", broken_);
         return result;
     }
 
@@ -91,7 +96,8 @@ private:
     const EditRequest& request() const { return input_.request; }
 
     double threshold() const {
-        return request().attention_threshold > 0 ? request().attention_threshold : tools_.attention.threshold();
+        return request().attention_threshold > 0 ? request().attention_threshold
+                                                 : tools_.attention.threshold();
     }
 
     void check_stop() const {
@@ -103,13 +109,15 @@ private:
             seen_ = *tools_.memory;
             return;
         }
-        seen_ = render_views(input_.gaussians, input_.views, input_.settings, input_.ground, tools_.rasterizer, tools_.job);
+        seen_ = render_views(input_.gaussians, input_.views, input_.settings, input_.ground,
+                             tools_.rasterizer, tools_.job);
         if (tools_.memory != nullptr) static_cast<ViewRenders&>(*tools_.memory) = seen_;
     }
 
     /// Share of the views in which the text segmenter sees the target word; nothing without one.
     std::optional<double> found_share() {
-        if (tools_.text_segmenter == nullptr || request().mode != "auto" || request().target.empty() || seen_.renders.empty())
+        if (tools_.text_segmenter == nullptr || request().mode != "auto" || request().target.empty() ||
+            seen_.renders.empty())
             return std::nullopt;
         int found = 0;
         for (const auto& render : seen_.renders) {
@@ -132,12 +140,13 @@ private:
     /// The word with a prompt that surely contains it and its rivals.
     Search search_for(const std::string& word, bool absent) const {
         std::string sentence = as_told(request().prompt);
-        if (!has_word(sentence, word)) sentence = sentence_before(request());   // "on the snow" was "on the grass"
+        if (!has_word(sentence, word))
+            sentence = sentence_before(request());  // "on the snow" was "on the grass"
         if (!has_word(sentence, word)) sentence = "a " + word;
         Search search{word, std::move(sentence), {}, request().rivals != "auto", absent};
         if (absent || request().rivals == "none") return search;
-        for (const auto& rival :
-             search.rivals_given ? phrases_of(request().rivals) : things_named(sentence_before(request()), {word})) {
+        for (const auto& rival : search.rivals_given ? phrases_of(request().rivals)
+                                                     : things_named(sentence_before(request()), {word})) {
             if (rival == word || (!search.rivals_given && !knows(input_.known, rival))) continue;
             if (!has_word(search.prompt, rival)) search.prompt += ", " + rival;
             search.rivals.push_back(rival);
@@ -179,12 +188,14 @@ private:
 
     /// Views have nothing to do with each other here.
     void make_masks(const Search& search, std::vector<ViewEvidence>& views) {
-        const double level = search.absent ? std::min(AbsentLevel * threshold(), (1 + threshold()) / 2) : threshold();
+        const double level =
+            search.absent ? std::min(AbsentLevel * threshold(), (1 + threshold()) / 2) : threshold();
         const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
             for (std::size_t v = begin; v < end; ++v) {
                 check_stop();
-                take_mask(views[v], find_word_mask(views[v].render, views[v].map, level, search.word, request(),
-                                                   {tools_.segmenter, tools_.text_segmenter}, !search.absent));
+                take_mask(views[v],
+                          find_word_mask(views[v].render, views[v].map, level, search.word, request(),
+                                         {tools_.segmenter, tools_.text_segmenter}, !search.absent));
             }
         };
         over_views(views.size(), some);
@@ -213,7 +224,8 @@ private:
     }
 
     /// Of these views the first one and those that are worth asking with it.
-    void prepare(const Search& search, const std::vector<std::size_t>& views, std::size_t first, int repeats, std::uint64_t stream) {
+    void prepare(const Search& search, const std::vector<std::size_t>& views, std::size_t first, int repeats,
+                 std::uint64_t stream) {
         const std::size_t at_once = tools_.attention.at_once();
         if (at_once < 2 || first % at_once != 0) return;
         std::vector<AttentionQuery> queries;
@@ -235,8 +247,8 @@ private:
         return maps;
     }
 
-    /// Looks with few probes, fuses, and asks views again whose mask is at odds with what all say together; at most half of
-    /// them: where more are, it is not the noise.
+    /// Looks with few probes, fuses, and asks views again whose mask is at odds with what all say together;
+    /// at most half of them: where more are, it is not the noise.
     Found search_views(const Search& search, std::vector<ViewEvidence>& views) {
         views = look(search);
         leave_out(views, search.whole ? left_out_ : std::vector<std::size_t>{});
@@ -245,7 +257,8 @@ private:
         const auto odd = to_ask_again(search, found.label, views);
         if (odd.empty()) return found;
         std::vector<ViewEvidence> again;
-        const auto first = static_cast<float>(request().attention_repeats), more = static_cast<float>(request().second_look);
+        const auto first = static_cast<float>(request().attention_repeats),
+                   more = static_cast<float>(request().second_look);
         for (std::size_t i = 0; i < odd.size(); ++i) {
             check_stop();
             const auto v = odd[i];
@@ -268,10 +281,13 @@ private:
     }
 
     /// As at the first threshold that was tried, where that is remembered.
-    std::vector<std::size_t> to_ask_again(const Search& search, const Label& label, const std::vector<ViewEvidence>& views) {
+    std::vector<std::size_t> to_ask_again(const Search& search, const Label& label,
+                                          const std::vector<ViewEvidence>& views) {
         const std::string key = fmt::format("{}\n{}", search.prompt, search.word);
         if (tools_.memory != nullptr)
-            if (const auto known = tools_.memory->asked_again.find(key); known != tools_.memory->asked_again.end()) return known->second;
+            if (const auto known = tools_.memory->asked_again.find(key);
+                known != tools_.memory->asked_again.end())
+                return known->second;
         auto odd = at_odds(label, views);
         if (odd.size() * 2 > views.size()) odd.clear();
         if (tools_.memory != nullptr) tools_.memory->asked_again[key] = odd;
@@ -284,8 +300,10 @@ private:
         Image seen;
         for (std::size_t v = 0; v < views.size(); ++v) {
             check_stop();
-            tools_.rasterizer.forward_values(input_.gaussians.spans(), input_.views[v].camera, input_.settings, values, seen);
-            if (localize::mask_iou(localize::threshold_map(seen, LabelSeen), views[v].mask) < AtOdds) odd.push_back(v);
+            tools_.rasterizer.forward_values(input_.gaussians.spans(), input_.views[v].camera,
+                                             input_.settings, values, seen);
+            if (localize::mask_iou(localize::threshold_map(seen, LabelSeen), views[v].mask) < AtOdds)
+                odd.push_back(v);
         }
         return odd;
     }
@@ -301,7 +319,8 @@ private:
         view.failed = !found.found();
     }
 
-    /// A rival nobody asked for must not end the search: what the model cannot read of a long sentence is left out.
+    /// A rival nobody asked for must not end the search: what the model cannot read of a long sentence is
+    /// left out.
     std::vector<Image> ask(AttentionQuery& query, bool strict) const {
         try {
             return tools_.attention.locate(query);
@@ -313,7 +332,8 @@ private:
         return tools_.attention.locate(query);
     }
 
-    Found nothing(const Search& search, SearchProblem problem, std::string message, std::string remedy) const {
+    Found nothing(const Search& search, SearchProblem problem, std::string message,
+                  std::string remedy) const {
         const std::size_t rows = input_.gaussians.size();
         Found found;
         found.weights.weight.assign(rows, 0.0f);
@@ -335,9 +355,10 @@ private:
         const auto voting = static_cast<std::size_t>(
             std::count_if(votes.begin(), votes.end(), [](const auto& vote) { return !vote.failed; }));
         if (voting < LeastViews || voting * 2 < votes.size())
-            return nothing(search, SearchProblem::FewViews,
-                           fmt::format("\"{}\" was found in only {} of {} views", search.word, voting, votes.size()),
-                           voting * 2 < votes.size() ? common_remedy(views) : "look from more views");
+            return nothing(
+                search, SearchProblem::FewViews,
+                fmt::format("\"{}\" was found in only {} of {} views", search.word, voting, votes.size()),
+                voting * 2 < votes.size() ? common_remedy(views) : "look from more views");
         Found found;
         auto& weights = found.weights;
         weights = votes_.back_project(input_.gaussians.spans(), votes, input_.settings, tools_.rasterizer);
@@ -346,27 +367,37 @@ private:
         spread.least_evidence_px = least;
         spread.tau = request().tau;
         localize::spread_to_unseen(input_.gaussians.spans(), spread, weights, tools_.threads);
-        const localize::CutParameters cut{.smoothness = request().label_smoothness, .tau = request().tau, .least_evidence_px = least,
+        const localize::CutParameters cut{.smoothness = request().label_smoothness,
+                                          .tau = request().tau,
+                                          .least_evidence_px = least,
                                           .island_share = search.alone ? IslandShare : 0};
         const auto changed = localize::cut_label(input_.gaussians.spans(), cut, weights, tools_.threads);
         if (changed > 0) log::debug("{} splats took the label of those they belong to", changed);
         found.label = localize::label_from_weights(search.word, weights, request().tau, least);
-        if (const auto ground = ground_rows(input_.gaussians, *found.label.bits, input_.up, input_.front); !ground.empty()) {
-            for (const auto row : ground) weights.weight[row] = std::min(weights.weight[row], static_cast<float>(GroundWeight * request().tau));
+        if (const auto ground = ground_rows(input_.gaussians, *found.label.bits, input_.up, input_.front);
+            !ground.empty()) {
+            for (const auto row : ground)
+                weights.weight[row] =
+                    std::min(weights.weight[row], static_cast<float>(GroundWeight * request().tau));
             log::debug("{} splats of the ground below \"{}\" are left to it", ground.size(), search.word);
             found.label = localize::label_from_weights(search.word, weights, request().tau, least);
         }
-        if (const auto labelled = count_bits(found.label); labelled < LeastSplats && labelled * 2 < input_.gaussians.size())
+        if (const auto labelled = count_bits(found.label);
+            labelled < LeastSplats && labelled * 2 < input_.gaussians.size())
             return nothing(search, SearchProblem::NothingLabelled,
-                           fmt::format("the views agree on {} splat for \"{}\"", labelled == 0 ? "no" : "hardly a", search.word),
+                           fmt::format("the views agree on {} splat for \"{}\"",
+                                       labelled == 0 ? "no" : "hardly a", search.word),
                            "name something the scene shows and the model knows, or lower tau");
-        found.confidence = confidence_of(views, weights, found.label, recognised(search.word), ground_seen(views, seen_.grounds));
-        // The sentence names other things, and nothing is left of the scene for them: it is only the word that is found everywhere.
+        found.confidence = confidence_of(views, weights, found.label, recognised(search.word),
+                                         ground_seen(views, seen_.grounds));
+        // The sentence names other things, and nothing is left of the scene for them: it is only the word
+        // that is found everywhere.
         if (!search.rivals.empty() && found.confidence.share > LargestLabelShare) found.confidence.value = 0;
         if (found.confidence.value < request().least_confidence) {
             found.problem = SearchProblem::Unsure;
-            found.message = fmt::format("it is not sure that \"{}\" was found (confidence {:.2f}, at least {:.2f} is needed)",
-                                        search.word, found.confidence.value, request().least_confidence);
+            found.message = fmt::format(
+                "it is not sure that \"{}\" was found (confidence {:.2f}, at least {:.2f} is needed)",
+                search.word, found.confidence.value, request().least_confidence);
             found.remedy = "name something the scene shows, look at what was found, or label it by hand";
         }
         return found;
@@ -403,7 +434,8 @@ private:
     void modify(LocateResult& result) {
         Search search = search_for(request().source, false);
         search.whole = true;
-        search.alone = result.mode == EditMode::Replace && std::all_of(search.rivals.begin(), search.rivals.end(), names_ground);
+        search.alone = result.mode == EditMode::Replace &&
+                       std::all_of(search.rivals.begin(), search.rivals.end(), names_ground);
         result.word = search.word;
         if (input_.label != nullptr) {
             result.views = labelled_views();
@@ -448,7 +480,8 @@ private:
         return views;
     }
 
-    /// The rows the new thing belongs to: labelled by hand, found, or (where it is no thing of its own) the whole scene.
+    /// The rows the new thing belongs to: labelled by hand, found, or (where it is no thing of its own) the
+    /// whole scene.
     void find_source(LocateResult& result) {
         if (input_.label != nullptr) {
             result.source_label = label_by_hand(result.weights);
@@ -459,7 +492,8 @@ private:
             result.source_label = found.label;
             take(found, result);
         } else {
-            result.source_label = make_label(request().source, std::vector<float>(input_.gaussians.size(), 1.0f), 0.5f);
+            result.source_label =
+                make_label(request().source, std::vector<float>(input_.gaussians.size(), 1.0f), 0.5f);
         }
     }
 
@@ -479,14 +513,14 @@ private:
         over_views(result.views.size(), some);
     }
 
-    void over_views(std::size_t count, const std::function<void(std::size_t, std::size_t, unsigned)>& some) const {
-        if (tools_.threads != nullptr)
-            tools_.threads->parallel_for(count, 1, some);
-        else
-            some(0, count, 0);
+    void over_views(std::size_t count,
+                    const std::function<void(std::size_t, std::size_t, unsigned)>& some) const {
+        if (tools_.threads != nullptr) tools_.threads->parallel_for(count, 1, some);
+        else some(0, count, 0);
     }
 
-    /// Drawn views are sure of what they show: what is seen from one side alone (flames in front, wings behind) counts.
+    /// Drawn views are sure of what they show: what is seen from one side alone (flames in front, wings
+    /// behind) counts.
     static RegionParameters of_drawn_views() {
         RegionParameters parameters;
         parameters.least_covered = 0.2;
@@ -494,18 +528,31 @@ private:
     }
 
     static bool votes(const std::vector<ViewEvidence>& views) {
-        return std::count_if(views.begin(), views.end(), [](const auto& view) { return !view.failed; }) >= LeastViews;
+        return std::count_if(views.begin(), views.end(), [](const auto& view) { return !view.failed; }) >=
+               LeastViews;
     }
 
     /// What a model that is shown the scene draws around what wears it; nothing where there is no such model.
-    std::vector<ViewEvidence> draw(const Search& search, const Wearer& wearer, const std::vector<std::uint8_t>& source_bits) {
+    std::vector<ViewEvidence> draw(const Search& search, const Wearer& wearer,
+                                   const std::vector<std::uint8_t>& source_bits) {
         if (tools_.drawing == nullptr || !draws_place(request(), EditMode::Add)) return {};
         const auto room = room_above(wearer.standing, input_.up, input_.front, request().add_room);
         if (room.empty()) return {};
-        const PlaceDrawing drawing{input_.views, input_.view_words, input_.azimuths, input_.elevations, seen_.renders, seen_.depths, room, request(),
-                                   search.word, Random::stream(SearchSeed, Drawing).next()};
+        const PlaceDrawing drawing{input_.views,
+                                   input_.view_words,
+                                   input_.azimuths,
+                                   input_.elevations,
+                                   seen_.renders,
+                                   seen_.depths,
+                                   room,
+                                   request(),
+                                   search.word,
+                                   Random::stream(SearchSeed, Drawing).next()};
         DrawnViews drawn;
-        DrawnViews& kept = tools_.memory != nullptr ? tools_.memory->drawn[drawing_key(drawing, wearer.bits) + (tools_.plain_ground ? "" : " before the scene")] : drawn;
+        DrawnViews& kept = tools_.memory != nullptr
+                               ? tools_.memory->drawn[drawing_key(drawing, wearer.bits) +
+                                                      (tools_.plain_ground ? "" : " before the scene")]
+                               : drawn;
         if (kept.views.empty()) kept = drawn_into(drawing, source_bits);
         std::vector<ViewEvidence> views(input_.views.size());
         for (std::size_t v = 0; v < views.size(); ++v) {
@@ -527,7 +574,9 @@ private:
 
     DrawnViews drawn_into(const PlaceDrawing& drawing, const std::vector<std::uint8_t>& source_bits) const {
         std::optional<GroundUnder> ground;
-        if (tools_.plain_ground) ground = ground_under(request().prompt, input_.gaussians, source_bits, input_.up, input_.front, tools_.rasterizer);
+        if (tools_.plain_ground)
+            ground = ground_under(request().prompt, input_.gaussians, source_bits, input_.up, input_.front,
+                                  tools_.rasterizer);
         if (!ground || !ground->in_nothing) return draw_thing(drawing, *tools_.drawing, tools_.job);
         OnPlainGround on_ground(*tools_.drawing, ground->plain, BeforePlain::Scene);
         return draw_thing(drawing, on_ground, tools_.job);
@@ -540,24 +589,28 @@ private:
         const Search search = search_for(request().target, true);
         result.word = search.word;
         const bool of_source = request().source != request().target;
-        const auto relation = of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None;
-        const auto wearer = wearer_of(request(), input_.gaussians, *result.source_label.bits, input_.up, input_.front, tools_.drawing != nullptr);
-        if (wearer.head < 1) log::info("the head is {:.0f} % of its height: \"{}\" goes there", 100 * wearer.head, search.word);
+        const auto relation =
+            of_source ? relation_of(request().prompt, request().source, request().target) : Relation::None;
+        const auto wearer = wearer_of(request(), input_.gaussians, *result.source_label.bits, input_.up,
+                                      input_.front, tools_.drawing != nullptr);
+        if (wearer.head < 1)
+            log::info("the head is {:.0f} % of its height: \"{}\" goes there", 100 * wearer.head,
+                      search.word);
         auto views = draw(search, wearer, *result.source_label.bits);
         const bool drawn = votes(views);
         result.views = drawn ? std::move(views) : look(search);
         leave_out(result.views, left_out_);
         std::vector<Mask> masks;
         for (const auto& view : result.views) masks.push_back(view.failed ? Mask() : view.mask);
-        const RegionSearch space{
-            input_.gaussians, wearer.bits, input_.views, masks, seen_.depths, input_.up, input_.front,
-            relation, tools_.threads, wearer.standing};
+        const RegionSearch space{input_.gaussians, wearer.bits,    input_.views, masks,
+                                 seen_.depths,     input_.up,      input_.front, relation,
+                                 tools_.threads,   wearer.standing};
         result.region = vote_region(space, drawn ? of_drawn_views() : RegionParameters{});
         const bool attended = !result.region.empty();
         if (!attended) {
             result.region = usual_region(space, search.word);
-            log::info("the views do not agree where \"{}\" goes; it is put at the usual place: {}", search.word,
-                      result.region.origin);
+            log::info("the views do not agree where \"{}\" goes; it is put at the usual place: {}",
+                      search.word, result.region.origin);
         }
         if (result.region.empty()) {
             result.problem = SearchProblem::NoPlace;
@@ -576,8 +629,8 @@ private:
     ViewRenders seen_;
     localize::KeptVotes votes_;
     std::vector<std::size_t> left_out_;
-    std::vector<float> peaks_;   // per view: the most attention that the word of the last search drew there
-    std::size_t broken_ = 0;   // values of the attention so far
+    std::vector<float> peaks_;  // per view: the most attention that the word of the last search drew there
+    std::size_t broken_ = 0;    // values of the attention so far
 };
 
 }  // namespace

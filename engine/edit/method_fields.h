@@ -5,8 +5,8 @@
 
 namespace gse::edit {
 
-/// Whether a setting of the request or of the guidance (by its name) changes anything in an edit that is led by redrawn views,
-/// or by a gradient at every step (sds). `polishes`: such steps follow the redrawn views.
+/// Whether a setting of the request or of the guidance (by its name) changes anything in an edit that is led
+/// by redrawn views, or by a gradient at every step (sds). `polishes`: such steps follow the redrawn views.
 bool has_effect(std::string_view field, bool by_views, bool polishes = false);
 
 /// Why it does not, in a sentence; empty = it does.

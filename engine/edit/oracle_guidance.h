@@ -8,13 +8,13 @@
 
 namespace gse::edit {
 
-/// Weighted L2 to the target's renders. With the perfect denoiser of a diffusion model, SDS becomes this up to a factor
-/// sqrt(abar (1 - abar)), so the whole engine can be tested without any network.
+/// Weighted L2 to the target's renders. With the perfect denoiser of a diffusion model, SDS becomes this up
+/// to a factor sqrt(abar (1 - abar)), so the whole engine can be tested without any network.
 class OracleGuidance : public Guidance {
 public:
     /// Renders the target from every view at once.
-    OracleGuidance(const GaussianSet& target, const std::vector<View>& views, const raster::Settings& settings,
-                   raster::Rasterizer& rasterizer);
+    OracleGuidance(const GaussianSet& target, const std::vector<View>& views,
+                   const raster::Settings& settings, raster::Rasterizer& rasterizer);
     GuidanceOutput evaluate(const GuidanceInput& input) override;
 
 private:

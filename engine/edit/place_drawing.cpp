@@ -21,32 +21,38 @@
 namespace gse::edit {
 namespace {
 
-// Of a redrawn picture that pixel is the thing whose attention is CertainShare of the threshold (or half-way from it to the most
-// there is), or PossibleShare of it where the picture differs from what is behind the thing. Attention alone either reaches beyond the
-// thing or leaves out parts of it (a mushroom's stem); the difference alone takes shadows along. Of 8 added things each on seeds 55 | 56
-// (`gseditpro eval --kinds add --edits 8`) a PossibleShare of .5 removed 14 | 7 % of the error with outlines of an IoU of .46 | .39, .85
-// removes 16 | 10 % with .46 | .41; the attention and the segmenter alone removed 15 | 8 % with .41 | .36.
+// Of a redrawn picture that pixel is the thing whose attention is CertainShare of the threshold (or half-way
+// from it to the most there is), or PossibleShare of it where the picture differs from what is behind the
+// thing. Attention alone either reaches beyond the thing or leaves out parts of it (a mushroom's stem); the
+// difference alone takes shadows along. Of 8 added things each on seeds 55 | 56
+// (`gseditpro eval --kinds add --edits 8`) a PossibleShare of .5 removed 14 | 7 % of the error with outlines
+// of an IoU of .46 | .39, .85 removes 16 | 10 % with .46 | .41; the attention and the segmenter alone removed
+// 15 | 8 % with .41 | .36.
 constexpr double CertainShare = 1.2, PossibleShare = 0.85;
-constexpr float LeastDifference = 0.1f;   // of the channel that differs most: what the autoencoder loses is mostly less
-// The same where it is known what the model changed: LeastChange of it does, or CertainChange where the attention is certain (a black
-// hat before the dark). What has little attention counts little, but counts: the attention often leaves out one of two wings.
+constexpr float LeastDifference =
+    0.1f;  // of the channel that differs most: what the autoencoder loses is mostly less
+// The same where it is known what the model changed: LeastChange of it does, or CertainChange where the
+// attention is certain (a black hat before the dark). What has little attention counts little, but counts:
+// the attention often leaves out one of two wings.
 constexpr float LeastChange = 0.1f, CertainChange = 0.03f, AttentionFloor = 0.5f;
-constexpr double RimPx = 3;               // of a told outline: beyond it what is covered in part belongs to something else
-constexpr double GuidedUntil = 0.5;       // as edits have it (EditRequest::shape_guided_until)
-constexpr double LeastPart = 0.2;         // attention of a part beside that of the largest: a pair of wings has two
-constexpr double LeastArea = 0.002;       // of the picture
-constexpr std::uint64_t QuestionStream = 1;   // of the seed, + the view
+constexpr double RimPx = 3;  // of a told outline: beyond it what is covered in part belongs to something else
+constexpr double GuidedUntil = 0.5;  // as edits have it (EditRequest::shape_guided_until)
+constexpr double LeastPart = 0.2;  // attention of a part beside that of the largest: a pair of wings has two
+constexpr double LeastArea = 0.002;          // of the picture
+constexpr std::uint64_t QuestionStream = 1;  // of the seed, + the view
 
 /// Largest difference of a channel.
 float difference(const Image& a, const Image& b, std::size_t pixel) {
     float most = 0;
-    for (std::size_t c = pixel * 3; c < pixel * 3 + 3; ++c) most = std::max(most, std::abs(a.data[c] - b.data[c]));
+    for (std::size_t c = pixel * 3; c < pixel * 3 + 3; ++c)
+        most = std::max(most, std::abs(a.data[c] - b.data[c]));
     return most;
 }
 
 Mask cleaned(const Mask& found, const Image& map) {
     const Mask whole = localize::clean_clusters(localize::without_holes(found), map, {1.5, 4}, LeastPart);
-    const bool shows = static_cast<double>(whole.count()) >= LeastArea * static_cast<double>(whole.data.size());
+    const bool shows =
+        static_cast<double>(whole.count()) >= LeastArea * static_cast<double>(whole.data.size());
     return shows ? whole : Mask(found.width, found.height);
 }
 
@@ -61,16 +67,19 @@ Mask covered_pixels(const Image& share, double least) {
 Image told_thing(const Image& outline, const Mask& inside) {
     Image share = outline;
     for (std::size_t i = 0; i < share.data.size(); ++i)
-        if (inside.data[i] == 0 || !(share.data[i] > 0)) share.data[i] = 0;   // also what is not a number
-    const Mask half = covered_pixels(share), whole = cleaned(half, share), near = localize::dilate(whole, RimPx);
+        if (inside.data[i] == 0 || !(share.data[i] > 0)) share.data[i] = 0;  // also what is not a number
+    const Mask half = covered_pixels(share), whole = cleaned(half, share),
+               near = localize::dilate(whole, RimPx);
     for (std::size_t i = 0; i < share.data.size(); ++i) {
         if (near.data[i] == 0) share.data[i] = 0;
-        if (whole.data[i] != 0 && half.data[i] == 0) share.data[i] = inside.data[i] != 0 ? 1.0f : 0.0f;   // a hole
+        if (whole.data[i] != 0 && half.data[i] == 0)
+            share.data[i] = inside.data[i] != 0 ? 1.0f : 0.0f;  // a hole
     }
     return share;
 }
 
-Mask thing_in_picture(const Image& picture, const Image& without, const Mask& inside, const Image& map, double level) {
+Mask thing_in_picture(const Image& picture, const Image& without, const Mask& inside, const Image& map,
+                      double level) {
     const double certain = std::min(CertainShare * level, (1 + level) / 2), possible = PossibleShare * level;
     Mask found(picture.width, picture.height);
     for (std::size_t i = 0; i < found.data.size(); ++i) {
@@ -82,7 +91,8 @@ Mask thing_in_picture(const Image& picture, const Image& without, const Mask& in
 
 Mask changed_thing(const Image& change, const Mask& inside, const Image& map, double level) {
     const double certain = std::min(CertainShare * level, (1 + level) / 2);
-    const Image smooth = mean_of_neighbours(change);   // lines along edges, which the autoencoder blurs, are no thing
+    const Image smooth =
+        mean_of_neighbours(change);  // lines along edges, which the autoencoder blurs, are no thing
     Mask found(change.width, change.height);
     Image weight(change.width, change.height, 1);
     for (std::size_t i = 0; i < found.data.size(); ++i) {
@@ -91,7 +101,8 @@ Mask changed_thing(const Image& change, const Mask& inside, const Image& map, do
         weight.data[i] = smooth.data[i] * (AttentionFloor + map.data[i]);
     }
     found = cleaned(found, weight);
-    for (std::size_t i = 0; i < found.data.size(); ++i) found.data[i] &= inside.data[i] != 0 ? 1 : 0;   // holes lie anywhere
+    for (std::size_t i = 0; i < found.data.size(); ++i)
+        found.data[i] &= inside.data[i] != 0 ? 1 : 0;  // holes lie anywhere
     return found;
 }
 
@@ -112,8 +123,8 @@ std::string drawing_key(const PlaceDrawing& drawing, const std::vector<std::uint
     const auto& request = drawing.request;
     Hash bits;
     bits.bytes(source_bits.data(), source_bits.size());
-    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, drawing.seed, request.add_room, request.add_noise, request.place_views,
-                       request.place_steps, bits.value());
+    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, drawing.seed, request.add_room,
+                       request.add_noise, request.place_views, request.place_steps, bits.value());
 }
 
 DrawnViews draw_thing(const PlaceDrawing& drawing, ViewGuidance& guidance, const JobControl& job) {
@@ -121,22 +132,27 @@ DrawnViews draw_thing(const PlaceDrawing& drawing, ViewGuidance& guidance, const
     std::vector<double> covered;
     for (const auto& view : drawing.views) {
         rooms.push_back(region_mask(drawing.room, view.camera));
-        covered.push_back(static_cast<double>(rooms.back().count()) / static_cast<double>(rooms.back().data.size()));
+        covered.push_back(static_cast<double>(rooms.back().count()) /
+                          static_cast<double>(rooms.back().data.size()));
     }
     DrawnViews drawn;
-    drawn.views = views_to_redraw(drawing.views, covered, static_cast<std::size_t>(drawing.request.place_views));
+    drawn.views =
+        views_to_redraw(drawing.views, covered, static_cast<std::size_t>(drawing.request.place_views));
     if (drawn.views.empty()) return drawn;
     std::vector<RoundView> views;
     for (const auto v : drawn.views) {
-        RoundView view{drawing.renders[v], drawing.renders[v], drawing.depths[v], rooms[v], drawing.views[v],
-                       drawing.view_words.empty() ? std::string() : drawing.view_words[v]};
-        if (!drawing.azimuths.empty()) view.azimuth = drawing.azimuths[v], view.elevation = drawing.elevations[v];
+        RoundView view{
+            drawing.renders[v], drawing.renders[v],
+            drawing.depths[v],  rooms[v],
+            drawing.views[v],   drawing.view_words.empty() ? std::string() : drawing.view_words[v]};
+        if (!drawing.azimuths.empty())
+            view.azimuth = drawing.azimuths[v], view.elevation = drawing.elevations[v];
         view.backdrop = {drawing.renders[v], drawing.depths[v]};
         views.push_back(std::move(view));
     }
     RoundInput input;
     input.steps = drawing.request.place_steps;
-    input.strength = 1;   // nothing of what is there says where
+    input.strength = 1;  // nothing of what is there says where
     input.seed = drawing.seed;
     input.anew = true;
     input.guided_until = GuidedUntil;
@@ -150,12 +166,14 @@ DrawnViews draw_thing(const PlaceDrawing& drawing, ViewGuidance& guidance, const
     return drawn;
 }
 
-std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews& drawn, AttentionSource& attention, const JobControl& job) {
+std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews& drawn,
+                                   AttentionSource& attention, const JobControl& job) {
     std::vector<DrawnPlace> places;
-    const double asked = drawing.request.attention_threshold;   // 0 = open
+    const double asked = drawing.request.attention_threshold;  // 0 = open
     if (!drawn.outlines.empty()) {
         for (std::size_t i = 0; i < drawn.views.size(); ++i) {
-            Image share = told_thing(drawn.outlines[i], region_mask(drawing.room, drawing.views[drawn.views[i]].camera));
+            Image share = told_thing(drawn.outlines[i],
+                                     region_mask(drawing.room, drawing.views[drawn.views[i]].camera));
             Mask mask = asked > 0 ? covered_pixels(share, asked) : covered_pixels(share);
             places.push_back({std::move(share), std::move(mask)});
         }
@@ -165,21 +183,27 @@ std::vector<DrawnPlace> find_drawn(const PlaceDrawing& drawing, const DrawnViews
     std::vector<AttentionQuery> queries;
     for (std::size_t i = 0; i < drawn.views.size(); ++i) {
         const auto v = drawn.views[i];
-        queries.push_back({drawn.pictures[i], as_told(drawing.request.prompt), {drawing.word},
-                           drawing.view_words.empty() ? std::string() : drawing.view_words[v], false, 1,
+        queries.push_back({drawn.pictures[i],
+                           as_told(drawing.request.prompt),
+                           {drawing.word},
+                           drawing.view_words.empty() ? std::string() : drawing.view_words[v],
+                           false,
+                           1,
                            Random::stream(drawing.seed, QuestionStream + v).next()});
     }
     const std::size_t at_once = attention.at_once();
     for (std::size_t i = 0; i < queries.size(); ++i) {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "the search was stopped");
-        if (at_once > 1 && i % at_once == 0) attention.prepare(std::span(queries).subspan(i, std::min(at_once, queries.size() - i)));
+        if (at_once > 1 && i % at_once == 0)
+            attention.prepare(std::span(queries).subspan(i, std::min(at_once, queries.size() - i)));
         auto maps = attention.locate(queries[i]);
         GSE_CHECK_EQ(maps.size(), std::size_t{1});
         const auto broken = normalise_maximum(maps.front());
         const auto v = drawn.views[i];
         const Mask room = region_mask(drawing.room, drawing.views[v].camera);
-        auto mask = drawn.changes.empty() ? thing_in_picture(drawn.pictures[i], drawing.renders[v], room, maps.front(), level)
-                                          : changed_thing(drawn.changes[i], room, maps.front(), level);
+        auto mask = drawn.changes.empty()
+                        ? thing_in_picture(drawn.pictures[i], drawing.renders[v], room, maps.front(), level)
+                        : changed_thing(drawn.changes[i], room, maps.front(), level);
         places.push_back({std::move(maps.front()), std::move(mask), broken});
         job.report("looking for what was drawn", static_cast<int>(i + 1), static_cast<int>(queries.size()));
     }

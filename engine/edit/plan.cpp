@@ -11,7 +11,8 @@
 namespace gse::edit {
 namespace {
 
-constexpr float SurelyIt = 0.9f;   // of a map: towards a thing's rim its colour is in part that of what is behind it
+constexpr float SurelyIt =
+    0.9f;  // of a map: towards a thing's rim its colour is in part that of what is behind it
 
 /// What colour the new thing has in the pictures that show where it goes.
 std::string colour_of_drawn(const LocateResult& located, const std::vector<std::string>& known) {
@@ -44,7 +45,9 @@ EditPlan make_plan(const LocateInput& input, const LocateResult& located, raster
     const std::vector<float> values(plan.label.begin(), plan.label.end());
     const bool any = std::find(plan.label.begin(), plan.label.end(), std::uint8_t{1}) != plan.label.end();
     if (located.mode == EditMode::Replace)
-        plan.room = !located.room.empty() ? located.room : room_around(input.gaussians, plan.label, input.up, input.front, input.request.shape_room);
+        plan.room = !located.room.empty() ? located.room
+                                          : room_around(input.gaussians, plan.label, input.up, input.front,
+                                                        input.request.shape_room);
     Image seen;
     for (std::size_t v = 0; v < input.views.size(); ++v) {
         const Camera& camera = input.views[v].camera;

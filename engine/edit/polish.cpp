@@ -10,8 +10,8 @@
 
 namespace gse::edit {
 
-double held_out_error(const std::vector<HeldOutView>& views, const GaussianSpans& rows, const raster::Settings& settings,
-                      raster::Rasterizer& rasterizer) {
+double held_out_error(const std::vector<HeldOutView>& views, const GaussianSpans& rows,
+                      const raster::Settings& settings, raster::Rasterizer& rasterizer) {
     double sum = 0, values = 0;
     raster::ForwardOutput output;
     for (const auto& view : views) {
@@ -26,23 +26,27 @@ double held_out_error(const std::vector<HeldOutView>& views, const GaussianSpans
     return values > 0 ? sum / values : 0;
 }
 
-Polish::Polish(std::vector<HeldOutView> views, EditSnapshot before, const GaussianSpans& rows, const raster::Settings& settings,
-               raster::Rasterizer& rasterizer)
+Polish::Polish(std::vector<HeldOutView> views, EditSnapshot before, const GaussianSpans& rows,
+               const raster::Settings& settings, raster::Rasterizer& rasterizer)
     : views_(std::move(views)) {
     GSE_CHECK(!views_.empty());
     begin_anew(std::move(before), rows, settings, rasterizer);
 }
 
-void Polish::begin_anew(EditSnapshot before, const GaussianSpans& rows, const raster::Settings& settings, raster::Rasterizer& rasterizer) {
+void Polish::begin_anew(EditSnapshot before, const GaussianSpans& rows, const raster::Settings& settings,
+                        raster::Rasterizer& rasterizer) {
     before_ = std::move(before);
     error_before_ = held_out_error(views_, rows, settings, rasterizer);
 }
 
-PolishOutcome Polish::judged(int steps, const GaussianSpans& rows, const raster::Settings& settings, raster::Rasterizer& rasterizer) const {
+PolishOutcome Polish::judged(int steps, const GaussianSpans& rows, const raster::Settings& settings,
+                             raster::Rasterizer& rasterizer) const {
     PolishOutcome outcome{steps, error_before_, held_out_error(views_, rows, settings, rasterizer), false};
     outcome.kept = steps > 0 && outcome.after < outcome.before;
-    log::info("polished in {} steps: {} views that were not redrawn differ from the model's pictures of them by {:.4f}, {:.4f} before; {}",
-              steps, views_.size(), outcome.after, outcome.before, outcome.kept ? "kept" : "dropped again");
+    log::info(
+        "polished in {} steps: {} views that were not redrawn differ from the model's pictures of them by "
+        "{:.4f}, {:.4f} before; {}",
+        steps, views_.size(), outcome.after, outcome.before, outcome.kept ? "kept" : "dropped again");
     return outcome;
 }
 

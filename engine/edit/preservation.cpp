@@ -56,8 +56,8 @@ Preservation::Box Preservation::grown(const Box& box, int by, const Image& image
             std::min(image.height, box.y1 + by)};
 }
 
-double Preservation::add_gradient(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient,
-                                  const Image* trust) {
+double Preservation::add_gradient(const Image& rendered, const Image& original, const Mask& may_change,
+                                  Image& gradient, const Image* trust) {
     GSE_CHECK_EQ(rendered.data.size(), original.data.size());
     GSE_CHECK_EQ(rendered.data.size(), gradient.data.size());
     GSE_CHECK_EQ(may_change.data.size(), rendered.pixel_count());

@@ -22,8 +22,8 @@ public:
     explicit Preservation(const PreservationWeights& weights) : weights_(weights) {}
 
     /// Loss of `rendered` [H,W,3] against M * rendered + (1 - M) * original, the first factor detached; adds
-    /// its gradient to `gradient` [H,W,3]. L1 and 1 - SSIM are means over all pixels and channels; `trust` [H,W,1] says how much a
-    /// pixel's L1 counts, null = fully.
+    /// its gradient to `gradient` [H,W,3]. L1 and 1 - SSIM are means over all pixels and channels; `trust`
+    /// [H,W,1] says how much a pixel's L1 counts, null = fully.
     double add_gradient(const Image& rendered, const Image& original, const Mask& may_change, Image& gradient,
                         const Image* trust = nullptr);
 
@@ -36,8 +36,8 @@ private:
         int height() const { return y1 - y0; }
     };
     static Box grown(const Box& box, int by, const Image& image);
-    Box add_l1(const Image& rendered, const Image& original, const Mask& may_change, const Image* trust, Image& gradient,
-               double& loss);
+    Box add_l1(const Image& rendered, const Image& original, const Mask& may_change, const Image* trust,
+               Image& gradient, double& loss);
     void load(const Image& rendered, const Box& work, std::size_t channel);
     double differentiate(const Box& work, const Box& live);
     void ssim_gradient(const Image& rendered, const Box& changed, double scale, Image& gradient,

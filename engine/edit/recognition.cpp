@@ -27,7 +27,8 @@ std::string with_other(const std::string& sentence, const std::string& phrase, c
 
 }  // namespace
 
-Recognition::Recognition(std::unique_ptr<TextImageScore> score, std::vector<std::string> known) : score_(std::move(score)) {
+Recognition::Recognition(std::unique_ptr<TextImageScore> score, std::vector<std::string> known)
+    : score_(std::move(score)) {
     for (auto& word : known)
         if (says_something(word)) known_.push_back(std::move(word));
 }
@@ -51,7 +52,8 @@ const std::vector<float>& Recognition::viewpoint(const Image& picture) {
     Hash hash;
     hash.image(picture);
     auto found = viewpoints_.find(hash.value());
-    if (found == viewpoints_.end()) found = viewpoints_.emplace(hash.value(), score_->viewpoint(picture)).first;
+    if (found == viewpoints_.end())
+        found = viewpoints_.emplace(hash.value(), score_->viewpoint(picture)).first;
     return found->second;
 }
 
@@ -62,14 +64,15 @@ double Recognition::fit(const std::string& sentence, const std::vector<const Ima
     return sum / static_cast<double>(pictures.size());
 }
 
-double Recognition::of(const std::string& sentence, const std::string& word, const std::vector<const Image*>& pictures) {
+double Recognition::of(const std::string& sentence, const std::string& word,
+                       const std::vector<const Image*>& pictures) {
     if (!available() || pictures.empty()) return -1;
     double below = 0, all = 0;
     for (const Image* picture : pictures) {
         const auto& seen = vector_of(*picture);
         const double own = cosine(seen, vector_of(as_told(sentence)));
         for (const auto& other : known_) {
-            if (has_word(word, other)) continue;   // the word, or a part of the phrase
+            if (has_word(word, other)) continue;  // the word, or a part of the phrase
             below += cosine(seen, vector_of(with_other(sentence, word, other))) < own ? 1 : 0;
             all += 1;
         }

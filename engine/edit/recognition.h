@@ -12,8 +12,8 @@
 
 namespace gse::edit {
 
-/// Compares a word with all others that a model with a fixed vocabulary knows. Sentences and pictures are encoded
-/// once.
+/// Compares a word with all others that a model with a fixed vocabulary knows. Sentences and pictures are
+/// encoded once.
 class Recognition {
 public:
     /// `score` null or an empty list of words: nobody can tell.
@@ -25,9 +25,10 @@ public:
     const std::vector<float>& viewpoint(const Image& picture);
     /// Mean cosine of the sentence with the pictures, in [-1,1]; needs compares() and a picture.
     double fit(const std::string& sentence, const std::vector<const Image*>& pictures);
-    /// Share of the other words that fit the pictures less in the place that the word (or phrase) has in the sentence, in
-    /// [0,1]; negative when nobody can tell.
-    double of(const std::string& sentence, const std::string& word, const std::vector<const Image*>& pictures);
+    /// Share of the other words that fit the pictures less in the place that the word (or phrase) has in the
+    /// sentence, in [0,1]; negative when nobody can tell.
+    double of(const std::string& sentence, const std::string& word,
+              const std::vector<const Image*>& pictures);
 
 private:
     const std::vector<float>& vector_of(const std::string& sentence);
@@ -35,8 +36,8 @@ private:
 
     std::unique_ptr<TextImageScore> score_;
     std::vector<std::string> known_;
-    std::map<std::string, std::vector<float>> vectors_;   // of sentences
-    std::unordered_map<std::uint64_t, std::vector<float>> seen_, viewpoints_;   // of pictures, by their hash
+    std::map<std::string, std::vector<float>> vectors_;                        // of sentences
+    std::unordered_map<std::uint64_t, std::vector<float>> seen_, viewpoints_;  // of pictures, by their hash
 };
 
 }  // namespace gse::edit

@@ -37,7 +37,8 @@ std::vector<Vec3> visible_points(const RegionSearch& search, const Frame& frame,
     for (std::size_t row = 0; row < search.gaussians.size(); ++row) {
         const auto p = search.gaussians.position().subspan(row * 3, 3);
         const bool finite = std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-        if ((search.source_bits[row] != 0) == of_source && finite && search.gaussians.opacity_logit()[row] > InvisibleLogit)
+        if ((search.source_bits[row] != 0) == of_source && finite &&
+            search.gaussians.opacity_logit()[row] > InvisibleLogit)
             points.push_back(frame.to_frame({p[0], p[1], p[2]}));
     }
     return points;
@@ -66,7 +67,8 @@ Box trimmed_box(const std::vector<Vec3>& points, double trim) {
 
 Vec3 Grid::centre(std::size_t cell) const {
     const auto nx = static_cast<std::size_t>(count[0]), ny = static_cast<std::size_t>(count[1]);
-    const Vec3 index{static_cast<double>(cell % nx), static_cast<double>(cell / nx % ny), static_cast<double>(cell / (nx * ny))};
+    const Vec3 index{static_cast<double>(cell % nx), static_cast<double>(cell / nx % ny),
+                     static_cast<double>(cell / (nx * ny))};
     return box.low + (index + Vec3{0.5, 0.5, 0.5}) * side;
 }
 
@@ -76,7 +78,8 @@ Grid make_grid(const Box& box, int cells) {
     const Vec3 size = box.size();
     grid.side = std::max({size.x, size.y, size.z, 1e-9}) / std::max(cells, 1);
     for (int axis = 0; axis < 3; ++axis)
-        grid.count[static_cast<std::size_t>(axis)] = std::max(1, static_cast<int>(std::ceil(size[axis] / grid.side)));
+        grid.count[static_cast<std::size_t>(axis)] =
+            std::max(1, static_cast<int>(std::ceil(size[axis] / grid.side)));
     return grid;
 }
 

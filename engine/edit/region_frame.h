@@ -11,7 +11,8 @@ namespace gse::edit {
 
 constexpr double BoundsTrim = 0.01;  // share of the rows cut off at either end of every axis
 
-/// Right-handed frame of the scene: x sideways (to the right of who looks at the front), y up, z to the front.
+/// Right-handed frame of the scene: x sideways (to the right of who looks at the front), y up, z to the
+/// front.
 struct Frame {
     Vec3 side, up, front;
     Vec3 to_frame(const Vec3& p) const { return {dot(p, side), dot(p, up), dot(p, front)}; }
@@ -42,7 +43,8 @@ struct Grid {
     double side = 0;
     std::array<int, 3> count{};
     std::size_t size() const {
-        return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]) * static_cast<std::size_t>(count[2]);
+        return static_cast<std::size_t>(count[0]) * static_cast<std::size_t>(count[1]) *
+               static_cast<std::size_t>(count[2]);
     }
     Vec3 centre(std::size_t cell) const;
 };

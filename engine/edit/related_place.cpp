@@ -7,20 +7,22 @@
 namespace gse::edit {
 namespace {
 
-constexpr double Reach = 0.8;          // how far from the source views may vote, of its longest side
-constexpr double Radius = 0.25;        // of a thing that suits it, of its longest side
-constexpr double Gap = 0.05;           // between both, of the longest side
-constexpr double IntoGround = 0.05;    // of the source's height: votes a little below the foot count
-constexpr double MostRise = 1.25;      // of the source's height: how tall what stands beside it may be
-constexpr double LeastRoom = 0.15;     // of the source's height: less below it holds nothing
-constexpr double FlatHeight = 0.1;     // of the source's height, of what lies at its foot where there is no room below
-constexpr double FlatWidth = 1.3;      // of the source's own
-constexpr std::size_t FewPoints = 3;   // specks below the source are no ground
-constexpr double GroundShare = 0.9;    // of the points below the source that lie below the ground's surface
+constexpr double Reach = 0.8;        // how far from the source views may vote, of its longest side
+constexpr double Radius = 0.25;      // of a thing that suits it, of its longest side
+constexpr double Gap = 0.05;         // between both, of the longest side
+constexpr double IntoGround = 0.05;  // of the source's height: votes a little below the foot count
+constexpr double MostRise = 1.25;    // of the source's height: how tall what stands beside it may be
+constexpr double LeastRoom = 0.15;   // of the source's height: less below it holds nothing
+constexpr double FlatHeight =
+    0.1;  // of the source's height, of what lies at its foot where there is no room below
+constexpr double FlatWidth = 1.3;     // of the source's own
+constexpr std::size_t FewPoints = 3;  // specks below the source are no ground
+constexpr double GroundShare = 0.9;   // of the points below the source that lie below the ground's surface
 
 }  // namespace
 
-RelatedPlace::RelatedPlace(Relation relation, const std::vector<Vec3>& source, const std::vector<Vec3>& others)
+RelatedPlace::RelatedPlace(Relation relation, const std::vector<Vec3>& source,
+                           const std::vector<Vec3>& others)
     : relation_(relation), source_(trimmed_box(source, BoundsTrim)) {
     const Vec3 size = source_.size();
     const double longest = std::max({size.x, size.y, size.z, 1e-9}), reach = Reach * longest;
@@ -28,9 +30,11 @@ RelatedPlace::RelatedPlace(Relation relation, const std::vector<Vec3>& source, c
     box_ = source_;
     box_.low.y -= IntoGround * size.y;
     box_.high.y = source_.low.y + MostRise * size.y;
-    const double wide = radius_ + Gap * longest;   // sideways of the direction of the relation
-    const bool sideways = relation == Relation::Beside || relation == Relation::Left || relation == Relation::Right;
-    const Vec3 room = sideways ? Vec3{reach, 0, wide} : Vec3{wide, 0, relation == Relation::Under ? wide : reach};
+    const double wide = radius_ + Gap * longest;  // sideways of the direction of the relation
+    const bool sideways =
+        relation == Relation::Beside || relation == Relation::Left || relation == Relation::Right;
+    const Vec3 room =
+        sideways ? Vec3{reach, 0, wide} : Vec3{wide, 0, relation == Relation::Under ? wide : reach};
     box_.low = box_.low - room;
     box_.high = box_.high + room;
     if (relation == Relation::Left || relation == Relation::Behind) {
@@ -68,7 +72,7 @@ void RelatedPlace::choose_side(const std::vector<Vec3>& others) {
     const auto in_the_way = [&](double sign) {
         sign_ = sign;
         Box room = thing();
-        room.low.y += LeastRoom * source_.size().y;   // the ground itself is not in the way
+        room.low.y += LeastRoom * source_.size().y;  // the ground itself is not in the way
         return std::count_if(others.begin(), others.end(), [&](const Vec3& p) { return room.has(p); });
     };
     sign_ = in_the_way(1) <= in_the_way(-1) ? 1 : -1;

@@ -6,7 +6,8 @@
 
 namespace gse::edit {
 
-/// The room that a relation leaves, in frame coordinates: what the views vote in, and where the thing goes unasked.
+/// The room that a relation leaves, in frame coordinates: what the views vote in, and where the thing goes
+/// unasked.
 class RelatedPlace {
 public:
     /// `source` and `others`: visible points of the source (at least one) and of the rest of the scene.
@@ -15,8 +16,8 @@ public:
     const Box& box() const { return box_; }
     /// Whether a point of it stands in the relation to the source.
     bool allows(const Vec3& p) const;
-    /// A round thing next to the source, which rests on the ground the source stands on; under a source that stands on the
-    /// ground, a flat one at its foot.
+    /// A round thing next to the source, which rests on the ground the source stands on; under a source that
+    /// stands on the ground, a flat one at its foot.
     AddRegion usual(const Frame& frame, int cells) const;
 
 private:
@@ -26,9 +27,9 @@ private:
 
     Relation relation_;
     Box source_, box_;
-    double radius_ = 0;    // of a thing that suits the source
-    double sign_ = 1;      // of x, where either side would do: the emptier one
-    double below_ = 0;     // free height under the source; 0 = it stands on something
+    double radius_ = 0;  // of a thing that suits the source
+    double sign_ = 1;    // of x, where either side would do: the emptier one
+    double below_ = 0;   // free height under the source; 0 = it stands on something
 };
 
 }  // namespace gse::edit

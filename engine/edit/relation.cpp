@@ -13,16 +13,32 @@ namespace {
 using Words = std::vector<std::string>;
 
 const std::map<std::string, Relation>& prepositions() {
-    static const std::map<std::string, Relation> all{
-        {"on", Relation::Above},          {"above", Relation::Above},        {"over", Relation::Above},
-        {"atop", Relation::Above},        {"on top of", Relation::Above},    {"upon", Relation::Above},
-        {"beside", Relation::Beside},     {"near", Relation::Beside},        {"by", Relation::Beside},
-        {"next to", Relation::Beside},    {"close to", Relation::Beside},    {"alongside", Relation::Beside},
-        {"left of", Relation::Left},      {"to the left of", Relation::Left}, {"on the left of", Relation::Left},
-        {"right of", Relation::Right},    {"to the right of", Relation::Right}, {"on the right of", Relation::Right},
-        {"behind", Relation::Behind},     {"in back of", Relation::Behind},  {"in front of", Relation::Before},
-        {"before", Relation::Before},     {"under", Relation::Under},        {"below", Relation::Under},
-        {"beneath", Relation::Under},     {"underneath", Relation::Under}};
+    static const std::map<std::string, Relation> all{{"on", Relation::Above},
+                                                     {"above", Relation::Above},
+                                                     {"over", Relation::Above},
+                                                     {"atop", Relation::Above},
+                                                     {"on top of", Relation::Above},
+                                                     {"upon", Relation::Above},
+                                                     {"beside", Relation::Beside},
+                                                     {"near", Relation::Beside},
+                                                     {"by", Relation::Beside},
+                                                     {"next to", Relation::Beside},
+                                                     {"close to", Relation::Beside},
+                                                     {"alongside", Relation::Beside},
+                                                     {"left of", Relation::Left},
+                                                     {"to the left of", Relation::Left},
+                                                     {"on the left of", Relation::Left},
+                                                     {"right of", Relation::Right},
+                                                     {"to the right of", Relation::Right},
+                                                     {"on the right of", Relation::Right},
+                                                     {"behind", Relation::Behind},
+                                                     {"in back of", Relation::Behind},
+                                                     {"in front of", Relation::Before},
+                                                     {"before", Relation::Before},
+                                                     {"under", Relation::Under},
+                                                     {"below", Relation::Under},
+                                                     {"beneath", Relation::Under},
+                                                     {"underneath", Relation::Under}};
     return all;
 }
 
@@ -38,7 +54,8 @@ Relation opposite(Relation relation) {
     }
 }
 
-/// The relation whose preposition begins the noun phrase that ends at `head`; None where another word begins it.
+/// The relation whose preposition begins the noun phrase that ends at `head`; None where another word begins
+/// it.
 Relation leading_to(const Words& terms, std::size_t head) {
     for (std::size_t i = head; i > 0; --i)
         if (ends_phrase(terms[i - 1])) return relation_named(terms[i - 1]).value_or(Relation::None);
@@ -76,7 +93,7 @@ Relation relation_of(const std::string& sentence, const std::string& source, con
     const std::size_t from = place(source), to = place(target);
     if (from == to || from == terms.size() || to == terms.size()) return Relation::None;
     if (to < from) return names_thing(terms, to) ? leading_to(terms, from) : Relation::None;
-    if (to + 2 < terms.size() && is_pronoun(terms[to + 2]))   // "with a ball beside it"
+    if (to + 2 < terms.size() && is_pronoun(terms[to + 2]))  // "with a ball beside it"
         if (const auto named = relation_named(terms[to + 1])) return *named;
     return opposite(leading_to(terms, to));
 }

@@ -9,8 +9,7 @@ namespace gse::edit {
 namespace {
 
 /// Makes room for one row of zeros. Momentum that has not begun stays empty.
-template <class T>
-void append_entry(const Column& column, std::vector<T>& array) {
+template <class T> void append_entry(const Column& column, std::vector<T>& array) {
     if (column.kind != ColumnKind::Momentum || !array.empty()) array.resize(array.size() + column.stride);
 }
 
@@ -26,7 +25,8 @@ void RowTable::append_carried(const RowTable& from, std::size_t index) {
         [&](const Column& column, auto& to, const auto& source) {
             append_entry(column, to);
             if (column.kind != ColumnKind::Splat && column.kind != ColumnKind::Fact) return;
-            const auto at = source.begin() + static_cast<std::ptrdiff_t>((from.begin_of(column) + index) * column.stride);
+            const auto at =
+                source.begin() + static_cast<std::ptrdiff_t>((from.begin_of(column) + index) * column.stride);
             std::copy_n(at, column.stride, to.end() - static_cast<std::ptrdiff_t>(column.stride));
         },
         *this, from);
@@ -51,7 +51,9 @@ void RowTable::keep(const std::vector<std::uint8_t>& flags) {
 
 void RowTable::reserve(std::size_t more) {
     const std::size_t count = labelled() + more;
-    visit([&](const Column& column, auto& array) { array.reserve((begin_of(column) + count) * column.stride); }, *this);
+    visit(
+        [&](const Column& column, auto& array) { array.reserve((begin_of(column) + count) * column.stride); },
+        *this);
 }
 
 void RowTable::clear_working() {

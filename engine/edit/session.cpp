@@ -32,18 +32,20 @@
 namespace gse::edit {
 namespace {
 
-constexpr float SeenLabel = 0.5f;              // share of a pixel that the label must cover to be in a mask
-constexpr std::size_t CalibrationSteps = 20;        // method 2.5
-constexpr std::array LooksAgain{0.5, 0.75};    // shares of the iterations after which new splats are looked for
-constexpr double LeastLeft = 0.15;             // of the new splats; fewer: the model does not see the new thing yet
-constexpr double FadedLogit = -6;              // opacity of what another thing takes the place of: it may come back (views.md 17)
-// A guidance that is not finite is broken for good, not only now and then, when so many steps in a row were left out and
-// all that were are more than this share of the steps.
+constexpr float SeenLabel = 0.5f;             // share of a pixel that the label must cover to be in a mask
+constexpr std::size_t CalibrationSteps = 20;  // method 2.5
+constexpr std::array LooksAgain{0.5, 0.75};  // shares of the iterations after which new splats are looked for
+constexpr double LeastLeft = 0.15;  // of the new splats; fewer: the model does not see the new thing yet
+constexpr double FadedLogit =
+    -6;  // opacity of what another thing takes the place of: it may come back (views.md 17)
+// A guidance that is not finite is broken for good, not only now and then, when so many steps in a row were
+// left out and all that were are more than this share of the steps.
 constexpr std::size_t SkippedInARow = 10;
 constexpr double MostSkipped = 0.1;
-constexpr double SnapshotShare = 0.1;   // of the time, at most, where they come by time: those of a large scene are rarer
-/// While training, colours below black get the full gradient of black (F18 names 0.01): what a large step has driven to black
-/// must be able to come back. WorkingSet keeps them from going further.
+constexpr double SnapshotShare =
+    0.1;  // of the time, at most, where they come by time: those of a large scene are rarer
+/// While training, colours below black get the full gradient of black (F18 names 0.01): what a large step has
+/// driven to black must be able to come back. WorkingSet keeps them from going further.
 constexpr float TrainingColourSlope = 1.0f;
 
 double norm(const Image& image) {
@@ -58,7 +60,8 @@ bool shows_any(const Image& seen) {
 }
 
 bool finite(const Image& image) {
-    return std::all_of(image.data.begin(), image.data.end(), [](float value) { return std::isfinite(value); });
+    return std::all_of(image.data.begin(), image.data.end(),
+                       [](float value) { return std::isfinite(value); });
 }
 
 /// Draws views without replacement, cycle after cycle.
@@ -72,7 +75,8 @@ public:
     }
     std::size_t next() {
         if (position_ == 0)
-            for (std::size_t i = views_.size(); i > 1; --i) std::swap(views_[i - 1], views_[random_.below(i)]);
+            for (std::size_t i = views_.size(); i > 1; --i)
+                std::swap(views_[i - 1], views_[random_.below(i)]);
         const std::size_t view = views_[position_];
         position_ = (position_ + 1) % views_.size();
         return view;
@@ -86,8 +90,8 @@ private:
 
 /// Seconds per stage of the loop.
 struct StageSeconds {
-    double originals = 0, render = 0, preserve = 0, guidance = 0, backward = 0, optimise = 0, densify = 0, snapshot = 0,
-           dynamic_mask = 0, polish = 0, held_out = 0;
+    double originals = 0, render = 0, preserve = 0, guidance = 0, backward = 0, optimise = 0, densify = 0,
+           snapshot = 0, dynamic_mask = 0, polish = 0, held_out = 0;
 };
 
 /// What is edited: the rows as they came in and as they are drawn, and which of them may be worked with.
@@ -96,11 +100,13 @@ struct EditBase {
     GaussianSet drawn;
     std::vector<std::uint8_t> usable;
 
-    explicit EditBase(const GaussianSet& base) : set(base), drawn(drawable(base)), usable(usable_rows(base)) {}
+    explicit EditBase(const GaussianSet& base)
+        : set(base), drawn(drawable(base)), usable(usable_rows(base)) {}
 
     /// The label without rows that cannot be drawn.
     std::vector<std::uint8_t> editable(std::vector<std::uint8_t> label) const {
-        for (std::size_t row = 0; row < label.size(); ++row) label[row] = label[row] != 0 && usable[row] != 0 ? 1 : 0;
+        for (std::size_t row = 0; row < label.size(); ++row)
+            label[row] = label[row] != 0 && usable[row] != 0 ? 1 : 0;
         return label;
     }
 };
@@ -109,17 +115,13 @@ struct EditBase {
 class Loop {
 public:
     Loop(const EditBase& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools)
-        : base_(base),
-          plan_(plan),
-          label_(base.editable(plan.label)),
-          request_(loop_request(request, plan.mode, tools.views != nullptr, tools.views != nullptr && tools.views->restyles())),
-          tools_(tools),
-          set_(base.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
-          preservation_({request.l1, request.ssim, request.preserve}),
-          fit_(FitWeights),
+        : base_(base), plan_(plan), label_(base.editable(plan.label)),
+          request_(loop_request(request, plan.mode, tools.views != nullptr,
+                                tools.views != nullptr && tools.views->restyles())),
+          tools_(tools), set_(base.drawn, label_, plan.seeds, request_, camera_extent(plan.views)),
+          preservation_({request.l1, request.ssim, request.preserve}), fit_(FitWeights),
           polish_steps_(tools.views != nullptr ? request.polish_steps : 0),
-          masks_(plan, request_, tools.word, tools.attention, tools.segmenter),
-          cycle_(request.seed),
+          masks_(plan, request_, tools.word, tools.attention, tools.segmenter), cycle_(request.seed),
           rest_(plan.views.size(), request.early_stop_change),
           pictures_(tools.rasterizer.view_session(plan.views.size(), tools.view_bytes)),
           random_(Random::stream(request.seed, 17)) {
@@ -144,13 +146,10 @@ public:
                 throw Error(ErrorCode::InvalidArgument, "no labelled splat is visible in any view",
                             "correct the label, or choose views that show it");
             begin_with(views);
-            while (result.iterations < request_.iterations + polish_steps_ && advance(result)) {
-            }
+            while (result.iterations < request_.iterations + polish_steps_ && advance(result)) {}
         } catch (const std::bad_alloc&) {
             keep_reached(result, out_of_memory());
-        } catch (const OutOfMemory& shortage) {
-            keep_reached(result, shortage);
-        }
+        } catch (const OutOfMemory& shortage) { keep_reached(result, shortage); }
         finish(result);
         return result;
     }
@@ -167,22 +166,25 @@ private:
         result.iterations = iteration + 1;
         if (looks_again(iteration)) look_again(iteration, result);
         const IterationRecord& record = result.history.back();
-        result.came_to_rest = request_.early_stop && !record.skipped && rest_.visit(record.view, shown_, masks_.mask(record.view));
+        result.came_to_rest = request_.early_stop && !record.skipped &&
+                              rest_.visit(record.view, shown_, masks_.mask(record.view));
         if (tools_.iteration) tools_.iteration(result.history.back());
         if (tools_.snapshot && snapshot_due(iteration)) take_snapshot(iteration);
         tools_.job.report("editing", iteration + 1, request_.iterations + polish_steps_);
         if (skipped_in_a_row_ >= SkippedInARow) give_up_on_guidance(result);
-        return set_.labelled() > 0 && !result.came_to_rest && !result.failure;   // else nothing is left to do
+        return set_.labelled() > 0 && !result.came_to_rest && !result.failure;  // else nothing is left to do
     }
 
-    /// Too many steps were left out: says so, and leaves what was reached before them. Throws when there was nothing before.
+    /// Too many steps were left out: says so, and leaves what was reached before them. Throws when there was
+    /// nothing before.
     void give_up_on_guidance(EditResult& result) const {
         const std::size_t steps = result.history.size();
         if (static_cast<double>(result.skipped_steps) <= MostSkipped * static_cast<double>(steps)) return;
-        Error failure(ErrorCode::Model,
-                      fmt::format("the guidance was not finite in {} of {} steps, the last {} of them in a row",
-                                  result.skipped_steps, steps, skipped_in_a_row_),
-                      "the model's weights are damaged, or it overflows: try another model or a lower guidance scale");
+        Error failure(
+            ErrorCode::Model,
+            fmt::format("the guidance was not finite in {} of {} steps, the last {} of them in a row",
+                        result.skipped_steps, steps, skipped_in_a_row_),
+            "the model's weights are damaged, or it overflows: try another model or a lower guidance scale");
         if (result.skipped_steps == steps) throw failure;
         result.failure = std::move(failure);
     }
@@ -206,7 +208,8 @@ private:
 
     bool snapshot_due(int iteration) const {
         if (tools_.snapshot_seconds > 0)
-            return wall_seconds() - last_snapshot_ >= std::max(tools_.snapshot_seconds, snapshot_cost_ * (1 / SnapshotShare - 1));
+            return wall_seconds() - last_snapshot_ >=
+                   std::max(tools_.snapshot_seconds, snapshot_cost_ * (1 / SnapshotShare - 1));
         return (iteration + 1) % request_.snapshot_every == 0;
     }
 
@@ -235,7 +238,8 @@ private:
         std::vector<std::size_t> views;
         Image seen;
         for (std::size_t v = 0; v < plan_.views.size(); ++v) {
-            tools_.rasterizer.forward_values(spans(set_.rows()), plan_.views[v].camera, settings_, values, seen);
+            tools_.rasterizer.forward_values(spans(set_.rows()), plan_.views[v].camera, settings_, values,
+                                             seen);
             if (shows_any(seen)) views.push_back(v);
         }
         return views;
@@ -251,35 +255,46 @@ private:
     /// from each round: what was fitted to pictures that contradict each other is of their mixed colours.
     void begin_round(int iteration, IterationRecord& record) {
         const int before = phase_->round();
-        if (phase_->ready(iteration, spans(set_.rows()), set_.unlabelled(), settings_, record.guidance)) draw_only(phase_->fitted());
+        if (phase_->ready(iteration, spans(set_.rows()), set_.unlabelled(), settings_, record.guidance))
+            draw_only(phase_->fitted());
         if (!shapes_ || phase_->round() == before) return;
-        const auto seeds = shapes_->seeds(phase_->found(), bounds_of(plan_.room, plan_.seeds), set_.rows().sh_degree);
+        const auto seeds =
+            shapes_->seeds(phase_->found(), bounds_of(plan_.room, plan_.seeds), set_.rows().sh_degree);
         if (seeds.size() > 0) return set_.plant(seeds, phase_->hidden(set_.rows().sh_degree), FadedLogit);
         const std::string nothing = "the redrawn views agree on no shape of \"" + tools_.word + "\"";
-        if (phase_->round() > 0) return log::warning("{} any more; the last round's is fitted further", nothing);
-        if (plan_.seeds.size() == 0) throw Error(ErrorCode::Model, nothing, "try another seed, or more views (shape_views)");
+        if (phase_->round() > 0)
+            return log::warning("{} any more; the last round's is fitted further", nothing);
+        if (plan_.seeds.size() == 0)
+            throw Error(ErrorCode::Model, nothing, "try another seed, or more views (shape_views)");
         log::warning("{}; it grows from the place that was found for it", nothing);
     }
 
     bool polishes(int iteration) const { return polish_steps_ > 0 && iteration >= request_.iterations; }
 
-    /// Has the views redrawn that both states are judged by; false where there are none, and then nothing is polished.
+    /// Has the views redrawn that both states are judged by; false where there are none, and then nothing is
+    /// polished.
     bool begin_polish(int iteration) {
         const StageTimer timer(seconds_.held_out);
         auto held = phase_->draw_held_out();
         unjudged_ = held.empty();
-        if (unjudged_) log::warning("every view that shows enough was redrawn: nothing can tell whether a polish helps, and there is none");
+        if (unjudged_)
+            log::warning(
+                "every view that shows enough was redrawn: nothing can tell whether a polish helps, and "
+                "there is none");
         if (unjudged_) return false;
-        polish_.emplace(std::move(held), set_.snapshot(base_.set, iteration), spans(set_.rows()), settings_, tools_.rasterizer);
+        polish_.emplace(std::move(held), set_.snapshot(base_.set, iteration), spans(set_.rows()), settings_,
+                        tools_.rasterizer);
         draw_only(visible_views());
         return true;
     }
 
-    /// Whether the rows as they are now are the result: without a polish always, else where it brought them nearer.
+    /// Whether the rows as they are now are the result: without a polish always, else where it brought them
+    /// nearer.
     bool polished(EditResult& result) const {
         if (!polish_) return true;
         if (result.shortage) return false;
-        result.polish = polish_->judged(result.iterations - polish_->first_iteration(), spans(set_.rows()), settings_, tools_.rasterizer);
+        result.polish = polish_->judged(result.iterations - polish_->first_iteration(), spans(set_.rows()),
+                                        settings_, tools_.rasterizer);
         return result.polish->kept;
     }
 
@@ -297,7 +312,8 @@ private:
         return values;
     }
 
-    /// One step, left out when the guidance is not finite; false when the guidance was stopped, with everything as before.
+    /// One step, left out when the guidance is not finite; false when the guidance was stopped, with
+    /// everything as before.
     bool iterate(int iteration, EditResult& result) {
         IterationRecord record;
         record.iteration = iteration;
@@ -306,7 +322,7 @@ private:
             if (polishes(iteration) && !polish_ && !begin_polish(iteration)) return false;
         } catch (const Error& error) {
             if (error.code() != ErrorCode::Cancelled) {
-                if (result.history.empty()) throw;   // nothing was reached yet
+                if (result.history.empty()) throw;  // nothing was reached yet
                 result.failure = error;
             }
             return false;
@@ -322,11 +338,12 @@ private:
             const StageTimer timer(seconds_.preserve);
             gradient_.resize(output_.colour.width, output_.colour.height, 3);
             std::fill(gradient_.data.begin(), gradient_.data.end(), 0.0f);
-            if (phase_ && !polish_)   // redrawn inside the mask, the original outside: one loss for both
-                record.preservation = fit_.add_gradient(output_.colour, phase_->target(view), no_mask(), gradient_, phase_->trust(view));
+            if (phase_ && !polish_)  // redrawn inside the mask, the original outside: one loss for both
+                record.preservation = fit_.add_gradient(output_.colour, phase_->target(view), no_mask(),
+                                                        gradient_, phase_->trust(view));
             else
-                record.preservation =
-                    preservation_.add_gradient(output_.colour, originals_[view], masks_.mask(view), gradient_);
+                record.preservation = preservation_.add_gradient(output_.colour, originals_[view],
+                                                                 masks_.mask(view), gradient_);
             record.preservation_norm = norm(gradient_);
         }
         try {
@@ -346,11 +363,13 @@ private:
 
     /// The view as it is now, into output_; backward() of the session may follow.
     void render(std::size_t view) {
-        pictures_->forward(view, spans(set_.rows()), set_.first_row(), plan_.views[view].camera, settings_, output_);
+        pictures_->forward(view, spans(set_.rows()), set_.first_row(), plan_.views[view].camera, settings_,
+                           output_);
     }
 
     const Mask& no_mask() {
-        if (no_mask_.data.size() != output_.colour.pixel_count()) no_mask_ = Mask(output_.colour.width, output_.colour.height);
+        if (no_mask_.data.size() != output_.colour.pixel_count())
+            no_mask_ = Mask(output_.colour.width, output_.colour.height);
         return no_mask_;
     }
 
@@ -362,11 +381,12 @@ private:
         }
         const StageTimer timer(seconds_.optimise);
         set_.collect(gradients_);
-        return set_.step(gradients_, std::min(iteration, request_.iterations - 1), request_);   // a polish goes on at the last rates
+        return set_.step(gradients_, std::min(iteration, request_.iterations - 1),
+                         request_);  // a polish goes on at the last rates
     }
 
-    /// Takes over a corrected label: its rows, masks from where it is seen in the base, and the views that see it. A label
-    /// with which nothing would be left to edit is not taken.
+    /// Takes over a corrected label: its rows, masks from where it is seen in the base, and the views that
+    /// see it. A label with which nothing would be left to edit is not taken.
     void take_label(EditResult& result) {
         auto label = tools_.new_label();
         if (!label || label->size() != label_.size()) return;
@@ -381,7 +401,9 @@ private:
         pictures_->forget();
         for (std::size_t v = 0; v < masks.size(); ++v) masks_.set_static(v, std::move(masks[v]));
         ++result.label_changes;
-        if (polish_) polish_->begin_anew(set_.snapshot(base_.set, result.iterations), spans(set_.rows()), settings_, tools_.rasterizer);
+        if (polish_)
+            polish_->begin_anew(set_.snapshot(base_.set, result.iterations), spans(set_.rows()), settings_,
+                                tools_.rasterizer);
         if (phase_) return phase_->take_masks();
         const auto now = visible_views();
         if (!now.empty() || !seen_in.empty()) draw_only(now.empty() ? seen_in : now);
@@ -396,10 +418,10 @@ private:
             tools_.rasterizer.forward_values(base_.drawn.spans(), camera, settings_, values, label_seen_);
             if (shows_any(label_seen_)) views.push_back(v);
             Mask mask = localize::threshold_map(label_seen_, SeenLabel);
-            if (plan_.seeds.size() > 0 || plan_.mode == EditMode::Replace)   // what is new needs its room as before
+            if (plan_.seeds.size() > 0 ||
+                plan_.mode == EditMode::Replace)  // what is new needs its room as before
                 for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] |= plan_.masks[v].data[i];
-            else
-                mask = localize::dilate(mask, mask_growth(request_, plan_.mode, mask));
+            else mask = localize::dilate(mask, mask_growth(request_, plan_.mode, mask));
             masks.push_back(std::move(mask));
         }
         return views;
@@ -412,11 +434,12 @@ private:
         });
     }
 
-    /// Drops new splats outside of where the new thing is seen by now: the place was found before there was anything to see.
+    /// Drops new splats outside of where the new thing is seen by now: the place was found before there was
+    /// anything to see.
     void look_again(int iteration, EditResult& result) {
         const StageTimer timer(seconds_.dynamic_mask);
         std::vector<localize::MaskedView> votes;
-        Image shown;   // shown_ stays what the step has seen
+        Image shown;  // shown_ stays what the step has seen
         for (std::size_t v = 0; v < plan_.views.size(); ++v) {
             const Camera& camera = plan_.views[v].camera;
             render(v);
@@ -426,8 +449,9 @@ private:
             std::copy(found.data.begin(), found.data.end(), share.data.begin());
             votes.push_back({camera, std::move(share), found.count() == 0});
         }
-        const auto failed = std::count_if(votes.begin(), votes.end(), [](const auto& vote) { return vote.failed; });
-        if (2 * static_cast<std::size_t>(failed) > votes.size()) return;   // the model does not see it yet
+        const auto failed =
+            std::count_if(votes.begin(), votes.end(), [](const auto& vote) { return vote.failed; });
+        if (2 * static_cast<std::size_t>(failed) > votes.size()) return;  // the model does not see it yet
         const auto seen = localize::back_project(spans(set_.rows()), votes, settings_, tools_.rasterizer);
         result.pruned += set_.keep_added(seen.weight, seen.evidence, request_.look_again_tau, LeastLeft);
     }
@@ -435,23 +459,29 @@ private:
     /// What was rendered last, as networks expect pictures: in [0,1].
     void show(Image& shown) const {
         shown.resize(output_.colour.width, output_.colour.height, 3);
-        for (std::size_t i = 0; i < shown.data.size(); ++i) shown.data[i] = std::clamp(output_.colour.data[i], 0.0f, 1.0f);
+        for (std::size_t i = 0; i < shown.data.size(); ++i)
+            shown.data[i] = std::clamp(output_.colour.data[i], 0.0f, 1.0f);
     }
 
     void refresh_mask(std::size_t view, int iteration) {
         const StageTimer timer(seconds_.dynamic_mask);
-        tools_.rasterizer.forward_values(spans(set_.rows()), plan_.views[view].camera, settings_, label_values(), label_seen_);
+        tools_.rasterizer.forward_values(spans(set_.rows()), plan_.views[view].camera, settings_,
+                                         label_values(), label_seen_);
         masks_.refresh(view, iteration, shown_, label_seen_);
-        render(view);   // for backward()
+        render(view);  // for backward()
     }
 
     /// Adds the gated and calibrated guidance gradient; false when it is not finite, and then adds nothing.
     bool add_guidance(int iteration, std::size_t view, IterationRecord& record) {
-        const GuidanceInput input{shown_, plan_.views[view], view,
-                                  plan_.view_words.empty() ? std::string() : plan_.view_words[view],
-                                  polish_ ? iteration - request_.iterations : iteration, polish_ ? polish_steps_ : request_.iterations,
-                                  Random::stream(request_.seed, 1000 + static_cast<std::uint64_t>(iteration)).next(),
-                                  &originals_[view]};
+        const GuidanceInput input{
+            shown_,
+            plan_.views[view],
+            view,
+            plan_.view_words.empty() ? std::string() : plan_.view_words[view],
+            polish_ ? iteration - request_.iterations : iteration,
+            polish_ ? polish_steps_ : request_.iterations,
+            Random::stream(request_.seed, 1000 + static_cast<std::uint64_t>(iteration)).next(),
+            &originals_[view]};
         GuidanceOutput guidance = tools_.guidance.evaluate(input);
         std::erase_if(guidance.scalars, [](const auto& scalar) { return !std::isfinite(scalar.second); });
         record.guidance = std::move(guidance.scalars);
@@ -460,7 +490,8 @@ private:
         gate(view, guidance.gradient);
         record.guidance_norm = norm(guidance.gradient);
         const auto factor = static_cast<float>(calibrated_weight(record.guidance_norm));
-        for (std::size_t i = 0; i < gradient_.data.size(); ++i) gradient_.data[i] += factor * guidance.gradient.data[i];
+        for (std::size_t i = 0; i < gradient_.data.size(); ++i)
+            gradient_.data[i] += factor * guidance.gradient.data[i];
         return true;
     }
 
@@ -474,15 +505,16 @@ private:
         }
     }
 
-    /// Brings the guidance gradient to the norm that the preservation loss has when every pixel differs, so that neither
-    /// drowns the other whatever the model's scale is (method 2.5). The median of the first steps, then fixed: one
-    /// outlier must not decide.
+    /// Brings the guidance gradient to the norm that the preservation loss has when every pixel differs, so
+    /// that neither drowns the other whatever the model's scale is (method 2.5). The median of the first
+    /// steps, then fixed: one outlier must not decide.
     double calibrated_weight(double guidance_norm) {
         if (calibration_.size() < CalibrationSteps && guidance_norm > 0) {
             calibration_.push_back(guidance_norm);
             std::vector<double> sorted = calibration_;
             std::sort(sorted.begin(), sorted.end());
-            // Without preservation the default one is the measure, so that the anchors keep their relative strength.
+            // Without preservation the default one is the measure, so that the anchors keep their relative
+            // strength.
             const double weight = request_.preserve * request_.l1;
             const double full = (weight > 0 ? weight : EditRequest{}.preserve * EditRequest{}.l1) /
                                 std::sqrt(static_cast<double>(gradient_.data.size()));
@@ -493,7 +525,9 @@ private:
 
     void densify(int iteration, EditResult& result) {
         const int step = iteration + 1;
-        if (polish_ || request_.densify_every == 0 || step % request_.densify_every != 0 || step < request_.densify_from) return;
+        if (polish_ || request_.densify_every == 0 || step % request_.densify_every != 0 ||
+            step < request_.densify_from)
+            return;
         const StageTimer timer(seconds_.densify);
         const bool may_grow = step <= request_.densify_until * request_.iterations;
         const auto count = set_.densify(request_, random_, may_grow);
@@ -504,7 +538,8 @@ private:
 
     void finish(EditResult& result) {
         end_steps();
-        const EditSnapshot reached = polished(result) ? set_.snapshot(base_.set, result.iterations) : polish_->before();
+        const EditSnapshot reached =
+            polished(result) ? set_.snapshot(base_.set, result.iterations) : polish_->before();
         result.set = reached.materialise();
         result.base_to_new = reached.base_to_new();
         result.label = reached.label();
@@ -514,27 +549,30 @@ private:
         result.guidance_scale = guidance_scale_;
         if (phase_) {
             result.redrawn_views = phase_->redrawn();
-            if (!result.shortage && !result.stopped) result.kept_chroma = phase_->check_colour(result.set.spans(), settings_);
+            if (!result.shortage && !result.stopped)
+                result.kept_chroma = phase_->check_colour(result.set.spans(), settings_);
             seconds_.guidance = phase_->seconds();
         }
-        result.seconds = {{"originals", seconds_.originals}, {"render", seconds_.render},     {"preserve", seconds_.preserve},
-                          {"guidance", seconds_.guidance},   {"backward", seconds_.backward}, {"optimise", seconds_.optimise},
-                          {"densify", seconds_.densify},     {"snapshot", seconds_.snapshot}, {"dynamic_mask", seconds_.dynamic_mask},
-                          {"polish", seconds_.polish},       {"held_out", seconds_.held_out}};
+        result.seconds = {{"originals", seconds_.originals},       {"render", seconds_.render},
+                          {"preserve", seconds_.preserve},         {"guidance", seconds_.guidance},
+                          {"backward", seconds_.backward},         {"optimise", seconds_.optimise},
+                          {"densify", seconds_.densify},           {"snapshot", seconds_.snapshot},
+                          {"dynamic_mask", seconds_.dynamic_mask}, {"polish", seconds_.polish},
+                          {"held_out", seconds_.held_out}};
         result.masks_refreshed = masks_.refreshed();
         result.continued_pictures = work_.continued;
     }
 
     const EditBase& base_;
     const EditPlan& plan_;
-    std::vector<std::uint8_t> label_;   // what may change now
+    std::vector<std::uint8_t> label_;  // what may change now
     const EditRequest request_;
     const EditTools& tools_;
     WorkingSet set_;
-    Preservation preservation_, fit_;   // of steps by a gradient, and of those to redrawn views
-    const int polish_steps_;            // behind those of the redrawn views
-    std::optional<Polish> polish_;      // from its first step on
-    bool unjudged_ = false;             // there is nothing to judge it by
+    Preservation preservation_, fit_;  // of steps by a gradient, and of those to redrawn views
+    const int polish_steps_;           // behind those of the redrawn views
+    std::optional<Polish> polish_;     // from its first step on
+    bool unjudged_ = false;            // there is nothing to judge it by
     DynamicMasks masks_;
     std::optional<ShapeFinder> shapes_;  // of view guidance that draws a thing anew
     Mask no_mask_;
@@ -546,11 +584,11 @@ private:
     raster::ForwardOutput output_;
     raster::Gradients gradients_;
     std::vector<Image> originals_;
-    std::optional<ViewPhase> phase_;   // of view guidance
+    std::optional<ViewPhase> phase_;  // of view guidance
     Image gradient_;
     Image shown_, label_seen_;
     std::size_t skipped_in_a_row_ = 0;
-    std::vector<double> calibration_;   // norms of the first guidance gradients
+    std::vector<double> calibration_;  // norms of the first guidance gradients
     double guidance_scale_ = 0;
     StageSeconds seconds_;
     raster::ViewSessionWork work_;
@@ -568,7 +606,8 @@ double camera_extent(const std::vector<View>& views) {
     return largest > 0 ? 1.1 * largest : 1;
 }
 
-EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditRequest& request, const EditTools& tools) {
+EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditRequest& request,
+                    const EditTools& tools) {
     GSE_CHECK_EQ(plan.label.size(), base.size());
     const EditBase drawn_base(base);
     const auto label = drawn_base.editable(plan.label);
@@ -588,7 +627,8 @@ EditResult run_edit(const GaussianSet& base, const EditPlan& plan, const EditReq
     };
     result.unusable_before = unusable(drawn_base.usable);
     result.unusable = unusable(usable_rows(result.set));
-    if (result.skipped_steps > 0) log::warning("{} guidance steps were not finite and left out", result.skipped_steps);
+    if (result.skipped_steps > 0)
+        log::warning("{} guidance steps were not finite and left out", result.skipped_steps);
     return result;
 }
 

@@ -11,8 +11,8 @@
 namespace gse::edit {
 namespace {
 
-constexpr int RoomCells = 24;              // along the longest side of the room
-constexpr double PlaceMargin = 0.3;        // of the longest side of a place (views.md 17)
+constexpr int RoomCells = 24;        // along the longest side of the room
+constexpr double PlaceMargin = 0.3;  // of the longest side of a place (views.md 17)
 
 /// A cylinder on the ground, world units.
 struct Cylinder {
@@ -23,7 +23,8 @@ AddRegion cells_of(const Cylinder& room, const Standing& standing, const Vec3& u
     const Frame frame = make_frame(up, front);
     const Vec3 foot = frame.to_frame(standing.foot);
     const double wide = room.radius;
-    const Box box{{foot.x - wide, foot.y, foot.z - wide}, {foot.x + wide, foot.y + room.height, foot.z + wide}};
+    const Box box{{foot.x - wide, foot.y, foot.z - wide},
+                  {foot.x + wide, foot.y + room.height, foot.z + wide}};
     auto region = fill(frame, make_grid(box, RoomCells), [&](const Vec3& p) {
         const double dx = p.x - foot.x, dz = p.z - foot.z;
         return dx * dx + dz * dz <= wide * wide;
@@ -34,8 +35,9 @@ AddRegion cells_of(const Cylinder& room, const Standing& standing, const Vec3& u
 
 }  // namespace
 
-AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share) {
-    constexpr double LeastWidth = 0.5;   // of its height: half the width of a room, for what was tall and thin
+AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up,
+                      const Vec3& front, double share) {
+    constexpr double LeastWidth = 0.5;  // of its height: half the width of a room, for what was tall and thin
     const auto old = standing_of(set, bits, up, front);
     if (!old.found()) return {};
     const double half_width = std::max(0.5 * old.width(), LeastWidth * old.height);
@@ -43,10 +45,11 @@ AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& b
 }
 
 AddRegion room_above(const Standing& thing, const Vec3& up, const Vec3& front, double share) {
-    constexpr double LeastWidth = 0.4;   // what is worn is about as wide as the thing
+    constexpr double LeastWidth = 0.4;  // what is worn is about as wide as the thing
     if (!thing.found()) return {};
     const double half_width = std::max(0.5 * thing.width(), LeastWidth * thing.height);
-    return cells_of({(1 + share) * half_width, thing.height + share * std::max(thing.width(), thing.height)}, thing, up, front);
+    return cells_of({(1 + share) * half_width, thing.height + share * std::max(thing.width(), thing.height)},
+                    thing, up, front);
 }
 
 HullBox bounds_of(const AddRegion& room, const GaussianData& place) {

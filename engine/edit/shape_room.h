@@ -1,4 +1,5 @@
-// Where a thing may be that takes the place of another, or is new: the space that hulls are carved out of (views.md 17).
+// Where a thing may be that takes the place of another, or is new: the space that hulls are carved out of
+// (views.md 17).
 #pragma once
 
 #include <cstdint>
@@ -10,12 +11,15 @@
 
 namespace gse::edit {
 
-/// Room for a thing in the place of the labelled one, the same from every side, as it is not known which way the new one faces: an
-/// upright cylinder that stands where what `bits` [N] label stands (standing_of()), `share` of its size wider and higher; what was low
-/// may be followed by something higher (figure_height()), what was thin by something wider. Empty when nothing is left.
-AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up, const Vec3& front, double share);
+/// Room for a thing in the place of the labelled one, the same from every side, as it is not known which way
+/// the new one faces: an upright cylinder that stands where what `bits` [N] label stands (standing_of()),
+/// `share` of its size wider and higher; what was low may be followed by something higher (figure_height()),
+/// what was thin by something wider. Empty when nothing is left.
+AddRegion room_around(const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Vec3& up,
+                      const Vec3& front, double share);
 
-/// The same for what is added to a thing: higher by a share of its longest side, as a crown on a low thing is.
+/// The same for what is added to a thing: higher by a share of its longest side, as a crown on a low thing
+/// is.
 AddRegion room_above(const Standing& thing, const Vec3& up, const Vec3& front, double share);
 
 /// Bounds of a room with a cell more on every side; without a room, of the rows of `place`, grown.

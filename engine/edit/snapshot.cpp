@@ -12,7 +12,7 @@ namespace {
 std::vector<std::size_t> places(const SnapshotRows& rows) {
     std::vector<std::size_t> result;
     result.reserve(rows.kept.size());
-    std::size_t gone = 0;   // in front of it
+    std::size_t gone = 0;  // in front of it
     for (const auto row : rows.kept) {
         while (gone < rows.removed.size() && rows.removed[gone] < row) ++gone;
         result.push_back(row - gone);
@@ -21,8 +21,7 @@ std::vector<std::size_t> places(const SnapshotRows& rows) {
 }
 
 /// One value per row of the edited set: `rest` outside the label, `of(i)` for row i of the label.
-template <class T, class F>
-std::vector<T> per_row(const EditSnapshot& snapshot, T rest, F&& of) {
+template <class T, class F> std::vector<T> per_row(const EditSnapshot& snapshot, T rest, F&& of) {
     const SnapshotRows& rows = *snapshot.rows;
     std::vector<T> result(snapshot.size(), rest);
     const auto place = places(rows);
@@ -52,7 +51,8 @@ GaussianSet EditSnapshot::materialise() const {
             }
             to.insert(to.end(), at(all, begin), all.end());
             for (std::size_t i = 0; i < place.size(); ++i)
-                std::copy_n(at(labelled, i), stride, to.begin() + static_cast<std::ptrdiff_t>(place[i] * stride));
+                std::copy_n(at(labelled, i), stride,
+                            to.begin() + static_cast<std::ptrdiff_t>(place[i] * stride));
             to.insert(to.end(), at(labelled, place.size()), labelled.end());
         },
         rows->rows, before, data);
@@ -81,7 +81,9 @@ std::vector<int> EditSnapshot::generation() const {
 
 std::vector<std::uint8_t> EditSnapshot::hidden() const {
     const std::size_t kept = rows->kept.size();
-    return per_row<std::uint8_t>(*this, 0, [&](std::size_t i) -> std::uint8_t { return i >= kept && rows->ancestor[i - kept] == OfHidden ? 1 : 0; });
+    return per_row<std::uint8_t>(*this, 0, [&](std::size_t i) -> std::uint8_t {
+        return i >= kept && rows->ancestor[i - kept] == OfHidden ? 1 : 0;
+    });
 }
 
 std::size_t EditSnapshot::byte_size() const {
@@ -103,7 +105,8 @@ void thin_out(std::deque<EditSnapshot>& snapshots, std::size_t most, std::size_t
         return sum;
     };
     while (snapshots.size() > newest && (snapshots.size() > most || bytes() > most_bytes))
-        for (std::size_t i = 0; i < std::max<std::size_t>(1, snapshots.size() / 2) && snapshots.size() > newest; ++i)
+        for (std::size_t i = 0;
+             i < std::max<std::size_t>(1, snapshots.size() / 2) && snapshots.size() > newest; ++i)
             snapshots.erase(snapshots.begin() + static_cast<std::ptrdiff_t>(i));
 }
 

@@ -11,22 +11,27 @@
 namespace gse::edit {
 namespace {
 
-constexpr float ShownLogit = -5.5373f;      // opacity 1/255
-constexpr double FootShare = 0.2;           // of a thing's height: the part that it stands on
-constexpr double FootTrim = 0.1;            // of its rows, at either end
-constexpr double FootReach = 0.25;          // of the width of what is above, beyond it: a label's rows that lie farther off are ground
-constexpr double GroundReach = 0.25;        // of its height, up and down from its lowest rows: there is the ground that it stands on
-constexpr double StemReach = 0.8;           // of the larger of height and width, down, where there is none so near: a label may lack the stem
-constexpr double GroundWidth = 1.5;         // of a foot's radius: so far out its ground is looked for at least
-constexpr std::size_t LeastGround = 20;     // rows that make a ground
-constexpr double FigureWidth = 0.75;        // of its width, the least that a figure is high
+constexpr float ShownLogit = -5.5373f;  // opacity 1/255
+constexpr double FootShare = 0.2;       // of a thing's height: the part that it stands on
+constexpr double FootTrim = 0.1;        // of its rows, at either end
+constexpr double FootReach =
+    0.25;  // of the width of what is above, beyond it: a label's rows that lie farther off are ground
+constexpr double GroundReach =
+    0.25;  // of its height, up and down from its lowest rows: there is the ground that it stands on
+constexpr double StemReach =
+    0.8;  // of the larger of height and width, down, where there is none so near: a label may lack the stem
+constexpr double GroundWidth = 1.5;      // of a foot's radius: so far out its ground is looked for at least
+constexpr std::size_t LeastGround = 20;  // rows that make a ground
+constexpr double FigureWidth = 0.75;     // of its width, the least that a figure is high
 
-std::vector<Vec3> shown_rows(const GaussianSet& set, std::span<const std::uint8_t> bits, const Frame& frame, bool labelled) {
+std::vector<Vec3> shown_rows(const GaussianSet& set, std::span<const std::uint8_t> bits, const Frame& frame,
+                             bool labelled) {
     std::vector<Vec3> points;
     for (std::size_t row = 0; row < bits.size(); ++row) {
         if ((bits[row] != 0) != labelled || !(set.opacity_logit()[row] > ShownLogit)) continue;
         const auto p = set.position().subspan(row * 3, 3);
-        if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) points.push_back(frame.to_frame({p[0], p[1], p[2]}));
+        if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]))
+            points.push_back(frame.to_frame({p[0], p[1], p[2]}));
     }
     return points;
 }
@@ -41,22 +46,26 @@ Parts parts_of(const std::vector<Vec3>& points) {
     Parts parts;
     const Box all = trimmed_box(points, BoundsTrim);
     parts.low = all.low.y, parts.high = all.high.y;
-    for (const auto& p : points) (p.y > parts.low + FootShare * (parts.high - parts.low) ? parts.body : parts.foot).push_back(p);
+    for (const auto& p : points)
+        (p.y > parts.low + FootShare * (parts.high - parts.low) ? parts.body : parts.foot).push_back(p);
     return parts;
 }
 
 bool is_below(const Vec3& p, const Box& body) {
     const Vec3 margin = body.size() * FootReach;
-    return p.x >= body.low.x - margin.x && p.x <= body.high.x + margin.x && p.z >= body.low.z - margin.z && p.z <= body.high.z + margin.z;
+    return p.x >= body.low.x - margin.x && p.x <= body.high.x + margin.x && p.z >= body.low.z - margin.z &&
+           p.z <= body.high.z + margin.z;
 }
 
-/// Height of the ground that carries `thing` at `foot`; the foot's where there is none. Ground reaches out from under what stands on it:
-/// the end of a stem that a label lacks, or the lower side of a cap, does not.
+/// Height of the ground that carries `thing` at `foot`; the foot's where there is none. Ground reaches out
+/// from under what stands on it: the end of a stem that a label lacks, or the lower side of a cap, does not.
 double ground_at(const std::vector<Vec3>& others, const Standing& thing, double foot_radius) {
-    const double reach = std::max(0.5 * thing.width(), GroundWidth * foot_radius), size = std::max(thing.height, thing.width());
+    const double reach = std::max(0.5 * thing.width(), GroundWidth * foot_radius),
+                 size = std::max(thing.height, thing.width());
     std::vector<double> near, below;
     for (const auto& p : others) {
-        const double distance = std::hypot(p.x - thing.foot.x, p.z - thing.foot.z), above = p.y - thing.foot.y;
+        const double distance = std::hypot(p.x - thing.foot.x, p.z - thing.foot.z),
+                     above = p.y - thing.foot.y;
         if (distance < foot_radius || distance > reach) continue;
         if (std::abs(above) <= GroundReach * thing.height) near.push_back(p.y);
         if (above < 0 && above >= -StemReach * size) below.push_back(p.y);
@@ -70,13 +79,14 @@ double ground_at(const std::vector<Vec3>& others, const Standing& thing, double 
 
 namespace {
 
-Standing stands(const GaussianSet& set, std::span<const std::uint8_t> bits, const Frame& frame, bool on_ground) {
+Standing stands(const GaussianSet& set, std::span<const std::uint8_t> bits, const Frame& frame,
+                bool on_ground) {
     GSE_CHECK_EQ(bits.size(), set.size());
     const auto points = shown_rows(set, bits, frame, true);
     if (points.empty()) return {};
     auto parts = parts_of(points);
     const double height = parts.high - parts.low;
-    if (parts.body.empty()) parts.body = points;   // as flat as a carpet
+    if (parts.body.empty()) parts.body = points;  // as flat as a carpet
     Box thing = trimmed_box(parts.body, BoundsTrim);
     std::erase_if(parts.foot, [&](const Vec3& p) { return !is_below(p, thing); });
     Vec3 foot{thing.centre().x, parts.low, thing.centre().z};
@@ -92,20 +102,25 @@ Standing stands(const GaussianSet& set, std::span<const std::uint8_t> bits, cons
         }
     }
     const Vec3 size = thing.size();
-    if (on_ground) foot.y = ground_at(shown_rows(set, bits, frame, false), {foot, height, size.x, size.z}, foot_radius);
+    if (on_ground)
+        foot.y = ground_at(shown_rows(set, bits, frame, false), {foot, height, size.x, size.z}, foot_radius);
     return {frame.to_world(foot), parts.high - foot.y, size.x, size.z};
 }
 
 }  // namespace
 
-Standing standing_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front) {
+Standing standing_of(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
+                     const Vec3& front) {
     return stands(set, bits, make_frame(up, front), true);
 }
 
-Standing standing_alone(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up, const Vec3& front) {
+Standing standing_alone(const GaussianSet& set, std::span<const std::uint8_t> bits, const Vec3& up,
+                        const Vec3& front) {
     return stands(set, bits, make_frame(up, front), false);
 }
 
-double figure_height(const Standing& standing) { return std::max(standing.height, FigureWidth * standing.width()); }
+double figure_height(const Standing& standing) {
+    return std::max(standing.height, FigureWidth * standing.width());
+}
 
 }  // namespace gse::edit

@@ -24,7 +24,8 @@ std::uint64_t voxel_of(const Vec3& point, double voxel) {
 std::uint64_t private_voxel(std::uint64_t view, int cell_x, int cell_y) {
     Hash key;
     key.text("nothing there");
-    for (const auto part : {view, static_cast<std::uint64_t>(cell_x), static_cast<std::uint64_t>(cell_y)}) key.add(part);
+    for (const auto part : {view, static_cast<std::uint64_t>(cell_x), static_cast<std::uint64_t>(cell_y)})
+        key.add(part);
     return key.value();
 }
 
@@ -33,15 +34,16 @@ std::uint64_t private_voxel(std::uint64_t view, int cell_x, int cell_y) {
 using Shares = std::vector<std::pair<std::uint64_t, int>>;
 
 void count(Shares& shares, std::uint64_t voxel) {
-    const auto found = std::find_if(shares.begin(), shares.end(), [&](const auto& share) { return share.first == voxel; });
+    const auto found =
+        std::find_if(shares.begin(), shares.end(), [&](const auto& share) { return share.first == voxel; });
     if (found != shares.end()) ++found->second;
     else shares.emplace_back(voxel, 1);
 }
 
 }  // namespace
 
-Image surface_noise(const Image& depth, const Camera& camera, int cells, int channels, double voxel, std::uint64_t seed,
-                    std::uint64_t view) {
+Image surface_noise(const Image& depth, const Camera& camera, int cells, int channels, double voxel,
+                    std::uint64_t seed, std::uint64_t view) {
     GSE_CHECK(cells > 0 && channels > 0 && voxel > 0);
     GSE_CHECK(depth.width == camera.width && depth.height == camera.height);
     std::vector<Shares> shares(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells));
@@ -50,7 +52,8 @@ Image surface_noise(const Image& depth, const Camera& camera, int cells, int cha
             const int cell_x = x * cells / depth.width, cell_y = y * cells / depth.height;
             const double z = depth.at(x, y, 0);
             count(shares[static_cast<std::size_t>(cell_y * cells + cell_x)],
-                  z > 0 ? voxel_of(unprojected(camera, x + 0.5, y + 0.5, z), voxel) : private_voxel(view, cell_x, cell_y));
+                  z > 0 ? voxel_of(unprojected(camera, x + 0.5, y + 0.5, z), voxel)
+                        : private_voxel(view, cell_x, cell_y));
         }
     Image noise(cells, cells, channels);
     const auto stride = static_cast<std::size_t>(channels);
@@ -62,12 +65,13 @@ Image surface_noise(const Image& depth, const Camera& camera, int cells, int cha
             squares += static_cast<double>(pixels) * pixels;
             for (auto& sum : sums) sum += pixels * random.normal();
         }
-        if (shares[cell].empty()) {   // more cells than pixels
+        if (shares[cell].empty()) {  // more cells than pixels
             Random random = Random::stream(seed, private_voxel(view, static_cast<int>(cell), -1));
             squares = 1;
             for (auto& sum : sums) sum = random.normal();
         }
-        for (std::size_t c = 0; c < stride; ++c) noise.data[cell * stride + c] = static_cast<float>(sums[c] / std::sqrt(squares));
+        for (std::size_t c = 0; c < stride; ++c)
+            noise.data[cell * stride + c] = static_cast<float>(sums[c] / std::sqrt(squares));
     }
     return noise;
 }

@@ -11,11 +11,13 @@
 namespace gse::edit {
 namespace {
 
-// Shade is the luminance over the median of all views, to this power (a dark scan is lit unevenly), within these limits.
+// Shade is the luminance over the median of all views, to this power (a dark scan is lit unevenly), within
+// these limits.
 constexpr float ShadePower = 0.5f, DarkestShade = 0.45f, BrightestShade = 1.12f;
 
-float luminance(const Image& picture, std::size_t pixel) {   // Rec. 709
-    return 0.2126f * picture.data[pixel * 3] + 0.7152f * picture.data[pixel * 3 + 1] + 0.0722f * picture.data[pixel * 3 + 2];
+float luminance(const Image& picture, std::size_t pixel) {  // Rec. 709
+    return 0.2126f * picture.data[pixel * 3] + 0.7152f * picture.data[pixel * 3 + 1] +
+           0.0722f * picture.data[pixel * 3 + 2];
 }
 
 /// Of what all masks hold; 0 where they hold nothing.
@@ -35,8 +37,9 @@ float median_luminance(const std::vector<RoundView>& views) {
 std::optional<std::array<float, 3>> ground_colour(const std::string& word) {
     // Means of what engine/synth paints; of those that the encoder has no word for, by eye.
     static const std::map<std::string, std::array<float, 3>> colours{
-        {"snow", {0.88f, 0.93f, 0.99f}},  {"sand", {0.85f, 0.73f, 0.50f}}, {"grass", {0.36f, 0.62f, 0.15f}}, {"water", {0.13f, 0.56f, 0.70f}},
-        {"ice", {0.66f, 0.86f, 0.96f}},   {"mud", {0.33f, 0.21f, 0.13f}},  {"gravel", {0.55f, 0.54f, 0.52f}}};
+        {"snow", {0.88f, 0.93f, 0.99f}},  {"sand", {0.85f, 0.73f, 0.50f}}, {"grass", {0.36f, 0.62f, 0.15f}},
+        {"water", {0.13f, 0.56f, 0.70f}}, {"ice", {0.66f, 0.86f, 0.96f}},  {"mud", {0.33f, 0.21f, 0.13f}},
+        {"gravel", {0.55f, 0.54f, 0.52f}}};
     const auto found = colours.find(word);
     return found == colours.end() ? std::nullopt : std::optional(found->second);
 }
@@ -48,16 +51,18 @@ std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditM
 
 double gone_towards(const std::array<float, 3>& colour, const ViewTargets& round) {
     constexpr float changed = 0.02f;
-    constexpr double near = 0.1;   // of the RGB cube's side: nothing can be said of where the pictures went
+    constexpr double near = 0.1;  // of the RGB cube's side: nothing can be said of where the pictures went
     std::array<double, 3> before{}, after{};
     double pixels = 0;
     for (const auto& view : round.views)
         for (std::size_t p = 0; p < view.before->data.size() && !view.dropped; p += 3) {
             float most = 0;
-            for (std::size_t c = 0; c < 3; ++c) most = std::max(most, std::abs(view.after->data[p + c] - view.before->data[p + c]));
+            for (std::size_t c = 0; c < 3; ++c)
+                most = std::max(most, std::abs(view.after->data[p + c] - view.before->data[p + c]));
             if (most <= changed) continue;
             ++pixels;
-            for (std::size_t c = 0; c < 3; ++c) before[c] += view.before->data[p + c], after[c] += view.after->data[p + c];
+            for (std::size_t c = 0; c < 3; ++c)
+                before[c] += view.before->data[p + c], after[c] += view.after->data[p + c];
         }
     double left = 0, all = 0;
     for (std::size_t c = 0; c < 3 && pixels > 0; ++c) {
@@ -75,7 +80,8 @@ RoundTargets UsualLook::edit(const std::vector<RoundView>& views, const RoundInp
         Image& image = targets.images.emplace_back(view.rendered);
         for (std::size_t p = 0; p < view.mask.data.size(); ++p) {
             if (view.mask.data[p] == 0) continue;
-            const float shade = std::clamp(std::pow(luminance(view.original, p) / median, ShadePower), DarkestShade, BrightestShade);
+            const float shade = std::clamp(std::pow(luminance(view.original, p) / median, ShadePower),
+                                           DarkestShade, BrightestShade);
             for (std::size_t c = 0; c < 3; ++c) image.data[p * 3 + c] = std::min(colour_[c] * shade, 1.0f);
         }
     }

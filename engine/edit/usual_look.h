@@ -18,14 +18,17 @@ std::optional<std::array<float, 3>> ground_colour(const std::string& word);
 /// something else, where that has no usual colour, or where the sentence says what it is like ("red sand").
 std::optional<std::array<float, 3>> usual_look(const EditRequest& request, EditMode mode);
 
-/// How much of the way to the colour redrawn views have gone, of what changed in them: 1 = all of it; below 0 = away from it. 1 where they began near it.
+/// How much of the way to the colour redrawn views have gone, of what changed in them: 1 = all of it; below 0
+/// = away from it. 1 where they began near it.
 double gone_towards(const std::array<float, 3>& colour, const ViewTargets& round);
 
-/// Draws without a model: what the masks hold gets the colour, in the light and shade in which the unedited scene shows it.
+/// Draws without a model: what the masks hold gets the colour, in the light and shade in which the unedited
+/// scene shows it.
 class UsualLook final : public ViewGuidance {
 public:
     explicit UsualLook(std::array<float, 3> colour) : colour_(colour) {}
-    RoundTargets edit(const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) override;
+    RoundTargets edit(const std::vector<RoundView>& views, const RoundInput& input,
+                      const JobControl& job) override;
     bool restyles() const override { return true; }
 
 private:

@@ -15,24 +15,28 @@
 namespace gse::edit {
 namespace {
 
-constexpr double SameDepth = 0.02;          // relative difference of two depths of one point: VICA-NeRF's 1 % of the width, twice
-constexpr std::size_t LeastSeen = 3;        // views of a point: of two, none is the odd one
+constexpr double SameDepth =
+    0.02;  // relative difference of two depths of one point: VICA-NeRF's 1 % of the width, twice
+constexpr std::size_t LeastSeen = 3;  // views of a point: of two, none is the odd one
 constexpr double HardlyAnything = 4.0 / 255;
-constexpr double MostUnchanged = 0.5;       // the limits of views.md 12
+constexpr double MostUnchanged = 0.5;  // the limits of views.md 12
 constexpr double MostDisagreement = 0.2;
-constexpr double LeastChroma = 0.1;         // of views of which it can be said that they lose colour
+constexpr double LeastChroma = 0.1;  // of views of which it can be said that they lose colour
 constexpr double LeastKept = 0.7;
-constexpr double TrustedDistance = 0.15, LeastTrust = 0.1;   // views.md 8.7
-constexpr double MostAtRim = 0.35;          // recolours and materials of `eval --seed 57` have 0.12 to 0.27 without being cut
-constexpr double MoreThanElsewhere = 1.1;   // what turns a thin thing red evenly is not cut off
-constexpr double RimCells = 2, CellsPerSide = 64;   // of Stable Diffusion's latents; the same share of smaller pictures
+constexpr double TrustedDistance = 0.15, LeastTrust = 0.1;  // views.md 8.7
+constexpr double MostAtRim =
+    0.35;  // recolours and materials of `eval --seed 57` have 0.12 to 0.27 without being cut
+constexpr double MoreThanElsewhere = 1.1;  // what turns a thin thing red evenly is not cut off
+constexpr double RimCells = 2,
+                 CellsPerSide = 64;  // of Stable Diffusion's latents; the same share of smaller pictures
 
 /// Pixel of a view that shows the point, or -1.
 std::ptrdiff_t pixel_that_shows(const RoundView& view, const Vec3& point) {
     const Camera& camera = view.view.camera;
     const Vec3 seen = camera.to_camera(point);
     if (!(seen.z > 0)) return -1;
-    const double x = std::floor(camera.fx * seen.x / seen.z + camera.cx), y = std::floor(camera.fy * seen.y / seen.z + camera.cy);
+    const double x = std::floor(camera.fx * seen.x / seen.z + camera.cx),
+                 y = std::floor(camera.fy * seen.y / seen.z + camera.cy);
     if (!(x >= 0 && y >= 0 && x < view.depth.width && y < view.depth.height)) return -1;
     const auto pixel = static_cast<std::ptrdiff_t>(y) * view.depth.width + static_cast<std::ptrdiff_t>(x);
     const double depth = view.depth.data[static_cast<std::size_t>(pixel)];
@@ -52,9 +56,11 @@ float median_of(std::vector<float>& values) {
 /// Colours of one point in all views that show it.
 class PointColours {
 public:
-    PointColours(const std::vector<RoundView>& views, const std::vector<Image>& pictures) : views_(views), pictures_(pictures) {}
+    PointColours(const std::vector<RoundView>& views, const std::vector<Image>& pictures)
+        : views_(views), pictures_(pictures) {}
 
-    /// The point that a pixel of view `of` shows; false where it shows none inside the mask, or too few views show it.
+    /// The point that a pixel of view `of` shows; false where it shows none inside the mask, or too few views
+    /// show it.
     bool look(std::size_t of, int x, int y) {
         if (views_[of].mask.at(x, y) == 0 || !(views_[of].depth.at(x, y, 0) > 0)) return false;
         const Vec3 point = point_of(views_[of], x, y);
@@ -62,14 +68,16 @@ public:
         for (std::size_t v = 0; v < views_.size(); ++v) {
             const auto pixel = pixel_that_shows(views_[v], point);
             if (pixel < 0) continue;
-            for (std::size_t c = 0; c < 3; ++c) values_[c].push_back(pictures_[v].data[static_cast<std::size_t>(pixel) * 3 + c]);
+            for (std::size_t c = 0; c < 3; ++c)
+                values_[c].push_back(pictures_[v].data[static_cast<std::size_t>(pixel) * 3 + c]);
         }
         return values_[0].size() >= LeastSeen;
     }
     /// Of the pixel looked up last, from the median over the views: mean over the channels.
     double distance(std::size_t of, int x, int y) {
         double sum = 0;
-        for (std::size_t c = 0; c < 3; ++c) sum += std::abs(pictures_[of].at(x, y, static_cast<int>(c)) - median_of(values_[c]));
+        for (std::size_t c = 0; c < 3; ++c)
+            sum += std::abs(pictures_[of].at(x, y, static_cast<int>(c)) - median_of(values_[c]));
         return sum / 3;
     }
 
@@ -96,7 +104,8 @@ double disagreement_of(const std::vector<RoundView>& views, const std::vector<Im
 /// Of pixels inside the mask; mean over the channels.
 double change_at(const RoundView& view, const Image& picture, std::size_t pixel) {
     double sum = 0;
-    for (std::size_t c = 0; c < 3; ++c) sum += std::abs(picture.data[pixel * 3 + c] - view.original.data[pixel * 3 + c]);
+    for (std::size_t c = 0; c < 3; ++c)
+        sum += std::abs(picture.data[pixel * 3 + c] - view.original.data[pixel * 3 + c]);
     return sum / 3;
 }
 
@@ -160,7 +169,8 @@ std::vector<Image> trust_weights(const std::vector<RoundView>& views, const std:
         for (int y = 0; y < weight.height; ++y)
             for (int x = 0; x < weight.width; ++x) {
                 if (!colours.look(v, x, y)) continue;
-                weight.at(x, y, 0) = static_cast<float>(std::max(LeastTrust, std::exp(-colours.distance(v, x, y) / TrustedDistance)));
+                weight.at(x, y, 0) = static_cast<float>(
+                    std::max(LeastTrust, std::exp(-colours.distance(v, x, y) / TrustedDistance)));
             }
         weights.push_back(std::move(weight));
     }
@@ -175,7 +185,8 @@ double mean_chroma(const Image& picture, const Mask& mask) {
     std::size_t pixels = 0;
     for (std::size_t i = 0; i < mask.data.size(); ++i) {
         if (mask.data[i] == 0) continue;
-        const auto [least, most] = std::minmax({picture.data[i * 3], picture.data[i * 3 + 1], picture.data[i * 3 + 2]});
+        const auto [least, most] =
+            std::minmax({picture.data[i * 3], picture.data[i * 3 + 1], picture.data[i * 3 + 2]});
         sum += static_cast<double>(most) - static_cast<double>(least);
         ++pixels;
     }
@@ -187,30 +198,37 @@ double kept_chroma(std::vector<double> of_views, const std::vector<double>& of_s
     const auto middle = of_views.begin() + static_cast<std::ptrdiff_t>(of_views.size() / 2);
     std::nth_element(of_views.begin(), middle, of_views.end());
     if (*middle < LeastChroma) return -1;
-    return std::accumulate(of_scene.begin(), of_scene.end(), 0.0) / static_cast<double>(of_scene.size()) / *middle;
+    return std::accumulate(of_scene.begin(), of_scene.end(), 0.0) / static_cast<double>(of_scene.size()) /
+           *middle;
 }
 
 std::string warning_of_chroma(double kept) {
     if (kept < 0 || kept >= LeastKept) return {};
-    return fmt::format("the scene has {:.0f} % of the colour of the redrawn views: they cancel each other (drop those that differ in the "
-                       "panel Targets), or the fit is too short (fit_steps)",
-                       100 * kept);
+    return fmt::format(
+        "the scene has {:.0f} % of the colour of the redrawn views: they cancel each other (drop those that "
+        "differ in the "
+        "panel Targets), or the fit is too short (fit_steps)",
+        100 * kept);
 }
 
 std::vector<std::string> warnings_of(const ViewAgreement& agreement, bool anew) {
     std::vector<std::string> warnings;
     if (hardly_edited(agreement))
-        warnings.push_back(fmt::format("{:.0f} % of the redrawn views hardly differ from the scene: raise the strength of redrawing "
-                                       "(view_strength), or use words the model knows better",
-                                       100 * agreement.unchanged));
+        warnings.push_back(fmt::format(
+            "{:.0f} % of the redrawn views hardly differ from the scene: raise the strength of redrawing "
+            "(view_strength), or use words the model knows better",
+            100 * agreement.unchanged));
     if (!anew && agreement.disagreement > MostDisagreement)
-        warnings.push_back(fmt::format("the redrawn views disagree (by {:.2f} of the colour range): drop those that differ in the panel "
-                                       "Targets, or try another seed",
-                                       agreement.disagreement));
+        warnings.push_back(fmt::format(
+            "the redrawn views disagree (by {:.2f} of the colour range): drop those that differ in the panel "
+            "Targets, or try another seed",
+            agreement.disagreement));
     if (!anew && agreement.at_rim > std::max(MostAtRim, MoreThanElsewhere * agreement.rim_share))
-        warnings.push_back(fmt::format("{:.0f} % of the change lies at the mask's rim, which may cut it off: let the mask grow more (dilate_px), "
-                                       "or replace the thing (mode replace) where it gets another shape",
-                                       100 * agreement.at_rim));
+        warnings.push_back(
+            fmt::format("{:.0f} % of the change lies at the mask's rim, which may cut it off: let the mask "
+                        "grow more (dilate_px), "
+                        "or replace the thing (mode replace) where it gets another shape",
+                        100 * agreement.at_rim));
     return warnings;
 }
 

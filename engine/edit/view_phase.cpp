@@ -19,15 +19,17 @@ namespace {
 /// Every setting that the redrawn pictures follow from.
 std::string redraw_key(const EditRequest& request, EditMode mode, const std::string& of_model) {
     const auto plan = round_plan(request, mode);
-    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, request.seed, plan.rounds, plan.views,
-                       plan.view_steps, plan.strength, plan.again_strength, plan.guided_until, of_model);
+    return fmt::format("{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}\n{}", request.prompt, request.seed, plan.rounds,
+                       plan.views, plan.view_steps, plan.strength, plan.again_strength, plan.guided_until,
+                       of_model);
 }
 
 std::shared_ptr<const Image> shown_copy(const Image& image) {
     const int longer = std::max(image.width, image.height);
     if (longer <= ShownSide) return std::make_shared<const Image>(image);
     const auto side = [&](int pixels) { return std::max(1, pixels * ShownSide / longer); };
-    return std::make_shared<const Image>(localize::resize_image(image, side(image.width), side(image.height)));
+    return std::make_shared<const Image>(
+        localize::resize_image(image, side(image.width), side(image.height)));
 }
 
 std::ptrdiff_t index_of(const std::vector<std::size_t>& views, std::size_t view) {
@@ -37,20 +39,16 @@ std::ptrdiff_t index_of(const std::vector<std::size_t>& views, std::size_t view)
 
 }  // namespace
 
-ViewPhase::ViewPhase(const EditPlan& plan, const EditRequest& request, const EditTools& tools, const std::vector<Image>& originals,
-                     const DynamicMasks& masks, ShapeFinder* shapes)
-    : plan_(plan),
-      request_(request),
-      tools_(tools),
-      originals_(originals),
-      masks_(masks),
-      anew_(shapes != nullptr),
-      rounds_(plan, request, *tools.views, shapes, tools.known),
+ViewPhase::ViewPhase(const EditPlan& plan, const EditRequest& request, const EditTools& tools,
+                     const std::vector<Image>& originals, const DynamicMasks& masks, ShapeFinder* shapes)
+    : plan_(plan), request_(request), tools_(tools), originals_(originals), masks_(masks),
+      anew_(shapes != nullptr), rounds_(plan, request, *tools.views, shapes, tools.known),
       key_(redraw_key(request, plan.mode, tools.redraw_key)) {}
 
 /// Whether the edit goes on in the middle of this round, with the same settings from the same cameras.
 bool ViewPhase::resumes(const RoundState& start, const std::vector<std::size_t>& visible) const {
-    const int round = std::min(tools_.start->iteration / request_.fit_steps, request_.rounds - 1);   // a polish comes behind the last one
+    const int round = std::min(tools_.start->iteration / request_.fit_steps,
+                               request_.rounds - 1);  // a polish comes behind the last one
     if (start.key != key_ || start.round != round || (request_.polish_steps > 0 && !start.held)) return false;
     for (std::size_t i = 0; i < start.views.size(); ++i) {
         const auto view = start.views[i];
@@ -78,7 +76,8 @@ void ViewPhase::choose(const std::vector<std::size_t>& visible) {
 }
 
 std::vector<HeldOutView> ViewPhase::draw_held_out() {
-    return state_ && state_->held ? rounds_.draw_held_out(*state_->held, tools_.job) : std::vector<HeldOutView>{};
+    return state_ && state_->held ? rounds_.draw_held_out(*state_->held, tools_.job)
+                                  : std::vector<HeldOutView>{};
 }
 
 GaussianData ViewPhase::hidden(int sh_degree) const {
@@ -97,7 +96,8 @@ std::vector<std::size_t> ViewPhase::fitted() const {
 }
 
 /// Picture and depth of the surface; 0 where hardly anything is.
-void ViewPhase::draw(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings, Image& colour, Image& depth) {
+void ViewPhase::draw(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings,
+                     Image& colour, Image& depth) {
     tools_.rasterizer.forward(rows, camera, settings, output_);
     colour = output_.colour;
     for (auto& value : colour.data) value = std::clamp(value, 0.0f, 1.0f);
@@ -108,19 +108,24 @@ void ViewPhase::draw(const GaussianSpans& rows, const Camera& camera, const rast
 
 RoundView ViewPhase::begin_view(std::size_t v, const GaussianSpans& rows, const GaussianSpans& unlabelled,
                                 const raster::Settings& settings) {
-    RoundView view{{}, originals_[v], {}, masks_.mask(v), plan_.views[v],
+    RoundView view{{},
+                   originals_[v],
+                   {},
+                   masks_.mask(v),
+                   plan_.views[v],
                    plan_.view_words.empty() ? std::string() : plan_.view_words[v]};
     if (!plan_.azimuths.empty()) view.azimuth = plan_.azimuths[v], view.elevation = plan_.elevations[v];
     draw(rows, view.view.camera, settings, view.rendered, view.depth);
     for (auto& value : view.original.data) value = std::clamp(value, 0.0f, 1.0f);
     if (anew_) {
         draw(unlabelled, view.view.camera, settings, view.backdrop.picture, view.backdrop.depth);
-        fill_holes(view.backdrop, view.mask, output_.alpha);   // as it was drawn last
+        fill_holes(view.backdrop, view.mask, output_.alpha);  // as it was drawn last
     }
     return view;
 }
 
-std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled,
+std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpans& rows,
+                                                const GaussianSpans& unlabelled,
                                                 const raster::Settings& settings) {
     const StageTimer timer(seconds_);
     auto begun = std::make_shared<std::vector<RoundView>>();
@@ -141,10 +146,11 @@ std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpa
         state->held = std::move(held);
         state->held_out = rounds_.held_out();
     }
-    for (const auto view : state->views) state->edited.push_back(std::make_shared<const Image>(rounds_.edited(view)));
+    for (const auto view : state->views)
+        state->edited.push_back(std::make_shared<const Image>(rounds_.edited(view)));
     state->attempts.assign(state->views.size(), 0);
     state->dropped.assign(state->views.size(), anew_);
-    if (anew_)   // only views that show the new thing are fitted to
+    if (anew_)  // only views that show the new thing are fitted to
         for (const auto i : rounds_.found().usable) state->dropped[i] = false;
     state_ = std::move(state);
     redrawn_ += state_->views.size();
@@ -153,8 +159,8 @@ std::map<std::string, double> ViewPhase::redraw(int iteration, const GaussianSpa
     return scalars;
 }
 
-bool ViewPhase::ready(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled, const raster::Settings& settings,
-                      std::map<std::string, double>& scalars) {
+bool ViewPhase::ready(int iteration, const GaussianSpans& rows, const GaussianSpans& unlabelled,
+                      const raster::Settings& settings, std::map<std::string, double>& scalars) {
     const auto before = state_;
     if (rounds_.begins(iteration)) scalars = redraw(iteration, rows, unlabelled, settings);
     if (tools_.target_orders) take_orders();
@@ -173,7 +179,7 @@ void ViewPhase::take_orders() {
             state_ = std::move(next);
             weigh();
         }
-        show_sheet();   // also where nothing has changed: the orders are done
+        show_sheet();  // also where nothing has changed: the orders are done
     }
     if (tools_.job.stop_requested()) throw Error(ErrorCode::Cancelled, "the edit was stopped");
 }
@@ -181,7 +187,7 @@ void ViewPhase::take_orders() {
 /// True when something has changed.
 bool ViewPhase::follow(const TargetOrder& order, RoundState& next) {
     const auto found = order.round == next.round ? index_of(next.views, order.view) : -1;
-    if (found < 0) return false;   // of a round that is over
+    if (found < 0) return false;  // of a round that is over
     const auto index = static_cast<std::size_t>(found);
     const bool drops = order.choice == TargetChoice::Drop;
     if (drops && std::count(next.dropped.begin(), next.dropped.end(), false) <= 1) {
@@ -205,7 +211,8 @@ void ViewPhase::redo(std::size_t index, RoundState& next) {
         rounds_.redo(view, begun, next.attempts[index], originals_[view], tools_.job);
     } catch (const Error& error) {
         if (error.code() == ErrorCode::Cancelled) throw;
-        return log::warning("{} could not be redrawn and stays as it is: {}", plan_.views[view].name, error.what());
+        return log::warning("{} could not be redrawn and stays as it is: {}", plan_.views[view].name,
+                            error.what());
     }
     ++redrawn_;
     next.edited[index] = std::make_shared<const Image>(rounds_.edited(view));
@@ -241,7 +248,8 @@ void ViewPhase::take_masks() {
     show_sheet();
 }
 
-/// Views that are fitted to say how much to believe each other; what is drawn anew is not where the depths are.
+/// Views that are fitted to say how much to believe each other; what is drawn anew is not where the depths
+/// are.
 void ViewPhase::weigh() {
     if (anew_) return;
     std::vector<RoundView> views;
@@ -260,8 +268,11 @@ void ViewPhase::weigh() {
 void ViewPhase::begin_sheet() {
     sheet_ = {state_->round, round_plan(request_, plan_.mode).rounds, {}, state_->sentence, state_->warnings};
     for (std::size_t i = 0; i < state_->views.size(); ++i) {
-        sheet_.views.push_back(
-            {state_->views[i], shown_copy((*state_->begun)[i].rendered), {}, state_->attempts[i], state_->dropped[i]});
+        sheet_.views.push_back({state_->views[i],
+                                shown_copy((*state_->begun)[i].rendered),
+                                {},
+                                state_->attempts[i],
+                                state_->dropped[i]});
         refresh_sheet(i);
     }
     show_sheet();

@@ -23,18 +23,22 @@ Mask eroded(Mask mask, double radius_px) {
     return mask;
 }
 
-constexpr double FeatherPx = 3;       // of a picture of ReferenceSide (views.md 8.6)
+constexpr double FeatherPx = 3;                 // of a picture of ReferenceSide (views.md 8.6)
 constexpr std::uint64_t ColourStream = 39000;   // of the request's seed
-constexpr double StrengthRaise = 0.1;   // of redrawing that hardly changed anything (views.md 12)
+constexpr double StrengthRaise = 0.1;           // of redrawing that hardly changed anything (views.md 12)
 constexpr std::uint64_t HeldOutStream = 37000;  // the same, + the round
-constexpr double LeastCover = 0.01;   // of the picture: smaller things are not worth a redrawn view (views.md 8)
+constexpr double LeastCover =
+    0.01;  // of the picture: smaller things are not worth a redrawn view (views.md 8)
 
-/// The pictures that the model draws, one per view; what is not finite in them is counted and stays as the scene is.
-RoundTargets drawn_by(ViewGuidance& guidance, const std::vector<RoundView>& views, const RoundInput& input, const JobControl& job) {
+/// The pictures that the model draws, one per view; what is not finite in them is counted and stays as the
+/// scene is.
+RoundTargets drawn_by(ViewGuidance& guidance, const std::vector<RoundView>& views, const RoundInput& input,
+                      const JobControl& job) {
     auto drawn = guidance.edit(views, input, job);
     if (const auto broken = mend_broken(views, drawn.images); broken > 0) {
         drawn.scalars["broken_values"] = static_cast<double>(broken);
-        log::warning("{} values of the redrawn views were not finite; the scene stays as it was there", broken);
+        log::warning("{} values of the redrawn views were not finite; the scene stays as it was there",
+                     broken);
     }
     return drawn;
 }
@@ -44,8 +48,7 @@ RoundTargets drawn_by(ViewGuidance& guidance, const std::vector<RoundView>& view
 namespace {
 
 /// Gives a field the value that suits, unless it was set.
-template <class T>
-void suit(T& field, const T& otherwise, const T& value) {
+template <class T> void suit(T& field, const T& otherwise, const T& value) {
     if (field == otherwise) field = value;
 }
 
@@ -54,8 +57,8 @@ void free_geometry(EditRequest& request) {
     const EditRequest usual;
     suit(request.geometry_share, usual.geometry_share, 1.0);
     suit(request.colour_coupling, usual.colour_coupling, 0.0);
-    for (const auto anchor : {&EditRequest::anchor_position, &EditRequest::anchor_rotation, &EditRequest::anchor_opacity,
-                              &EditRequest::anchor_scale})
+    for (const auto anchor : {&EditRequest::anchor_position, &EditRequest::anchor_rotation,
+                              &EditRequest::anchor_opacity, &EditRequest::anchor_scale})
         suit(request.*anchor, usual.*anchor, 0.0);
 }
 
@@ -65,8 +68,10 @@ void grow_often(EditRequest& request, int fit_steps) {
     suit(request.densify_percent, usual.densify_percent, 0.1);
     suit(request.max_growth, usual.max_growth, 4.0);
     suit(request.max_aspect, usual.max_aspect, 6.0);
-    suit(request.rate_colour, usual.rate_colour, 0.012);   // the hull's colours are near; faster ones follow single views
-    if (request.densify_every > 0) request.densify_every = request.densify_from = std::max(1, fit_steps / GrowthsPerRound);
+    suit(request.rate_colour, usual.rate_colour,
+         0.012);  // the hull's colours are near; faster ones follow single views
+    if (request.densify_every > 0)
+        request.densify_every = request.densify_from = std::max(1, fit_steps / GrowthsPerRound);
 }
 
 }  // namespace
@@ -96,7 +101,8 @@ EditRequest loop_request(EditRequest request, EditMode mode, bool by_views, bool
     return request;
 }
 
-std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const std::vector<double>& covered, std::size_t count) {
+std::vector<std::size_t> views_to_redraw(const std::vector<View>& views, const std::vector<double>& covered,
+                                         std::size_t count) {
     GSE_CHECK_EQ(views.size(), covered.size());
     const double most = covered.empty() ? 0 : *std::max_element(covered.begin(), covered.end());
     if (!(most > 0)) return {};
@@ -124,7 +130,7 @@ std::vector<std::size_t> views_to_hold_out(const std::vector<View>& views, const
                                            const std::vector<std::size_t>& redrawn, std::size_t count) {
     GSE_CHECK_EQ(views.size(), covered.size());
     std::vector<std::size_t> taken = redrawn, held;
-    const auto free_distance = [&](std::size_t v) {   // negative: not to be had
+    const auto free_distance = [&](std::size_t v) {  // negative: not to be had
         if (covered[v] < LeastCover) return -1.0;
         double nearest = std::numeric_limits<double>::infinity();
         for (const auto other : taken) {
@@ -153,7 +159,7 @@ Image blend_inside(const Image& edited, const Image& original, const Mask& mask,
     const int rings = static_cast<int>(std::ceil(feather_px));
     Mask inside = mask;
     std::vector<float> share(mask.data.size(), 0.0f);
-    for (int ring = 0; ring <= rings; ++ring) {   // one step of the ramp for every pixel from the rim
+    for (int ring = 0; ring <= rings; ++ring) {  // one step of the ramp for every pixel from the rim
         for (std::size_t i = 0; i < share.size(); ++i)
             if (inside.data[i] != 0) share[i] += 1.0f / static_cast<float>(rings + 1);
         if (ring < rings) inside = eroded(inside, 1);
@@ -161,20 +167,16 @@ Image blend_inside(const Image& edited, const Image& original, const Mask& mask,
     for (std::size_t i = 0; i < share.size(); ++i) {
         if (mask.data[i] == 0) continue;
         for (std::size_t c = 0; c < 3; ++c)
-            result.data[i * 3 + c] = share[i] * edited.data[i * 3 + c] + (1 - share[i]) * original.data[i * 3 + c];
+            result.data[i * 3 + c] =
+                share[i] * edited.data[i * 3 + c] + (1 - share[i]) * original.data[i * 3 + c];
     }
     return result;
 }
 
-ViewRounds::ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance, ShapeFinder* shapes,
-                       std::vector<std::string> known)
-    : plan_(plan),
-      request_(request),
-      guidance_(guidance),
-      shapes_(shapes),
-      known_(std::move(known)),
-      targets_(plan.views.size()),
-      edited_(plan.views.size()) {}
+ViewRounds::ViewRounds(const EditPlan& plan, const EditRequest& request, ViewGuidance& guidance,
+                       ShapeFinder* shapes, std::vector<std::string> known)
+    : plan_(plan), request_(request), guidance_(guidance), shapes_(shapes), known_(std::move(known)),
+      targets_(plan.views.size()), edited_(plan.views.size()) {}
 
 void ViewRounds::choose(const std::vector<std::size_t>& visible, const std::vector<Mask>& masks) {
     std::vector<View> views;
@@ -185,23 +187,29 @@ void ViewRounds::choose(const std::vector<std::size_t>& visible, const std::vect
     }
     views_.clear();
     held_out_.clear();
-    const auto redrawn = views_to_redraw(views, covered, static_cast<std::size_t>(round_plan(request_, plan_.mode).views));
+    const auto redrawn =
+        views_to_redraw(views, covered, static_cast<std::size_t>(round_plan(request_, plan_.mode).views));
     for (const auto index : redrawn) views_.push_back(visible[index]);
     if (request_.polish_steps == 0) return;
-    for (const auto index : views_to_hold_out(views, covered, redrawn, HeldOutViews)) held_out_.push_back(visible[index]);
+    for (const auto index : views_to_hold_out(views, covered, redrawn, HeldOutViews))
+        held_out_.push_back(visible[index]);
 }
 
 bool ViewRounds::begins(int iteration) const { return round_ < 0 || iteration / request_.fit_steps > round_; }
 
-std::vector<HeldOutView> ViewRounds::draw_held_out(const std::vector<RoundView>& begun, const JobControl& job) {
+std::vector<HeldOutView> ViewRounds::draw_held_out(const std::vector<RoundView>& begun,
+                                                   const JobControl& job) {
     if (begun.empty()) return {};
     const auto stream = HeldOutStream + static_cast<std::uint64_t>(round_);
     auto drawn = drawn_by(guidance_, begun, input(stream), job);
     std::vector<HeldOutView> held;
     for (std::size_t i = 0; i < begun.size(); ++i) {
-        if (shapes_ != nullptr && !shapes_->take_out(begun[i], drawn, i, Random::stream(request_.seed, stream + 1 + i).next())) continue;
+        if (shapes_ != nullptr &&
+            !shapes_->take_out(begun[i], drawn, i, Random::stream(request_.seed, stream + 1 + i).next()))
+            continue;
         held.push_back({begun[i].view.camera, begun[i].mask,
-                        blend_inside(drawn.images[i], begun[i].original, begun[i].mask, FeatherPx * begun[i].original.width / ReferenceSide)});
+                        blend_inside(drawn.images[i], begun[i].original, begun[i].mask,
+                                     FeatherPx * begun[i].original.width / ReferenceSide)});
     }
     return held;
 }
@@ -209,32 +217,43 @@ std::vector<HeldOutView> ViewRounds::draw_held_out(const std::vector<RoundView>&
 /// What this round is asked to be; `stream` of the request's seed.
 RoundInput ViewRounds::input(std::uint64_t stream) const {
     const auto plan = round_plan(request_, plan_.mode);
-    RoundInput asked{round_,          plan.rounds, plan.steps_of(round_), std::min(1.0, plan.strength_of(round_) + raised_), Random::stream(request_.seed, stream).next(),
-                     shapes_ != nullptr, sentence_, plan.guided_until};
+    RoundInput asked{round_,
+                     plan.rounds,
+                     plan.steps_of(round_),
+                     std::min(1.0, plan.strength_of(round_) + raised_),
+                     Random::stream(request_.seed, stream).next(),
+                     shapes_ != nullptr,
+                     sentence_,
+                     plan.guided_until};
     if (plan_.mode == EditMode::Add) asked.tells_changes = true, asked.noise = request_.add_noise;
     return asked;
 }
 
-/// Where the sentence leaves open what colour the new thing has, it is the one that the search has drawn it in most; else the view with most
-/// room for it is drawn first. The word for it is told to all.
+/// Where the sentence leaves open what colour the new thing has, it is the one that the search has drawn it
+/// in most; else the view with most room for it is drawn first. The word for it is told to all.
 void ViewRounds::name_colour(const std::vector<RoundView>& views, const JobControl& job) {
     const auto told = as_told(request_.prompt);
     if (shapes_ == nullptr || views.empty() || is_described(told, shapes_->word())) return;
     const auto colour = plan_.drawn_colour.empty() ? colour_of_key_view(views, job) : plan_.drawn_colour;
     if (colour.empty()) return;
     sentence_ = described_as(told, shapes_->word(), colour);
-    log::info("the sentence names no colour for \"{}\"; most of what was drawn is {}: all views are drawn as \"{}\"", shapes_->word(), colour,
-              sentence_);
+    log::info(
+        "the sentence names no colour for \"{}\"; most of what was drawn is {}: all views are drawn as "
+        "\"{}\"",
+        shapes_->word(), colour, sentence_);
 }
 
 std::string ViewRounds::colour_of_key_view(const std::vector<RoundView>& views, const JobControl& job) {
-    const auto key = std::max_element(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.mask.count() < b.mask.count(); });
+    const auto key = std::max_element(views.begin(), views.end(), [](const auto& a, const auto& b) {
+        return a.mask.count() < b.mask.count();
+    });
     const auto drawn = drawn_by(guidance_, {*key}, input(ColourStream), job);
     ++extra_pictures_;
     return shapes_->colour_in(*key, drawn, Random::stream(request_.seed, ColourStream + 1).next(), known_);
 }
 
-/// The pictures of a round. Where most of them hardly differ from the scene, they are drawn once more, further from it.
+/// The pictures of a round. Where most of them hardly differ from the scene, they are drawn once more,
+/// further from it.
 RoundTargets ViewRounds::draw(const std::vector<RoundView>& views, const JobControl& job) {
     const auto asked = input(40000 + static_cast<std::uint64_t>(round_));
     auto drawn = drawn_by(guidance_, views, asked, job);
@@ -243,8 +262,10 @@ RoundTargets ViewRounds::draw(const std::vector<RoundView>& views, const JobCont
     if (shapes_ == nullptr && raised_ == 0 && asked.strength < 1 && hardly_edited(agreement)) {
         raised_ = StrengthRaise;
         extra_pictures_ += views.size();
-        log::info("{:.0f} % of the redrawn views hardly differ from the scene: they are redrawn with strength {:.2f}",
-                  100 * agreement.unchanged, std::min(1.0, asked.strength + raised_));
+        log::info(
+            "{:.0f} % of the redrawn views hardly differ from the scene: they are redrawn with strength "
+            "{:.2f}",
+            100 * agreement.unchanged, std::min(1.0, asked.strength + raised_));
         drawn = drawn_by(guidance_, views, input(40000 + static_cast<std::uint64_t>(round_)), job);
         agreement = view_agreement(views, drawn.images);
     }
@@ -274,11 +295,18 @@ std::map<std::string, double> ViewRounds::redraw(int iteration, const std::vecto
     return std::move(drawn.scalars);
 }
 
-void ViewRounds::redo(std::size_t view, const RoundView& begun, int attempt, const Image& original, const JobControl& job) {
-    constexpr std::uint64_t first = 1u << 20, most_views = 1u << 20, most_rounds = 64;   // streams that nothing else draws from
-    const auto stream = first + (static_cast<std::uint64_t>(attempt) * most_rounds + static_cast<std::uint64_t>(round_)) * most_views + view;
+void ViewRounds::redo(std::size_t view, const RoundView& begun, int attempt, const Image& original,
+                      const JobControl& job) {
+    constexpr std::uint64_t first = 1u << 20, most_views = 1u << 20,
+                            most_rounds = 64;  // streams that nothing else draws from
+    const auto stream =
+        first +
+        (static_cast<std::uint64_t>(attempt) * most_rounds + static_cast<std::uint64_t>(round_)) *
+            most_views +
+        view;
     auto drawn = drawn_by(guidance_, {begun}, input(stream), job);
-    if (shapes_ != nullptr) shapes_->take_out(begun, drawn, 0, Random::stream(request_.seed, stream + 1).next());
+    if (shapes_ != nullptr)
+        shapes_->take_out(begun, drawn, 0, Random::stream(request_.seed, stream + 1).next());
     replace(view, std::move(drawn.images.front()), original, begun.mask);
 }
 

@@ -15,12 +15,13 @@ constexpr double AttentionShare = 0.5;      // of a vote: the attention itself, 
 constexpr double AttentionLevel = 0.85;     // of the threshold: attention that counts half
 constexpr double AttentionSoftness = 0.05;  // how far from there it counts a quarter more or less
 constexpr double LeastEvidenceShare = 0.2;  // of the mean evidence of the rows that are seen at all
-// Of the attention that the word draws at most in most of the views that show it. Sunglasses from behind had 0.2 to 0.65, hats and scarves from
-// any side 0.8 and more. Of ten things worn (`gseditpro synth --object bear --material red`, and `dog`, `white`, with every accessory in blue on
-// seeds 81 to 90; a splat's colour tells whose it is) two pairs of sunglasses were labelled with an IoU of 0.88 and 0.83 at 0.6, where ears were
-// taken for them before, the other eight as before; at 0.5 only one of the two, at 0.7 none.
+// Of the attention that the word draws at most in most of the views that show it. Sunglasses from behind had
+// 0.2 to 0.65, hats and scarves from any side 0.8 and more. Of ten things worn (`gseditpro synth --object
+// bear --material red`, and `dog`, `white`, with every accessory in blue on seeds 81 to 90; a splat's colour
+// tells whose it is) two pairs of sunglasses were labelled with an IoU of 0.88 and 0.83 at 0.6, where ears
+// were taken for them before, the other eight as before; at 0.5 only one of the two, at 0.7 none.
 constexpr double FaintShare = 0.6;
-constexpr double RivalLead = 0.5;           // another thing that has so much more takes the pixel from the mask
+constexpr double RivalLead = 0.5;  // another thing that has so much more takes the pixel from the mask
 
 /// Whether the attention is above a level, in [0,1].
 double above(double attention, double level) {
@@ -41,7 +42,8 @@ std::vector<std::size_t> faint_views(const std::vector<float>& peaks) {
     if (peaks.empty()) return faint;
     auto sorted = peaks;
     std::sort(sorted.begin(), sorted.end());
-    const double usual = sorted[sorted.size() * 3 / 4], least = std::min<double>(FaintShare * usual, sorted[sorted.size() / 2]);
+    const double usual = sorted[sorted.size() * 3 / 4],
+                 least = std::min<double>(FaintShare * usual, sorted[sorted.size() / 2]);
     for (std::size_t v = 0; v < peaks.size(); ++v)
         if (peaks[v] < least) faint.push_back(v);
     return faint;
@@ -78,7 +80,8 @@ void compete(ViewEvidence& view, const std::vector<Image>& maps, bool strict) {
 void require_views(const std::vector<std::size_t>& left_out, std::size_t count) {
     for (const auto view : left_out)
         if (view >= count)
-            throw Error(ErrorCode::InvalidArgument, fmt::format("view {} is to be left out, but the last one is {}", view, count - 1),
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("view {} is to be left out, but the last one is {}", view, count - 1),
                         "correct left_out, or leave it empty");
 }
 

@@ -12,14 +12,15 @@
 namespace gse::edit {
 namespace {
 
-constexpr int CoarseCells = 32;        // along the longest side of the box
-constexpr int MostCells = 128;         // the same of the second grid
-constexpr double LeastHullPart = 0.02;     // of the largest connected part: flames have many small ones
-constexpr double HiddenSlack = 1.5;    // sides of a cube behind a surface: it may lie on it
-constexpr double Footprint = 0.75;     // half of a cube's width as it is seen, over its side: between face and corner
+constexpr int CoarseCells = 32;         // along the longest side of the box
+constexpr int MostCells = 128;          // the same of the second grid
+constexpr double LeastHullPart = 0.02;  // of the largest connected part: flames have many small ones
+constexpr double HiddenSlack = 1.5;     // sides of a cube behind a surface: it may lie on it
+constexpr double Footprint =
+    0.75;  // half of a cube's width as it is seen, over its side: between face and corner
 
 constexpr float OutlineLevel = 0.5f;
-constexpr std::array TriedShares{0.95, 0.85, 0.75, 0.65, 0.55, 0.45};   // from strict to loose
+constexpr std::array TriedShares{0.95, 0.85, 0.75, 0.65, 0.55, 0.45};  // from strict to loose
 
 struct Pixel {
     double x = 0, y = 0, z = 0;
@@ -30,13 +31,15 @@ std::optional<Pixel> project(const Camera& camera, const Vec3& point) {
     const Vec3 p = camera.to_camera(point);
     if (!(p.z > 0)) return std::nullopt;
     const Pixel pixel{camera.fx * p.x / p.z + camera.cx, camera.fy * p.y / p.z + camera.cy, p.z};
-    if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < camera.width && pixel.y < camera.height)) return std::nullopt;
+    if (!(pixel.x >= 0 && pixel.y >= 0 && pixel.x < camera.width && pixel.y < camera.height))
+        return std::nullopt;
     return pixel;
 }
 
 /// Bilinear value of a channel between pixel centres.
 double sample(const Image& image, double x, double y, int channel) {
-    const double u = std::clamp(x - 0.5, 0.0, image.width - 1.0), v = std::clamp(y - 0.5, 0.0, image.height - 1.0);
+    const double u = std::clamp(x - 0.5, 0.0, image.width - 1.0),
+                 v = std::clamp(y - 0.5, 0.0, image.height - 1.0);
     const int x0 = static_cast<int>(u), y0 = static_cast<int>(v);
     const int x1 = std::min(x0 + 1, image.width - 1), y1 = std::min(y0 + 1, image.height - 1);
     const double a = u - x0, b = v - y0;
@@ -62,7 +65,8 @@ struct Cubes {
     }
     std::array<int, 3> place(std::size_t cube) const {
         const auto nx = static_cast<std::size_t>(count[0]), ny = static_cast<std::size_t>(count[1]);
-        return {static_cast<int>(cube % nx), static_cast<int>(cube / nx % ny), static_cast<int>(cube / (nx * ny))};
+        return {static_cast<int>(cube % nx), static_cast<int>(cube / nx % ny),
+                static_cast<int>(cube / (nx * ny))};
     }
     Vec3 centre(std::size_t cube) const {
         const auto [x, y, z] = place(cube);
@@ -70,12 +74,17 @@ struct Cubes {
     }
     std::size_t at(int x, int y, int z) const {
         return static_cast<std::size_t>(x) +
-               static_cast<std::size_t>(count[0]) * (static_cast<std::size_t>(y) + static_cast<std::size_t>(count[1]) * static_cast<std::size_t>(z));
+               static_cast<std::size_t>(count[0]) *
+                   (static_cast<std::size_t>(y) +
+                    static_cast<std::size_t>(count[1]) * static_cast<std::size_t>(z));
     }
     bool has(int x, int y, int z) const {
-        return x >= 0 && y >= 0 && z >= 0 && x < count[0] && y < count[1] && z < count[2] && inside[at(x, y, z)] != 0;
+        return x >= 0 && y >= 0 && z >= 0 && x < count[0] && y < count[1] && z < count[2] &&
+               inside[at(x, y, z)] != 0;
     }
-    std::size_t filled() const { return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), std::uint8_t{1})); }
+    std::size_t filled() const {
+        return static_cast<std::size_t>(std::count(inside.begin(), inside.end(), std::uint8_t{1}));
+    }
 };
 
 void carve(Cubes& cubes, std::span<const HullView> views, const HullParameters& parameters) {
@@ -102,7 +111,8 @@ void keep_large_parts(Cubes& cubes) {
             ++sizes.back();
             for (int k = 0; k < 6; ++k) {
                 const int step = k % 2 == 0 ? -1 : 1;
-                const int nx = x + (k / 2 == 0 ? step : 0), ny = y + (k / 2 == 1 ? step : 0), nz = z + (k / 2 == 2 ? step : 0);
+                const int nx = x + (k / 2 == 0 ? step : 0), ny = y + (k / 2 == 1 ? step : 0),
+                          nz = z + (k / 2 == 2 ? step : 0);
                 if (!cubes.has(nx, ny, nz) || part[cubes.at(nx, ny, nz)] >= 0) continue;
                 part[cubes.at(nx, ny, nz)] = name;
                 open.push_back(cubes.at(nx, ny, nz));
@@ -111,7 +121,8 @@ void keep_large_parts(Cubes& cubes) {
     }
     const std::size_t largest = sizes.empty() ? 0 : *std::max_element(sizes.begin(), sizes.end());
     for (std::size_t cube = 0; cube < part.size(); ++cube)
-        if (part[cube] >= 0 && static_cast<double>(sizes[static_cast<std::size_t>(part[cube])]) < LeastHullPart * static_cast<double>(largest))
+        if (part[cube] >= 0 && static_cast<double>(sizes[static_cast<std::size_t>(part[cube])]) <
+                                   LeastHullPart * static_cast<double>(largest))
             cubes.inside[cube] = 0;
 }
 
@@ -155,7 +166,9 @@ Image depth_of(const VisualHull& hull, const Camera& camera) {
         if (!(p.z > hull.side)) continue;
         const double x = camera.fx * p.x / p.z + camera.cx, y = camera.fy * p.y / p.z + camera.cy;
         const double radius = std::max(0.5, Footprint * hull.side * camera.fx / p.z);
-        const auto from = [](double value, int size) { return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(size))); };
+        const auto from = [](double value, int size) {
+            return static_cast<int>(std::clamp(value, 0.0, static_cast<double>(size)));
+        };
         for (int v = from(y - radius, depth.height); v < from(y + radius + 1, depth.height); ++v)
             for (int u = from(x - radius, depth.width); u < from(x + radius + 1, depth.width); ++u) {
                 if (std::hypot(u + 0.5 - x, v + 0.5 - y) > radius) continue;
@@ -186,7 +199,8 @@ std::array<double, 4> turn_to(const Vec3& normal) {
 
 }  // namespace
 
-double hull_share(std::span<const HullView> views, const Vec3& point, double slack, const HullParameters& parameters) {
+double hull_share(std::span<const HullView> views, const Vec3& point, double slack,
+                  const HullParameters& parameters) {
     int framed = 0, seen = 0, inside = 0;
     for (const auto& view : views) {
         const auto pixel = project(view.camera, point);
@@ -200,12 +214,15 @@ double hull_share(std::span<const HullView> views, const Vec3& point, double sla
         inside += sample(view.inside, pixel->x, pixel->y, 0) >= parameters.level ? 1 : 0;
     }
     const auto views_count = static_cast<double>(views.size());
-    if (seen == 0 || seen < parameters.least_seen * views_count || framed < parameters.least_framed * views_count) return -1;
+    if (seen == 0 || seen < parameters.least_seen * views_count ||
+        framed < parameters.least_framed * views_count)
+        return -1;
     return static_cast<double>(inside) / seen;
 }
 
 VisualHull carve_hull(std::span<const HullView> views, const HullBox& box, const HullParameters& parameters) {
-    for (const auto& view : views) GSE_CHECK(view.inside.width == view.camera.width && view.inside.height == view.camera.height);
+    for (const auto& view : views)
+        GSE_CHECK(view.inside.width == view.camera.width && view.inside.height == view.camera.height);
     VisualHull hull;
     const Vec3 size = box.high - box.low;
     const double longest = std::max({size.x, size.y, size.z});
@@ -237,7 +254,8 @@ double hull_fit(std::span<const HullView> views, const VisualHull& hull) {
         double both = 0, either = 0;
         for (std::size_t i = 0; i < depth.data.size(); ++i) {
             const float surface = view.surface.data.empty() ? 0 : view.surface.data[i];
-            const bool seen = depth.data[i] > 0 && (surface <= 0 || depth.data[i] <= surface + HiddenSlack * hull.side);
+            const bool seen =
+                depth.data[i] > 0 && (surface <= 0 || depth.data[i] <= surface + HiddenSlack * hull.side);
             const bool inside = view.inside.data[i] >= OutlineLevel;
             both += seen && inside ? 1 : 0;
             either += seen || inside ? 1 : 0;
@@ -280,9 +298,11 @@ void append_splat(GaussianData& data, const PlainSplat& splat) {
     data.opacity_logit[row] = static_cast<float>(std::log(splat.opacity / (1 - splat.opacity)));
 }
 
-GaussianData hull_seeds(const VisualHull& hull, std::span<const HullView> views, int sh_degree, double opacity) {
-    constexpr double AlongSurface = 0.6, ThroughSurface = 0.25, Within = 0.5;   // standard deviations over the side of a cube
-    constexpr std::size_t EveryWithin = 4;    // of the cubes that nobody sees so many get no row
+GaussianData hull_seeds(const VisualHull& hull, std::span<const HullView> views, int sh_degree,
+                        double opacity) {
+    constexpr double AlongSurface = 0.6, ThroughSurface = 0.25,
+                     Within = 0.5;          // standard deviations over the side of a cube
+    constexpr std::size_t EveryWithin = 4;  // of the cubes that nobody sees so many get no row
     std::vector<Image> depths;
     for (const auto& view : views) depths.push_back(depth_of(hull, view.camera));
     GaussianData data;
@@ -298,7 +318,8 @@ GaussianData hull_seeds(const VisualHull& hull, std::span<const HullView> views,
             any.add(views[v].picture, *pixel, 1);
             const double nearest = depths[v].at(static_cast<int>(pixel->x), static_cast<int>(pixel->y), 0);
             const double facing = dot(normal, normalized(views[v].camera.centre() - centre));
-            if (surface && facing > 0 && pixel->z <= nearest + HiddenSlack * hull.side) front.add(views[v].picture, *pixel, facing * facing);
+            if (surface && facing > 0 && pixel->z <= nearest + HiddenSlack * hull.side)
+                front.add(views[v].picture, *pixel, facing * facing);
         }
         const auto& seen = front.weight > 0 ? front : any;
         if (!(seen.weight > 0)) continue;

@@ -12,8 +12,9 @@
 namespace gse::edit {
 namespace {
 
-constexpr double MostDifferent = 0.4;   // share of the letters: "bears" and "baer" are near "bear", "sign" is near nothing
-constexpr double OfSwapped = 0.3;       // two letters that changed places, whatever the length
+constexpr double MostDifferent =
+    0.4;  // share of the letters: "bears" and "baer" are near "bear", "sign" is near nothing
+constexpr double OfSwapped = 0.3;  // two letters that changed places, whatever the length
 
 /// Spelling distance in which two neighbours that changed places are no more than one slip.
 double slip(const std::string& a, const std::string& b) {
@@ -45,14 +46,16 @@ bool knows(const std::vector<std::string>& known, const std::string& phrase) {
     return known.empty() || (!words_of(phrase).empty() && unknown_word(known, phrase).empty());
 }
 
-std::vector<std::string> nearest_words(const std::string& word, const std::vector<std::string>& known, std::size_t most) {
+std::vector<std::string> nearest_words(const std::string& word, const std::vector<std::string>& known,
+                                       std::size_t most) {
     std::vector<std::pair<double, std::string>> near;
     for (const auto& candidate : known) {
         if (!says_something(candidate)) continue;
         const double distance = slip(word, candidate);
         if (distance <= MostDifferent) near.emplace_back(distance, candidate);
     }
-    std::stable_sort(near.begin(), near.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(near.begin(), near.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     if (near.size() > most) near.resize(most);
     std::vector<std::string> words;
     for (auto& entry : near) words.push_back(std::move(entry.second));
@@ -68,15 +71,17 @@ std::string words_to_use(const std::string& word, const std::vector<std::string>
     return fmt::format("a word it knows: {}", all);
 }
 
-std::vector<std::string> words_to_say(const std::vector<std::string>& known, const std::vector<std::string>& drawn) {
+std::vector<std::string> words_to_say(const std::vector<std::string>& known,
+                                      const std::vector<std::string>& drawn) {
     auto words = known;
     if (!known.empty()) words.insert(words.end(), drawn.begin(), drawn.end());
     return words;
 }
 
-/// What can be said in a word's place where something is to be made: words near to it, else all but the names of colours and
-/// patterns that are dyed, of which there are many.
-static std::string words_to_make(const std::string& word, const std::vector<std::string>& known, const std::vector<std::string>& drawn) {
+/// What can be said in a word's place where something is to be made: words near to it, else all but the names
+/// of colours and patterns that are dyed, of which there are many.
+static std::string words_to_make(const std::string& word, const std::vector<std::string>& known,
+                                 const std::vector<std::string>& drawn) {
     const auto say = words_to_say(known, drawn);
     if (!nearest_words(word, say).empty()) return words_to_use(word, say);
     const auto dyes = dye_words(known);
@@ -86,14 +91,15 @@ static std::string words_to_make(const std::string& word, const std::vector<std:
     return words_to_use(word, shown) + (dyes.empty() ? "" : ", or a colour or pattern by its name");
 }
 
-void require_known_words(const EditRequest& request, const std::vector<std::string>& known, const std::vector<std::string>& drawn,
-                         bool labelled_by_hand) {
+void require_known_words(const EditRequest& request, const std::vector<std::string>& known,
+                         const std::vector<std::string>& drawn, bool labelled_by_hand) {
     const auto say = words_to_say(known, drawn);
     const auto source = unknown_word(known, request.source), target = unknown_word(say, request.target);
     if (!labelled_by_hand && !source.empty())
         throw Error(ErrorCode::InvalidArgument,
-                    knows(say, source) ? fmt::format("the model can draw \"{}\" but not find it", source)
-                                       : fmt::format("the model does not know the word \"{}\" and cannot find it", source),
+                    knows(say, source)
+                        ? fmt::format("the model can draw \"{}\" but not find it", source)
+                        : fmt::format("the model does not know the word \"{}\" and cannot find it", source),
                     fmt::format("label it by hand instead, or use {}", words_to_use(source, known)));
     if (!target.empty())
         throw Error(ErrorCode::InvalidArgument,

@@ -29,8 +29,9 @@ struct SmallMap {
 SmallMap small_map(const Image& map, double threshold, const SearchSettings& settings) {
     const int height = std::max(1, ClusterGrid * map.height / map.width);
     SmallMap small{localize::resize_image(map, ClusterGrid, height), {}};
-    small.region = localize::clean_clusters(localize::threshold_map(small.map, threshold), small.map,
-                                            {settings.dbscan_eps, settings.dbscan_min_samples}, settings.keep_mass);
+    small.region =
+        localize::clean_clusters(localize::threshold_map(small.map, threshold), small.map,
+                                 {settings.dbscan_eps, settings.dbscan_min_samples}, settings.keep_mass);
     return small;
 }
 
@@ -70,8 +71,8 @@ void accept(WordMask& found, Mask mask, double captured, const char* branch) {
 }
 
 /// Refines the region that was found: text segmenter, clicks, or the region itself (A8).
-void refine(WordMask& found, const Image& picture, const Image& map, const std::string& word, const SearchSettings& settings,
-            const WordMaskTools& tools) {
+void refine(WordMask& found, const Image& picture, const Image& map, const std::string& word,
+            const SearchSettings& settings, const WordMaskTools& tools) {
     std::optional<Mask> from_text;
     double text_mass = 0;
     if (tools.text_segmenter != nullptr) {
@@ -86,8 +87,7 @@ void refine(WordMask& found, const Image& picture, const Image& map, const std::
         found.trusted = true;
     };
     const bool text_fits = from_text && text_mass >= settings.fallback_mass;
-    if (text_fits && localize::mask_iou(*from_text, found.region) >= LeastOverlapIou)
-        return accept_text();
+    if (text_fits && localize::mask_iou(*from_text, found.region) >= LeastOverlapIou) return accept_text();
     if (tools.segmenter != nullptr) {
         Mask mask = tools.segmenter->segment(picture, found.points, bounds_of(found.region), map);
         mask = localize::clean_clusters(mask, map, {1.5, 1}, settings.keep_mass);
@@ -137,10 +137,9 @@ WordMask find_word_mask(const Image& picture, const Image& map, double threshold
     found.mask = found.region;
     found.branch = "attention";
     found.captured = 1;
-    const bool everything =
-        static_cast<double>(found.region.count()) > LargestMaskShare * static_cast<double>(found.region.data.size());
-    if (everything)
-        fail(found, ViewStep::Everything);
+    const bool everything = static_cast<double>(found.region.count()) >
+                            LargestMaskShare * static_cast<double>(found.region.data.size());
+    if (everything) fail(found, ViewStep::Everything);
     else if (small.region.count() < LeastRegionCells)
         fail(found, has_attention(map) ? ViewStep::TooLittle : ViewStep::NoAttention);
     if (!refines || !found.found()) return found;

@@ -1,5 +1,5 @@
-// Where a picture shows a word: one finder for the search, for the masks that follow an edit, and for the look at what was
-// added.
+// Where a picture shows a word: one finder for the search, for the masks that follow an edit, and for the
+// look at what was added.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@
 
 namespace gse::edit {
 
-constexpr double LeastTextScore = 0.3;   // from which a text segmenter is taken to see the word (method A8)
+constexpr double LeastTextScore = 0.3;  // from which a text segmenter is taken to see the word (method A8)
 
 /// What a picture came to. Masks have the picture's size.
 struct WordMask {
-    Mask region;                      // attention above the threshold, cleaned
-    Mask mask;                        // the region, or what a segmenter made of it; empty of pixels where nothing was found
+    Mask region;  // attention above the threshold, cleaned
+    Mask mask;    // the region, or what a segmenter made of it; empty of pixels where nothing was found
     std::vector<PointPrompt> points;  // clicks for the segmenter
     double captured = 0;              // share of the region's attention inside the mask
     std::string branch = "none";      // what the mask is from: "text", "points" or "attention"
@@ -34,12 +34,14 @@ struct WordMaskTools {
 /// The least box around a mask's pixels, which has some.
 BoxPrompt bounds_of(const Mask& mask);
 
-/// Scales an attention map to a maximum of 1; negative and non-finite values become 0. Returns how many were not finite.
+/// Scales an attention map to a maximum of 1; negative and non-finite values become 0. Returns how many were
+/// not finite.
 std::size_t normalise_maximum(Image& map);
 
-/// Threshold and DBSCAN on a 64-cell grid, small clusters dropped (GSEditPro 3.2, method S4a); then the mask of a text segmenter
-/// that agrees with the attention, or of a segmenter from clicks and box, or the region itself (method A8).
-/// `picture` [H,W,3] and `map` [H,W,1] in [0,1], of one size; `refines` = false: the region is enough.
+/// Threshold and DBSCAN on a 64-cell grid, small clusters dropped (GSEditPro 3.2, method S4a); then the mask
+/// of a text segmenter that agrees with the attention, or of a segmenter from clicks and box, or the region
+/// itself (method A8). `picture` [H,W,3] and `map` [H,W,1] in [0,1], of one size; `refines` = false: the
+/// region is enough.
 ///
 /// | constant | value | chosen |
 /// |---|---|---|

@@ -11,13 +11,23 @@ namespace gse::edit {
 
 namespace {
 
-/// Typographic marks of a text processor, in UTF-8, and what they count as: its apostrophes as the plain one, blanks, dashes, dots and
-/// quotation marks as gaps.
+/// Typographic marks of a text processor, in UTF-8, and what they count as: its apostrophes as the plain one,
+/// blanks, dashes, dots and quotation marks as gaps.
 std::string plain_marks(std::string text) {
-    constexpr std::array<std::pair<std::string_view, char>, 11> marks{{{"\u2019", '\''}, {"\u2018", ' '}, {"\u201c", ' '}, {"\u201d", ' '}, {"\u201e", ' '}, {"\u00ab", ' '},
-                                                                     {"\u00bb", ' '}, {"\u2026", ' '}, {"\u2013", ' '}, {"\u2014", ' '}, {"\u00a0", ' '}}};
+    constexpr std::array<std::pair<std::string_view, char>, 11> marks{{{"\u2019", '\''},
+                                                                       {"\u2018", ' '},
+                                                                       {"\u201c", ' '},
+                                                                       {"\u201d", ' '},
+                                                                       {"\u201e", ' '},
+                                                                       {"\u00ab", ' '},
+                                                                       {"\u00bb", ' '},
+                                                                       {"\u2026", ' '},
+                                                                       {"\u2013", ' '},
+                                                                       {"\u2014", ' '},
+                                                                       {"\u00a0", ' '}}};
     for (const auto& [mark, letter] : marks)
-        for (auto at = text.find(mark); at != std::string::npos; at = text.find(mark, at)) text.replace(at, mark.size(), 1, letter);
+        for (auto at = text.find(mark); at != std::string::npos; at = text.find(mark, at))
+            text.replace(at, mark.size(), 1, letter);
     return text;
 }
 
@@ -69,13 +79,15 @@ bool has_word(const std::string& sentence, const std::string& phrase) {
 std::size_t first_word(const std::string& sentence, const std::string& phrase) {
     const auto words = words_of(sentence), wanted = words_of(phrase);
     if (wanted.empty()) return words.size();
-    return static_cast<std::size_t>(std::search(words.begin(), words.end(), wanted.begin(), wanted.end()) - words.begin());
+    return static_cast<std::size_t>(std::search(words.begin(), words.end(), wanted.begin(), wanted.end()) -
+                                    words.begin());
 }
 
 std::vector<std::string> terms_of(const std::string& sentence, const std::vector<std::string>& phrases) {
     std::vector<std::vector<std::string>> wanted;
     for (const auto& phrase : phrases) wanted.push_back(words_of(phrase));
-    std::stable_sort(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    std::stable_sort(wanted.begin(), wanted.end(),
+                     [](const auto& a, const auto& b) { return a.size() > b.size(); });
     const auto words = words_of(sentence);
     std::vector<std::string> terms;
     for (auto at = words.begin(); at != words.end();) {
@@ -91,9 +103,10 @@ std::vector<std::string> terms_of(const std::string& sentence, const std::vector
 
 bool is_ground(const std::string& word) {
     static const std::vector<std::string> grounds{
-        "grass", "sand",  "snow",   "water",  "tiles", "floor",  "lake",   "ground", "lawn",  "meadow", "field",
-        "beach", "sea",   "ocean",  "river",  "ice",   "street", "road",   "gravel", "mud",   "soil",   "earth",
-        "carpet", "rug",  "desert", "forest", "sky",   "pavement", "asphalt", "concrete", "background"};
+        "grass",  "sand",   "snow",   "water",    "tiles",   "floor",    "lake",      "ground",
+        "lawn",   "meadow", "field",  "beach",    "sea",     "ocean",    "river",     "ice",
+        "street", "road",   "gravel", "mud",      "soil",    "earth",    "carpet",    "rug",
+        "desert", "forest", "sky",    "pavement", "asphalt", "concrete", "background"};
     return std::find(grounds.begin(), grounds.end(), word) != grounds.end();
 }
 

@@ -10,21 +10,22 @@
 namespace gse::edit {
 namespace {
 
-constexpr float LargestLogit = 12.0f;            // method F17
-constexpr double SmallestScale = 1e-6;           // of the extent
-constexpr double LargestScale = 0.5;             // of the extent
-constexpr double CommonRate = 2;                 // times the colour's rate: makes both kinds of change equally fast
-constexpr float LargestGradient = 1e15f;         // larger ones overflow Adam's second moment
+constexpr float LargestLogit = 12.0f;     // method F17
+constexpr double SmallestScale = 1e-6;    // of the extent
+constexpr double LargestScale = 0.5;      // of the extent
+constexpr double CommonRate = 2;          // times the colour's rate: makes both kinds of change equally fast
+constexpr float LargestGradient = 1e15f;  // larger ones overflow Adam's second moment
 
 /// True when all values of the row are finite and of a size that can be worked with.
 bool usable_row(std::span<const float> values, std::size_t row, std::size_t stride) {
     bool usable = true;
-    for (std::size_t i = row * stride; i < (row + 1) * stride; ++i) usable &= std::abs(values[i]) <= LargestGradient;
+    for (std::size_t i = row * stride; i < (row + 1) * stride; ++i)
+        usable &= std::abs(values[i]) <= LargestGradient;
     return usable;
 }
 
-/// False for rows that cannot be drawn (NaN, infinite place or colour): they are left as they are, like unlabelled ones.
-/// Infinite opacity logits and flat axes are legal.
+/// False for rows that cannot be drawn (NaN, infinite place or colour): they are left as they are, like
+/// unlabelled ones. Infinite opacity logits and flat axes are legal.
 bool editable_row(const GaussianData& data, std::size_t row) {
     const auto legal_scale = [](float value) { return !std::isnan(value) && value < LargestGradient; };
     return usable_row(data.position, row, 3) && usable_row(data.rotation, row, 4) &&
@@ -40,30 +41,30 @@ float largest(const std::vector<float>& values, std::size_t row) {
 }  // namespace
 
 GenerationSchedule::GenerationSchedule(const EditRequest& request)
-    : start_(request.anchor_start),
-      growth_(request.anchor_growth),
-      cap_(request.anchor_cap),
-      weights_{request.anchor_first} {}
+    : start_(request.anchor_start), growth_(request.anchor_growth),
+      cap_(request.anchor_cap), weights_{request.anchor_first} {}
 
 int GenerationSchedule::advance() {
     const int born = static_cast<int>(weights_.size());
     for (auto& weight : weights_) weight = std::min(cap_, weight * growth_);
     if (weights_.size() > 1) weights_.back() = start_;
-    weights_.push_back(0);   // the newest generation is free
+    weights_.push_back(0);  // the newest generation is free
     return born;
 }
 
 WorkingSet::WorkingSet(const GaussianSet& base, const EditRequest& request, double extent)
     : extent_(extent), base_size_(base.size()), table_(base.sh_degree()), schedule_(request) {}
 
-WorkingSet::WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> label, const GaussianData& seeds,
-                       const EditRequest& request, double extent)
+WorkingSet::WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> label,
+                       const GaussianData& seeds, const EditRequest& request, double extent)
     : WorkingSet(base, request, extent) {
     const GaussianData data = base.to_data();
     const auto editable = take_unlabelled(data, label);
-    table_.reserve(static_cast<std::size_t>(std::count(editable.begin(), editable.end(), std::uint8_t{1})) + seeds.size());
+    table_.reserve(static_cast<std::size_t>(std::count(editable.begin(), editable.end(), std::uint8_t{1})) +
+                   seeds.size());
     for (std::size_t row = 0; row < base.size(); ++row)
-        if (editable[row] != 0) append(data, row, 0, static_cast<std::int64_t>(row), static_cast<std::int64_t>(row));
+        if (editable[row] != 0)
+            append(data, row, 0, static_cast<std::int64_t>(row), static_cast<std::int64_t>(row));
     adding_ = seeds.size() > 0;
     const int seed_generation = adding_ ? schedule_.advance() : 0;
     for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, seed_generation, -1, OfSeed);
@@ -72,10 +73,12 @@ WorkingSet::WorkingSet(const GaussianSet& base, std::span<const std::uint8_t> la
     remember_anchor();
 }
 
-std::vector<std::uint8_t> WorkingSet::take_unlabelled(const GaussianData& base, std::span<const std::uint8_t> label) {
+std::vector<std::uint8_t> WorkingSet::take_unlabelled(const GaussianData& base,
+                                                      std::span<const std::uint8_t> label) {
     GSE_CHECK_EQ(label.size(), base.size());
     std::vector<std::uint8_t> editable(base.size(), 0);
-    visit_attributes([&](std::size_t stride, auto& array) { array.reserve(base.size() * stride); }, table_.rows);
+    visit_attributes([&](std::size_t stride, auto& array) { array.reserve(base.size() * stride); },
+                     table_.rows);
     for (std::size_t row = 0; row < base.size(); ++row) {
         editable[row] = label[row] != 0 && editable_row(base, row) ? 1 : 0;
         if (editable[row] != 0) continue;
@@ -123,7 +126,8 @@ void WorkingSet::make_finite(std::size_t index) {
     float& logit = table_.rows.opacity_logit[row];
     if (!std::isfinite(logit)) logit = logit > 0 ? LargestLogit : -LargestLogit;
     for (std::size_t i = row * 3; i < row * 3 + 3; ++i)
-        if (!std::isfinite(table_.rows.log_scale[i])) table_.rows.log_scale[i] = static_cast<float>(std::log(SmallestScale * extent_));
+        if (!std::isfinite(table_.rows.log_scale[i]))
+            table_.rows.log_scale[i] = static_cast<float>(std::log(SmallestScale * extent_));
 }
 
 void WorkingSet::remember_anchor() {
@@ -181,27 +185,34 @@ double WorkingSet::step(const raster::Gradients& gradients, int iteration, const
     return anchor_loss_;
 }
 
-void WorkingSet::step_geometry(const raster::Gradients& gradients, int iteration, const EditRequest& request) {
+void WorkingSet::step_geometry(const raster::Gradients& gradients, int iteration,
+                               const EditRequest& request) {
     for (std::size_t i = 0; i < labelled(); ++i)
-        table_.row_factor[i] = !adding_ && table_.origin[i] >= 0 ? static_cast<float>(request.geometry_share) : 1.0f;
-    const double progress = request.iterations > 1 ? static_cast<double>(iteration) / (request.iterations - 1) : 0;
-    const double from = std::max(request.rate_position, 1e-12), to = std::max(request.rate_position_end, 1e-12);
-    const double position_rate = extent_ * std::exp(std::log(from) * (1 - progress) + std::log(to) * progress);
+        table_.row_factor[i] =
+            !adding_ && table_.origin[i] >= 0 ? static_cast<float>(request.geometry_share) : 1.0f;
+    const double progress =
+        request.iterations > 1 ? static_cast<double>(iteration) / (request.iterations - 1) : 0;
+    const double from = std::max(request.rate_position, 1e-12),
+                 to = std::max(request.rate_position_end, 1e-12);
+    const double position_rate =
+        extent_ * std::exp(std::log(from) * (1 - progress) + std::log(to) * progress);
     const auto update = [&](std::vector<float>& all, std::span<const float> gradient, std::size_t stride,
-                            const std::vector<float>& anchor, double anchor_weight, AdamMoments& moments, double rate) {
+                            const std::vector<float>& anchor, double anchor_weight, AdamMoments& moments,
+                            double rate) {
         load_gradient(gradient, stride);
         const auto now = tail(all, stride);
         anchor_loss_ += add_anchor(now, anchor, anchor_weight);
         const std::array<double, 4> rates{rate, rate, rate, rate};
         adam_step(now, gradient_, moments, {std::span(rates).first(stride), table_.row_factor, steps_});
     };
-    update(table_.rows.position, gradients.position, 3, table_.anchor.position, request.anchor_position, table_.position, position_rate);
-    update(table_.rows.log_scale, gradients.log_scale, 3, table_.anchor.log_scale, request.anchor_scale, table_.log_scale,
-           request.rate_scale);
-    update(table_.rows.rotation, gradients.rotation, 4, table_.anchor.rotation, request.anchor_rotation, table_.rotation,
-           request.rate_rotation);
-    update(table_.rows.opacity_logit, gradients.opacity_logit, 1, table_.anchor.opacity_logit, request.anchor_opacity, table_.opacity,
-           request.rate_opacity);
+    update(table_.rows.position, gradients.position, 3, table_.anchor.position, request.anchor_position,
+           table_.position, position_rate);
+    update(table_.rows.log_scale, gradients.log_scale, 3, table_.anchor.log_scale, request.anchor_scale,
+           table_.log_scale, request.rate_scale);
+    update(table_.rows.rotation, gradients.rotation, 4, table_.anchor.rotation, request.anchor_rotation,
+           table_.rotation, request.rate_rotation);
+    update(table_.rows.opacity_logit, gradients.opacity_logit, 1, table_.anchor.opacity_logit,
+           request.anchor_opacity, table_.opacity, request.rate_opacity);
 }
 
 void WorkingSet::step_colour(const raster::Gradients& gradients, const EditRequest& request) {
@@ -210,7 +221,8 @@ void WorkingSet::step_colour(const raster::Gradients& gradients, const EditReque
     const auto now = tail(table_.rows.sh, stride);
     anchor_loss_ += add_anchor(now, table_.anchor.sh, request.anchor_colour);
     if (request.colour_coupling > 0)
-        common_.step(gradient_, table_.birth_sh, now, CommonRate * request.rate_colour * request.colour_coupling);
+        common_.step(gradient_, table_.birth_sh, now,
+                     CommonRate * request.rate_colour * request.colour_coupling);
     const double own = 1 - request.colour_coupling;
     std::array<double, 48> rates{};
     for (std::size_t i = 0; i < stride; ++i) rates[i] = own * (i < 3 ? request.rate_colour : request.rate_sh);
@@ -227,12 +239,15 @@ void WorkingSet::guard(const EditRequest& request) {
     const auto colours = tail(table_.rows.sh, stride);
     const auto black = static_cast<float>(sh_from_colour(0.0));
     for (std::size_t i = 0; i < labelled(); ++i) {
-        for (std::size_t c = 0; c < 3; ++c)   // darker than black does not show, and would have to come all the way back
-            colours[i * stride + c] = std::max(colours[i * stride + c], std::min(black, table_.birth_sh[i * stride + c]));
+        for (std::size_t c = 0; c < 3;
+             ++c)  // darker than black does not show, and would have to come all the way back
+            colours[i * stride + c] =
+                std::max(colours[i * stride + c], std::min(black, table_.birth_sh[i * stride + c]));
         logits[i] = std::clamp(logits[i], -LargestLogit, LargestLogit);
         float top = low;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            scales[i * 3 + axis] = std::clamp(scales[i * 3 + axis], low, std::max(high, table_.birth_scale[i]));
+            scales[i * 3 + axis] =
+                std::clamp(scales[i * 3 + axis], low, std::max(high, table_.birth_scale[i]));
             top = std::max(top, scales[i * 3 + axis]);
         }
         if (table_.origin[i] >= 0 && table_.generation[i] == 0) continue;
@@ -270,7 +285,8 @@ void WorkingSet::plant(const GaussianData& seeds, const GaussianData& hidden, do
     const int generation = schedule_.advance();
     for (std::size_t row = 0; row < seeds.size(); ++row) append(seeds, row, generation, -1, OfSeed);
     for (std::size_t row = 0; row < hidden.size(); ++row) append(hidden, row, generation, -1, OfHidden);
-    for (auto* moments : {&table_.position, &table_.log_scale, &table_.rotation, &table_.opacity, &table_.sh}) *moments = {};
+    for (auto* moments : {&table_.position, &table_.log_scale, &table_.rotation, &table_.opacity, &table_.sh})
+        *moments = {};
     steps_ = 0;
     start_count_ = labelled();
     common_ = CommonColour(table_.birth_sh, rows().sh_stride());
@@ -278,24 +294,27 @@ void WorkingSet::plant(const GaussianData& seeds, const GaussianData& hidden, do
     remember_anchor();
 }
 
-void WorkingSet::relabel(const GaussianSet& base, std::span<const std::uint8_t> label, const EditRequest& request) {
+void WorkingSet::relabel(const GaussianSet& base, std::span<const std::uint8_t> label,
+                         const EditRequest& request) {
     constexpr std::int64_t Unlabelled = -2, Removed = -1;
     std::vector<std::int64_t> index_now(base_size_, Removed);
     for (const auto row : unlabelled_) index_now[row] = Unlabelled;
     for (std::size_t i = 0; i < labelled(); ++i)
-        if (table_.origin[i] >= 0) index_now[static_cast<std::size_t>(table_.origin[i])] = static_cast<std::int64_t>(i);
+        if (table_.origin[i] >= 0)
+            index_now[static_cast<std::size_t>(table_.origin[i])] = static_cast<std::int64_t>(i);
     WorkingSet fresh(base, request, extent_);
     const GaussianData data = base.to_data();
     const auto editable = fresh.take_unlabelled(data, label);
     const std::size_t sh = rows().sh_stride();
     for (std::size_t row = 0; row < base_size_; ++row) {
-        if (editable[row] == 0 || index_now[row] == Removed) continue;   // what the run has removed stays removed
+        if (editable[row] == 0 || index_now[row] == Removed)
+            continue;  // what the run has removed stays removed
         if (index_now[row] >= 0) {
             fresh.table_.append_carried(table_, static_cast<std::size_t>(index_now[row]));
             continue;
         }
         fresh.append(data, row, 0, static_cast<std::int64_t>(row), static_cast<std::int64_t>(row));
-        const std::size_t joined = fresh.labelled() - 1;   // takes on what the others have learned
+        const std::size_t joined = fresh.labelled() - 1;  // takes on what the others have learned
         float& logit = fresh.table_.rows.opacity_logit[fresh.first_row() + joined];
         logit = std::min(logit, most_opaque_);
         const auto birth = std::span<const float>(fresh.table_.birth_sh).subspan(joined * sh, sh);
@@ -323,10 +342,11 @@ void WorkingSet::resume(const GaussianSet& base, const EditSnapshot& start) {
     const SnapshotRows& reached = *start.rows;
     std::vector<std::int64_t> index_then(base_size_, Untouched);
     for (const auto row : reached.removed) index_then[row] = Removed;
-    for (std::size_t i = 0; i < reached.kept.size(); ++i) index_then[reached.kept[i]] = static_cast<std::int64_t>(i);
+    for (std::size_t i = 0; i < reached.kept.size(); ++i)
+        index_then[reached.kept[i]] = static_cast<std::int64_t>(i);
     std::vector<std::uint8_t> keep(labelled(), 0);
     for (std::size_t i = 0; i < keep.size(); ++i) {
-        if (table_.origin[i] < 0) continue;   // a seed's present state is among the born rows
+        if (table_.origin[i] < 0) continue;  // a seed's present state is among the born rows
         const std::int64_t then = index_then[static_cast<std::size_t>(table_.origin[i])];
         keep[i] = then == Removed ? 0 : 1;
         if (then < 0) continue;
@@ -344,7 +364,8 @@ void WorkingSet::resume(const GaussianSet& base, const EditSnapshot& start) {
         const std::size_t row = reached.kept.size() + i;
         append(reached.rows, row, reached.generation[row], -1, ancestor);
         if (ancestor >= 0)
-            std::copy_n(&base.sh()[static_cast<std::size_t>(ancestor) * sh], sh, &table_.birth_sh[table_.birth_sh.size() - sh]);
+            std::copy_n(&base.sh()[static_cast<std::size_t>(ancestor) * sh], sh,
+                        &table_.birth_sh[table_.birth_sh.size() - sh]);
     }
     for (const int generation : table_.generation)
         while (schedule_.newest() < generation) schedule_.advance();
@@ -356,7 +377,9 @@ void WorkingSet::end_steps() {
     const int degree = rows().sh_degree;
     table_.anchor = {};
     table_.anchor.sh_degree = degree;
-    for (AdamMoments* moments : {&table_.position, &table_.log_scale, &table_.rotation, &table_.opacity, &table_.sh}) *moments = {};
+    for (AdamMoments* moments :
+         {&table_.position, &table_.log_scale, &table_.rotation, &table_.opacity, &table_.sh})
+        *moments = {};
     for (std::vector<float>* array : {&table_.birth_sh, &gradient_}) *array = {};
 }
 
@@ -369,7 +392,8 @@ EditSnapshot WorkingSet::snapshot(const GaussianSet& base, int iteration) const 
             to.assign(all.begin() + static_cast<std::ptrdiff_t>(first_row() * stride), all.end());
         },
         rows(), now.rows);
-    const auto born = std::find_if(table_.origin.begin(), table_.origin.end(), [](auto row) { return row < 0; });
+    const auto born =
+        std::find_if(table_.origin.begin(), table_.origin.end(), [](auto row) { return row < 0; });
     now.kept.assign(table_.origin.begin(), born);
     now.ancestor.assign(table_.ancestor.begin() + (born - table_.origin.begin()), table_.ancestor.end());
     now.generation = table_.generation;

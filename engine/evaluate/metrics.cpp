@@ -30,7 +30,8 @@ std::vector<std::array<int, 2>> outline(const Mask& mask) {
     };
     for (int y = 0; y < mask.height; ++y)
         for (int x = 0; x < mask.width; ++x)
-            if (filled(x, y) && !(filled(x - 1, y) && filled(x + 1, y) && filled(x, y - 1) && filled(x, y + 1)))
+            if (filled(x, y) &&
+                !(filled(x - 1, y) && filled(x + 1, y) && filled(x, y - 1) && filled(x, y + 1)))
                 pixels.push_back({x, y});
     return pixels;
 }
@@ -66,8 +67,7 @@ void check_same_size(const Image& a, const Image& b, const Region& region) {
 }
 
 /// Mean over the region of value(pixel, channel); 0 for an empty region.
-template <class F>
-double region_mean(const Image& image, const Region& region, F&& value) {
+template <class F> double region_mean(const Image& image, const Region& region, F&& value) {
     double sum = 0;
     std::size_t count = 0;
     const auto channels = static_cast<std::size_t>(image.channels);
@@ -141,9 +141,11 @@ struct RowPair {
     }
     bool same(const GaussianSet& in_a, const GaussianSet& in_b) const {
         const auto sh_stride = static_cast<std::size_t>(sh_coefficient_count(in_a.sh_degree())) * 3;
-        return same_bits(in_a.position(), in_b.position(), 3) && same_bits(in_a.log_scale(), in_b.log_scale(), 3) &&
+        return same_bits(in_a.position(), in_b.position(), 3) &&
+               same_bits(in_a.log_scale(), in_b.log_scale(), 3) &&
                same_bits(in_a.rotation(), in_b.rotation(), 4) &&
-               same_bits(in_a.opacity_logit(), in_b.opacity_logit(), 1) && same_bits(in_a.sh(), in_b.sh(), sh_stride);
+               same_bits(in_a.opacity_logit(), in_b.opacity_logit(), 1) &&
+               same_bits(in_a.sh(), in_b.sh(), sh_stride);
     }
 };
 
@@ -179,13 +181,16 @@ Overlap row_overlap(std::span<const std::uint8_t> predicted, std::span<const std
     return overlap_from_counts(both, found, wanted);
 }
 
-Overlap mask_overlap(const Mask& predicted, const Mask& truth) { return row_overlap(predicted.data, truth.data); }
+Overlap mask_overlap(const Mask& predicted, const Mask& truth) {
+    return row_overlap(predicted.data, truth.data);
+}
 
 double boundary_f(const Mask& predicted, const Mask& truth, double tolerance_px) {
     GSE_CHECK_EQ(predicted.data.size(), truth.data.size());
     const auto found = outline(predicted), wanted = outline(truth);
     if (found.empty() != wanted.empty()) return 0;
-    const double precision = matched_share(found, outline_mask(wanted, truth.width, truth.height), tolerance_px);
+    const double precision =
+        matched_share(found, outline_mask(wanted, truth.width, truth.height), tolerance_px);
     const double recall = matched_share(wanted, outline_mask(found, truth.width, truth.height), tolerance_px);
     return precision + recall > 0 ? 2 * precision * recall / (precision + recall) : 0;
 }
@@ -259,7 +264,8 @@ double mean_colour_error(const Image& a, const Image& b, const Region& region) {
     return count > 0 ? std::sqrt(square) / static_cast<double>(count) : 0;
 }
 
-std::size_t changed_rows(const GaussianSet& before, const GaussianSet& after, std::span<const std::uint8_t> counted) {
+std::size_t changed_rows(const GaussianSet& before, const GaussianSet& after,
+                         std::span<const std::uint8_t> counted) {
     GSE_CHECK_EQ(before.sh_degree(), after.sh_degree());
     GSE_CHECK_EQ(counted.size(), before.size());
     std::size_t changed = 0;

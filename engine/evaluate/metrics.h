@@ -1,4 +1,5 @@
-// Figures of merit of a localization and an edit: overlap, picture error in and outside a mask, leak and drift.
+// Figures of merit of a localization and an edit: overlap, picture error in and outside a mask, leak and
+// drift.
 #pragma once
 
 #include <cstdint>
@@ -11,24 +12,26 @@ namespace gse::evaluate {
 
 /// Overlap of two sets.
 struct Overlap {
-    double iou = 1;         // intersection / union; 1 when both are empty
-    double precision = 1;   // 1 when nothing was predicted
-    double recall = 1;      // 1 when nothing was true
+    double iou = 1;        // intersection / union; 1 when both are empty
+    double precision = 1;  // 1 when nothing was predicted
+    double recall = 1;     // 1 when nothing was true
     double f1 = 1;
 };
 
-/// Rows: nonzero = in the set. `weights` (empty = all 1) makes a row count as much as it is seen, e.g. the sum of
-/// alpha T over all views (method 6.2), so that a huge faint splat does not weigh like a surface one.
+/// Rows: nonzero = in the set. `weights` (empty = all 1) makes a row count as much as it is seen, e.g. the
+/// sum of alpha T over all views (method 6.2), so that a huge faint splat does not weigh like a surface one.
 Overlap row_overlap(std::span<const std::uint8_t> predicted, std::span<const std::uint8_t> truth,
                     std::span<const double> weights = {});
 
 /// Pixels of two masks of the same size.
 Overlap mask_overlap(const Mask& predicted, const Mask& truth);
 
-/// F1 of the two outlines: an outline pixel counts as matched when the other outline is at most `tolerance_px` away.
+/// F1 of the two outlines: an outline pixel counts as matched when the other outline is at most
+/// `tolerance_px` away.
 double boundary_f(const Mask& predicted, const Mask& truth, double tolerance_px = 2);
 
-/// Tolerance of an outline, as a share of the picture's diagonal: what is used for video segmentation (DAVIS 2016).
+/// Tolerance of an outline, as a share of the picture's diagonal: what is used for video segmentation (DAVIS
+/// 2016).
 inline constexpr double BoundaryToleranceShare = 0.008;
 
 /// That share in pixels, at least 1: small pictures have no finer outline.
@@ -50,7 +53,8 @@ double psnr_db(const Image& a, const Image& b, const Region& region = {});
 /// Mean absolute difference over the region.
 double mean_absolute_error(const Image& a, const Image& b, const Region& region = {});
 
-/// Mean over the region of the SSIM map (11x11 Gaussian window, sigma 1.5, C1 = 1e-4, C2 = 9e-4, zero padding).
+/// Mean over the region of the SSIM map (11x11 Gaussian window, sigma 1.5, C1 = 1e-4, C2 = 9e-4, zero
+/// padding).
 double ssim(const Image& a, const Image& b, const Region& region = {});
 
 /// A colour difference that a display of 8 bits shows beyond rounding (method 6.3).
@@ -67,10 +71,11 @@ double mean_colour_error(const Image& a, const Image& b, const Region& region = 
 
 /// Number of rows with equal index whose bits differ in any attribute, among rows with counted[row] != 0.
 /// Both sets must have the same SH degree; rows beyond the shorter set count as different.
-std::size_t changed_rows(const GaussianSet& before, const GaussianSet& after, std::span<const std::uint8_t> counted);
+std::size_t changed_rows(const GaussianSet& before, const GaussianSet& after,
+                         std::span<const std::uint8_t> counted);
 
-/// Drift of an edit: rows of `before` with label[row] == 0 that are gone (before_to_after[row] < 0) or differ in any bit from
-/// the row of `after` they became.
+/// Drift of an edit: rows of `before` with label[row] == 0 that are gone (before_to_after[row] < 0) or differ
+/// in any bit from the row of `after` they became.
 std::size_t drifted_rows(const GaussianSet& before, const GaussianSet& after,
                          std::span<const std::int64_t> before_to_after, std::span<const std::uint8_t> label);
 

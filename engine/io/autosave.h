@@ -54,8 +54,8 @@ struct Recoverable {
     std::int64_t saved_at = 0;  // seconds since 1970
 };
 
-/// Autosaves that nobody writes any more and that are newer than their project, newest first. Those older than
-/// their project are removed. Never throws.
+/// Autosaves that nobody writes any more and that are newer than their project, newest first. Those older
+/// than their project are removed. Never throws.
 std::vector<Recoverable> find_recoverable(const std::filesystem::path& folder = autosave_folder());
 
 /// Removes it; call when it was recovered and saved or autosaved anew, or is not wanted.

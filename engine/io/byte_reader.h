@@ -29,8 +29,7 @@ inline std::uint64_t saturating_sum(std::uint64_t a, std::uint64_t b) {
 
 /// Little-endian scalar at `source` (the machine is little-endian, as everywhere Debian's amd64 and arm64
 /// run).
-template <class T>
-T load_scalar(const std::byte* source) {
+template <class T> T load_scalar(const std::byte* source) {
     static_assert(std::is_trivially_copyable_v<T>);
     T value;
     std::memcpy(&value, source, sizeof value);
@@ -53,10 +52,7 @@ public:
         return result;
     }
     void skip(std::uint64_t count) { take(count); }
-    template <class T>
-    T read() {
-        return load_scalar<T>(take(sizeof(T)).data());
-    }
+    template <class T> T read() { return load_scalar<T>(take(sizeof(T)).data()); }
     /// Bytes up to the next NUL, which is skipped.
     std::string_view read_terminated() {
         const auto* begin = reinterpret_cast<const char*>(bytes_.data()) + offset_;

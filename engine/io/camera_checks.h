@@ -17,8 +17,10 @@ inline constexpr int LargestImageSide = 100000;  // pixels
 inline void check_intrinsics(const Camera& camera, const std::string& which, const char* hint = "") {
     if (camera.width < 1 || camera.height < 1 || camera.width > LargestImageSide ||
         camera.height > LargestImageSide)
-        throw Error(ErrorCode::Malformed, fmt::format("the camera {} has an image size of {} x {}", which,
-                                                      camera.width, camera.height), hint);
+        throw Error(
+            ErrorCode::Malformed,
+            fmt::format("the camera {} has an image size of {} x {}", which, camera.width, camera.height),
+            hint);
     const bool valid = std::isfinite(camera.fx) && std::isfinite(camera.fy) && camera.fx > 0 &&
                        camera.fy > 0 && std::isfinite(camera.cx) && std::isfinite(camera.cy);
     if (!valid)

@@ -10,8 +10,8 @@
 namespace gse {
 
 nlohmann::ordered_json camera_to_json(const Camera& camera);
-/// Throws nlohmann::json::exception for entries that are missing or of another kind, Error (Malformed) for values that are no
-/// camera's. Without a principal point it is the middle.
+/// Throws nlohmann::json::exception for entries that are missing or of another kind, Error (Malformed) for
+/// values that are no camera's. Without a principal point it is the middle.
 Camera camera_from_json(const nlohmann::ordered_json& json);
 
 /// A list of {"time", "camera"}; as above.

@@ -54,7 +54,8 @@ std::vector<View> load_json(const fs::path& path, const fs::path& scene) {
     const std::size_t first = file.text().find_first_not_of(" \t\r\n\xef\xbb\xbf");
     if (first != std::string_view::npos && file.text()[first] == '[') return parse_cameras_json(file.text());
     std::error_code ignored;
-    return parse_transforms_json(file.text(), path.parent_path(), fs::is_directory(scene, ignored) ? scene : scene.parent_path());
+    return parse_transforms_json(file.text(), path.parent_path(),
+                                 fs::is_directory(scene, ignored) ? scene : scene.parent_path());
 }
 
 std::vector<View> load_any(const fs::path& path, const fs::path& scene) {
@@ -112,12 +113,13 @@ bool only_cameras(const fs::path& path) {
     const std::string name = path.filename().string(), ending = path.extension().string();
     if (!fs::is_directory(path, ignored)) {
         if (ending == ".json") return name.ends_with("cameras.json") || name.starts_with("transforms");
-        const bool colmap = (ending == ".bin" || ending == ".txt") && (path.stem() == "cameras" || path.stem() == "images");
+        const bool colmap =
+            (ending == ".bin" || ending == ".txt") && (path.stem() == "cameras" || path.stem() == "images");
         return colmap && is_colmap_folder(path.parent_path(), ending.c_str());
     }
     try {
         return find_in_folder(path) && !holds_scene(path);
-    } catch (const Error&) {   // it cannot be read: whoever opens it says so
+    } catch (const Error&) {  // it cannot be read: whoever opens it says so
         return false;
     }
 }
@@ -152,7 +154,8 @@ bool names_transforms(const fs::path& path) { return path.filename().string().st
 
 void save_cameras(const fs::path& path, const std::vector<View>& views) {
     if (path.extension() != ".json")
-        throw Error(ErrorCode::InvalidArgument, "the name does not end in a camera format that can be written",
+        throw Error(ErrorCode::InvalidArgument,
+                    "the name does not end in a camera format that can be written",
                     "use cameras.json (3DGS) or transforms.json (nerfstudio)", path);
     if (views.empty()) throw Error(ErrorCode::InvalidArgument, "there are no cameras to write", "", path);
     if (names_transforms(path)) save_transforms_json(path, views);

@@ -15,7 +15,8 @@ namespace gse {
 
 /// Reads the cameras of a COLMAP folder (the folder itself, its sparse/0 or sparse, or one of its files), a
 /// transforms*.json or a cameras.json. Throws Error. Cameras with lens distortion come back with `distorted`
-/// set. `scene` = where the splats are, when that is known: nerfstudio writes beside them how it turned and scaled the world.
+/// set. `scene` = where the splats are, when that is known: nerfstudio writes beside them how it turned and
+/// scaled the world.
 std::vector<View> load_cameras(const std::filesystem::path& path, const std::filesystem::path& scene = {});
 
 /// Looks beside a scene file (and up to three folders above, as in an Inria output folder) for cameras.
@@ -33,13 +34,13 @@ double visible_share(const std::vector<View>& views, std::span<const float> posi
 /// principal point; it is taken as the image centre when read back.
 void save_cameras_json(const std::filesystem::path& path, const std::vector<View>& views);
 
-/// Writes a nerfstudio transforms.json: camera-to-world matrices in OpenGL axes (right, up, back) and every frame's own
-/// focal lengths, principal point and size, in the world of the splats. Distorted cameras are written as pinholes, with a
-/// warning.
+/// Writes a nerfstudio transforms.json: camera-to-world matrices in OpenGL axes (right, up, back) and every
+/// frame's own focal lengths, principal point and size, in the world of the splats. Distorted cameras are
+/// written as pinholes, with a warning.
 void save_transforms_json(const std::filesystem::path& path, const std::vector<View>& views);
 
-/// Either of them, told by the name: "transforms..." is nerfstudio's, any other .json the one of 3DGS. Atomic. Throws Error
-/// (InvalidArgument for another ending or no views, Unwritable).
+/// Either of them, told by the name: "transforms..." is nerfstudio's, any other .json the one of 3DGS.
+/// Atomic. Throws Error (InvalidArgument for another ending or no views, Unwritable).
 void save_cameras(const std::filesystem::path& path, const std::vector<View>& views);
 /// Whether save_cameras() would write nerfstudio's form.
 bool names_transforms(const std::filesystem::path& path);

@@ -15,12 +15,13 @@ struct Claim {
     std::uint64_t file_bytes = 0;
 };
 
-/// No scene, picture or list compresses better than this; a little may come from nothing (a scene of equal splats).
+/// No scene, picture or list compresses better than this; a little may come from nothing (a scene of equal
+/// splats).
 constexpr std::uint64_t FreeClaim = std::uint64_t{256} << 20;
 constexpr std::uint64_t BytesPerFileByte = 1000;
 
-/// Throws Error (Malformed) when a file of this size cannot honestly hold so much, OutOfMemory when so much is not free.
-/// `what` begins the sentence: "the SPZ file's 400000000 splats".
+/// Throws Error (Malformed) when a file of this size cannot honestly hold so much, OutOfMemory when so much
+/// is not free. `what` begins the sentence: "the SPZ file's 400000000 splats".
 void check_claim(const Claim& claim, const std::string& what);
 
 }  // namespace gse::io

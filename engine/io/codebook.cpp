@@ -7,9 +7,9 @@
 namespace gse::io {
 namespace {
 
-constexpr std::size_t FewestBins = CodebookSize, MostBins = 4096;   // of the density,
-constexpr std::size_t ValuesPerBin = 64;                            // each with so many that its cube root is not noise
-constexpr int MostPasses = 100;   // most stop earlier; each takes microseconds
+constexpr std::size_t FewestBins = CodebookSize, MostBins = 4096;  // of the density,
+constexpr std::size_t ValuesPerBin = 64;  // each with so many that its cube root is not noise
+constexpr int MostPasses = 100;           // most stop earlier; each takes microseconds
 
 /// The values between two codes belong to the nearer one.
 float boundary(float low, float high) { return static_cast<float>(0.5 * (static_cast<double>(low) + high)); }
@@ -31,7 +31,8 @@ void spread(const std::vector<float>& sorted, Codebook& codebook) {
         const double wanted = (static_cast<double>(i) + 0.5) / static_cast<double>(CodebookSize) * total;
         while (bin + 1 < bin_count && before + bins[bin] <= wanted) before += bins[bin++];
         const double inside = bins[bin] > 0 ? std::clamp((wanted - before) / bins[bin], 0.0, 1.0) : 0.5;
-        codebook.values[i] = static_cast<float>(low + (static_cast<double>(bin) + inside) / static_cast<double>(bin_count) * extent);
+        codebook.values[i] = static_cast<float>(low + (static_cast<double>(bin) + inside) /
+                                                          static_cast<double>(bin_count) * extent);
     }
 }
 
@@ -41,13 +42,16 @@ bool improve(const std::vector<float>& sorted, const std::vector<double>& sums, 
     std::size_t begin = 0;
     for (std::size_t i = 0; i < CodebookSize; ++i) {
         std::size_t end = sorted.size();
-        if (i + 1 < CodebookSize)   // what is moved is behind the boundary: the next code is still the old one
+        if (i + 1 < CodebookSize)  // what is moved is behind the boundary: the next code is still the old one
             end = static_cast<std::size_t>(
                 std::upper_bound(sorted.begin() + static_cast<std::ptrdiff_t>(begin), sorted.end(),
-                                 boundary(codebook.values[i], codebook.values[i + 1])) - sorted.begin());
+                                 boundary(codebook.values[i], codebook.values[i + 1])) -
+                sorted.begin());
         if (end > begin) {
-            const auto mean = static_cast<float>((sums[end] - sums[begin]) / static_cast<double>(end - begin));
-            const float inside = std::clamp(mean, sorted[begin], sorted[end - 1]);   // sums of many values are rounded
+            const auto mean =
+                static_cast<float>((sums[end] - sums[begin]) / static_cast<double>(end - begin));
+            const float inside =
+                std::clamp(mean, sorted[begin], sorted[end - 1]);  // sums of many values are rounded
             moved |= inside != codebook.values[i];
             codebook.values[i] = inside;
         }
@@ -63,7 +67,8 @@ std::uint8_t Codebook::nearest(float value) const {
     if (above == values.begin()) return 0;
     if (above == values.end()) return static_cast<std::uint8_t>(CodebookSize - 1);
     const auto index = static_cast<std::size_t>(above - values.begin());
-    const double up = static_cast<double>(*above) - value, down = static_cast<double>(value) - values[index - 1];
+    const double up = static_cast<double>(*above) - value,
+                 down = static_cast<double>(value) - values[index - 1];
     return static_cast<std::uint8_t>(up < down ? index : index - 1);
 }
 

@@ -21,9 +21,10 @@ struct Codebook {
     std::uint8_t nearest(float value) const;
 };
 
-/// The codebook of `values` (finite, in any order): Lloyd's algorithm (Lloyd, "Least squares quantization in PCM", 1982)
-/// on all of them, begun where the density to the power 1/3 says (Panter and Dite, "Quantization distortion in
-/// pulse-count modulation", 1951). Up to 256 different values are kept exactly. O(N log N), deterministic.
+/// The codebook of `values` (finite, in any order): Lloyd's algorithm (Lloyd, "Least squares quantization in
+/// PCM", 1982) on all of them, begun where the density to the power 1/3 says (Panter and Dite, "Quantization
+/// distortion in pulse-count modulation", 1951). Up to 256 different values are kept exactly. O(N log N),
+/// deterministic.
 Codebook fit_codebook(std::vector<float> values);
 
 /// Vectors that lie in rows of a larger array: row r begins at values[r * stride + offset].
@@ -37,15 +38,15 @@ struct VectorRows {
 /// Vectors that stand for others.
 struct Palette {
     std::size_t dimension = 0;
-    std::vector<float> entries;          // [E, dimension]; neighbours are alike
-    std::vector<std::uint32_t> labels;   // [N] entry of each row
+    std::vector<float> entries;         // [E, dimension]; neighbours are alike
+    std::vector<std::uint32_t> labels;  // [N] entry of each row
 
     std::size_t size() const { return dimension == 0 ? 0 : entries.size() / dimension; }
 };
 
-/// At most `most` vectors for the rows, by k-means of a tree: rows are split into few clusters, each gets entries in
-/// proportion to its squared error, and so on until a cluster needs few. That many rows or fewer are kept exactly.
-/// Deterministic whatever the number of threads. Takes 12 bytes per row beside the result.
+/// At most `most` vectors for the rows, by k-means of a tree: rows are split into few clusters, each gets
+/// entries in proportion to its squared error, and so on until a cluster needs few. That many rows or fewer
+/// are kept exactly. Deterministic whatever the number of threads. Takes 12 bytes per row beside the result.
 Palette fit_palette(const VectorRows& rows, std::size_t most, ThreadPool& pool);
 
 }  // namespace gse::io

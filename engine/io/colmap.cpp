@@ -165,8 +165,7 @@ std::string_view next_word(std::string_view& rest) {
     return word;
 }
 
-template <class T>
-T number(std::string_view word, const char* where) {
+template <class T> T number(std::string_view word, const char* where) {
     T value{};
     const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (failure != std::errc{} || end != word.data() + word.size())

@@ -7,9 +7,9 @@
 
 #include "engine/base/error.h"
 #include "engine/base/memory.h"
-#include "engine/io/compressed_ply.h"
 #include "engine/io/byte_reader.h"
 #include "engine/io/claims.h"
+#include "engine/io/compressed_ply.h"
 #include "engine/io/encoding.h"
 #include "engine/io/formats.h"
 #include "engine/io/ply_body.h"
@@ -215,8 +215,8 @@ Scene parse_compressed_ply(Bytes bytes) {
     require_memory(splat_bytes(count, data.sh_degree), fmt::format("the scene of {} splats", count));
     data.resize(count);
     for (std::size_t row = 0; row < count; ++row)
-        unpack_row(rows.vertex.data() + row * elements.vertex->row_bytes(), columns, chunks[row / CompressedChunkRows],
-                   data, row);
+        unpack_row(rows.vertex.data() + row * elements.vertex->row_bytes(), columns,
+                   chunks[row / CompressedChunkRows], data, row);
     if (data.sh_degree > 0) unpack_sh(*elements.sh, rows.sh, data);
     Scene scene;
     scene.info.format = "compressed.ply";

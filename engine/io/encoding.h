@@ -55,8 +55,7 @@ constexpr std::size_t rest_of_degree(int degree) {
 GaussianSet storable_rows(const GaussianSet& set, const char* format);
 
 /// Appends the bytes of a trivially copyable value.
-template <class T>
-void append_value(std::string& out, const T& value) {
+template <class T> void append_value(std::string& out, const T& value) {
     out.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 

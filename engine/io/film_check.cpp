@@ -51,7 +51,8 @@ bool read_element(std::span<const std::byte> bytes, Element& element) {
 
 bool webm_is_whole(std::span<const std::byte> bytes) {
     Element header, segment;
-    if (!read_element(bytes, header) || !header.known || header.size > bytes.size() - header.header) return false;
+    if (!read_element(bytes, header) || !header.known || header.size > bytes.size() - header.header)
+        return false;
     bytes = bytes.subspan(header.header + static_cast<std::size_t>(header.size));
     return read_element(bytes, segment) && segment.id == WebmSegment && segment.known &&
            segment.size == bytes.size() - segment.header;

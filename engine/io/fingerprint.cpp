@@ -69,9 +69,7 @@ std::optional<Fingerprint> fingerprint(const std::filesystem::path& path) {
         if (std::filesystem::is_directory(path, failure)) return of_folder(path);
         if (!std::filesystem::is_regular_file(path, failure)) return std::nullopt;
         return of_file(path);
-    } catch (const std::filesystem::filesystem_error&) {
-        return std::nullopt;
-    }
+    } catch (const std::filesystem::filesystem_error&) { return std::nullopt; }
 }
 
 }  // namespace gse::io

@@ -16,13 +16,14 @@ namespace {
 
 // From here on a difference shows.
 constexpr double VisibleSizeFactor = 1.1;
-constexpr double VisibleMove = 0.5;      // of the splat's own largest standard deviation
-constexpr double VisibleTurn = 2;        // degrees
+constexpr double VisibleMove = 0.5;  // of the splat's own largest standard deviation
+constexpr double VisibleTurn = 2;    // degrees
 constexpr double VisibleOpacity = 0.02;
-constexpr double VisibleColour = 0.02;   // of the range from black to white
+constexpr double VisibleColour = 0.02;  // of the range from black to white
 
 // Below this it is float rounding.
-constexpr double RoundingOfSizes = 1e-5, RoundingOfPositions = 1e-6, RoundingOfTurns = 1e-3, RoundingOfColours = 1e-6;
+constexpr double RoundingOfSizes = 1e-5, RoundingOfPositions = 1e-6, RoundingOfTurns = 1e-3,
+                 RoundingOfColours = 1e-6;
 
 /// The worst error of one field and the splats where it is visible.
 struct Worst {
@@ -39,7 +40,7 @@ struct Worst {
 struct Losses {
     Worst larger, smaller;  // log-scale
     Worst move, turn, opacity, colour, view_colour;
-    double extent = 0;      // largest coordinate
+    double extent = 0;  // largest coordinate
 };
 
 /// Degrees between two orientations; exact for small ones.
@@ -53,7 +54,8 @@ double turn_between(const float* a, const float* b) {
     return 4 * std::asin(std::min(1.0, 0.5 * std::sqrt(std::min(same, opposite)))) * 180 / std::numbers::pi;
 }
 
-void add_geometry(Losses& losses, const GaussianSpans& a, std::size_t i, const GaussianSpans& b, std::size_t j) {
+void add_geometry(Losses& losses, const GaussianSpans& a, std::size_t i, const GaussianSpans& b,
+                  std::size_t j) {
     double largest = FlattestLogScale, up = 0, down = 0, distance = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         // Flatter than the flattest is flat.
@@ -77,7 +79,8 @@ void add_look(Losses& losses, const GaussianSpans& a, std::size_t i, const Gauss
     const double faded = std::abs(opacity_from_logit(static_cast<double>(a.opacity_logit[i])) -
                                   opacity_from_logit(static_cast<double>(b.opacity_logit[j])));
     losses.opacity.add(faded, faded > VisibleOpacity);
-    const std::size_t a_stride = (rest_of_degree(a.sh_degree) + 1) * 3, b_stride = (rest_of_degree(b.sh_degree) + 1) * 3;
+    const std::size_t a_stride = (rest_of_degree(a.sh_degree) + 1) * 3,
+                      b_stride = (rest_of_degree(b.sh_degree) + 1) * 3;
     double colour = 0, view_colour = 0;
     for (std::size_t k = 0; k < a_stride; ++k) {
         const double back = k < b_stride ? static_cast<double>(b.sh[j * b_stride + k]) : 0.0;
@@ -89,7 +92,9 @@ void add_look(Losses& losses, const GaussianSpans& a, std::size_t i, const Gauss
 }
 
 std::string with_count(std::string text, const Worst& worst) {
-    return worst.visible == 0 ? text : text + fmt::format(" (visibly for {} splat{})", worst.visible, worst.visible == 1 ? "" : "s");
+    return worst.visible == 0 ? text
+                              : text + fmt::format(" (visibly for {} splat{})", worst.visible,
+                                                   worst.visible == 1 ? "" : "s");
 }
 
 std::string size_text(double change, const char* direction) {
@@ -100,7 +105,8 @@ std::string size_text(double change, const char* direction) {
 
 }  // namespace
 
-std::string describe_loss(const GaussianSet& written, const GaussianSet& back, std::span<const std::uint32_t> order) {
+std::string describe_loss(const GaussianSet& written, const GaussianSet& back,
+                          std::span<const std::uint32_t> order) {
     const GaussianSpans a = written.spans(), b = back.spans();
     GSE_CHECK_EQ(a.size, b.size);
     Losses losses;
@@ -115,7 +121,8 @@ std::string describe_loss(const GaussianSet& written, const GaussianSet& back, s
     };
     tell(losses.smaller, RoundingOfSizes, size_text(losses.smaller.error, "small"));
     tell(losses.larger, RoundingOfSizes, size_text(losses.larger.error, "large"));
-    tell(losses.move, RoundingOfPositions * losses.extent, fmt::format("positions up to {:.2g} off", losses.move.error));
+    tell(losses.move, RoundingOfPositions * losses.extent,
+         fmt::format("positions up to {:.2g} off", losses.move.error));
     tell(losses.turn, RoundingOfTurns, fmt::format("rotations up to {:.2g} degrees off", losses.turn.error));
     tell(losses.opacity, RoundingOfColours, fmt::format("opacities up to {:.2g} off", losses.opacity.error));
     tell(losses.colour, RoundingOfColours, fmt::format("colours up to {:.2g} off", losses.colour.error));

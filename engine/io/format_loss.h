@@ -9,9 +9,10 @@
 
 namespace gse::io {
 
-/// Worst differences of each lossy field in words, separated by commas, with the number of splats where they show;
-/// empty when nothing but float rounding differs. Row `order[i]` (i when there is no order) of `written` became row `i`
-/// of `back`.
-std::string describe_loss(const GaussianSet& written, const GaussianSet& back, std::span<const std::uint32_t> order);
+/// Worst differences of each lossy field in words, separated by commas, with the number of splats where they
+/// show; empty when nothing but float rounding differs. Row `order[i]` (i when there is no order) of
+/// `written` became row `i` of `back`.
+std::string describe_loss(const GaussianSet& written, const GaussianSet& back,
+                          std::span<const std::uint32_t> order);
 
 }  // namespace gse::io

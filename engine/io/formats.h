@@ -30,7 +30,8 @@ std::span<const SceneReader> scene_readers();
 
 bool detect_ply(Bytes bytes, std::string_view name);
 Scene parse_gaussian_ply(Bytes bytes);
-/// The same without ever holding the whole file: nothing where it is no such file, or one that only parse_gaussian_ply can read or refuse.
+/// The same without ever holding the whole file: nothing where it is no such file, or one that only
+/// parse_gaussian_ply can read or refuse.
 std::optional<Scene> load_gaussian_ply(const InputFile& file);
 
 bool detect_compressed_ply(Bytes bytes, std::string_view name);
@@ -56,13 +57,15 @@ Scene parse_ksplat(Bytes bytes);
 /// Writers to memory; the caller writes the bytes atomically. Quantised formats drop unusable rows with a
 /// warning.
 std::string write_gaussian_ply(const Scene& scene, const SaveOptions& options);
-/// The same a piece at a time, for what nobody wants to hold as a whole; throws before the first piece or not at all.
-void write_gaussian_ply(const Scene& scene, const SaveOptions& options, const std::function<void(std::string_view piece)>& take);
+/// The same a piece at a time, for what nobody wants to hold as a whole; throws before the first piece or not
+/// at all.
+void write_gaussian_ply(const Scene& scene, const SaveOptions& options,
+                        const std::function<void(std::string_view piece)>& take);
 /// `order`, when wanted: row order[i] of the usable rows became row i.
 std::string write_compressed_ply(const Scene& scene, std::vector<std::uint32_t>* order = nullptr);
 std::string write_splat(const Scene& scene);
-/// SOG version 2 as an archive; `order` as above. Throws Error (InvalidArgument) without a splat or with more than the
-/// textures have room for.
+/// SOG version 2 as an archive; `order` as above. Throws Error (InvalidArgument) without a splat or with more
+/// than the textures have room for.
 std::string write_sog(const Scene& scene, std::vector<std::uint32_t>* order = nullptr);
 /// `version` 2, 3 or 4. Throws Error (InvalidArgument) for another.
 std::string write_spz(const Scene& scene, int version = 3);

@@ -14,12 +14,13 @@ std::filesystem::path first_free(const std::filesystem::path& wanted) {
         return !std::filesystem::is_directory(path, ignored) || !std::filesystem::is_empty(path, ignored);
     };
     const std::string file = wanted.filename().string();
-    const std::string ending = file.ends_with(".compressed.ply") ? ".compressed.ply" : wanted.extension().string();
+    const std::string ending =
+        file.ends_with(".compressed.ply") ? ".compressed.ply" : wanted.extension().string();
     std::string stem = file.substr(0, file.size() - ending.size());
     int number = 2;
     const auto dash = stem.find_last_not_of("0123456789");
-    const bool numbered = dash != std::string::npos && dash > 0 && stem[dash] == '-' && dash + 1 < stem.size() &&
-                          stem.size() - dash < 8;
+    const bool numbered = dash != std::string::npos && dash > 0 && stem[dash] == '-' &&
+                          dash + 1 < stem.size() && stem.size() - dash < 8;
     if (numbered) {
         number = std::stoi(stem.substr(dash + 1)) + 1;
         stem.resize(dash);

@@ -18,7 +18,7 @@
 namespace gse {
 namespace {
 
-constexpr std::uint64_t BytesPerPixel = 4 + 4 * sizeof(float);   // as decoded and as an Image
+constexpr std::uint64_t BytesPerPixel = 4 + 4 * sizeof(float);  // as decoded and as an Image
 constexpr std::size_t HeaderBytes = std::size_t{1} << 20;  // a JPEG's size may come after its preview picture
 
 }  // namespace
@@ -26,9 +26,11 @@ constexpr std::size_t HeaderBytes = std::size_t{1} << 20;  // a JPEG's size may 
 Image decode_image(std::span<const std::byte> bytes) {
     if (bytes.empty()) throw Error(ErrorCode::Malformed, "the image file is empty");
     if (const auto size = io::parse_image_size(bytes)) {
-        const std::uint64_t pixels = static_cast<std::uint64_t>(size->width) * static_cast<std::uint64_t>(size->height);
-        io::check_claim({io::saturating_product(pixels, BytesPerPixel), io::saturating_product(bytes.size(), 4)},
-                        fmt::format("the image of {} x {} pixels", size->width, size->height));
+        const std::uint64_t pixels =
+            static_cast<std::uint64_t>(size->width) * static_cast<std::uint64_t>(size->height);
+        io::check_claim(
+            {io::saturating_product(pixels, BytesPerPixel), io::saturating_product(bytes.size(), 4)},
+            fmt::format("the image of {} x {} pixels", size->width, size->height));
     }
     return io::media().decode(bytes);
 }
@@ -37,9 +39,7 @@ Image read_image(const std::filesystem::path& path) {
     const FileBytes file(path);
     try {
         return decode_image(file.bytes());
-    } catch (const Error& error) {
-        throw Error(error.code(), error.message(), error.hint(), path);
-    }
+    } catch (const Error& error) { throw Error(error.code(), error.message(), error.hint(), path); }
 }
 
 void write_png(const std::filesystem::path& path, const Image& image, const PngText& text) {

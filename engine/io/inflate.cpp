@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t GrowthBytes = std::size_t{1} << 20;  // at least; then by half of what is there
 constexpr int GzipWindow = 15 + 16;                        // largest window, gzip wrapping
-constexpr int ZstdLevel = 12;                              // seconds for a million splats; higher ones gain little
-constexpr uInt InputPiece = 1u << 30;                      // zlib counts input in 32 bits
+constexpr int ZstdLevel = 12;          // seconds for a million splats; higher ones gain little
+constexpr uInt InputPiece = 1u << 30;  // zlib counts input in 32 bits
 
 std::size_t next_size(std::size_t filled, std::uint64_t limit) {
     const std::size_t grown = filled + std::max(GrowthBytes, filled / 2);

@@ -188,7 +188,8 @@ Scene parse_ksplat(Bytes bytes) {
     }
     std::uint64_t count = 0;
     for (const Section& section : sections) count += section.count;
-    check_claim({splat_bytes(count, data.sh_degree), bytes.size()}, fmt::format("the .ksplat file's {} splats", count));
+    check_claim({splat_bytes(count, data.sh_degree), bytes.size()},
+                fmt::format("the .ksplat file's {} splats", count));
     for (const Section& section : sections) read_section(header, section, reader, data);
     if (data.size() == 0) throw_malformed("holds no splats");
     Scene scene;

@@ -24,7 +24,9 @@ inline std::size_t hold_weights(std::span<float> weights) {
 
 /// The warning for that; `where` begins it.
 inline std::string held_weights_text(std::size_t held, std::string_view where) {
-    return fmt::format("{} has weights outside of 0 to 1 for {} splats: they are taken as the nearer of the two", where, held);
+    return fmt::format(
+        "{} has weights outside of 0 to 1 for {} splats: they are taken as the nearer of the two", where,
+        held);
 }
 
 }  // namespace gse::io

@@ -1,5 +1,6 @@
-// What reads image files and encodes films, in plain types: a library of its own, which the first such file loads. OpenCV's readers and
-// FFmpeg bring two hundred libraries along, 0.3 s for a program that may never see a picture.
+// What reads image files and encodes films, in plain types: a library of its own, which the first such file
+// loads. OpenCV's readers and FFmpeg bring two hundred libraries along, 0.3 s for a program that may never
+// see a picture.
 #pragma once
 
 #include <cstddef>
@@ -31,10 +32,12 @@ struct FilmSize {
 class Media {
 public:
     virtual ~Media() = default;
-    /// Values in [0,1], 1, 3 (red, green, blue) or 4 channels. Throws Error (Malformed, Unsupported), OutOfMemory.
+    /// Values in [0,1], 1, 3 (red, green, blue) or 4 channels. Throws Error (Malformed, Unsupported),
+    /// OutOfMemory.
     virtual Image decode(std::span<const std::byte> file) = 0;
     /// Null where no codec opens the file. Its extension says which are tried.
-    virtual std::unique_ptr<FilmEncoder> open_film(const std::filesystem::path& file, FilmSize size, double frames_per_second) = 0;
+    virtual std::unique_ptr<FilmEncoder> open_film(const std::filesystem::path& file, FilmSize size,
+                                                   double frames_per_second) = 0;
 };
 
 /// Loads libgse_media.so on the first call. Throws Error where it is missing.

@@ -13,19 +13,24 @@
 namespace gse::io {
 namespace {
 
-constexpr std::size_t LargestLeaf = 256;         // entries that are fitted at once; the time of a row is in proportion to it
-constexpr std::size_t RowsPerEntry = 64;         // more of them do not move a mean visibly: the others are only assigned
-constexpr int PalettePasses = 3;                // after good seeds: the error is within 1 % of that after 20, on real scenes
-constexpr std::uint64_t PaletteSeed = 0x5eed;    // the same scene gives the same file
-constexpr double LargestWeight = 1e30;           // of a cluster with infinite error
-constexpr std::size_t AssignChunk = 1024;        // rows handed to a thread at a time
+constexpr std::size_t LargestLeaf =
+    256;  // entries that are fitted at once; the time of a row is in proportion to it
+constexpr std::size_t RowsPerEntry =
+    64;  // more of them do not move a mean visibly: the others are only assigned
+constexpr int PalettePasses =
+    3;  // after good seeds: the error is within 1 % of that after 20, on real scenes
+constexpr std::uint64_t PaletteSeed = 0x5eed;  // the same scene gives the same file
+constexpr double LargestWeight = 1e30;         // of a cluster with infinite error
+constexpr std::size_t AssignChunk = 1024;      // rows handed to a thread at a time
 
 using Indices = std::vector<std::uint32_t>;
 
-/// Entries while they are fitted, dimension-major, so that the distances to all of them are summed side by side.
+/// Entries while they are fitted, dimension-major, so that the distances to all of them are summed side by
+/// side.
 class Entries {
 public:
-    Entries(std::size_t dimension, std::size_t count) : dimension_(dimension), count_(count), values_(dimension * count) {}
+    Entries(std::size_t dimension, std::size_t count)
+        : dimension_(dimension), count_(count), values_(dimension * count) {}
 
     std::size_t size() const { return count_; }
     float at(std::size_t entry, std::size_t axis) const { return values_[axis * count_ + entry]; }
@@ -60,14 +65,15 @@ float squared_distance(const float* a, const float* b, std::size_t dimension) {
     std::array<float, 4> sums{};
     std::size_t axis = 0;
     for (; axis + 4 <= dimension; axis += 4)
-        for (std::size_t i = 0; i < 4; ++i) sums[i] += (a[axis + i] - b[axis + i]) * (a[axis + i] - b[axis + i]);
+        for (std::size_t i = 0; i < 4; ++i)
+            sums[i] += (a[axis + i] - b[axis + i]) * (a[axis + i] - b[axis + i]);
     for (; axis < dimension; ++axis) sums[0] += (a[axis] - b[axis]) * (a[axis] - b[axis]);
     return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
 struct Assigned {
-    std::vector<std::uint32_t> label;   // entry of indices[i]
-    std::vector<float> error;           // its squared distance
+    std::vector<std::uint32_t> label;  // entry of indices[i]
+    std::vector<float> error;          // its squared distance
 };
 
 /// `pool` may be null: then on the calling thread.
@@ -84,7 +90,8 @@ Assigned assign(const VectorRows& rows, const Indices& indices, const Entries& e
 }
 
 /// Entries without rows move, one after the other, to the row that is farthest from all.
-void reseed(const VectorRows& rows, const Indices& indices, std::span<const std::size_t> counts, Assigned& assigned, Entries& entries) {
+void reseed(const VectorRows& rows, const Indices& indices, std::span<const std::size_t> counts,
+            Assigned& assigned, Entries& entries) {
     for (std::size_t entry = 0; entry < entries.size(); ++entry) {
         if (counts[entry] > 0) continue;
         const auto farthest = std::max_element(assigned.error.begin(), assigned.error.end());
@@ -92,7 +99,8 @@ void reseed(const VectorRows& rows, const Indices& indices, std::span<const std:
         const float* chosen = rows.row(indices[static_cast<std::size_t>(farthest - assigned.error.begin())]);
         entries.set(entry, chosen);
         for (std::size_t i = 0; i < indices.size(); ++i)
-            assigned.error[i] = std::min(assigned.error[i], squared_distance(rows.row(indices[i]), chosen, rows.dimension));
+            assigned.error[i] =
+                std::min(assigned.error[i], squared_distance(rows.row(indices[i]), chosen, rows.dimension));
     }
 }
 
@@ -109,12 +117,15 @@ void move_to_means(const VectorRows& rows, const Indices& indices, ThreadPool* p
     }
     for (std::size_t entry = 0; entry < entries.size(); ++entry)
         for (std::size_t axis = 0; counts[entry] > 0 && axis < rows.dimension; ++axis)
-            entries.set(entry, axis, static_cast<float>(sums[entry * rows.dimension + axis] / static_cast<double>(counts[entry])));
+            entries.set(
+                entry, axis,
+                static_cast<float>(sums[entry * rows.dimension + axis] / static_cast<double>(counts[entry])));
     reseed(rows, indices, counts, assigned, entries);
 }
 
-/// Rows to begin at: each is drawn with a probability in proportion to its squared distance from those before (Arthur and
-/// Vassilvitskii, "k-means++: the advantages of careful seeding", 2007), so that none of what lies apart is missed.
+/// Rows to begin at: each is drawn with a probability in proportion to its squared distance from those before
+/// (Arthur and Vassilvitskii, "k-means++: the advantages of careful seeding", 2007), so that none of what
+/// lies apart is missed.
 void seed_entries(const VectorRows& rows, const Indices& sample, Random& random, Entries& entries) {
     std::vector<float> distance(sample.size(), std::numeric_limits<float>::max());
     std::size_t chosen = random.below(sample.size());
@@ -137,11 +148,11 @@ Entries fit_entries(const VectorRows& rows, const Indices& indices, std::size_t 
     Random random = Random::stream(PaletteSeed, indices.front());
     const std::size_t used = std::min(indices.size(), count * RowsPerEntry);
     Indices sample(indices);
-    for (std::size_t i = 0; i < used; ++i)   // the first `used` of a shuffle
+    for (std::size_t i = 0; i < used; ++i)  // the first `used` of a shuffle
         std::swap(sample[i], sample[i + random.below(sample.size() - i)]);
     sample.resize(used);
     Entries entries(rows.dimension, count);
-    std::sort(sample.begin(), sample.end());   // memory in its order
+    std::sort(sample.begin(), sample.end());  // memory in its order
     seed_entries(rows, sample, random, entries);
     for (int pass = 0; pass < PalettePasses; ++pass) move_to_means(rows, sample, pool, entries);
     return entries;
@@ -180,7 +191,8 @@ void share_entries(std::size_t entries, std::span<const double> errors, std::vec
 
 std::vector<Cluster> split(const VectorRows& rows, const Cluster& cluster, ThreadPool& pool) {
     const auto root = static_cast<std::size_t>(std::sqrt(static_cast<double>(cluster.entries)));
-    const Entries coarse = fit_entries(rows, cluster.indices, std::clamp<std::size_t>(root, 2, LargestLeaf), &pool);
+    const Entries coarse =
+        fit_entries(rows, cluster.indices, std::clamp<std::size_t>(root, 2, LargestLeaf), &pool);
     const Assigned assigned = assign(rows, cluster.indices, coarse, &pool);
     std::vector<Cluster> all(coarse.size()), children;
     std::vector<double> errors(coarse.size(), 0.0), errors_of_children;
@@ -197,7 +209,8 @@ std::vector<Cluster> split(const VectorRows& rows, const Cluster& cluster, Threa
     return children;
 }
 
-/// The leaves of the tree, neighbours side by side. A cluster that cannot be divided (equal rows) is a leaf of one entry.
+/// The leaves of the tree, neighbours side by side. A cluster that cannot be divided (equal rows) is a leaf
+/// of one entry.
 std::vector<Cluster> grow(const VectorRows& rows, std::size_t most, ThreadPool& pool) {
     Cluster all{Indices(rows.count), most};
     std::iota(all.indices.begin(), all.indices.end(), 0u);
@@ -212,7 +225,8 @@ std::vector<Cluster> grow(const VectorRows& rows, std::size_t most, ThreadPool& 
         }
         std::vector<Cluster> children = split(rows, cluster, pool);
         if (children.size() == 1) children.front().entries = 1;
-        for (auto child = children.rbegin(); child != children.rend(); ++child) open.push_back(std::move(*child));
+        for (auto child = children.rbegin(); child != children.rend(); ++child)
+            open.push_back(std::move(*child));
     }
     return leaves;
 }

@@ -21,8 +21,7 @@ std::uint32_t swapped(std::uint32_t v) { return __builtin_bswap32(v); }
 std::uint64_t swapped(std::uint64_t v) { return __builtin_bswap64(v); }
 
 /// Unsigned integer of the scalar's size, in the machine's byte order.
-template <class U>
-U load_ordered(const std::byte* source, bool big_endian) {
+template <class U> U load_ordered(const std::byte* source, bool big_endian) {
     const U value = load_scalar<U>(source);
     return big_endian ? swapped(value) : value;
 }
@@ -47,22 +46,17 @@ float parse_float(std::string_view token) {
 
 float load_ply_scalar(const std::byte* source, PlyType type, bool big_endian) {
     switch (type) {
-        case PlyType::Int8:
-            return static_cast<float>(load_scalar<std::int8_t>(source));
-        case PlyType::Uint8:
-            return static_cast<float>(load_scalar<std::uint8_t>(source));
+        case PlyType::Int8: return static_cast<float>(load_scalar<std::int8_t>(source));
+        case PlyType::Uint8: return static_cast<float>(load_scalar<std::uint8_t>(source));
         case PlyType::Int16:
             return static_cast<float>(
                 static_cast<std::int16_t>(load_ordered<std::uint16_t>(source, big_endian)));
-        case PlyType::Uint16:
-            return static_cast<float>(load_ordered<std::uint16_t>(source, big_endian));
+        case PlyType::Uint16: return static_cast<float>(load_ordered<std::uint16_t>(source, big_endian));
         case PlyType::Int32:
             return static_cast<float>(
                 static_cast<std::int32_t>(load_ordered<std::uint32_t>(source, big_endian)));
-        case PlyType::Uint32:
-            return static_cast<float>(load_ordered<std::uint32_t>(source, big_endian));
-        case PlyType::Float32:
-            return std::bit_cast<float>(load_ordered<std::uint32_t>(source, big_endian));
+        case PlyType::Uint32: return static_cast<float>(load_ordered<std::uint32_t>(source, big_endian));
+        case PlyType::Float32: return std::bit_cast<float>(load_ordered<std::uint32_t>(source, big_endian));
         case PlyType::Float64:
             return static_cast<float>(std::bit_cast<double>(load_ordered<std::uint64_t>(source, big_endian)));
     }

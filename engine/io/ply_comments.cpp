@@ -71,7 +71,8 @@ std::string read_comments(const PlyHeader& header, SceneInfo& info) {
 std::string comment_lines(const SceneInfo& info) {
     std::string text;
     if (info.antialiased) text += "comment SplatRenderMode: mip\n";
-    if (info.up_known) text += fmt::format("comment Vertical axis: {} {} {}\n", info.up.x, info.up.y, info.up.z);
+    if (info.up_known)
+        text += fmt::format("comment Vertical axis: {} {} {}\n", info.up.x, info.up.y, info.up.z);
     return text;
 }
 

@@ -8,8 +8,8 @@
 
 namespace gse::io {
 
-/// Takes the up axis and the way of drawing from the comments; where they contradict each other, the last one counts. Returns the name
-/// of the label.
+/// Takes the up axis and the way of drawing from the comments; where they contradict each other, the last one
+/// counts. Returns the name of the label.
 std::string read_comments(const PlyHeader& header, SceneInfo& info);
 
 /// The lines that read_comments() understands.

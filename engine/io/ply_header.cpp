@@ -84,14 +84,10 @@ private:
 
     void parse_format() {
         const std::string_view name = next_word();
-        if (name == "ascii")
-            header_.encoding = PlyEncoding::Ascii;
-        else if (name == "binary_little_endian")
-            header_.encoding = PlyEncoding::LittleEndian;
-        else if (name == "binary_big_endian")
-            header_.encoding = PlyEncoding::BigEndian;
-        else
-            fail("names an unknown format");
+        if (name == "ascii") header_.encoding = PlyEncoding::Ascii;
+        else if (name == "binary_little_endian") header_.encoding = PlyEncoding::LittleEndian;
+        else if (name == "binary_big_endian") header_.encoding = PlyEncoding::BigEndian;
+        else fail("names an unknown format");
         format_seen_ = true;
     }
 

@@ -1,4 +1,5 @@
-// 3DGS PLY: columns found by name, any type, order and encoding; raw values kept bit for bit. Binary files are read a piece at a time.
+// 3DGS PLY: columns found by name, any type, order and encoding; raw values kept bit for bit. Binary files
+// are read a piece at a time.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -22,10 +23,10 @@ namespace gse::io {
 namespace {
 
 constexpr int Absent = -1;
-constexpr std::size_t BlockRows = 128;       // rows gathered at a time: 128 x 248 bytes stay in the cache
+constexpr std::size_t BlockRows = 128;  // rows gathered at a time: 128 x 248 bytes stay in the cache
 constexpr std::size_t ReadBytes = std::size_t{1} << 20;       // asked of a file at a time
 constexpr std::size_t LongestHeader = std::size_t{64} << 10;  // of a file that is not read as a whole
-constexpr float SurfelLogScale = -13.8155f;  // third axis of a 2DGS surfel: 1e-6 units
+constexpr float SurfelLogScale = -13.8155f;                   // third axis of a 2DGS surfel: 1e-6 units
 constexpr std::size_t RestOfDegree4 = 24;
 
 /// The attributes of a row; each is a list of property indices of the vertex element (Absent = fill with
@@ -138,7 +139,8 @@ Layout find_layout(const PlyHeader& header, const PlyElement& vertex, std::vecto
 using RowSource = std::function<std::span<const std::byte>(std::size_t begin, std::size_t end)>;
 
 /// Gathers binary rows without lists, block by block, so that each destination is written once.
-void read_fixed_rows(const RowSource& source, const PlyHeader& header, const PlyElement& vertex, std::span<const Attribute> attributes) {
+void read_fixed_rows(const RowSource& source, const PlyHeader& header, const PlyElement& vertex,
+                     std::span<const Attribute> attributes) {
     struct Column {
         std::size_t offset = 0;
         PlyType type = PlyType::Float32;
@@ -211,9 +213,12 @@ void colours_to_sh(GaussianData& data, bool integers) {
 void add_label(Scene& scene, std::vector<float> bits, std::vector<float> weights, const std::string& name) {
     if (bits.empty() && weights.empty()) return;
     if (const std::size_t odd = hold_weights(bits))
-        scene.info.warnings.push_back(fmt::format(
-            "the column \"label\" has values other than 0 and 1 for {} splats: those above 0.5 count as labelled, whatever they are", odd));
-    if (const std::size_t odd = hold_weights(weights)) scene.info.warnings.push_back(held_weights_text(odd, "the column \"label_weight\""));
+        scene.info.warnings.push_back(
+            fmt::format("the column \"label\" has values other than 0 and 1 for {} splats: those above 0.5 "
+                        "count as labelled, whatever they are",
+                        odd));
+    if (const std::size_t odd = hold_weights(weights))
+        scene.info.warnings.push_back(held_weights_text(odd, "the column \"label_weight\""));
     if (bits.empty()) bits = weights;
     Label label = make_label(name, std::move(bits), 0.5f);
     if (!weights.empty()) label.weight = std::make_shared<const std::vector<float>>(std::move(weights));
@@ -228,7 +233,7 @@ struct Described {
     Scene scene;
     std::string label_name;
 
-    Described(const Described&) = delete;   // `vertex` points into the header
+    Described(const Described&) = delete;  // `vertex` points into the header
     explicit Described(Bytes start) : header(parse_ply_header(start)), vertex(header.find("vertex")) {
         if (vertex == nullptr) throw Error(ErrorCode::Malformed, "the PLY header has no vertex element");
         scene.info.format = "ply";
@@ -239,11 +244,13 @@ struct Described {
     bool has_fixed_rows() const { return header.encoding != PlyEncoding::Ascii && !vertex->has_list(); }
 };
 
-/// Fills the scene with the rows that `read` puts into the attributes; `rest` tells how many bytes are left behind them, if any are.
+/// Fills the scene with the rows that `read` puts into the attributes; `rest` tells how many bytes are left
+/// behind them, if any are.
 Scene fill_scene(Described& described, const std::function<void(std::span<const Attribute>)>& read,
                  const std::function<std::size_t()>& rest) {
     const auto& [header, vertex, layout, scene, label_name] = described;
-    require_memory(splat_bytes(vertex->count, layout.sh_degree), fmt::format("the scene of {} splats", vertex->count));
+    require_memory(splat_bytes(vertex->count, layout.sh_degree),
+                   fmt::format("the scene of {} splats", vertex->count));
     GaussianData data;
     data.sh_degree = layout.sh_degree;
     std::vector<float> label, label_weight;
@@ -265,7 +272,8 @@ Scene fill_scene(Described& described, const std::function<void(std::span<const 
     }
     Scene filled = std::move(described.scene);
     if (const std::size_t bytes = &header.elements.back() == vertex ? rest() : 0; bytes > 0)
-        filled.info.warnings.push_back(fmt::format("{} bytes after the last of the {} splats are ignored", bytes, vertex->count));
+        filled.info.warnings.push_back(
+            fmt::format("{} bytes after the last of the {} splats are ignored", bytes, vertex->count));
     filled.gaussians = GaussianSet(std::move(data));
     add_label(filled, std::move(label), std::move(label_weight), label_name);
     return filled;
@@ -284,38 +292,47 @@ Scene parse_gaussian_ply(Bytes bytes) {
         if (!described.has_fixed_rows()) return read_walked_rows(body, vertex, attributes);
         const Bytes rows = body.take_rows(vertex);
         const std::size_t stride = vertex.row_bytes();
-        read_fixed_rows([&](std::size_t begin, std::size_t end) { return rows.subspan(begin * stride, (end - begin) * stride); },
+        read_fixed_rows([&](std::size_t begin,
+                            std::size_t end) { return rows.subspan(begin * stride, (end - begin) * stride); },
                         described.header, vertex, attributes);
     };
     return fill_scene(described, read, [&] { return body.has_rest() ? body.remaining() : std::size_t{0}; });
 }
 
 std::optional<Scene> load_gaussian_ply(const InputFile& file) {
-    std::vector<std::byte> start(static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), LongestHeader)));
+    std::vector<std::byte> start(
+        static_cast<std::size_t>(std::min<std::uint64_t>(file.size(), LongestHeader)));
     file.read(0, start);
     const std::string_view text(reinterpret_cast<const char*>(start.data()), start.size());
-    if (!is_ply(start) || text.find("end_header") == std::string_view::npos || detect_compressed_ply(start, "")) return std::nullopt;
+    if (!is_ply(start) || text.find("end_header") == std::string_view::npos ||
+        detect_compressed_ply(start, ""))
+        return std::nullopt;
     Described described(start);
     const PlyElement& vertex = *described.vertex;
     const std::uint64_t behind_header = file.size() - described.header.body_offset;
     const std::size_t stride = vertex.row_bytes();
-    const bool cut = described.header.body_offset == start.size() && start.size() < file.size();   // within a line end, maybe
+    const bool cut = described.header.body_offset == start.size() &&
+                     start.size() < file.size();  // within a line end, maybe
     if (cut || !described.has_fixed_rows() || &vertex != &described.header.elements.front() || stride == 0 ||
         saturating_product(vertex.count, stride) > behind_header)
         return std::nullopt;
     std::vector<std::byte> block(std::max(ReadBytes / stride, BlockRows) * stride);
     const auto count = static_cast<std::size_t>(vertex.count);
-    std::size_t first = 0, behind = 0;   // rows in the block
+    std::size_t first = 0, behind = 0;  // rows in the block
     const RowSource source = [&](std::size_t begin, std::size_t end) {
         if (end > behind) {
             first = begin;
             behind = std::min(count, begin + block.size() / stride);
-            file.read(described.header.body_offset + begin * stride, std::span(block).first((behind - first) * stride));
+            file.read(described.header.body_offset + begin * stride,
+                      std::span(block).first((behind - first) * stride));
         }
         return Bytes(block).subspan((begin - first) * stride, (end - begin) * stride);
     };
     return fill_scene(
-        described, [&](std::span<const Attribute> attributes) { read_fixed_rows(source, described.header, vertex, attributes); },
+        described,
+        [&](std::span<const Attribute> attributes) {
+            read_fixed_rows(source, described.header, vertex, attributes);
+        },
         [&] { return static_cast<std::size_t>(behind_header) - count * stride; });
 }
 

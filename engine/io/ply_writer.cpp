@@ -60,7 +60,8 @@ std::string header_text(const Scene& scene, const SaveOptions& options, const La
 
 }  // namespace
 
-void write_gaussian_ply(const Scene& scene, const SaveOptions& options, const std::function<void(std::string_view piece)>& take) {
+void write_gaussian_ply(const Scene& scene, const SaveOptions& options,
+                        const std::function<void(std::string_view piece)>& take) {
     const LabelColumns columns = label_columns(scene, options);
     const GaussianSpans set = scene.gaussians.spans();
     const std::size_t rest = rest_of_degree(set.sh_degree);
@@ -88,7 +89,8 @@ void write_gaussian_ply(const Scene& scene, const SaveOptions& options, const st
         if (!columns.label.empty()) put(columns.label.data() + row, 1);
         if (!columns.weight.empty()) put(columns.weight.data() + row, 1);
         if (next != values.data() + values.size() && row + 1 < set.size) continue;
-        take({reinterpret_cast<const char*>(values.data()), static_cast<std::size_t>(next - values.data()) * sizeof(float)});
+        take({reinterpret_cast<const char*>(values.data()),
+              static_cast<std::size_t>(next - values.data()) * sizeof(float)});
         next = values.data();
     }
 }

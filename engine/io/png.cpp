@@ -65,10 +65,13 @@ std::size_t cost_of(const Row& row) {
     return sum;
 }
 
-/// Chooses for every row the filter, of the five, whose bytes have the least sum of absolute values (PNG specification 12.8).
+/// Chooses for every row the filter, of the five, whose bytes have the least sum of absolute values (PNG
+/// specification 12.8).
 class RowFilter {
 public:
-    RowFilter(std::size_t row_bytes, std::size_t step) : step_(step), zeros_(row_bytes, 0) { candidates_.fill(Row(row_bytes)); }
+    RowFilter(std::size_t row_bytes, std::size_t step) : step_(step), zeros_(row_bytes, 0) {
+        candidates_.fill(Row(row_bytes));
+    }
 
     /// Appends the filter's number and the filtered row; `above` is null for the first.
     void append(std::string& out, const std::uint8_t* row, const std::uint8_t* above) {
@@ -87,15 +90,18 @@ private:
         auto& [none, sub, up, average, paeth_row] = candidates_;
         std::copy(row, row + size, none.begin());
         for (std::size_t i = 0; i < size; ++i) up[i] = static_cast<std::uint8_t>(row[i] - above[i]);
-        for (std::size_t i = 0; i < first; ++i) {   // nothing to the left
+        for (std::size_t i = 0; i < first; ++i) {  // nothing to the left
             sub[i] = row[i];
             average[i] = static_cast<std::uint8_t>(row[i] - above[i] / 2);
             paeth_row[i] = up[i];
         }
-        for (std::size_t i = first; i < size; ++i) sub[i] = static_cast<std::uint8_t>(row[i] - row[i - step_]);
-        for (std::size_t i = first; i < size; ++i) average[i] = static_cast<std::uint8_t>(row[i] - (row[i - step_] + above[i]) / 2);
         for (std::size_t i = first; i < size; ++i)
-            paeth_row[i] = static_cast<std::uint8_t>(row[i] - paeth(row[i - step_], above[i], above[i - step_]));
+            sub[i] = static_cast<std::uint8_t>(row[i] - row[i - step_]);
+        for (std::size_t i = first; i < size; ++i)
+            average[i] = static_cast<std::uint8_t>(row[i] - (row[i - step_] + above[i]) / 2);
+        for (std::size_t i = first; i < size; ++i)
+            paeth_row[i] =
+                static_cast<std::uint8_t>(row[i] - paeth(row[i - step_], above[i], above[i - step_]));
     }
 
     std::size_t step_;

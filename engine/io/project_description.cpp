@@ -10,8 +10,8 @@
 #include <set>
 
 #include "engine/base/error.h"
-#include "engine/base/path_text.h"
 #include "engine/base/json.h"
+#include "engine/base/path_text.h"
 #include "engine/io/camera_checks.h"
 #include "engine/scene/strength.h"
 
@@ -30,7 +30,8 @@ constexpr std::array<const char*, 13> KnownFields{"format", "version", "program"
 constexpr const char* DamagedProject = "the file is damaged; open an older copy or an autosave";
 
 [[noreturn]] void throw_field(const std::string& name, const char* how) {
-    throw Error(ErrorCode::Malformed, fmt::format("the field \"{}\" of the project {}", name, how), DamagedProject);
+    throw Error(ErrorCode::Malformed, fmt::format("the field \"{}\" of the project {}", name, how),
+                DamagedProject);
 }
 
 /// A JSON object that is read field by field; absent fields keep their default.
@@ -67,8 +68,7 @@ public:
             throw_field(full(key), "is not a number");
         value = found->get<double>();
     }
-    template <class T>
-    void whole(const char* key, T& value, std::int64_t low, std::uint64_t high) const {
+    template <class T> void whole(const char* key, T& value, std::int64_t low, std::uint64_t high) const {
         const Json* found = find(key);
         if (found == nullptr) return;
         const bool fits = found->is_number_unsigned()  ? found->get<std::uint64_t>() <= high
@@ -100,7 +100,9 @@ public:
         if (found != nullptr && !found->is_object()) throw_field(full(key), "is not an object");
         return found;
     }
-    std::string full(const char* key) const { return name_.empty() ? std::string(key) : fmt::format("{}.{}", name_, key); }
+    std::string full(const char* key) const {
+        return name_.empty() ? std::string(key) : fmt::format("{}.{}", name_, key);
+    }
 
 private:
     const Json* find(const char* key) const {
@@ -204,7 +206,8 @@ ProjectDescription::Edit read_edit(const Json& json, const std::string& name) {
     fields.text("recipe", node.recipe);
     fields.flag("enabled", node.enabled);
     fields.number("strength", node.strength);
-    if (node.strength < 0 || node.strength > MostStrength) throw_field(fields.full("strength"), "is out of range");
+    if (node.strength < 0 || node.strength > MostStrength)
+        throw_field(fields.full("strength"), "is out of range");
     fields.number("seconds", node.seconds, true);
     fields.number("psnr_outside_db", node.psnr_outside_db, true);
     fields.whole("changed_outside_label", node.changed_outside_label, 0, ~std::uint64_t{0});
@@ -238,7 +241,8 @@ ProjectDescription::LabelEntry read_label(const Json& json, const std::string& n
     constexpr double most = 1e30;  // fits a float
     entry.label.threshold = static_cast<float>(std::clamp(threshold, -most, most));
     fields.number("attention_threshold", entry.label.attention_threshold, true);
-    if (!std::isfinite(entry.label.attention_threshold)) entry.label.attention_threshold = NamedLabel().attention_threshold;
+    if (!std::isfinite(entry.label.attention_threshold))
+        entry.label.attention_threshold = NamedLabel().attention_threshold;
     fields.text("weight", entry.weight);
     fields.text("manual", entry.manual);
     fields.text("absent", entry.absent);
@@ -340,8 +344,7 @@ std::string write_description(const ProjectDescription& description) {
 }
 
 ProjectDescription parse_description(std::string_view text) {
-    const Json json =
-        parse_json(text, "the project's description", DamagedProject);
+    const Json json = parse_json(text, "the project's description", DamagedProject);
     if (!json.is_object())
         throw Error(ErrorCode::Malformed, "this is not a project of GSEditPro",
                     "open a .gsep file or a scene");

@@ -22,7 +22,8 @@ namespace {
 constexpr char Magic[] = {'G', 'S', 'M', '1'};
 constexpr std::uint32_t WordBytes = 4;
 constexpr int Level = 1;  // an autosave must be quick; floats hardly gain from more
-constexpr std::uint64_t FreeKnown = std::uint64_t{512} << 20;  // bytes of labels; zeros pack to a ten-thousandth
+constexpr std::uint64_t FreeKnown = std::uint64_t{512}
+                                    << 20;  // bytes of labels; zeros pack to a ten-thousandth
 constexpr std::uint64_t KnownPerFileByte = 20000;
 constexpr int EditShift = 32;
 
@@ -42,13 +43,11 @@ void transpose_back(const std::byte* from, std::byte* to, std::size_t words) {
         for (std::size_t k = 0; k < WordBytes; ++k) to[i * WordBytes + k] = from[k * words + i];
 }
 
-template <class T>
-void append_array(std::string& out, std::span<const T> values) {
+template <class T> void append_array(std::string& out, std::span<const T> values) {
     out.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
 }
 
-template <class T>
-std::vector<T> read_array(ByteReader& reader, std::uint64_t count) {
+template <class T> std::vector<T> read_array(ByteReader& reader, std::uint64_t count) {
     const auto bytes = reader.take(saturating_product(count, sizeof(T)));
     std::vector<T> values(static_cast<std::size_t>(count));
     if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
@@ -107,12 +106,14 @@ std::string pack_member(std::string_view bytes, std::uint32_t element) {
 UnpackBudget::UnpackBudget(std::uint64_t file_bytes) : file_bytes_(file_bytes) {}
 
 void UnpackBudget::spend(std::uint64_t bytes, const std::string& what) {
-    check_claim({saturating_sum(claimed_, bytes), file_bytes_}, what + " of the project, with what comes before it,");
+    check_claim({saturating_sum(claimed_, bytes), file_bytes_},
+                what + " of the project, with what comes before it,");
     claimed_ += bytes;
 }
 
 void UnpackBudget::spend_known(std::uint64_t bytes, const std::string& what) {
-    if (saturating_sum(known_, bytes) > saturating_sum(FreeKnown, saturating_product(file_bytes_, KnownPerFileByte)))
+    if (saturating_sum(known_, bytes) >
+        saturating_sum(FreeKnown, saturating_product(file_bytes_, KnownPerFileByte)))
         throw Error(ErrorCode::Malformed, "the project has more labels than a scene of its size can use",
                     "the file is damaged or was not made by this program");
     require_memory(bytes, what + " of the project");

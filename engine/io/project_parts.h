@@ -27,7 +27,8 @@ std::string pack_member(std::string_view bytes, std::uint32_t element);
 class UnpackBudget {
 public:
     explicit UnpackBudget(std::uint64_t file_bytes);
-    /// For what only the file says the size of. Throws Error (Malformed) or OutOfMemory when that is too much.
+    /// For what only the file says the size of. Throws Error (Malformed) or OutOfMemory when that is too
+    /// much.
     void spend(std::uint64_t bytes, const std::string& what);
     /// For what has one value per splat of the scene: labels may be all zeros and pack very small.
     void spend_known(std::uint64_t bytes, const std::string& what);

@@ -22,18 +22,16 @@ namespace {
 
 constexpr std::uint64_t LargestDescription = std::uint64_t{64} << 20;  // bytes of project.json
 constexpr std::uint64_t FreeDescription = std::uint64_t{1} << 20;
-constexpr std::uint64_t DescriptionPerFileByte = 100;   // deflated text
+constexpr std::uint64_t DescriptionPerFileByte = 100;  // deflated text
 constexpr std::uint64_t LargestPicture = std::uint64_t{64} << 20;
-constexpr std::size_t LargestPictureSide = 1024;   // thumbnails have about a hundred pixels
+constexpr std::size_t LargestPictureSide = 1024;  // thumbnails have about a hundred pixels
 constexpr const char* Damaged = "the file is damaged; open an older copy or an autosave";
 
 /// An opened project whose arrays are still packed.
 class OpenProject {
 public:
     explicit OpenProject(std::span<const std::byte> bytes)
-        : zip_(bytes, "the project"),
-          file_bytes_(bytes.size()),
-          budget_(bytes.size()),
+        : zip_(bytes, "the project"), file_bytes_(bytes.size()), budget_(bytes.size()),
           description_(read_description()) {}
 
     const io::ProjectDescription& description() const { return description_; }
@@ -93,7 +91,9 @@ private:
         if (!zip_.has("project.json"))
             throw Error(ErrorCode::Malformed, "this is not a project of GSEditPro",
                         "open a .gsep file or a scene");
-        const auto bytes = zip_.read("project.json", std::min(LargestDescription, FreeDescription + DescriptionPerFileByte * file_bytes_));
+        const auto bytes =
+            zip_.read("project.json",
+                      std::min(LargestDescription, FreeDescription + DescriptionPerFileByte * file_bytes_));
         return io::parse_description({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     }
 
@@ -142,10 +142,12 @@ private:
     }
 
     void hold_weights(std::vector<float>& weights, const std::string& what) {
-        if (const std::size_t held = io::hold_weights(weights)) warnings_.push_back(io::held_weights_text(held, what));
+        if (const std::size_t held = io::hold_weights(weights))
+            warnings_.push_back(io::held_weights_text(held, what));
     }
 
-    std::shared_ptr<const std::vector<float>> read_weights(const std::string& name, std::size_t count, const std::string& what) {
+    std::shared_ptr<const std::vector<float>> read_weights(const std::string& name, std::size_t count,
+                                                           const std::string& what) {
         if (name.empty()) return nullptr;
         std::vector<float> weights = read_array<float>(name, count, what);
         hold_weights(weights, what);
@@ -157,8 +159,9 @@ private:
         const std::string what = fmt::format("the label \"{}\"", label.name);
         label.weight = read_weights(entry.weight, count, what);
         if (!entry.manual.empty())
-            label.manual = std::make_shared<const std::vector<std::int8_t>>(read_array<std::int8_t>(entry.manual, count, what));
-        budget_.spend_known(2 * count, what);   // its bits, and the choice by hand where the file has neither
+            label.manual = std::make_shared<const std::vector<std::int8_t>>(
+                read_array<std::int8_t>(entry.manual, count, what));
+        budget_.spend_known(2 * count, what);  // its bits, and the choice by hand where the file has neither
         if (label.weight == nullptr && label.manual == nullptr)
             label.manual = std::make_shared<const std::vector<std::int8_t>>(count, std::int8_t{0});
         if (!entry.absent.empty()) {
@@ -172,7 +175,7 @@ private:
     io::ZipReader zip_;
     std::uint64_t file_bytes_;
     io::UnpackBudget budget_;
-    std::map<std::string, std::shared_ptr<const Image>> pictures_;   // edits may share them
+    std::map<std::string, std::shared_ptr<const Image>> pictures_;  // edits may share them
     std::vector<std::string> warnings_;
     io::ProjectDescription description_;
 };
@@ -331,9 +334,7 @@ bool is_project_file(const std::filesystem::path& path) {
         if (read_start(path, 2) != "PK") return false;
         const FileBytes file(path);
         return io::ZipReader(file.bytes(), "the file").has("project.json");
-    } catch (const Error&) {
-        return false;
-    }
+    } catch (const Error&) { return false; }
 }
 
 }  // namespace gse

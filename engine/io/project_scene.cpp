@@ -14,9 +14,11 @@ Scene scene_of_project(const ProjectData& project) {
     scene.info = state.info;
     const auto none = std::make_shared<const std::vector<float>>(state.current.size(), 0.0f);
     auto& labels = scene.labels.labels;
-    for (const NamedLabel& label : state.labels) labels.push_back({label.name, label.weight ? label.weight : none, label.bits});
+    for (const NamedLabel& label : state.labels)
+        labels.push_back({label.name, label.weight ? label.weight : none, label.bits});
     if (state.active_label > 0 && state.active_label < static_cast<int>(labels.size()))
-        std::rotate(labels.begin(), labels.begin() + state.active_label, labels.begin() + state.active_label + 1);
+        std::rotate(labels.begin(), labels.begin() + state.active_label,
+                    labels.begin() + state.active_label + 1);
     return scene;
 }
 

@@ -101,8 +101,7 @@ Scene load_folder(const std::filesystem::path& folder) {
     if (const auto scene = scene_of_layout(folder)) return load_file(*scene);
     const auto files = scenes_in_folder(folder);
     if (files.size() == 1) return load_file(files.front());
-    if (files.empty())
-        throw Error(ErrorCode::NotFound, "the folder holds no scene", ReadableHint, folder);
+    if (files.empty()) throw Error(ErrorCode::NotFound, "the folder holds no scene", ReadableHint, folder);
     constexpr std::size_t most_named = 5;
     std::string names;
     for (std::size_t at = 0; at < std::min(files.size(), most_named); ++at)
@@ -122,14 +121,18 @@ std::string format_of_name(const std::filesystem::path& path) {
 }
 
 /// Reads back what is about to be written: the error is that of whoever opens the file, not an estimate.
-void warn_of_losses(const std::string& name, const Scene& scene, const GaussianSet& rows, const std::string& bytes,
-                    const std::string& format, const std::vector<std::uint32_t>& order) {
+void warn_of_losses(const std::string& name, const Scene& scene, const GaussianSet& rows,
+                    const std::string& bytes, const std::string& format,
+                    const std::vector<std::uint32_t>& order) {
     const auto view = std::as_bytes(std::span(bytes));
     const Scene back = parse_scene(view, "written." + format);
     const std::string loss = io::describe_loss(rows, back.gaussians, order);
     if (!loss.empty()) log::warning("{} keeps rounded values: {}", name, loss);
     if (scene.info.antialiased && !back.info.antialiased)
-        log::warning("{} does not say that the scene was trained with antialiasing; .ply, .compressed.ply, .spz and .sog do", name);
+        log::warning(
+            "{} does not say that the scene was trained with antialiasing; .ply, .compressed.ply, .spz and "
+            ".sog do",
+            name);
     if (scene.info.up_known && !back.info.up_known)
         log::warning("{} does not say which way is up in the scene; .ply and .compressed.ply do", name);
 }
@@ -152,7 +155,9 @@ Scene load_project_scene(const std::filesystem::path& path) {
         Deeper() { ++depth; }
         ~Deeper() { --depth; }
     } const deeper;
-    if (depth > Deepest) throw Error(ErrorCode::Malformed, "projects refer to each other as their scenes", "export the scene of one of them", path);
+    if (depth > Deepest)
+        throw Error(ErrorCode::Malformed, "projects refer to each other as their scenes",
+                    "export the scene of one of them", path);
     const ProjectData project = load_project(path);
     for (const auto& warning : project.warnings) log::warning("{}: {}", path.filename().string(), warning);
     return scene_of_project(project);
@@ -217,7 +222,9 @@ std::vector<std::filesystem::path> scenes_in_folder(const std::filesystem::path&
     return files;
 }
 
-bool holds_scene(const std::filesystem::path& folder) { return scene_of_layout(folder) || !scenes_in_folder(folder).empty(); }
+bool holds_scene(const std::filesystem::path& folder) {
+    return scene_of_layout(folder) || !scenes_in_folder(folder).empty();
+}
 
 std::vector<std::string> writable_formats() { return {"ply", "compressed.ply", "splat", "spz", "sog"}; }
 
@@ -245,7 +252,8 @@ SavedRows save_scene(const std::filesystem::path& path, const Scene& scene, cons
     if (!order.empty()) log::info("a .{} file is stored in another order: splat numbers change", format);
     const GaussianSet rows = drop_unusable(scene.gaussians);
     if (rows.empty() && !scene.gaussians.empty())
-        throw Error(ErrorCode::Malformed, fmt::format("none of the {} splats can be written as {}", scene.gaussians.size(), format),
+        throw Error(ErrorCode::Malformed,
+                    fmt::format("none of the {} splats can be written as {}", scene.gaussians.size(), format),
                     "their values are NaN or infinite", path);
     warn_of_losses(path.filename().string(), scene, rows, bytes, format, order);
     write_file(path, bytes);

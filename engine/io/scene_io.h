@@ -15,8 +15,8 @@ namespace gse {
 
 /// Reads a scene: 3DGS PLY, PlayCanvas compressed PLY, .splat, .spz (v1-v4), .sog (zip, folder or meta.json),
 /// lod-meta.json (finest level), an Inria output folder (highest iteration) or any folder with one scene file
-/// in it; of a project (.gsep) what it shows. Throws Error with one clear sentence. Infinite opacity logits that come from 8-bit 0 or 255 are clamped; values of PLY files are kept
-/// bit for bit.
+/// in it; of a project (.gsep) what it shows. Throws Error with one clear sentence. Infinite opacity logits
+/// that come from 8-bit 0 or 255 are clamped; values of PLY files are kept bit for bit.
 Scene load_scene(const std::filesystem::path& path);
 
 /// The scene files of a folder by name, for asking which one is meant; empty for a folder that is a scene by
@@ -38,8 +38,8 @@ struct SaveOptions {
     std::span<const float> label_weight = {};
     /// Takes `label` and `label_weight` from this label instead (must have one value per row).
     const Label* from_label = nullptr;
-    /// Version of a .spz file: 3 is what most programs read, 4 the newest (smaller), 2 for the oldest ones (coarser
-    /// rotations).
+    /// Version of a .spz file: 3 is what most programs read, 4 the newest (smaller), 2 for the oldest ones
+    /// (coarser rotations).
     int spz_version = 3;
 };
 
@@ -50,8 +50,8 @@ struct SavedRows {
 };
 
 /// Writes the scene, atomically. Throws Error (InvalidArgument for an unknown format or labels in a format
-/// that has no room for them, Malformed when the format can hold none of its splats, Unwritable). What the format
-/// changed is measured on the written bytes and told with log::warning, worst error per field.
+/// that has no room for them, Malformed when the format can hold none of its splats, Unwritable). What the
+/// format changed is measured on the written bytes and told with log::warning, worst error per field.
 SavedRows save_scene(const std::filesystem::path& path, const Scene& scene, const SaveOptions& options = {});
 
 /// Names for SaveOptions::format, in the order a user should see them.

@@ -18,7 +18,7 @@
 namespace gse::io {
 namespace {
 
-constexpr int WebpLevel = 6;   // of 0 (fast) to 9 (small)
+constexpr int WebpLevel = 6;  // of 0 (fast) to 9 (small)
 constexpr std::size_t EntryPieceBytes = std::size_t{1} << 20;
 
 class Folder final : public SogFiles {
@@ -34,7 +34,8 @@ public:
         if (file.size() > most)
             throw Error(ErrorCode::Malformed, "the file is larger than its place in a SOG scene allows", "",
                         folder_ / relative);
-        require_memory(file.size(), fmt::format("the file \"{}\" of the SOG scene", name));   // a sparse file may have any size
+        require_memory(file.size(), fmt::format("the file \"{}\" of the SOG scene",
+                                                name));  // a sparse file may have any size
         std::vector<std::byte> content(static_cast<std::size_t>(file.size()));
         file.read(0, content);
         return content;
@@ -95,21 +96,24 @@ public:
     std::uint64_t stored_bytes() const override { return stored_; }
 
 private:
-    /// Bytes that the entry unpacks to, as the archive says: held against what the archive can hold and the free memory. More
-    /// than this is not unpacked.
+    /// Bytes that the entry unpacks to, as the archive says: held against what the archive can hold and the
+    /// free memory. More than this is not unpacked.
     std::uint64_t stated_size(zip_uint64_t index, const std::string& name, std::uint64_t most) const {
         zip_stat_t status;
         zip_stat_init(&status);
-        if (zip_stat_index(zip_.get(), index, 0, &status) != 0 || (status.valid & ZIP_STAT_SIZE) == 0 || status.size > most)
-            throw Error(ErrorCode::Malformed,
-                        fmt::format("the file \"{}\" of the SOG archive has no size, or more than its place allows", name),
-                        "the file is damaged or made to do harm");
+        if (zip_stat_index(zip_.get(), index, 0, &status) != 0 || (status.valid & ZIP_STAT_SIZE) == 0 ||
+            status.size > most)
+            throw Error(
+                ErrorCode::Malformed,
+                fmt::format("the file \"{}\" of the SOG archive has no size, or more than its place allows",
+                            name),
+                "the file is damaged or made to do harm");
         check_claim({status.size, stored_}, fmt::format("the file \"{}\" of the SOG archive", name));
         return status.size;
     }
 
     std::unique_ptr<zip_t, void (*)(zip_t*)> zip_;
-    std::uint64_t stored_;   // bytes of the whole archive
+    std::uint64_t stored_;  // bytes of the whole archive
 };
 
 }  // namespace
@@ -131,7 +135,8 @@ Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, s
     };
     if (WebPGetInfo(data, bytes.size(), &width, &height) == 0) fail("is not a WebP picture");
     const std::uint64_t texels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    check_claim({texels * 4, stored_bytes}, fmt::format("the texture \"{}\" of {} x {} texels", name, width, height));
+    check_claim({texels * 4, stored_bytes},
+                fmt::format("the texture \"{}\" of {} x {} texels", name, width, height));
     Texture texture;
     texture.width = static_cast<std::size_t>(width);
     texture.height = static_cast<std::size_t>(height);
@@ -147,19 +152,22 @@ std::string encode_webp(const Texture& texture) {
     WebPPicture picture;
     GSE_CHECK(WebPConfigInit(&config) != 0 && WebPPictureInit(&picture) != 0);
     GSE_CHECK(WebPConfigLosslessPreset(&config, WebpLevel) != 0);
-    config.exact = 1;   // else colours under alpha 0 are changed
+    config.exact = 1;  // else colours under alpha 0 are changed
     WebPMemoryWriter writer;
     WebPMemoryWriterInit(&writer);
     const std::unique_ptr<WebPPicture, void (*)(WebPPicture*)> free_picture(&picture, WebPPictureFree);
-    const std::unique_ptr<WebPMemoryWriter, void (*)(WebPMemoryWriter*)> free_writer(&writer, WebPMemoryWriterClear);
+    const std::unique_ptr<WebPMemoryWriter, void (*)(WebPMemoryWriter*)> free_writer(&writer,
+                                                                                     WebPMemoryWriterClear);
     picture.use_argb = 1;
     picture.width = static_cast<int>(texture.width);
     picture.height = static_cast<int>(texture.height);
     picture.writer = WebPMemoryWrite;
     picture.custom_ptr = &writer;
-    if (WebPPictureImportRGBA(&picture, texture.rgba.data(), picture.width * 4) == 0 || WebPEncode(&config, &picture) == 0)
-        throw Error(ErrorCode::Foreign, fmt::format("a texture of {} x {} texels cannot be made (WebP error {})", texture.width,
-                                                    texture.height, static_cast<int>(picture.error_code)));
+    if (WebPPictureImportRGBA(&picture, texture.rgba.data(), picture.width * 4) == 0 ||
+        WebPEncode(&config, &picture) == 0)
+        throw Error(ErrorCode::Foreign,
+                    fmt::format("a texture of {} x {} texels cannot be made (WebP error {})", texture.width,
+                                texture.height, static_cast<int>(picture.error_code)));
     return {reinterpret_cast<const char*>(writer.mem), writer.size};
 }
 

@@ -13,7 +13,8 @@
 
 namespace gse::io {
 
-/// Gives the bytes of the file `name` of a scene. Throws Error when it is missing, broken or larger than `most`.
+/// Gives the bytes of the file `name` of a scene. Throws Error when it is missing, broken or larger than
+/// `most`.
 class SogFiles {
 public:
     virtual ~SogFiles() = default;
@@ -39,11 +40,11 @@ struct Texture {
     const std::uint8_t* texel(std::size_t index) const { return rgba.data() + index * 4; }
 };
 
-/// Decodes a WebP picture that lies in a scene of `stored_bytes`. `name` is for messages. Throws Error (Malformed)
-/// or OutOfMemory.
+/// Decodes a WebP picture that lies in a scene of `stored_bytes`. `name` is for messages. Throws Error
+/// (Malformed) or OutOfMemory.
 Texture decode_webp(std::span<const std::byte> bytes, const std::string& name, std::uint64_t stored_bytes);
-/// The texture as a lossless WebP picture: every byte comes back, those of transparent texels too. Sides of 1 to 16383.
-/// The same texture gives the same bytes. Throws Error (Foreign).
+/// The texture as a lossless WebP picture: every byte comes back, those of transparent texels too. Sides of 1
+/// to 16383. The same texture gives the same bytes. Throws Error (Foreign).
 std::string encode_webp(const Texture& texture);
 
 }  // namespace gse::io

@@ -27,9 +27,11 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t PaletteColumns = 64;  // palette entries side by side in the centroid texture
-constexpr std::uint64_t LargestDescription = std::uint64_t{4} << 20;  // bytes of a meta.json, which has a few thousand
+constexpr std::uint64_t LargestDescription = std::uint64_t{4}
+                                             << 20;  // bytes of a meta.json, which has a few thousand
 constexpr std::uint64_t LargestCount = std::uint64_t{16383} * 16383;  // a WebP picture has no more texels
-constexpr std::uint64_t LargestTexture = LargestCount * 4 + (std::uint64_t{1} << 20);  // bytes of its file, were nothing compressed
+constexpr std::uint64_t LargestTexture =
+    LargestCount * 4 + (std::uint64_t{1} << 20);  // bytes of its file, were nothing compressed
 
 [[noreturn]] void throw_malformed(const std::string& what) {
     throw Error(ErrorCode::Malformed, "the SOG scene " + what,
@@ -56,8 +58,7 @@ struct Source {
     }
 };
 
-template <std::size_t N>
-std::array<double, N> numbers(const Json& json) {
+template <std::size_t N> std::array<double, N> numbers(const Json& json) {
     std::array<double, N> result{};
     for (std::size_t i = 0; i < N; ++i) result[i] = json.at(i).get<double>();
     return result;
@@ -219,8 +220,7 @@ Json parse_json(std::span<const std::byte> bytes) {
 }
 
 /// JSON complaints (missing keys, wrong types, bad syntax) become ours.
-template <class F>
-auto with_json_errors(F&& body) {
+template <class F> auto with_json_errors(F&& body) {
     try {
         return body();
     } catch (const nlohmann::json::exception& failure) {
@@ -277,7 +277,8 @@ std::vector<std::filesystem::path> part_files(const std::filesystem::path& folde
     std::vector<std::filesystem::path> paths;
     std::set<std::filesystem::path> seen;
     for (const std::size_t number : files.order) {
-        const auto name = std::filesystem::path(json.at("filenames").at(number).get<std::string>()).lexically_normal();
+        const auto name =
+            std::filesystem::path(json.at("filenames").at(number).get<std::string>()).lexically_normal();
         if (name.is_absolute() || std::find(name.begin(), name.end(), "..") != name.end())
             throw_malformed("names a file outside of its folder");
         if (seen.insert(name).second) paths.push_back(folder / name);
@@ -292,7 +293,8 @@ bool detect_sog(Bytes bytes, std::string_view) {
 }
 
 Scene read_sog(const SogFiles& files, const std::string& meta) {
-    return with_json_errors([&] { return read_scene(files, parse_json(files.read(meta, LargestDescription))); });
+    return with_json_errors(
+        [&] { return read_scene(files, parse_json(files.read(meta, LargestDescription))); });
 }
 
 Scene parse_sog(Bytes bytes) { return read_sog(*open_sog_archive(bytes), "meta.json"); }

@@ -1,4 +1,5 @@
-// Writer of SOG version 2: rows in Morton order, one texel each in lossless WebP textures, tied up in a zip archive.
+// Writer of SOG version 2: rows in Morton order, one texel each in lossless WebP textures, tied up in a zip
+// archive.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -22,13 +23,14 @@ namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-constexpr std::size_t WidestTexture = 16383;          // texels of a WebP picture's side
-constexpr std::size_t LargestPalette = 65536;         // 16-bit numbers
+constexpr std::size_t WidestTexture = 16383;   // texels of a WebP picture's side
+constexpr std::size_t LargestPalette = 65536;  // 16-bit numbers
 constexpr std::size_t SmallestPalette = 1024;
-constexpr std::size_t EntriesPerLine = 64;            // of the centroid texture
-constexpr float LargestSogLogScale = 20;              // a size that no scene has would take a code of its own
-constexpr float LargestCoefficient = 100;             // nor a colour 28 times as bright as white: others would get coarser steps
-constexpr std::uint64_t BytesPerRow = 100;            // textures, codebooks and palette while they are made
+constexpr std::size_t EntriesPerLine = 64;  // of the centroid texture
+constexpr float LargestSogLogScale = 20;    // a size that no scene has would take a code of its own
+constexpr float LargestCoefficient =
+    100;  // nor a colour 28 times as bright as white: others would get coarser steps
+constexpr std::uint64_t BytesPerRow = 100;  // textures, codebooks and palette while they are made
 
 /// A texture and the name of its file.
 struct NamedTexture {
@@ -66,7 +68,9 @@ struct Sog {
 };
 
 /// sign(x) ln(1 + |x|): fine steps near the origin, coarse ones far away.
-double folded(float value) { return std::copysign(std::log1p(std::abs(static_cast<double>(value))), static_cast<double>(value)); }
+double folded(float value) {
+    return std::copysign(std::log1p(std::abs(static_cast<double>(value))), static_cast<double>(value));
+}
 
 void write_positions(Sog& sog) {
     std::array<double, 3> low, high;
@@ -79,7 +83,8 @@ void write_positions(Sog& sog) {
     for (std::size_t row = 0; row < sog.size(); ++row)
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const double extent = high[axis] - low[axis];
-            const double unit = extent > 0 ? (folded(sog.set.position[sog.order[row] * 3 + axis]) - low[axis]) / extent : 0;
+            const double unit =
+                extent > 0 ? (folded(sog.set.position[sog.order[row] * 3 + axis]) - low[axis]) / extent : 0;
             const auto code = static_cast<unsigned>(std::clamp(unit, 0.0, 1.0) * 65535 + 0.5);
             fine.rgba[row * 4 + axis] = static_cast<std::uint8_t>(code & 255);
             coarse.rgba[row * 4 + axis] = static_cast<std::uint8_t>(code >> 8);
@@ -98,7 +103,8 @@ void write_scales(Sog& sog) {
     Texture& texture = sog.add("scales.webp", splat_texture(sog.size()));
     for (std::size_t row = 0; row < sog.size(); ++row)
         for (std::size_t axis = 0; axis < 3; ++axis)
-            texture.rgba[row * 4 + axis] = codebook.nearest(kept_log_scale(sog.set.log_scale[sog.order[row] * 3 + axis]));
+            texture.rgba[row * 4 + axis] =
+                codebook.nearest(kept_log_scale(sog.set.log_scale[sog.order[row] * 3 + axis]));
     sog.meta["scales"] = {{"codebook", codebook.values}, {"files", {"scales.webp"}}};
 }
 
@@ -108,7 +114,9 @@ void write_rotations(Sog& sog) {
     for (std::size_t row = 0; row < sog.size(); ++row) {
         const std::array<double, 4> q = unit_quaternion(sog.set.rotation.data() + sog.order[row] * 4);
         const auto largest = static_cast<std::size_t>(
-            std::max_element(q.begin(), q.end(), [](double a, double b) { return std::abs(a) < std::abs(b); }) - q.begin());
+            std::max_element(q.begin(), q.end(),
+                             [](double a, double b) { return std::abs(a) < std::abs(b); }) -
+            q.begin());
         const double sign = q[largest] < 0 ? -1 : 1;
         std::uint8_t* texel = texture.rgba.data() + row * 4;
         for (std::size_t i = 0; i < 4; ++i)
@@ -135,13 +143,16 @@ void write_base_colours(Sog& sog) {
     Texture& texture = sog.add("sh0.webp", splat_texture(sog.size()));
     for (std::size_t row = 0; row < sog.size(); ++row) {
         const std::size_t source = sog.order[row];
-        for (std::size_t c = 0; c < 3; ++c) texture.rgba[row * 4 + c] = codebook.nearest(sog.set.sh[source * stride + c]);
-        texture.rgba[row * 4 + 3] = to_byte(255 * opacity_from_logit(static_cast<double>(sog.set.opacity_logit[source])));
+        for (std::size_t c = 0; c < 3; ++c)
+            texture.rgba[row * 4 + c] = codebook.nearest(sog.set.sh[source * stride + c]);
+        texture.rgba[row * 4 + 3] =
+            to_byte(255 * opacity_from_logit(static_cast<double>(sog.set.opacity_logit[source])));
     }
     sog.meta["sh0"] = {{"codebook", codebook.values}, {"files", {"sh0.webp"}}};
 }
 
-/// The largest power of two that is no more than the rows, within what the format takes: few rows are kept exactly.
+/// The largest power of two that is no more than the rows, within what the format takes: few rows are kept
+/// exactly.
 std::size_t palette_size(std::size_t rows) {
     std::size_t size = SmallestPalette;
     while (size < LargestPalette && size * 2 <= rows) size *= 2;
@@ -154,11 +165,13 @@ void write_palette(Sog& sog, ThreadPool& pool) {
     const Palette palette =
         fit_palette({sog.set.sh, sog.sh_stride(), 3, rest * 3, sog.size()}, palette_size(sog.size()), pool);
     const Codebook codebook = fit_coefficients(palette.entries);
-    Texture centroids = blank_texture(EntriesPerLine * rest, (palette.size() + EntriesPerLine - 1) / EntriesPerLine);
+    Texture centroids =
+        blank_texture(EntriesPerLine * rest, (palette.size() + EntriesPerLine - 1) / EntriesPerLine);
     for (std::size_t entry = 0; entry < palette.size(); ++entry) {
         const std::size_t first = entry / EntriesPerLine * centroids.width + entry % EntriesPerLine * rest;
         for (std::size_t k = 0; k < rest * 3; ++k)
-            centroids.rgba[(first + k / 3) * 4 + k % 3] = codebook.nearest(palette.entries[entry * rest * 3 + k]);
+            centroids.rgba[(first + k / 3) * 4 + k % 3] =
+                codebook.nearest(palette.entries[entry * rest * 3 + k]);
     }
     Texture labels = splat_texture(sog.size());
     for (std::size_t row = 0; row < sog.size(); ++row) {
@@ -190,9 +203,11 @@ std::string archive_of(const Sog& sog, ThreadPool& pool) {
 std::string write_sog(const Scene& scene, std::vector<std::uint32_t>* order_out) {
     const GaussianSet storable = storable_rows(scene.gaussians, ".sog");
     if (storable.empty())
-        throw Error(ErrorCode::InvalidArgument, "a scene without splats cannot be written as .sog", "save as .ply");
+        throw Error(ErrorCode::InvalidArgument, "a scene without splats cannot be written as .sog",
+                    "save as .ply");
     if (storable.size() > WidestTexture * WidestTexture)
-        throw Error(ErrorCode::InvalidArgument, fmt::format("a .sog file has no room for {} splats", storable.size()),
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("a .sog file has no room for {} splats", storable.size()),
                     "save as .ply or .spz");
     require_memory(storable.size() * BytesPerRow, fmt::format("writing {} splats as .sog", storable.size()));
     const GaussianSpans set = storable.spans();

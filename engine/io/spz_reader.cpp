@@ -30,12 +30,12 @@ constexpr std::size_t HeaderBytesV4 = 32;
 constexpr int HighestDegree = 4;
 constexpr std::uint8_t FlagAntialiased = 1;
 constexpr std::uint8_t FlagExtensions = 2;
-constexpr std::uint8_t FlagLevels = 0x80;   // Spark's levels of detail
+constexpr std::uint8_t FlagLevels = 0x80;  // Spark's levels of detail
 constexpr std::uint32_t CoordinateSystemExtension = 0xadbe0003;
 constexpr std::uint32_t RightUpBack = 4;
 constexpr std::uint32_t LastAxisFlip = 8;  // later values also exchange axes
 constexpr std::uint64_t LargestExtensions = 1 << 20;
-constexpr std::size_t MostNamed = 5;   // unknown extensions in the warning
+constexpr std::size_t MostNamed = 5;  // unknown extensions in the warning
 
 struct Header {
     std::uint32_t version = 0;
@@ -95,7 +95,7 @@ Arrays split_arrays(const Header& header, Bytes body) {
 /// What the extensions of a file say.
 struct Extensions {
     std::optional<std::uint32_t> frame;
-    std::string unknown;   // their types, with commas between them
+    std::string unknown;  // their types, with commas between them
 };
 
 /// Records of [u32 type][u32 length][payload].
@@ -109,8 +109,7 @@ Extensions parse_extensions(Bytes bytes) {
         const Bytes payload = reader.take(length);
         if (type == CoordinateSystemExtension && payload.size() >= 4)
             extensions.frame = load_scalar<std::uint32_t>(payload.data());
-        else if (unknown.size() < MostNamed)
-            unknown.insert(type);
+        else if (unknown.size() < MostNamed) unknown.insert(type);
     }
     for (const std::uint32_t type : unknown)
         extensions.unknown += fmt::format("{}{:#x}", extensions.unknown.empty() ? "" : ", ", type);
@@ -121,8 +120,11 @@ Extensions parse_extensions(Bytes bytes) {
 std::string passed_over(const Header& header, const Extensions& extensions) {
     const unsigned flags = header.flags & ~static_cast<unsigned>(FlagAntialiased | FlagExtensions);
     std::string parts;
-    if (flags != 0) parts = fmt::format("flags {:#x}{}", flags, (flags & FlagLevels) != 0 ? " (levels of detail, all drawn at once)" : "");
-    if (!extensions.unknown.empty()) parts += (parts.empty() ? "extensions " : " and extensions ") + extensions.unknown;
+    if (flags != 0)
+        parts = fmt::format("flags {:#x}{}", flags,
+                            (flags & FlagLevels) != 0 ? " (levels of detail, all drawn at once)" : "");
+    if (!extensions.unknown.empty())
+        parts += (parts.empty() ? "extensions " : " and extensions ") + extensions.unknown;
     return parts.empty() ? "" : "the SPZ file has parts that are not known and passed over: " + parts;
 }
 
@@ -223,7 +225,8 @@ Scene make_scene(const Header& header, const Arrays& arrays, const Extensions& e
     scene.info.antialiased = (header.flags & FlagAntialiased) != 0;
     if (header.degree > MaxShDegree)
         scene.info.warnings.push_back("spherical harmonics of degree 4 are cut to degree 3");
-    if (const std::string warning = passed_over(header, extensions); !warning.empty()) scene.info.warnings.push_back(warning);
+    if (const std::string warning = passed_over(header, extensions); !warning.empty())
+        scene.info.warnings.push_back(warning);
     GaussianData data = unpack(header, arrays);
     flip_axes(data, signs_of_frame(extensions.frame, scene.info.warnings));
     scene.gaussians = GaussianSet(std::move(data));
@@ -237,7 +240,8 @@ Scene parse_flat(Bytes bytes) {
     const Bytes body = bytes.subspan(HeaderBytes);
     const Arrays arrays = split_arrays(header, body);
     const Bytes rest = body.subspan(static_cast<std::size_t>(header.count * header.row_bytes()));
-    return make_scene(header, arrays, (header.flags & FlagExtensions) != 0 ? parse_extensions(rest) : Extensions{});
+    return make_scene(header, arrays,
+                      (header.flags & FlagExtensions) != 0 ? parse_extensions(rest) : Extensions{});
 }
 
 /// Before anything is unpacked: the streams and the splats that follow from the header's count.
@@ -275,7 +279,7 @@ Scene parse_streams(Bytes bytes) {
         const auto raw = toc.read<std::uint64_t>();
         if (raw != header.count * row_bytes[i])
             throw_bad_spz(fmt::format("has a stream of {} bytes where {} splats need {}", raw, header.count,
-                                        header.count * row_bytes[i]));
+                                      header.count * row_bytes[i]));
         streams[i] = decompress_zstd(frames.take(compressed), raw);
     }
     const Bytes extensions = bytes.subspan(HeaderBytesV4, static_cast<std::size_t>(table) - HeaderBytesV4);
@@ -287,7 +291,9 @@ bool is_gzip(Bytes bytes) {
     return bytes.size() >= 2 && bytes[0] == std::byte{0x1f} && bytes[1] == std::byte{0x8b};
 }
 
-bool is_bare(Bytes bytes) { return bytes.size() >= 4 && load_scalar<std::uint32_t>(bytes.data()) == SpzMagic; }
+bool is_bare(Bytes bytes) {
+    return bytes.size() >= 4 && load_scalar<std::uint32_t>(bytes.data()) == SpzMagic;
+}
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// Writer of .spz versions 2, 3 (what common readers know) and 4 (the newest); axes right, up, back as the format's
-// document says.
+// Writer of .spz versions 2, 3 (what common readers know) and 4 (the newest); axes right, up, back as the
+// format's document says.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,11 +17,11 @@ namespace gse::io {
 namespace {
 
 constexpr int OldestVersion = 2, NewestVersion = 4;
-constexpr int WordRotations = 3;         // from this version on a rotation is one word instead of three bytes
-constexpr int SeparateStreams = 4;       // from this version on every attribute is compressed by itself
-constexpr std::uint32_t HeaderOfStreams = 32;   // bytes before the table, where there are no extensions
-constexpr int UsualFractionalBits = 12;  // steps of 1/4096 unit, range +-2048
-constexpr double LargestCode = 8388607;  // 2^23 - 1
+constexpr int WordRotations = 3;    // from this version on a rotation is one word instead of three bytes
+constexpr int SeparateStreams = 4;  // from this version on every attribute is compressed by itself
+constexpr std::uint32_t HeaderOfStreams = 32;  // bytes before the table, where there are no extensions
+constexpr int UsualFractionalBits = 12;        // steps of 1/4096 unit, range +-2048
+constexpr double LargestCode = 8388607;        // 2^23 - 1
 
 /// As many fractional bits (12 at most) as let every position fit; the reference writer would wrap far ones
 /// silently.
@@ -75,12 +75,14 @@ Streams pack(const GaussianData& data, int version, int bits) {
     auto& [position, alpha, colour, scale, rotation, sh] = streams;
     append_positions(position, data.position, bits);
     const std::size_t stride = data.sh_stride();
-    for (const float value : data.log_scale) append_value(scale, to_byte((static_cast<double>(value) + 10) * 16));
+    for (const float value : data.log_scale)
+        append_value(scale, to_byte((static_cast<double>(value) + 10) * 16));
     for (std::size_t row = 0; row < data.size(); ++row) {
         append_value(alpha, to_byte(255 * opacity_from_logit(static_cast<double>(data.opacity_logit[row]))));
         const float* coefficients = data.sh.data() + row * stride;
         for (std::size_t c = 0; c < 3; ++c)
-            append_value(colour, to_byte((static_cast<double>(coefficients[c]) * SpzColourScale + 0.5) * 255));
+            append_value(colour,
+                         to_byte((static_cast<double>(coefficients[c]) * SpzColourScale + 0.5) * 255));
         const float* quaternion = data.rotation.data() + row * 4;
         if (version >= WordRotations) append_value(rotation, pack_rotation(quaternion));
         else append_rotation_bytes(rotation, quaternion);
@@ -109,7 +111,8 @@ std::string join_streams(std::string header, const Streams& streams) {
 
 void check_spz_version(int version) {
     if (version < OldestVersion || version > NewestVersion)
-        throw Error(ErrorCode::InvalidArgument, "version " + std::to_string(version) + " of .spz cannot be written",
+        throw Error(ErrorCode::InvalidArgument,
+                    "version " + std::to_string(version) + " of .spz cannot be written",
                     "use 3 (most programs read it), 4 (the newest) or 2 (the oldest programs)");
 }
 
@@ -119,7 +122,8 @@ std::string write_spz(const Scene& scene, int version) {
     flip_axes(data, {1, -1, -1});
     const int bits = fractional_bits(data.position);
     const Streams streams = pack(data, version, bits);
-    const auto used = std::count_if(streams.begin(), streams.end(), [](const std::string& stream) { return !stream.empty(); });
+    const auto used = std::count_if(streams.begin(), streams.end(),
+                                    [](const std::string& stream) { return !stream.empty(); });
     std::string header;
     append_value(header, SpzMagic);
     append_value(header, static_cast<std::uint32_t>(version));

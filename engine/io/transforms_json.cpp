@@ -57,7 +57,8 @@ Affine operator*(const Affine& a, const Affine& b) {
 }
 
 /// From the world of the file to that of the splats: nerfstudio turns and scales the cameras before training
-/// and says how in dataparser_transforms.json, which it writes beside the exported splats, counted from the world before applied_transform.
+/// and says how in dataparser_transforms.json, which it writes beside the exported splats, counted from the
+/// world before applied_transform.
 struct WorldChange {
     Affine transform;
     double scale = 1;
@@ -68,13 +69,13 @@ WorldChange world_change(const Json& json, std::initializer_list<std::filesystem
     std::filesystem::path file;
     std::error_code ignored;
     for (const auto& folder : folders)
-        if (const auto there = folder / "dataparser_transforms.json"; file.empty() && !folder.empty() && std::filesystem::exists(there, ignored))
+        if (const auto there = folder / "dataparser_transforms.json";
+            file.empty() && !folder.empty() && std::filesystem::exists(there, ignored))
             file = there;
     if (file.empty()) return change;
     const Json parser = parse_json(read_file(file), "dataparser_transforms.json");
     Affine applied;
-    if (json.contains("applied_transform"))
-        applied = affine(json.at("applied_transform"));
+    if (json.contains("applied_transform")) applied = affine(json.at("applied_transform"));
     else  // what nerfstudio's converter did before it said so
         applied.linear = Mat3::from_rows({0, 1, 0, 1, 0, 0, 0, 0, -1});
     change.transform = affine(parser.at("transform")) * inverse(applied);
@@ -204,7 +205,7 @@ void save_transforms_json(const std::filesystem::path& path, const std::vector<V
         const Vec3 centre = camera.centre();
         const Mat3 to_world = camera.rotation.transposed();
         Ordered matrix = Ordered::array();
-        for (int row = 0; row < 3; ++row)   // OpenGL axes: up and back instead of down and forward
+        for (int row = 0; row < 3; ++row)  // OpenGL axes: up and back instead of down and forward
             matrix.push_back({to_world(row, 0), -to_world(row, 1), -to_world(row, 2), centre[row]});
         matrix.push_back({0.0, 0.0, 0.0, 1.0});
         distorted += view.distorted ? 1u : 0u;
@@ -221,11 +222,13 @@ void save_transforms_json(const std::filesystem::path& path, const std::vector<V
     const Ordered identity = {{1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}, {0.0, 0.0, 1.0, 0.0}};
     const Ordered file = {{"camera_model", "OPENCV"}, {"applied_transform", identity}, {"frames", frames}};
     if (distorted > 0)
-        log::warning("{} of {} cameras had lens distortion; they are written as pinholes", distorted, views.size());
+        log::warning("{} of {} cameras had lens distortion; they are written as pinholes", distorted,
+                     views.size());
     std::error_code ignored;
     if (std::filesystem::exists(path.parent_path() / "dataparser_transforms.json", ignored))
-        log::warning("beside {} lies a dataparser_transforms.json: readers turn and scale the cameras by it once more",
-                     path.filename().string());
+        log::warning(
+            "beside {} lies a dataparser_transforms.json: readers turn and scale the cameras by it once more",
+            path.filename().string());
     write_file(path, file.dump(1) + "\n");
 }
 

@@ -41,10 +41,8 @@ void set_aside(const std::filesystem::path& path) {
 void merge(Json& into, const Json& values) {
     for (const auto& [key, value] : values.items()) {
         Json& place = into[key];
-        if (place.is_object() && value.is_object())
-            merge(place, value);
-        else
-            place = value;
+        if (place.is_object() && value.is_object()) merge(place, value);
+        else place = value;
     }
 }
 

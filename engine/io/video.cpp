@@ -30,13 +30,13 @@ struct VideoWriter::State {
 
     std::filesystem::path path;
     PendingFile file;
-    int width = 0, height = 0;  // of the frames handed in
-    io::FilmSize size;          // of the film: even
-    std::unique_ptr<io::FilmEncoder> writer;   // closes its file before that disappears
+    int width = 0, height = 0;                // of the frames handed in
+    io::FilmSize size;                        // of the film: even
+    std::unique_ptr<io::FilmEncoder> writer;  // closes its file before that disappears
     std::string codec;
     bool finished = false;
 
-    using Frame = std::vector<std::uint8_t>;   // rows of blue, green, red
+    using Frame = std::vector<std::uint8_t>;  // rows of blue, green, red
 
     /// Hands a frame to the encoder; waits when it has enough to do. Throws what encoding has thrown.
     void hand_over(Frame frame) {
@@ -84,7 +84,8 @@ private:
     }
     void write(const Frame& frame) {
         writer->write(frame);
-        // The encoder passes over a full disk; without this the rest of a long film would be made for nothing.
+        // The encoder passes over a full disk; without this the rest of a long film would be made for
+        // nothing.
         struct statvfs disk {};
         if (statvfs(file.temporary().c_str(), &disk) == 0 && disk.f_blocks > 0 && disk.f_bfree == 0)
             throw write_error("the film", ENOSPC, path);
@@ -95,7 +96,7 @@ private:
     std::deque<Frame> waiting;
     bool ended = false;
     std::exception_ptr failure;
-    std::jthread encoder;   // ends before what it uses goes
+    std::jthread encoder;  // ends before what it uses goes
 };
 
 namespace {
@@ -136,7 +137,8 @@ void VideoWriter::add(const Image& frame) {
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
             for (int c = 2; c >= 0; --c)
-                picture.push_back(io::to_byte(static_cast<double>(frame.at(x, y, colours == 3 ? c : 0)) * 255));
+                picture.push_back(
+                    io::to_byte(static_cast<double>(frame.at(x, y, colours == 3 ? c : 0)) * 255));
     state_->hand_over(std::move(picture));
 }
 
@@ -146,8 +148,8 @@ void VideoWriter::finish() {
     state_->writer.reset();
     if (!io::film_is_whole(FileBytes(state_->file.temporary()).bytes())) {
         state_->file.write(std::string(ProbeBytes, '\0'));  // as above
-        throw Error(ErrorCode::Unwritable, "the film was not written whole", "check the free space of the disk and write it again",
-                    state_->path);
+        throw Error(ErrorCode::Unwritable, "the film was not written whole",
+                    "check the free space of the disk and write it again", state_->path);
     }
     state_->file.commit();
     state_->finished = true;

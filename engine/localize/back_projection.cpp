@@ -16,9 +16,10 @@ void require_votes(std::span<const MaskedView> views) {
     const auto failed = static_cast<std::size_t>(
         std::count_if(views.begin(), views.end(), [](const MaskedView& view) { return view.failed; }));
     if (views.empty() || failed * 2 > views.size())
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("the words were found in only {} of {} views", views.size() - failed, views.size()),
-                    "name something the scene shows and the model knows, or lower the attention threshold");
+        throw Error(
+            ErrorCode::InvalidArgument,
+            fmt::format("the words were found in only {} of {} views", views.size() - failed, views.size()),
+            "name something the scene shows and the model knows, or lower the attention threshold");
 }
 
 LabelWeights weights_of(const std::vector<double>& masked, std::vector<double> total, int views_used) {
@@ -27,7 +28,8 @@ LabelWeights weights_of(const std::vector<double>& masked, std::vector<double> t
     result.views_used = views_used;
     result.weight.resize(total.size());
     for (std::size_t row = 0; row < total.size(); ++row)
-        result.weight[row] = static_cast<float>(std::clamp(masked[row] / std::max(total[row], least_total), 0.0, 1.0));
+        result.weight[row] =
+            static_cast<float>(std::clamp(masked[row] / std::max(total[row], least_total), 0.0, 1.0));
     result.evidence = std::move(total);
     return result;
 }
@@ -35,19 +37,23 @@ LabelWeights weights_of(const std::vector<double>& masked, std::vector<double> t
 }  // namespace
 
 KeptVotes::Vote* KeptVotes::find(const Camera& camera) {
-    const auto found = std::find_if(votes_.begin(), votes_.end(), [&](const Vote& vote) { return vote.camera == camera; });
+    const auto found =
+        std::find_if(votes_.begin(), votes_.end(), [&](const Vote& vote) { return vote.camera == camera; });
     return found != votes_.end() ? &*found : nullptr;
 }
 
-std::size_t KeptVotes::Vote::bytes() const { return row.size() * RowBytes + mask.data.size() * sizeof mask.data[0]; }
+std::size_t KeptVotes::Vote::bytes() const {
+    return row.size() * RowBytes + mask.data.size() * sizeof mask.data[0];
+}
 
 /// What the view says of every row, in masked_ and total_; returns how many rows it shows.
-std::size_t KeptVotes::cast(const GaussianSpans& gaussians, const MaskedView& view, const raster::Settings& settings,
-                            raster::Rasterizer& rasterizer) {
+std::size_t KeptVotes::cast(const GaussianSpans& gaussians, const MaskedView& view,
+                            const raster::Settings& settings, raster::Rasterizer& rasterizer) {
     masked_.assign(gaussians.size, 0);
     total_.assign(gaussians.size, 0);
     rasterizer.contributions(gaussians, view.camera, settings, view.mask, masked_, total_);
-    return static_cast<std::size_t>(std::count_if(total_.begin(), total_.end(), [](double weight) { return weight != 0; }));
+    return static_cast<std::size_t>(
+        std::count_if(total_.begin(), total_.end(), [](double weight) { return weight != 0; }));
 }
 
 /// Keeps what was cast for the rows that are shown, in place of what the camera's view said before.
@@ -68,14 +74,12 @@ void KeptVotes::keep(const MaskedView& view, std::size_t shown, Vote* old) {
         }
     }
     bytes_ += vote.bytes();
-    if (old != nullptr)
-        *old = std::move(vote);
-    else if (!vote.mask.data.empty())
-        votes_.push_back(std::move(vote));
+    if (old != nullptr) *old = std::move(vote);
+    else if (!vote.mask.data.empty()) votes_.push_back(std::move(vote));
 }
 
-LabelWeights KeptVotes::back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views, const raster::Settings& settings,
-                                     raster::Rasterizer& rasterizer) {
+LabelWeights KeptVotes::back_project(const GaussianSpans& gaussians, std::span<const MaskedView> views,
+                                     const raster::Settings& settings, raster::Rasterizer& rasterizer) {
     require_votes(views);
     std::vector<double> masked(gaussians.size), total(gaussians.size);
     int used = 0;
@@ -113,7 +117,8 @@ LabelWeights back_project(const GaussianSpans& gaussians, std::span<const Masked
     return weights_of(masked, std::move(total), used);
 }
 
-Label label_from_weights(const std::string& name, const LabelWeights& weights, double tau, double least_evidence_px) {
+Label label_from_weights(const std::string& name, const LabelWeights& weights, double tau,
+                         double least_evidence_px) {
     std::vector<std::uint8_t> bits(weights.weight.size());
     for (std::size_t row = 0; row < bits.size(); ++row) {
         const bool known = weights.evidence[row] > least_evidence_px ||

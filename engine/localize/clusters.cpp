@@ -31,7 +31,8 @@ void for_neighbours(const Mask& mask, int x, int y, const std::vector<Offset>& o
     for (const auto& [dx, dy] : offsets) {
         const int u = x + dx, v = y + dy;
         if (u >= 0 && v >= 0 && u < mask.width && v < mask.height)
-            visit(static_cast<std::size_t>(v) * static_cast<std::size_t>(mask.width) + static_cast<std::size_t>(u));
+            visit(static_cast<std::size_t>(v) * static_cast<std::size_t>(mask.width) +
+                  static_cast<std::size_t>(u));
     }
 }
 
@@ -92,7 +93,8 @@ Mask threshold_map(const Image& map, double threshold) {
     return mask;
 }
 
-Mask clean_clusters(const Mask& mask, const Image& map, const DbscanParameters& parameters, double keep_mass) {
+Mask clean_clusters(const Mask& mask, const Image& map, const DbscanParameters& parameters,
+                    double keep_mass) {
     GSE_CHECK_EQ(mask.data.size(), map.data.size());
     const auto clusters = dbscan(mask, parameters);
     std::map<int, double> mass;
@@ -111,7 +113,9 @@ Mask flood_fill(const Mask& open, const Mask& from) {
     Mask reached(open.width, open.height);
     std::vector<std::pair<int, int>> rim;
     const auto reach = [&](int x, int y) {
-        if (x < 0 || y < 0 || x >= open.width || y >= open.height || open.at(x, y) == 0 || reached.at(x, y) != 0) return;
+        if (x < 0 || y < 0 || x >= open.width || y >= open.height || open.at(x, y) == 0 ||
+            reached.at(x, y) != 0)
+            return;
         reached.at(x, y) = 1;
         rim.emplace_back(x, y);
     };
@@ -141,8 +145,11 @@ Mask without_holes(const Mask& mask) {
 Mask dilate(const Mask& mask, double radius_px) {
     const bool grow = radius_px >= 0;
     const double square = radius_px * radius_px;
-    const int reach = static_cast<int>(std::floor(std::abs(radius_px))), width = mask.width, height = mask.height;
-    const auto at = [&](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); };
+    const int reach = static_cast<int>(std::floor(std::abs(radius_px))), width = mask.width,
+              height = mask.height;
+    const auto at = [&](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    };
     // Rows to the nearest pixel that spreads, in each column: then a pixel asks its row, not the whole disc.
     const int far = reach + 1;
     std::vector<int> rows(mask.data.size());
@@ -220,7 +227,8 @@ Taps taps(int position, int from, int to) {
     const double begin = position * scale, end = begin + scale;
     result.first = static_cast<int>(begin);
     for (int cell = result.first; cell < end && cell < from; ++cell)
-        result.weights.push_back((std::min(end, cell + 1.0) - std::max(begin, static_cast<double>(cell))) / scale);
+        result.weights.push_back((std::min(end, cell + 1.0) - std::max(begin, static_cast<double>(cell))) /
+                                 scale);
     return result;
 }
 

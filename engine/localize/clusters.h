@@ -11,11 +11,12 @@ namespace gse::localize {
 /// DBSCAN (Ester et al. 1996) over the set pixels of a mask, distances between pixel centres.
 struct DbscanParameters {
     double eps_px = 2;
-    int min_samples = 4;      // neighbours within eps, the pixel itself included
+    int min_samples = 4;  // neighbours within eps, the pixel itself included
 };
 
-/// Cluster of every pixel: -1 = not set or noise, otherwise 0, 1, ... in raster order of each cluster's first core pixel.
-/// A border pixel within reach of several clusters belongs to the lowest. Exact, O(pixels * eps^2).
+/// Cluster of every pixel: -1 = not set or noise, otherwise 0, 1, ... in raster order of each cluster's first
+/// core pixel. A border pixel within reach of several clusters belongs to the lowest. Exact, O(pixels *
+/// eps^2).
 std::vector<int> dbscan(const Mask& mask, const DbscanParameters& parameters);
 
 /// 1 where map > threshold; `map` is [H,W,1] with maximum 1.

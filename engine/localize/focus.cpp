@@ -10,14 +10,16 @@
 namespace gse::localize {
 namespace {
 
-constexpr float InvisibleLogit = -5.5373f;   // opacity 1/255
+constexpr float InvisibleLogit = -5.5373f;  // opacity 1/255
 
 /// Values of one axis of the visible labelled rows.
-std::vector<double> labelled_coordinates(const GaussianSet& set, std::span<const std::uint8_t> bits, int axis) {
+std::vector<double> labelled_coordinates(const GaussianSet& set, std::span<const std::uint8_t> bits,
+                                         int axis) {
     std::vector<double> values;
     for (std::size_t row = 0; row < set.size(); ++row) {
         const double value = set.position()[row * 3 + static_cast<std::size_t>(axis)];
-        if (bits[row] != 0 && set.opacity_logit()[row] > InvisibleLogit && std::isfinite(value)) values.push_back(value);
+        if (bits[row] != 0 && set.opacity_logit()[row] > InvisibleLogit && std::isfinite(value))
+            values.push_back(value);
     }
     return values;
 }
@@ -31,8 +33,8 @@ double quantile(std::vector<double>& values, double share) {
 
 }  // namespace
 
-OrbitParameters focus_orbit(const GaussianSet& set, std::span<const std::uint8_t> bits, const OrbitParameters& base,
-                            const FocusParameters& parameters) {
+OrbitParameters focus_orbit(const GaussianSet& set, std::span<const std::uint8_t> bits,
+                            const OrbitParameters& base, const FocusParameters& parameters) {
     GSE_CHECK_EQ(bits.size(), set.size());
     Vec3 low, high;
     for (int axis = 0; axis < 3; ++axis) {
@@ -52,7 +54,8 @@ OrbitParameters focus_orbit(const GaussianSet& set, std::span<const std::uint8_t
     return result;
 }
 
-bool worth_refocusing(const OrbitParameters& base, const OrbitParameters& focused, const FocusParameters& parameters) {
+bool worth_refocusing(const OrbitParameters& base, const OrbitParameters& focused,
+                      const FocusParameters& parameters) {
     return focused.radius < parameters.least_change * base.radius;
 }
 

@@ -10,18 +10,19 @@ namespace gse::localize {
 
 /// How far a region fills the picture.
 struct FocusParameters {
-    double fill = 0.62;          // share of the half field of view that the region's radius takes
-    double trim = 0.03;          // share of the labelled rows cut off at either end of every axis
-    double head_room = 0;        // how far above the region's middle the picture's lies, in extents of the region
+    double fill = 0.62;    // share of the half field of view that the region's radius takes
+    double trim = 0.03;    // share of the labelled rows cut off at either end of every axis
+    double head_room = 0;  // how far above the region's middle the picture's lies, in extents of the region
     double least_change = 0.75;  // a new radius above this share of the old one is not worth new pictures
 };
 
-/// Orbit around the rows with bits[row] != 0: centre and radius from their trimmed bounds, the rest from `base`.
-/// Without a visible labelled row `base` comes back unchanged.
-OrbitParameters focus_orbit(const GaussianSet& set, std::span<const std::uint8_t> bits, const OrbitParameters& base,
-                            const FocusParameters& parameters = {});
+/// Orbit around the rows with bits[row] != 0: centre and radius from their trimmed bounds, the rest from
+/// `base`. Without a visible labelled row `base` comes back unchanged.
+OrbitParameters focus_orbit(const GaussianSet& set, std::span<const std::uint8_t> bits,
+                            const OrbitParameters& base, const FocusParameters& parameters = {});
 
 /// True when moving from `base` to `focused` makes the region clearly larger in the pictures.
-bool worth_refocusing(const OrbitParameters& base, const OrbitParameters& focused, const FocusParameters& parameters = {});
+bool worth_refocusing(const OrbitParameters& base, const OrbitParameters& focused,
+                      const FocusParameters& parameters = {});
 
 }  // namespace gse::localize

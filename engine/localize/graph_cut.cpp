@@ -29,7 +29,8 @@ struct Box {
 };
 
 /// Box of the labelled rows with its margin; nothing when none is labelled.
-bool labelled_box(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelWeights& weights, Box& box) {
+bool labelled_box(const GaussianSpans& gaussians, const CutParameters& parameters,
+                  const LabelWeights& weights, Box& box) {
     box.low.fill(std::numeric_limits<double>::max());
     box.high.fill(std::numeric_limits<double>::lowest());
     for (std::size_t row = 0; row < gaussians.size; ++row) {
@@ -40,8 +41,9 @@ bool labelled_box(const GaussianSpans& gaussians, const CutParameters& parameter
         }
     }
     if (box.low[0] > box.high[0]) return false;
-    const double margin = parameters.margin_share * std::hypot(box.high[0] - box.low[0], box.high[1] - box.low[1],
-                                                               box.high[2] - box.low[2]);
+    const double margin =
+        parameters.margin_share *
+        std::hypot(box.high[0] - box.low[0], box.high[1] - box.low[1], box.high[2] - box.low[2]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         box.low[axis] -= margin;
         box.high[axis] += margin;
@@ -55,15 +57,16 @@ bool known(const LabelWeights& weights, const CutParameters& parameters, std::si
 }
 
 /// The rows inside the box that have an opinion and a colour.
-RowPoints taking_part(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelWeights& weights,
-                      const Box& box) {
+RowPoints taking_part(const GaussianSpans& gaussians, const CutParameters& parameters,
+                      const LabelWeights& weights, const Box& box) {
     RowPoints rows;
     const auto stride = static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3;
     for (std::size_t row = 0; row < gaussians.size; ++row) {
         bool inside = known(weights, parameters, row) && std::isfinite(weights.weight[row]);
         for (std::size_t axis = 0; axis < 3 && inside; ++axis) {
             const double place = gaussians.position[row * 3 + axis];
-            inside = place >= box.low[axis] && place <= box.high[axis] && std::isfinite(gaussians.sh[row * stride + axis]);
+            inside = place >= box.low[axis] && place <= box.high[axis] &&
+                     std::isfinite(gaussians.sh[row * stride + axis]);
         }
         if (inside) rows.add(gaussians, row);
     }
@@ -81,27 +84,29 @@ std::vector<float> colours_of(const GaussianSpans& gaussians, const RowPoints& r
 }
 
 /// -log p for "labelled" and "not labelled", each times the trust in the row.
-std::pair<double, double> row_costs(const LabelWeights& weights, const CutParameters& parameters, double mean_evidence,
-                                    std::size_t row) {
+std::pair<double, double> row_costs(const LabelWeights& weights, const CutParameters& parameters,
+                                    double mean_evidence, std::size_t row) {
     const double w = weights.weight[row], tau = std::clamp(parameters.tau, 1e-3, 1 - 1e-3);
     const double even = w < tau ? 0.5 * w / tau : 0.5 + 0.5 * (w - tau) / (1 - tau);
     const double p = std::clamp(even, 1 - SurestProbability, SurestProbability);
     const bool seen = weights.evidence[row] > parameters.least_evidence_px;
-    const double trust = seen ? weights.evidence[row] / (weights.evidence[row] + HalfTrust * mean_evidence) : InferredTrust;
+    const double trust =
+        seen ? weights.evidence[row] / (weights.evidence[row] + HalfTrust * mean_evidence) : InferredTrust;
     return {-trust * std::log(p), -trust * std::log(1 - p)};
 }
 
 constexpr std::uint32_t NoRow = std::numeric_limits<std::uint32_t>::max();
-constexpr double NoEdge = -1;   // cost of a pair that is met from its other row, or does not take part
+constexpr double NoEdge = -1;  // cost of a pair that is met from its other row, or does not take part
 
 /// The energy's numbers for the rows that take part.
 struct Problem {
     RowPoints rows;
-    std::vector<std::pair<double, double>> row_costs;   // [M] of "labelled" and of "not labelled"
-    std::vector<float> colours;                         // [M,3]
-    std::vector<std::uint32_t> nearest;                 // [M,neighbours] indices into the rows; NoRow where there are not so many
-    std::vector<double> edge_costs;                     // [M,neighbours] of cutting the edges to them; or NoEdge
-    std::vector<std::uint8_t> enclosed;                 // [M] 1 where no row beyond the box is as near as the nearest
+    std::vector<std::pair<double, double>> row_costs;  // [M] of "labelled" and of "not labelled"
+    std::vector<float> colours;                        // [M,3]
+    std::vector<std::uint32_t>
+        nearest;  // [M,neighbours] indices into the rows; NoRow where there are not so many
+    std::vector<double> edge_costs;      // [M,neighbours] of cutting the edges to them; or NoEdge
+    std::vector<std::uint8_t> enclosed;  // [M] 1 where no row beyond the box is as near as the nearest
     std::size_t neighbours = 0;
     double smoothness = 0, mean_difference = 0;
 
@@ -113,12 +118,15 @@ struct Problem {
         }
         return sum;
     }
-    std::span<const std::uint32_t> nearest_to(std::size_t i) const { return std::span(nearest).subspan(i * neighbours, neighbours); }
+    std::span<const std::uint32_t> nearest_to(std::size_t i) const {
+        return std::span(nearest).subspan(i * neighbours, neighbours);
+    }
     bool is_near(std::size_t i, std::uint32_t other) const {
         const auto near = nearest_to(i);
         return std::find(near.begin(), near.end(), other) != near.end();
     }
-    /// There is an edge for every pair of which one is among the other's nearest; it costs half where only one is.
+    /// There is an edge for every pair of which one is among the other's nearest; it costs half where only
+    /// one is.
     double edge_cost(std::size_t i, std::uint32_t j) const {
         const bool mutual = is_near(j, static_cast<std::uint32_t>(i));
         if (mutual && j < i) return NoEdge;
@@ -126,8 +134,7 @@ struct Problem {
         return (mutual ? 1.0 : 0.5) * smoothness * alike;
     }
     /// Calls visit(from, to, cost of cutting it) once for every edge.
-    template <class F>
-    void for_each_edge(F&& visit) const {
+    template <class F> void for_each_edge(F&& visit) const {
         for (std::size_t at = 0; at < edge_costs.size(); ++at)
             if (edge_costs[at] != NoEdge) visit(at / neighbours, nearest[at], edge_costs[at]);
     }
@@ -139,15 +146,15 @@ void set_edge_costs(Problem& problem, std::span<const std::uint8_t> inside, Thre
     const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) {
             if (inside[i] == 0) continue;
-            for (std::size_t at = i * problem.neighbours; at < (i + 1) * problem.neighbours && problem.nearest[at] != NoRow; ++at)
-                if (inside[problem.nearest[at]] != 0) problem.edge_costs[at] = problem.edge_cost(i, problem.nearest[at]);
+            for (std::size_t at = i * problem.neighbours;
+                 at < (i + 1) * problem.neighbours && problem.nearest[at] != NoRow; ++at)
+                if (inside[problem.nearest[at]] != 0)
+                    problem.edge_costs[at] = problem.edge_cost(i, problem.nearest[at]);
         }
     };
-    constexpr std::size_t chunk = 4096;   // rows
-    if (threads != nullptr)
-        threads->parallel_for(problem.rows.row.size(), chunk, some);
-    else
-        some(0, problem.rows.row.size(), 0);
+    constexpr std::size_t chunk = 4096;  // rows
+    if (threads != nullptr) threads->parallel_for(problem.rows.row.size(), chunk, some);
+    else some(0, problem.rows.row.size(), 0);
 }
 
 /// Whether a sphere around a row lies in the box.
@@ -165,7 +172,8 @@ void find_nearest(Problem& problem, const Box& box, ThreadPool* threads) {
     std::vector<double> difference(count);
     std::vector<std::uint32_t> found(count);
     problem.enclosed.assign(count, 0);
-    const auto take = [&](std::size_t i, std::span<const std::uint32_t> nearest, std::span<const float> squared) {
+    const auto take = [&](std::size_t i, std::span<const std::uint32_t> nearest,
+                          std::span<const float> squared) {
         problem.enclosed[i] = encloses(box, &problem.rows.position[i * 3], std::sqrt(squared.back())) ? 1 : 0;
         std::uint32_t* next = problem.nearest.data() + i * problem.neighbours;
         for (const auto other : nearest) {
@@ -174,13 +182,14 @@ void find_nearest(Problem& problem, const Box& box, ThreadPool* threads) {
             difference[i] += problem.squared_difference(i, other);
         }
     };
-    nearest_of_all(tree, problem.rows.position, problem.neighbours + 1, threads, take);   // itself among them
+    nearest_of_all(tree, problem.rows.position, problem.neighbours + 1, threads, take);  // itself among them
     const double pairs = std::accumulate(found.begin(), found.end(), 0.0);
-    problem.mean_difference = pairs > 0 ? std::accumulate(difference.begin(), difference.end(), 0.0) / pairs : 0;
+    problem.mean_difference =
+        pairs > 0 ? std::accumulate(difference.begin(), difference.end(), 0.0) / pairs : 0;
 }
 
-Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelWeights& weights,
-                     ThreadPool* threads) {
+Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parameters,
+                     const LabelWeights& weights, ThreadPool* threads) {
     Problem problem;
     Box box;
     if (parameters.neighbours <= 0 || !labelled_box(gaussians, parameters, weights, box)) return problem;
@@ -193,15 +202,16 @@ Problem make_problem(const GaussianSpans& gaussians, const CutParameters& parame
     double mean_evidence = 0;
     for (const auto row : rows) mean_evidence += weights.evidence[row] * share;
     problem.row_costs.reserve(rows.size());
-    for (const auto row : rows) problem.row_costs.push_back(row_costs(weights, parameters, mean_evidence, row));
+    for (const auto row : rows)
+        problem.row_costs.push_back(row_costs(weights, parameters, mean_evidence, row));
     if (!rows.empty()) find_nearest(problem, box, threads);
     return problem;
 }
 
 }  // namespace
 
-double label_energy(const GaussianSpans& gaussians, const CutParameters& parameters, const LabelWeights& weights,
-                    std::span<const std::uint8_t> label) {
+double label_energy(const GaussianSpans& gaussians, const CutParameters& parameters,
+                    const LabelWeights& weights, std::span<const std::uint8_t> label) {
     GSE_CHECK_EQ(label.size(), gaussians.size);
     Problem problem = make_problem(gaussians, parameters, weights, nullptr);
     const auto& rows = problem.rows.row;
@@ -226,15 +236,19 @@ std::vector<std::uint8_t> cut_inside(const Problem& problem, std::span<const std
     int count = 0;
     for (std::size_t i = 0; i < inside.size(); ++i)
         if (inside[i] != 0) vertex[i] = count++;
-    const auto edges = static_cast<unsigned>(
-        std::count_if(problem.edge_costs.begin(), problem.edge_costs.end(), [](double cost) { return cost != NoEdge; }));
-    cv::detail::GCGraph<double> graph(static_cast<unsigned>(count), 2 * edges);   // both ways
-    for (std::size_t i = 0; i < inside.size(); ++i)   // the source's side is "labelled"
-        if (inside[i] != 0) graph.addTermWeights(graph.addVtx(), problem.row_costs[i].second, problem.row_costs[i].first);
-    problem.for_each_edge([&](std::size_t from, std::size_t to, double cost) { graph.addEdges(vertex[from], vertex[to], cost, cost); });
+    const auto edges = static_cast<unsigned>(std::count_if(
+        problem.edge_costs.begin(), problem.edge_costs.end(), [](double cost) { return cost != NoEdge; }));
+    cv::detail::GCGraph<double> graph(static_cast<unsigned>(count), 2 * edges);  // both ways
+    for (std::size_t i = 0; i < inside.size(); ++i)  // the source's side is "labelled"
+        if (inside[i] != 0)
+            graph.addTermWeights(graph.addVtx(), problem.row_costs[i].second, problem.row_costs[i].first);
+    problem.for_each_edge([&](std::size_t from, std::size_t to, double cost) {
+        graph.addEdges(vertex[from], vertex[to], cost, cost);
+    });
     if (count > 0) graph.maxFlow();
     std::vector<std::uint8_t> label(inside.size(), 0);
-    for (std::size_t i = 0; i < inside.size(); ++i) label[i] = inside[i] != 0 && graph.inSourceSegment(vertex[i]) ? 1 : 0;
+    for (std::size_t i = 0; i < inside.size(); ++i)
+        label[i] = inside[i] != 0 && graph.inSourceSegment(vertex[i]) ? 1 : 0;
     return label;
 }
 
@@ -256,7 +270,8 @@ bool grow(const Problem& problem, int steps, std::vector<std::uint8_t>& inside) 
 }
 
 /// Whether a labelled row has an edge to one outside.
-bool leaves(const Problem& problem, std::span<const std::uint8_t> inside, std::span<const std::uint8_t> label) {
+bool leaves(const Problem& problem, std::span<const std::uint8_t> inside,
+            std::span<const std::uint8_t> label) {
     for (std::size_t i = 0; i < inside.size(); ++i)
         for (const auto j : problem.nearest_to(i)) {
             if (j == NoRow) break;
@@ -265,12 +280,14 @@ bool leaves(const Problem& problem, std::span<const std::uint8_t> inside, std::s
     return false;
 }
 
-/// The minimum cut of everything, of which mostly a part has to be cut: that around the rows that prefer the label. What it leaves out
-/// prefers to stay without, and where no labelled row of the part has an edge to it, nothing could cost less: without its edges to the
-/// rest the part's energy is the least of all labels of the part, and the rest has its least by itself.
+/// The minimum cut of everything, of which mostly a part has to be cut: that around the rows that prefer the
+/// label. What it leaves out prefers to stay without, and where no labelled row of the part has an edge to
+/// it, nothing could cost less: without its edges to the rest the part's energy is the least of all labels of
+/// the part, and the rest has its least by itself.
 std::vector<std::uint8_t> cut_around_preferring(Problem& problem, int reach, ThreadPool* threads) {
     std::vector<std::uint8_t> inside(problem.rows.row.size());
-    for (std::size_t i = 0; i < inside.size(); ++i) inside[i] = reach <= 0 || problem.row_costs[i].first < problem.row_costs[i].second ? 1 : 0;
+    for (std::size_t i = 0; i < inside.size(); ++i)
+        inside[i] = reach <= 0 || problem.row_costs[i].first < problem.row_costs[i].second ? 1 : 0;
     for (;; reach *= 2) {
         const bool grown = grow(problem, reach, inside);
         set_edge_costs(problem, inside, threads);
@@ -295,7 +312,7 @@ struct Components {
 struct Component {
     std::uint32_t rows = 0;
     bool beside_label = false;
-    bool enclosed = true;   // none of its neighbours can lie outside the box
+    bool enclosed = true;  // none of its neighbours can lie outside the box
 };
 
 Components components_without(const Problem& problem, std::span<const std::uint8_t> label) {
@@ -308,7 +325,8 @@ Components components_without(const Problem& problem, std::span<const std::uint8
     return components;
 }
 
-std::vector<Component> describe(const Problem& problem, std::span<const std::uint8_t> label, Components& components) {
+std::vector<Component> describe(const Problem& problem, std::span<const std::uint8_t> label,
+                                Components& components) {
     std::vector<Component> about(label.size());
     for (std::uint32_t i = 0; i < label.size(); ++i) {
         if (label[i] == 0) {

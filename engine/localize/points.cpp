@@ -10,7 +10,9 @@
 namespace gse::localize {
 namespace {
 
-double square_distance(const Point& a, double x, double y) { return (a.x - x) * (a.x - x) + (a.y - y) * (a.y - y); }
+double square_distance(const Point& a, double x, double y) {
+    return (a.x - x) * (a.x - x) + (a.y - y) * (a.y - y);
+}
 
 /// Nearest of `points` of the wanted sign, squared; infinity without any.
 double nearest(const std::vector<Point>& points, bool positive, double x, double y) {
@@ -27,13 +29,15 @@ double region_diameter(const Mask& region) {
 }
 
 /// Best allowed pixel for one more point; false when there is none.
-bool add_point(const Image& map, const Mask& allowed, bool positive, double spacing, std::vector<Point>& points) {
+bool add_point(const Image& map, const Mask& allowed, bool positive, double spacing,
+               std::vector<Point>& points) {
     Point best;
     double best_value = 0, best_distance = 0;
     bool found = false;
     for (int y = 0; y < map.height; ++y)
         for (int x = 0; x < map.width; ++x) {
-            if (allowed.at(x, y) == 0 || nearest(points, positive, x + 0.5, y + 0.5) < spacing * spacing) continue;
+            if (allowed.at(x, y) == 0 || nearest(points, positive, x + 0.5, y + 0.5) < spacing * spacing)
+                continue;
             const double value = positive ? map.at(x, y, 0) : -map.at(x, y, 0);
             const double distance = positive ? 0 : nearest(points, true, x + 0.5, y + 0.5);
             if (found && (value < best_value || (value == best_value && distance <= best_distance))) continue;

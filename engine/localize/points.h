@@ -16,14 +16,16 @@ struct Point {
 struct PointParameters {
     int positive = 5;
     int negative = 3;
-    double positive_spacing = 0.15;   // of the region's diameter, at least 2 pixels of a 64-pixel map
-    double negative_spacing = 8.0 / 64;   // of the map's width
-    double negative_margin = 4.0 / 64;    // distance from the region, of the map's width
+    double positive_spacing = 0.15;      // of the region's diameter, at least 2 pixels of a 64-pixel map
+    double negative_spacing = 8.0 / 64;  // of the map's width
+    double negative_margin = 4.0 / 64;   // distance from the region, of the map's width
 };
 
-/// Highest values inside `region` with mutual distance (non-maximum suppression), then lowest values away from it.
-/// Ties go to the pixel farther from the chosen positives, then to raster order. Fewer points where there is no room.
-std::vector<Point> choose_points(const Image& map, const Mask& region, const PointParameters& parameters = {});
+/// Highest values inside `region` with mutual distance (non-maximum suppression), then lowest values away
+/// from it. Ties go to the pixel farther from the chosen positives, then to raster order. Fewer points where
+/// there is no room.
+std::vector<Point> choose_points(const Image& map, const Mask& region,
+                                 const PointParameters& parameters = {});
 
 /// Share of the map's mass inside `region` that `mask` captures (A8); 0 when the region holds none.
 double captured_mass(const Image& map, const Mask& region, const Mask& mask);

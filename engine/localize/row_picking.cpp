@@ -7,7 +7,8 @@ namespace gse::localize {
 
 bool RowPicking::wants_values(const GaussianSet& set) const {
     const bool other_colour = choice_.property == RowProperty::Colour && choice_.colour != measured_.colour;
-    return values_ == nullptr || !of_.shares_all_with(set) || choice_.property != measured_.property || other_colour;
+    return values_ == nullptr || !of_.shares_all_with(set) || choice_.property != measured_.property ||
+           other_colour;
 }
 
 void RowPicking::take(const GaussianSet& set, const RowChoice& choice, Values values) {

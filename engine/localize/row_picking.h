@@ -1,4 +1,5 @@
-// Rows chosen by a property while an artist moves a slider: the values are measured once, the rows follow at once.
+// Rows chosen by a property while an artist moves a slider: the values are measured once, the rows follow at
+// once.
 #pragma once
 
 #include <memory>
@@ -22,8 +23,9 @@ public:
     bool wants_values(const GaussianSet& set) const;
     /// Values of `choice`'s property, measured of `set`.
     void take(const GaussianSet& set, const RowChoice& choice, Values values);
-    /// Chooses anew where the choice or what limits it has changed: `label` (for choices within it) and `hidden` ([N] or empty), which
-    /// is never chosen. True when rows() is another one. Values must have been taken.
+    /// Chooses anew where the choice or what limits it has changed: `label` (for choices within it) and
+    /// `hidden` ([N] or empty), which is never chosen. True when rows() is another one. Values must have been
+    /// taken.
     bool update(const Rows& label, std::span<const std::uint8_t> hidden);
     /// Update anew whatever is known.
     void forget_rows() { rows_ = nullptr; }

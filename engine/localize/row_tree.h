@@ -27,17 +27,15 @@ struct RowPoints {
     }
     std::size_t kdtree_get_point_count() const { return row.size(); }
     float kdtree_get_pt(std::size_t index, std::size_t axis) const { return position[index * 3 + axis]; }
-    template <class Box>
-    bool kdtree_get_bbox(Box&) const {
-        return false;
-    }
+    template <class Box> bool kdtree_get_bbox(Box&) const { return false; }
 };
 
-using RowTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, RowPoints>, RowPoints, 3, std::uint32_t>;
+using RowTree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, RowPoints>, RowPoints,
+                                                    3, std::uint32_t>;
 constexpr std::size_t RowTreeLeaf = 16;
 
-/// The same rows along a space-filling curve: those that follow each other are near each other, and so is in memory what belongs to them.
+/// The same rows along a space-filling curve: those that follow each other are near each other, and so is in
+/// memory what belongs to them.
 inline RowPoints along_curve(const GaussianSpans& gaussians, const RowPoints& rows) {
     RowPoints sorted;
     sorted.row.reserve(rows.row.size());
@@ -46,28 +44,29 @@ inline RowPoints along_curve(const GaussianSpans& gaussians, const RowPoints& ro
     return sorted;
 }
 
-/// The nearest rows of the tree to every point [M,3], none as far away as `reach`: calls take(point, numbers, squared distances), nearest
-/// first, once for each, from any thread of the pool (null = this one). Fast where points that follow each other are near each other.
-inline void nearest_of_all(const RowTree& tree, std::span<const float> points, std::size_t wanted, ThreadPool* threads,
-                           const std::function<void(std::size_t, std::span<const std::uint32_t>, std::span<const float>)>& take,
-                           double reach = std::numeric_limits<double>::infinity()) {
-    const auto least_far = static_cast<float>(std::min(reach * reach, double{std::numeric_limits<float>::max()}));
+/// The nearest rows of the tree to every point [M,3], none as far away as `reach`: calls take(point, numbers,
+/// squared distances), nearest first, once for each, from any thread of the pool (null = this one). Fast
+/// where points that follow each other are near each other.
+inline void nearest_of_all(
+    const RowTree& tree, std::span<const float> points, std::size_t wanted, ThreadPool* threads,
+    const std::function<void(std::size_t, std::span<const std::uint32_t>, std::span<const float>)>& take,
+    double reach = std::numeric_limits<double>::infinity()) {
+    const auto least_far =
+        static_cast<float>(std::min(reach * reach, double{std::numeric_limits<float>::max()}));
     const auto some = [&](std::size_t begin, std::size_t end, unsigned) {
         std::vector<std::uint32_t> nearest(wanted);
         std::vector<float> squared(wanted);
         for (std::size_t i = begin; i < end; ++i) {
             nanoflann::KNNResultSet<float, std::uint32_t> result(wanted);
             result.init(nearest.data(), squared.data());
-            squared.back() = least_far;   // the worst so far: nothing beyond it is looked at
+            squared.back() = least_far;  // the worst so far: nothing beyond it is looked at
             tree.findNeighbors(result, &points[i * 3], nanoflann::SearchParams());
             take(i, std::span(nearest).first(result.size()), std::span(squared).first(result.size()));
         }
     };
     constexpr std::size_t chunk = 4096;
-    if (threads != nullptr)
-        threads->parallel_for(points.size() / 3, chunk, some);
-    else
-        some(0, points.size() / 3, 0);
+    if (threads != nullptr) threads->parallel_for(points.size() / 3, chunk, some);
+    else some(0, points.size() / 3, 0);
 }
 
 inline bool finite_position(const GaussianSpans& gaussians, std::size_t row) {

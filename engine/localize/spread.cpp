@@ -30,13 +30,14 @@ double labelled_diagonal(const RowPoints& seen, const LabelWeights& weights, dou
 
 }  // namespace
 
-void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& parameters, LabelWeights& weights,
-                      ThreadPool* threads) {
+void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& parameters,
+                      LabelWeights& weights, ThreadPool* threads) {
     GSE_CHECK_EQ(weights.weight.size(), gaussians.size);
     weights.inferred.assign(gaussians.size, 0);
     RowPoints seen;
     for (std::size_t row = 0; row < gaussians.size; ++row) {
-        if (weights.evidence[row] <= parameters.least_evidence_px || !finite_position(gaussians, row)) continue;
+        if (weights.evidence[row] <= parameters.least_evidence_px || !finite_position(gaussians, row))
+            continue;
         seen.add(gaussians, row);
     }
     const double reach = parameters.reach_share * labelled_diagonal(seen, weights, parameters.tau);
@@ -45,11 +46,13 @@ void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& pa
     const RowTree tree(3, seen, nanoflann::KDTreeSingleIndexAdaptorParams(RowTreeLeaf));
     RowPoints unseen;
     for (std::size_t row = 0; row < gaussians.size; ++row) {
-        if (weights.evidence[row] > parameters.least_evidence_px || !finite_position(gaussians, row)) continue;
+        if (weights.evidence[row] > parameters.least_evidence_px || !finite_position(gaussians, row))
+            continue;
         unseen.add(gaussians, row);
     }
     unseen = along_curve(gaussians, unseen);
-    const auto take = [&](std::size_t point, std::span<const std::uint32_t> nearest, std::span<const float> squared) {
+    const auto take = [&](std::size_t point, std::span<const std::uint32_t> nearest,
+                          std::span<const float> squared) {
         double opinion = 0, voices = 0;
         for (std::size_t i = 0; i < nearest.size(); ++i) {
             const double distance = std::sqrt(static_cast<double>(squared[i]));
@@ -64,8 +67,9 @@ void spread_to_unseen(const GaussianSpans& gaussians, const SpreadParameters& pa
         weights.weight[row] = static_cast<float>(std::clamp(opinion / voices, 0.0, 1.0));
         weights.inferred[row] = 1;
     };
-    constexpr double JustBeyond = 1 + 1e-6;   // distances are squared in single precision
-    nearest_of_all(tree, unseen.position, static_cast<std::size_t>(parameters.neighbours), threads, take, JustBeyond * reach);
+    constexpr double JustBeyond = 1 + 1e-6;  // distances are squared in single precision
+    nearest_of_all(tree, unseen.position, static_cast<std::size_t>(parameters.neighbours), threads, take,
+                   JustBeyond * reach);
 }
 
 }  // namespace gse::localize

@@ -28,7 +28,8 @@ Camera Camera::resized(int new_width, int new_height) const {
     return result;
 }
 
-Camera Camera::look_at(const Vec3& eye, const Vec3& target, const Vec3& up, double fov_x, int width, int height) {
+Camera Camera::look_at(const Vec3& eye, const Vec3& target, const Vec3& up, double fov_x, int width,
+                       int height) {
     Vec3 forward = normalized(target - eye);
     if (length(forward) == 0) forward = {0, 0, 1};
     Vec3 right = normalized(cross(forward, up));
@@ -52,7 +53,8 @@ Camera orbit_camera(const OrbitParameters& orbit, double azimuth, int width, int
     front = length(front) > 1e-6 ? normalized(front) : any_perpendicular(up);
     const Vec3 side = cross(up, front);
     const Vec3 flat = front * std::cos(azimuth) + side * std::sin(azimuth);
-    const Vec3 eye = orbit.centre + (flat * std::cos(orbit.elevation) + up * std::sin(orbit.elevation)) * orbit.radius;
+    const Vec3 eye =
+        orbit.centre + (flat * std::cos(orbit.elevation) + up * std::sin(orbit.elevation)) * orbit.radius;
     return Camera::look_at(eye, orbit.centre, up, orbit.fov_x, width, height);
 }
 

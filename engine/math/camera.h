@@ -1,4 +1,5 @@
-// Pinhole camera: OpenCV axes (right, down, forward), world to camera, the first pixel's centre at (0.5, 0.5).
+// Pinhole camera: OpenCV axes (right, down, forward), world to camera, the first pixel's centre at (0.5,
+// 0.5).
 #pragma once
 
 #include "engine/math/vec.h"
@@ -9,9 +10,9 @@ namespace gse {
 struct Camera {
     int width = 0;
     int height = 0;
-    double fx = 0, fy = 0, cx = 0, cy = 0;         // pixels
-    Mat3 rotation = Mat3::identity();              // world -> camera
-    Vec3 translation{};                            // camera frame
+    double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels
+    Mat3 rotation = Mat3::identity();       // world -> camera
+    Vec3 translation{};                     // camera frame
 
     bool operator==(const Camera&) const = default;
     /// Camera centre in the world: -R^T t.
@@ -24,13 +25,14 @@ struct Camera {
     Camera resized(int new_width, int new_height) const;
 
     /// Camera at `eye` looking at `target`; `up` is the world's up direction. fov_x in radians.
-    static Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, double fov_x, int width, int height);
+    static Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, double fov_x, int width,
+                          int height);
 };
 
 /// A circle of cameras around a centre.
 struct OrbitParameters {
     Vec3 centre{};
-    Vec3 up{0, -1, 0};        // world up (COLMAP worlds have -y up)
+    Vec3 up{0, -1, 0};  // world up (COLMAP worlds have -y up)
     double radius = 1;
     double elevation = 0.35;  // radians above the horizon
     double fov_x = 0.87;      // radians

@@ -11,7 +11,8 @@ struct SymmetricEigen {
     std::array<Vec3, 3> axis{};
 };
 
-/// Cyclic Jacobi rotations (Golub and Van Loan, 8.5); only the upper triangle is read. Entries must be finite.
+/// Cyclic Jacobi rotations (Golub and Van Loan, 8.5); only the upper triangle is read. Entries must be
+/// finite.
 SymmetricEigen symmetric_eigen(const Mat3& a);
 
 }  // namespace gse

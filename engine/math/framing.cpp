@@ -8,12 +8,14 @@
 namespace gse {
 namespace {
 
-constexpr double FilledShare = 0.9;     // of the picture's width and height, by a box that is to be seen whole
-constexpr double SmallestBox = 1e-9;    // of the box's distance from the origin, so that a point has a camera beside it
+constexpr double FilledShare = 0.9;  // of the picture's width and height, by a box that is to be seen whole
+constexpr double SmallestBox =
+    1e-9;  // of the box's distance from the origin, so that a point has a camera beside it
 
 }  // namespace
 
-double fitting_distance(std::span<const Vec3> points, Vec3 target, const Mat3& rotation, double fov_x, int width, int height) {
+double fitting_distance(std::span<const Vec3> points, Vec3 target, const Mat3& rotation, double fov_x,
+                        int width, int height) {
     const double across = FilledShare * std::tan(0.5 * fov_x), down = across * height / width;
     double distance = 0;
     for (const Vec3& at : points) {
@@ -27,7 +29,8 @@ double fitting_distance(std::span<const Vec3> points, Vec3 target, const Mat3& r
 double fitting_distance(const Bounds& bounds, const Mat3& rotation, double fov_x, int width, int height) {
     std::array<Vec3, 8> corners;
     for (std::size_t corner = 0; corner < corners.size(); ++corner)
-        corners[corner] = {corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
+        corners[corner] = {corner & 1 ? bounds.high.x : bounds.low.x,
+                           corner & 2 ? bounds.high.y : bounds.low.y,
                            corner & 4 ? bounds.high.z : bounds.low.z};
     return fitting_distance(corners, bounds.centre(), rotation, fov_x, width, height);
 }

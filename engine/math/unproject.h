@@ -5,9 +5,12 @@
 
 namespace gse {
 
-/// World point at picture place (x, y) in pixels (a pixel's centre is at its index + 0.5) and depth z along the camera's axis.
+/// World point at picture place (x, y) in pixels (a pixel's centre is at its index + 0.5) and depth z along
+/// the camera's axis.
 inline Vec3 unprojected(const Camera& camera, double x, double y, double z) {
-    return camera.rotation.transposed() * Vec3{(x - camera.cx) / camera.fx * z, (y - camera.cy) / camera.fy * z, z} + camera.centre();
+    return camera.rotation.transposed() *
+               Vec3{(x - camera.cx) / camera.fx * z, (y - camera.cy) / camera.fy * z, z} +
+           camera.centre();
 }
 
 }  // namespace gse

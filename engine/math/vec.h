@@ -1,11 +1,11 @@
-// Vectors, matrices and quaternions of the host side: glm's, in double precision. The one file that includes glm
-// (tests/lint), so that its settings are the same everywhere.
+// Vectors, matrices and quaternions of the host side: glm's, in double precision. The one file that includes
+// glm (tests/lint), so that its settings are the same everywhere.
 #pragma once
 
 #include <array>
 
-#define GLM_FORCE_CTOR_INIT   // a vector without values is zero, a quaternion the identity
-#define GLM_FORCE_XYZW_ONLY   // plain members instead of unions with r, g, b
+#define GLM_FORCE_CTOR_INIT  // a vector without values is zero, a quaternion the identity
+#define GLM_FORCE_XYZW_ONLY  // plain members instead of unions with r, g, b
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
@@ -28,14 +28,17 @@ inline Vec3 normalized(const Vec3& a) {
     return size > 0 ? a / size : Vec3{};
 }
 
-/// 3x3 matrix indexed (row, column), as formulas and files are; glm's own index is the column. Zero without values.
+/// 3x3 matrix indexed (row, column), as formulas and files are; glm's own index is the column. Zero without
+/// values.
 struct Mat3 {
     glm::dmat3 columns{0.0};
 
     Mat3() = default;
     explicit Mat3(const glm::dmat3& matrix) : columns(matrix) {}
     static Mat3 identity() { return Mat3(glm::dmat3(1.0)); }
-    static Mat3 from_columns(const Vec3& a, const Vec3& b, const Vec3& c) { return Mat3(glm::dmat3(a, b, c)); }
+    static Mat3 from_columns(const Vec3& a, const Vec3& b, const Vec3& c) {
+        return Mat3(glm::dmat3(a, b, c));
+    }
     /// Nine numbers row by row, and back.
     static Mat3 from_rows(const std::array<double, 9>& n) {
         return from_columns({n[0], n[3], n[6]}, {n[1], n[4], n[7]}, {n[2], n[5], n[8]});

@@ -18,14 +18,14 @@
 namespace gse::neural {
 namespace {
 
-// Noise levels as shares of the schedule, unless the model states its own (views.md 6: the best single one; starter.md iv for
-// absent things).
+// Noise levels as shares of the schedule, unless the model states its own (views.md 6: the best single one;
+// starter.md iv for absent things).
 const std::vector<double> PresentLevels{0.45};
 const std::vector<double> AbsentLevels{0.85};
 constexpr double AbsentStrength = 0.9;      // img2img must begin at least this noisy for an absent thing ...
 constexpr double AbsentLowestLevel = 0.75;  // ... and only steps above this level are looked at
-constexpr std::int64_t LargestAffinitySide = 32;   // 1024 x 1024 numbers per head and picture (views.md 6)
-constexpr int QueriesPerThread = 4;                // prepared together: a stop request waits for them
+constexpr std::int64_t LargestAffinitySide = 32;  // 1024 x 1024 numbers per head and picture (views.md 6)
+constexpr int QueriesPerThread = 4;               // prepared together: a stop request waits for them
 constexpr std::int64_t BatchPixels =
     64 * 64;  // latent cells per UNet call: one SD image, 16 of the starter's
 
@@ -130,10 +130,10 @@ AttentionCapture BundleAttentionSource::make_capture() const {
     // DAAM, that is everything but the middle and the smallest maps (8x8 at 64x64).
     // Refined maps are as large as the affinities: larger ones would be shrunk again.
     if (sizes.empty() && layers.empty())
-        sizes = parameters_.refinement > 0 && latent > LargestAffinitySide ? std::vector{latent / 2, latent / 4}
-                                                                            : std::vector{latent, latent / 2, latent / 4};
-    else if (sizes.empty())
-        sizes = {latent};
+        sizes = parameters_.refinement > 0 && latent > LargestAffinitySide
+                    ? std::vector{latent / 2, latent / 4}
+                    : std::vector{latent, latent / 2, latent / 4};
+    else if (sizes.empty()) sizes = {latent};
     if (layers.empty()) layers = {"down_blocks", "up_blocks"};
     AttentionCapture capture;
     capture.wants = [layers, sizes](std::string_view layer, std::int64_t height, std::int64_t) {
@@ -148,7 +148,9 @@ void BundleAttentionSource::probe(const edit::AttentionQuery& query, const torch
                                   const torch::Tensor& context, AttentionCapture& capture,
                                   AttentionAccumulator& sum) const {
     const auto& facts = bundle_->facts;
-    auto levels = query.absent ? facts.attention_absent_timesteps : levels_.empty() ? facts.attention_timesteps : levels_;
+    auto levels = query.absent      ? facts.attention_absent_timesteps
+                  : levels_.empty() ? facts.attention_timesteps
+                                    : levels_;
     if (levels.empty()) levels = query.absent ? AbsentLevels : PresentLevels;
     std::vector<torch::Tensor> noises;
     std::vector<std::int64_t> timesteps;
@@ -232,7 +234,9 @@ torch::Tensor BundleAttentionSource::context_of(const std::string& sentence) {
 
 torch::Tensor BundleAttentionSource::latents_of(const Image& picture) {
     return latents_.of(picture, [&](const Image& unknown) {
-        return image_to_latents(*bundle_, resize_square(to_tensor(unknown, bundle_->device), bundle_->image_size()), Codec::Quick);
+        return image_to_latents(*bundle_,
+                                resize_square(to_tensor(unknown, bundle_->device), bundle_->image_size()),
+                                Codec::Quick);
     });
 }
 
@@ -243,14 +247,14 @@ std::size_t BundleAttentionSource::at_once() const {
 
 void BundleAttentionSource::prepare(std::span<const edit::AttentionQuery> queries) {
     if (at_once() == 1) return;
-    prepared_.clear();   // what nobody came for
+    prepared_.clear();  // what nobody came for
     std::vector<std::vector<Image>> answers(queries.size());
     guard_torch("finding the words in the images", [&] {
         for_parts(static_cast<std::int64_t>(queries.size()), true, [&](std::int64_t begin, std::int64_t end) {
             for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
                 try {
                     answers[i] = maps_of(queries[i]);
-                } catch (const Error&) {   // locate() says it where it is asked
+                } catch (const Error&) {  // locate() says it where it is asked
                 }
             }
         });
@@ -263,7 +267,9 @@ std::vector<Image> BundleAttentionSource::locate(const edit::AttentionQuery& que
     if (!prepared_.empty())
         if (auto known = prepared_.extract(edit::question_hash(query))) return std::move(known.mapped());
     std::vector<Image> maps;
-    for_parts(1, at_once() > 1, [&](std::int64_t, std::int64_t) { maps = maps_of(query); });   // as prepare() would have it, bit by bit
+    for_parts(1, at_once() > 1, [&](std::int64_t, std::int64_t) {
+        maps = maps_of(query);
+    });  // as prepare() would have it, bit by bit
     return maps;
 }
 
@@ -281,10 +287,8 @@ std::vector<Image> BundleAttentionSource::maps_of(const edit::AttentionQuery& qu
         const auto latents = latents_of(query.image);
         const auto context = context_of(prompt);
         AttentionAccumulator sum(latents.size(2), static_cast<std::int64_t>(capture.columns.size()));
-        if (parameters_.method == "probes")
-            probe(query, latents, context, capture, sum);
-        else
-            run_img2img(query, latents, context, capture, sum);
+        if (parameters_.method == "probes") probe(query, latents, context, capture, sum);
+        else run_img2img(query, latents, context, capture, sum);
         const auto mean = checked(sum);
         std::vector<Image> images;
         std::int64_t column = 0;

@@ -28,15 +28,15 @@ public:
     void take_affinities(std::vector<AttentionCapture::Map>& affinities);
     /// Mean over everything taken, [k,size,size].
     torch::Tensor mean() const;
-    /// The mean spread `times` along the mean self-attention, S^times A at its size (DiffSegmenter; views.md 6); the mean itself
-    /// where none was taken.
+    /// The mean spread `times` along the mean self-attention, S^times A at its size (DiffSegmenter; views.md
+    /// 6); the mean itself where none was taken.
     torch::Tensor refined(int times) const;
     std::int64_t count() const { return count_; }
 
 private:
     torch::Tensor sum_;
     std::int64_t count_ = 0;
-    torch::Tensor affinity_;   // sum, [s*s,s*s]
+    torch::Tensor affinity_;  // sum, [s*s,s*s]
     std::int64_t affinities_ = 0, affinity_height_ = 0;
 };
 
@@ -59,19 +59,18 @@ private:
     void probe(const edit::AttentionQuery& query, const torch::Tensor& latents, const torch::Tensor& context,
                AttentionCapture& capture, AttentionAccumulator& sum) const;
     void run_img2img(const edit::AttentionQuery& query, const torch::Tensor& latents,
-                     const torch::Tensor& context, AttentionCapture& capture,
-                     AttentionAccumulator& sum);
+                     const torch::Tensor& context, AttentionCapture& capture, AttentionAccumulator& sum);
     /// [1,T,D], encoded once per sentence (method E6).
     torch::Tensor context_of(const std::string& sentence);
 
-    BufferHolder buffers_;   // goes last
+    BufferHolder buffers_;  // goes last
     std::shared_ptr<const ModelBundle> bundle_;
     AttentionParameters parameters_;
-    std::vector<double> levels_;   // of the parameters
-    std::mutex mutex_;   // of the contexts
+    std::vector<double> levels_;  // of the parameters
+    std::mutex mutex_;            // of the contexts
     std::map<std::string, torch::Tensor> contexts_;
     KeptLatents latents_;
-    std::unordered_map<std::uint64_t, std::vector<Image>> prepared_;      // by the question; until it is asked
+    std::unordered_map<std::uint64_t, std::vector<Image>> prepared_;  // by the question; until it is asked
 };
 
 /// "a bear" and "front view" to "a bear, front view".

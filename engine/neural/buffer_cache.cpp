@@ -20,11 +20,11 @@ namespace {
 
 /// In front of every buffer; as long as the alignment that vector instructions are promised.
 struct alignas(64) BufferHeader {
-    std::size_t bytes = 0;   // of the buffer behind it
+    std::size_t bytes = 0;  // of the buffer behind it
 };
 
-constexpr std::size_t Granularity = std::size_t{64} << 10;   // sizes are rounded up to it
-constexpr std::size_t FitShare = 8;   // a kept buffer may be longer than asked for by this part
+constexpr std::size_t Granularity = std::size_t{64} << 10;  // sizes are rounded up to it
+constexpr std::size_t FitShare = 8;  // a kept buffer may be longer than asked for by this part
 
 std::byte* data_of(BufferHeader* header) { return reinterpret_cast<std::byte*>(header + 1); }
 BufferHeader* header_of(void* data) { return static_cast<BufferHeader*>(data) - 1; }
@@ -53,7 +53,7 @@ public:
     }
 
     static BufferCache& instance() {
-        static auto* cache = new BufferCache();   // outlives every tensor
+        static auto* cache = new BufferCache();  // outlives every tensor
         return *cache;
     }
 
@@ -80,11 +80,13 @@ private:
         void* memory = nullptr;
         try {
             memory = c10::alloc_cpu(sizeof(BufferHeader) + bytes);
-        } catch (const c10::Error&) {   // what lies here unused may be what is missing
+        } catch (const c10::Error&) {  // what lies here unused may be what is missing
             release();
             memory = c10::alloc_cpu(sizeof(BufferHeader) + bytes);
         }
-        prefer_huge_pages(memory, sizeof(BufferHeader) + bytes);   // a fault for each 4 KiB costs as much as what is computed with large models
+        prefer_huge_pages(
+            memory, sizeof(BufferHeader) +
+                        bytes);  // a fault for each 4 KiB costs as much as what is computed with large models
         return data_of(new (memory) BufferHeader{bytes});
     }
 
@@ -109,7 +111,7 @@ private:
     }
 
     mutable std::mutex mutex_;
-    mutable std::vector<BufferHeader*> free_;   // the one that was used last is the last
+    mutable std::vector<BufferHeader*> free_;  // the one that was used last is the last
     mutable BufferUse use_;
 };
 

@@ -1,22 +1,25 @@
-// Memory of large tensors is kept for the next ones: a pass of a network asks for the same sizes again and again, and what the
-// system gives anew has to be filled with zeros page by page.
+// Memory of large tensors is kept for the next ones: a pass of a network asks for the same sizes again and
+// again, and what the system gives anew has to be filled with zeros page by page.
 #pragma once
 
 #include <cstddef>
 
 namespace gse::neural {
 
-/// Bytes. Smaller ones the C library keeps, and none that is longer: this is the most that its threshold can be set to.
+/// Bytes. Smaller ones the C library keeps, and none that is longer: this is the most that its threshold can
+/// be set to.
 constexpr std::size_t LeastKeptBuffer = std::size_t{32} << 20;
-constexpr std::size_t MostKeptBytes = std::size_t{768} << 20;   // not in use, in all; beyond it the longest unused go
+constexpr std::size_t MostKeptBytes = std::size_t{768}
+                                      << 20;  // not in use, in all; beyond it the longest unused go
 
 struct BufferUse {
-    std::size_t kept = 0;      // bytes that are not in use
-    std::size_t reused = 0;    // buffers that were given out again so far
-    std::size_t fresh = 0;     // large ones that the system gave so far
+    std::size_t kept = 0;    // bytes that are not in use
+    std::size_t reused = 0;  // buffers that were given out again so far
+    std::size_t fresh = 0;   // large ones that the system gave so far
 };
 
-/// From here on torch's CPU tensors are allocated so; may be called again. Not under a sanitizer, which has to see every one.
+/// From here on torch's CPU tensors are allocated so; may be called again. Not under a sanitizer, which has
+/// to see every one.
 void keep_buffers();
 
 /// Gives back what is not in use, to the system.

@@ -45,9 +45,7 @@ std::vector<double> read_channels(const Json& json, const char* key, std::vector
     std::vector<double> values;
     try {
         values = json.at(key).get<std::vector<double>>();
-    } catch (const nlohmann::json::exception&) {
-        values.clear();
-    }
+    } catch (const nlohmann::json::exception&) { values.clear(); }
     if (values.size() != 3 ||
         !std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); }))
         throw Error(ErrorCode::Malformed, fmt::format("\"{}\" is not a list of three numbers", key), {},

@@ -8,8 +8,8 @@
 
 #include "engine/base/error.h"
 #include "engine/neural/images.h"
-#include "engine/neural/safetensors.h"
 #include "engine/neural/known_sentence.h"
+#include "engine/neural/safetensors.h"
 #include "engine/neural/tokenizer.h"
 #include "engine/neural/torch_errors.h"
 #include "engine/neural/viewpoint_model.h"
@@ -37,16 +37,19 @@ public:
                                         folder.path / "config.json")),
           preprocessing_(ClipPreprocessing::read(config_, folder.path)),
           tokenizer_(std::filesystem::exists(folder.path / "merges.txt") ? folder.path : folder.tokenizer) {
-        if (folder_.known_words.empty() && tokenizer_.vocabulary_size() > config_.text.vocab_size)   // else it is told nothing else
+        if (folder_.known_words.empty() &&
+            tokenizer_.vocabulary_size() > config_.text.vocab_size)  // else it is told nothing else
             throw Error(ErrorCode::Model,
                         fmt::format("the tokenizer has {} tokens but the image-text encoder only {}",
                                     tokenizer_.vocabulary_size(), config_.text.vocab_size),
                         {}, folder.path);
-        model_ = loaded_network<ClipModel>(config_, SafetensorsFile(existing(folder.path / "model.safetensors")), clip_plan());
+        model_ = loaded_network<ClipModel>(
+            config_, SafetensorsFile(existing(folder.path / "model.safetensors")), clip_plan());
         for (auto& parameter : model_->parameters()) parameter.set_requires_grad(false);
         model_->to(folder.device);
         model_->eval();
-        if (!folder.viewpoint.empty()) viewpoint_ = std::make_unique<ViewpointReader>(folder.viewpoint, folder.device);
+        if (!folder.viewpoint.empty())
+            viewpoint_ = std::make_unique<ViewpointReader>(folder.viewpoint, folder.device);
     }
 
     std::vector<float> image(const Image& image) override {

@@ -1,4 +1,5 @@
-// The decoder: a few transformer layers with the norm behind them, one per layer that is shown, the deepest first.
+// The decoder: a few transformer layers with the norm behind them, one per layer that is shown, the deepest
+// first.
 #include "engine/neural/clipseg_model.h"
 
 #include <cmath>
@@ -8,7 +9,8 @@
 
 namespace gse::neural {
 
-ClipSegDecoderImpl::ClipSegDecoderImpl(const ClipSegConfig& config, const WeightOptions& options) : config_(config) {
+ClipSegDecoderImpl::ClipSegDecoderImpl(const ClipSegConfig& config, const WeightOptions& options)
+    : config_(config) {
     const auto width = config.reduce_dim, projection = config.clip.projection_dim;
     film_mul_ = register_module("film_mul", Linear(LinearImpl::Shape{projection, width}, options));
     film_add_ = register_module("film_add", Linear(LinearImpl::Shape{projection, width}, options));
@@ -22,10 +24,12 @@ ClipSegDecoderImpl::ClipSegDecoderImpl(const ClipSegConfig& config, const Weight
     make_enlarging(options);
 }
 
-ClipSegDecoderImpl::Layer ClipSegDecoderImpl::make_layer(torch::nn::ModuleList& list, const WeightOptions& options) {
+ClipSegDecoderImpl::Layer ClipSegDecoderImpl::make_layer(torch::nn::ModuleList& list,
+                                                         const WeightOptions& options) {
     const auto width = config_.reduce_dim, inner = config_.decoder_intermediate_size;
     const double eps = config_.clip.vision.layer_norm_eps;
-    auto all = std::make_shared<torch::nn::Module>(), attention = std::make_shared<torch::nn::Module>(), mlp = std::make_shared<torch::nn::Module>();
+    auto all = std::make_shared<torch::nn::Module>(), attention = std::make_shared<torch::nn::Module>(),
+         mlp = std::make_shared<torch::nn::Module>();
     Layer layer;
     layer.q = attention->register_module("q_proj", Linear(LinearImpl::Shape{width, width}, options));
     layer.k = attention->register_module("k_proj", Linear(LinearImpl::Shape{width, width}, options));
@@ -46,7 +50,8 @@ void ClipSegDecoderImpl::make_enlarging(const WeightOptions& options) {
     const auto as = torch::TensorOptions().device(options.device).dtype(options.dtype);
     const auto width = config_.reduce_dim, patch = config_.clip.vision.patch_size;
     const auto add = [&](torch::nn::Module& module, torch::IntArrayRef shape, std::int64_t out) {
-        enlarging_.push_back({module.register_parameter("weight", torch::zeros(shape, as)), module.register_parameter("bias", torch::zeros({out}, as))});
+        enlarging_.push_back({module.register_parameter("weight", torch::zeros(shape, as)),
+                              module.register_parameter("bias", torch::zeros({out}, as))});
     };
     auto enlarging = std::make_shared<torch::nn::Module>();
     if (!config_.use_complex_transposed_convolution) {
@@ -66,7 +71,9 @@ void ClipSegDecoderImpl::make_enlarging(const WeightOptions& options) {
 }
 
 torch::Tensor ClipSegDecoderImpl::enlarge(const torch::Tensor& x) const {
-    if (enlarging_.size() == 1) return torch::conv_transpose2d(x, enlarging_[0].weight, enlarging_[0].bias, config_.clip.vision.patch_size);
+    if (enlarging_.size() == 1)
+        return torch::conv_transpose2d(x, enlarging_[0].weight, enlarging_[0].bias,
+                                       config_.clip.vision.patch_size);
     const auto step = config_.clip.vision.patch_size / 4;
     auto large = torch::relu(torch::conv2d(x, enlarging_[0].weight, enlarging_[0].bias, 1, 1));
     large = torch::relu(torch::conv_transpose2d(large, enlarging_[1].weight, enlarging_[1].bias, step));
@@ -76,13 +83,16 @@ torch::Tensor ClipSegDecoderImpl::enlarge(const torch::Tensor& x) const {
 torch::Tensor ClipSegDecoderImpl::run_layer(const Layer& layer, const torch::Tensor& x) const {
     AttentionRequest request;
     request.heads = config_.decoder_num_attention_heads;
-    const auto seen = layer.out->forward(attend(layer.q->forward(x), layer.k->forward(x), layer.v->forward(x), request).output);
+    const auto seen = layer.out->forward(
+        attend(layer.q->forward(x), layer.k->forward(x), layer.v->forward(x), request).output);
     const auto mixed = layer.first_norm->forward(x + seen);
     // ReLU, whatever the configuration calls its activation: so the weights were trained.
     return layer.second_norm->forward(mixed + layer.fc2->forward(torch::relu(layer.fc1->forward(mixed))));
 }
 
-torch::Tensor ClipSegDecoderImpl::forward(const std::vector<torch::Tensor>& activations, const torch::Tensor& condition, std::vector<torch::Tensor>* layers) const {
+torch::Tensor ClipSegDecoderImpl::forward(const std::vector<torch::Tensor>& activations,
+                                          const torch::Tensor& condition,
+                                          std::vector<torch::Tensor>* layers) const {
     GSE_CHECK_EQ(activations.size(), layers_.size());
     torch::Tensor x;
     for (std::size_t i = 0; i < layers_.size(); ++i) {
@@ -100,7 +110,8 @@ torch::Tensor ClipSegDecoderImpl::forward(const std::vector<torch::Tensor>& acti
     return enlarge(tokens_to_image(tokens.contiguous(), rows, rows).contiguous()).squeeze(1);
 }
 
-ClipSegModelImpl::ClipSegModelImpl(const ClipSegConfig& config, const WeightOptions& options) : config_(config) {
+ClipSegModelImpl::ClipSegModelImpl(const ClipSegConfig& config, const WeightOptions& options)
+    : config_(config) {
     clip = register_module("clip", ClipModel(config.clip, options));
     decoder_ = register_module("decoder", ClipSegDecoder(config, options));
 }
@@ -108,17 +119,19 @@ ClipSegModelImpl::ClipSegModelImpl(const ClipSegConfig& config, const WeightOpti
 std::vector<torch::Tensor> ClipSegModelImpl::activations(const torch::Tensor& pixels) const {
     const auto encoding = clip->vision->forward(pixels);
     std::vector<torch::Tensor> shown;
-    for (const auto layer : config_.extract_layers) shown.push_back(encoding.hidden_states[static_cast<std::size_t>(layer) + 1]);
+    for (const auto layer : config_.extract_layers)
+        shown.push_back(encoding.hidden_states[static_cast<std::size_t>(layer) + 1]);
     return shown;
 }
 
 LoadPlan clipseg_plan() {
     static constexpr std::string_view towers = "clip.";
-    return {[](const std::string& name) {
-                return WeightSource{name.starts_with(towers) ? std::string(towers) + clip_key(name.substr(towers.size())) : name};
-            },
-            [](const std::string& key) { return key.ends_with(".embeddings.position_ids"); },
-            "text segmenter"};
+    return {
+        [](const std::string& name) {
+            return WeightSource{
+                name.starts_with(towers) ? std::string(towers) + clip_key(name.substr(towers.size())) : name};
+        },
+        [](const std::string& key) { return key.ends_with(".embeddings.position_ids"); }, "text segmenter"};
 }
 
 }  // namespace gse::neural

@@ -1,4 +1,5 @@
-// CLIPSeg (Lüddecke and Ecker 2022): which pixels show what a sentence names, from CLIP's layers and a small decoder.
+// CLIPSeg (Lüddecke and Ecker 2022): which pixels show what a sentence names, from CLIP's layers and a small
+// decoder.
 #pragma once
 
 #include <vector>
@@ -11,9 +12,10 @@ namespace gse::neural {
 class ClipSegDecoderImpl : public torch::nn::Module {
 public:
     ClipSegDecoderImpl(const ClipSegConfig& config, const WeightOptions& options);
-    /// Layers of the image encoder as `extract_layers` names them [B,N,D], and a condition [B,P] -> logits [B,H,W]; `layers` (may be
-    /// null) gets the output of each of the decoder's.
-    torch::Tensor forward(const std::vector<torch::Tensor>& activations, const torch::Tensor& condition, std::vector<torch::Tensor>* layers) const;
+    /// Layers of the image encoder as `extract_layers` names them [B,N,D], and a condition [B,P] -> logits
+    /// [B,H,W]; `layers` (may be null) gets the output of each of the decoder's.
+    torch::Tensor forward(const std::vector<torch::Tensor>& activations, const torch::Tensor& condition,
+                          std::vector<torch::Tensor>* layers) const;
 
 private:
     struct Layer {
@@ -32,7 +34,7 @@ private:
     std::vector<Linear> reduces_;
     std::vector<Layer> layers_;
     Linear film_mul_{nullptr}, film_add_{nullptr};
-    std::vector<Convolution> enlarging_;   // the first is a plain convolution where there are three
+    std::vector<Convolution> enlarging_;  // the first is a plain convolution where there are three
 };
 TORCH_MODULE(ClipSegDecoder);
 
@@ -42,8 +44,10 @@ public:
 
     /// What the decoder is shown of normalised pixels [B,3,H,W], sides multiples of the patch size.
     std::vector<torch::Tensor> activations(const torch::Tensor& pixels) const;
-    /// Logits [B,H,W] of a condition [B,P]: the text encoder's text_embeds, or the image encoder's image_embeds.
-    torch::Tensor logits(const std::vector<torch::Tensor>& activations, const torch::Tensor& condition, std::vector<torch::Tensor>* layers = nullptr) const {
+    /// Logits [B,H,W] of a condition [B,P]: the text encoder's text_embeds, or the image encoder's
+    /// image_embeds.
+    torch::Tensor logits(const std::vector<torch::Tensor>& activations, const torch::Tensor& condition,
+                         std::vector<torch::Tensor>* layers = nullptr) const {
         return decoder_->forward(activations, condition, layers);
     }
     const ClipSegConfig& config() const { return config_; }

@@ -52,14 +52,15 @@ torch::Tensor combine_rows(const torch::Tensor& output, int parts, const Conditi
            conditioning.image_guidance_scale * (thirds[1] - thirds[2]);
 }
 
-torch::Tensor guided_output(const UNet& unet, const torch::Tensor& latents, const torch::Tensor& t, const Conditioning& conditioning,
-                            AttentionCapture* capture) {
+torch::Tensor guided_output(const UNet& unet, const torch::Tensor& latents, const torch::Tensor& t,
+                            const Conditioning& conditioning, AttentionCapture* capture) {
     const auto rows = unet_rows(unet->config(), latents, conditioning);
     auto views = conditioning.views;
     if (views.cameras.defined()) views.cameras = views.cameras.repeat({rows.parts, 1});
     if (views.inpaint.defined()) views.inpaint = views.inpaint.repeat({rows.parts, 1, 1, 1});
     const auto output = unet->forward(rows.input, t, rows.context, capture, rows.time_condition, views);
-    if (views.outline != nullptr && views.outline->defined() && rows.parts == 2) *views.outline = views.outline->chunk(2, 0)[1];
+    if (views.outline != nullptr && views.outline->defined() && rows.parts == 2)
+        *views.outline = views.outline->chunk(2, 0)[1];
     return combine_rows(output, rows.parts, conditioning);
 }
 

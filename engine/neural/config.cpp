@@ -22,13 +22,15 @@ public:
             throw Error(ErrorCode::Malformed, "the network's configuration is not a JSON object", {}, path);
     }
 
-    template <class T>
-    void get(const char* key, T& value) const {
+    template <class T> void get(const char* key, T& value) const {
         if (!has(key)) return;
-        if constexpr (std::is_same_v<T, std::int64_t>) {   // 1e300 is no whole number, and its conversion means nothing
+        if constexpr (std::is_same_v<T, std::int64_t>) {  // 1e300 is no whole number, and its conversion
+                                                          // means nothing
             constexpr double largest = 1e15;
-            if (json_.at(key).is_number_float() && !(std::abs(json_.at(key).template get<double>()) <= largest))
-                throw Error(ErrorCode::Malformed, fmt::format("the configuration's \"{}\" is out of range", key), {}, path_);
+            if (json_.at(key).is_number_float() &&
+                !(std::abs(json_.at(key).template get<double>()) <= largest))
+                throw Error(ErrorCode::Malformed,
+                            fmt::format("the configuration's \"{}\" is out of range", key), {}, path_);
         }
         try {
             json_.at(key).get_to(value);
@@ -49,7 +51,9 @@ public:
     }
     /// The same for a key that tells what the model is.
     void expect_absent(const char* key, const char* model) const {
-        if (has(key)) refuse(fmt::format("this is {}: the configuration asks for \"{}\", which is not supported", model, key));
+        if (has(key))
+            refuse(fmt::format("this is {}: the configuration asks for \"{}\", which is not supported", model,
+                               key));
     }
     void positive(const char* key, std::int64_t value, std::int64_t limit) const {
         if (value < 1 || value > limit)
@@ -73,7 +77,7 @@ private:
 
 constexpr std::int64_t MaxWidth = 1 << 16;
 constexpr std::int64_t MaxLevels = 8;
-constexpr std::int64_t MaxSide = 8192;   // latent cells, or pixels
+constexpr std::int64_t MaxSide = 8192;  // latent cells, or pixels
 
 void check_levels(const Reader& reader, const std::vector<std::int64_t>& channels, std::int64_t groups,
                   std::int64_t layers) {
@@ -177,7 +181,8 @@ UNetConfig UNetConfig::from_json(const Json& json, const std::filesystem::path& 
     reader.expect_absent("num_class_embeds", "an upscaler or another model of classes");
     reader.expect_absent("class_embed_type", "a model of classes or unCLIP");
     reader.expect_absent("encoder_hid_dim", "a model that is told by another encoder (Kandinsky, IF)");
-    for (const char* key : {"time_embedding_dim", "time_embedding_act_fn", "timestep_post_act"}) reader.expect_absent(key);
+    for (const char* key : {"time_embedding_dim", "time_embedding_act_fn", "timestep_post_act"})
+        reader.expect_absent(key);
     UNetConfig config;
     if (reader.has("sample_size") && json.at("sample_size").is_number())
         reader.get("sample_size", config.sample_size);
@@ -295,7 +300,8 @@ TinyAutoencoderConfig TinyAutoencoderConfig::from_json(const Json& json, const s
     encoder_widths.insert(encoder_widths.end(), decoder_widths.begin(), decoder_widths.end());
     if (!encoder_widths.empty()) config.channels = encoder_widths.front();
     for (const auto width : encoder_widths)
-        if (width != config.channels) reader.refuse("a tiny autoencoder whose layers differ in width is not supported");
+        if (width != config.channels)
+            reader.refuse("a tiny autoencoder whose layers differ in width is not supported");
     reader.positive("in_channels", config.in_channels, 16);
     reader.positive("out_channels", config.out_channels, 16);
     reader.positive("latent_channels", config.latent_channels, 64);
@@ -306,7 +312,8 @@ TinyAutoencoderConfig TinyAutoencoderConfig::from_json(const Json& json, const s
     }
     if (config.encoder_blocks.size() != config.decoder_blocks.size())
         reader.malformed("the tiny autoencoder's halves have different numbers of levels");
-    if (!(config.scaling_factor > 0)) reader.malformed("the tiny autoencoder's \"scaling_factor\" must be above 0");
+    if (!(config.scaling_factor > 0))
+        reader.malformed("the tiny autoencoder's \"scaling_factor\" must be above 0");
     return config;
 }
 
@@ -431,7 +438,8 @@ ClipConfig ClipConfig::from_json(const Json& json, const std::filesystem::path& 
 ClipSegConfig ClipSegConfig::from_json(const Json& json, const std::filesystem::path& path) {
     const Reader reader(json, path);
     if (!reader.has("model_type") || json.at("model_type") != "clipseg")
-        throw Error(ErrorCode::Model, "this is no CLIPSeg model", "its config.json says \"model_type\": \"clipseg\"", path);
+        throw Error(ErrorCode::Model, "this is no CLIPSeg model",
+                    "its config.json says \"model_type\": \"clipseg\"", path);
     ClipSegConfig config;
     config.clip = read_towers(reader, path);
     reader.get("extract_layers", config.extract_layers);
@@ -443,9 +451,11 @@ ClipSegConfig ClipSegConfig::from_json(const Json& json, const std::filesystem::
     reader.positive("reduce_dim", config.reduce_dim, MaxWidth);
     reader.positive("decoder_num_attention_heads", config.decoder_num_attention_heads, config.reduce_dim);
     reader.positive("decoder_intermediate_size", config.decoder_intermediate_size, MaxWidth);
-    reader.positive("extract_layers (count)", static_cast<std::int64_t>(config.extract_layers.size()), config.clip.vision.num_hidden_layers);
+    reader.positive("extract_layers (count)", static_cast<std::int64_t>(config.extract_layers.size()),
+                    config.clip.vision.num_hidden_layers);
     for (const auto layer : config.extract_layers)
-        if (layer < 0 || layer >= config.clip.vision.num_hidden_layers) reader.malformed(fmt::format("\"extract_layers\" names the layer {}, which is not there", layer));
+        if (layer < 0 || layer >= config.clip.vision.num_hidden_layers)
+            reader.malformed(fmt::format("\"extract_layers\" names the layer {}, which is not there", layer));
     if (config.reduce_dim % config.decoder_num_attention_heads != 0)
         reader.malformed("\"reduce_dim\" is not a multiple of \"decoder_num_attention_heads\"");
     if (config.use_complex_transposed_convolution && config.clip.vision.patch_size % 4 != 0)

@@ -33,12 +33,14 @@ struct UNetConfig {
     bool upcast_attention = false;
     /// Width of the embedding of a guidance scale that the network takes beside the timestep (LCM); 0 = none.
     std::int64_t time_cond_proj_dim = 0;
-    /// Width of what it is told of each picture's camera (camera_features()); 0 = nothing. Not in the file: a LoRA for shapes brings it.
+    /// Width of what it is told of each picture's camera (camera_features()); 0 = nothing. Not in the file: a
+    /// LoRA for shapes brings it.
     std::int64_t camera_dim = 0;
-    /// Channels in which it is shown the picture that is to change (inpainting()); 0 = none. Not in the file either.
+    /// Channels in which it is shown the picture that is to change (inpainting()); 0 = none. Not in the file
+    /// either.
     std::int64_t inpaint_channels = 0;
-    /// Pixels of an outline along the side of a latent cell, where it also tells which of them what is new covers; 0 = it does not. Not in
-    /// the file either.
+    /// Pixels of an outline along the side of a latent cell, where it also tells which of them what is new
+    /// covers; 0 = it does not. Not in the file either.
     std::int64_t outline_scale = 0;
 
     /// Throws Error (Model, Malformed) naming the key that is wrong or not supported.
@@ -128,11 +130,11 @@ struct ClipConfig {
 /// config.json of CLIPSeg (CLIPSegForImageSegmentation): CLIP's towers and a small decoder on top.
 struct ClipSegConfig {
     ClipConfig clip;
-    std::vector<std::int64_t> extract_layers = {3, 6, 9};   // of the image encoder, that the decoder is shown
+    std::vector<std::int64_t> extract_layers = {3, 6, 9};  // of the image encoder, that the decoder is shown
     std::int64_t reduce_dim = 64;
     std::int64_t decoder_num_attention_heads = 4;
     std::int64_t decoder_intermediate_size = 2048;
-    std::int64_t conditional_layer = 0;                      // where the words come in
+    std::int64_t conditional_layer = 0;  // where the words come in
     bool use_complex_transposed_convolution = false;
 
     static ClipSegConfig from_json(const Json& json, const std::filesystem::path& path);

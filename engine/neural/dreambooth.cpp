@@ -13,8 +13,8 @@
 namespace gse::neural {
 namespace {
 
-/// A network of the same structure whose parameters are those of `source`, in fp32, another type, or each as it is (nullopt):
-/// shared memory where the type stays and no copy is asked for.
+/// A network of the same structure whose parameters are those of `source`, in fp32, another type, or each as
+/// it is (nullopt): shared memory where the type stays and no copy is asked for.
 template <class Holder>
 Holder twin_of(const Holder& source, bool copy, std::optional<torch::Dtype> dtype = torch::kFloat32) {
     const torch::NoGradGuard no_grad;
@@ -22,7 +22,8 @@ Holder twin_of(const Holder& source, bool copy, std::optional<torch::Dtype> dtyp
     auto to = twin->parameters();
     const auto from = source->parameters();
     for (std::size_t i = 0; i < to.size(); ++i) {
-        to[i].set_data(from[i].detach().to(dtype.value_or(from[i].scalar_type()), /*non_blocking=*/false, copy));
+        to[i].set_data(
+            from[i].detach().to(dtype.value_or(from[i].scalar_type()), /*non_blocking=*/false, copy));
         to[i].set_requires_grad(false);
     }
     twin->eval();
@@ -69,10 +70,11 @@ DreamBoothTrainer::DreamBoothTrainer(const ModelBundle& bundle, const DreamBooth
     : bundle_(bundle), parameters_(parameters), pool_(tuning_threads(parameters, bundle.device)) {
     const bool full = parameters.rank == 0;
     if (!full) {
-        lora_.unet = new_lora(lora_targets(*bundle.unet), parameters.rank, Random::stream(parameters.seed, 1).next());
+        lora_.unet =
+            new_lora(lora_targets(*bundle.unet), parameters.rank, Random::stream(parameters.seed, 1).next());
         if (parameters.train_text_encoder)
-            lora_.text =
-                new_lora(lora_targets(*bundle.text_encoder), parameters.rank, Random::stream(parameters.seed, 2).next());
+            lora_.text = new_lora(lora_targets(*bundle.text_encoder), parameters.rank,
+                                  Random::stream(parameters.seed, 2).next());
     }
     for (unsigned i = 0; i < 2; ++i) {
         auto replica = std::make_unique<Replica>();
@@ -84,7 +86,8 @@ DreamBoothTrainer::DreamBoothTrainer(const ModelBundle& bundle, const DreamBooth
         if (full) {
             for (const auto& parameter : replica->unet->parameters()) replica->leaves.push_back(parameter);
             if (parameters.train_text_encoder)
-                for (const auto& parameter : replica->text->parameters()) replica->leaves.push_back(parameter);
+                for (const auto& parameter : replica->text->parameters())
+                    replica->leaves.push_back(parameter);
             for (auto& leaf : replica->leaves) leaf.set_requires_grad(true);
         } else {
             replica->adapt(*replica->unet, lora_.unet);
@@ -111,7 +114,8 @@ torch::Tensor DreamBoothTrainer::batch_loss(Replica& replica, const TuningBatch&
     const auto& schedule = bundle_.schedule;
     const auto noisy = schedule.add_noise(batch.latents, batch.noise, batch.timesteps);
     const auto predicted = replica.unet->forward(noisy, batch.timesteps, context.expand({size, -1, -1}));
-    return torch::mse_loss(predicted.to(torch::kFloat32), schedule.target(batch.latents, batch.noise, batch.timesteps));
+    return torch::mse_loss(predicted.to(torch::kFloat32),
+                           schedule.target(batch.latents, batch.noise, batch.timesteps));
 }
 
 TuningStep DreamBoothTrainer::accumulate(const TuningBatch& instance, const TuningBatch* prior) {
@@ -142,7 +146,8 @@ TuningStep DreamBoothTrainer::accumulate(const TuningBatch& instance, const Tuni
 void DreamBoothTrainer::apply(TuningStep& step) {
     const torch::NoGradGuard no_grad;
     auto& leaves = replicas_[0]->leaves;
-    const double limit = parameters_.max_grad_norm > 0 ? parameters_.max_grad_norm : std::numeric_limits<double>::max();
+    const double limit =
+        parameters_.max_grad_norm > 0 ? parameters_.max_grad_norm : std::numeric_limits<double>::max();
     step.gradient_norm = torch::nn::utils::clip_grad_norm_(leaves, limit);
     step.skipped = !std::isfinite(step.loss) || !std::isfinite(step.gradient_norm);
     if (!step.skipped) optimizer_->step();
@@ -175,9 +180,11 @@ NamedTensors DreamBoothTrainer::trained() const {
         }
     }
     if (!result.empty()) return result;
-    for (const auto& item : replica.unet->named_parameters()) result.emplace_back("unet." + item.key(), item.value());
+    for (const auto& item : replica.unet->named_parameters())
+        result.emplace_back("unet." + item.key(), item.value());
     if (replica.text_is_trained)
-        for (const auto& item : replica.text->named_parameters()) result.emplace_back("text." + item.key(), item.value());
+        for (const auto& item : replica.text->named_parameters())
+            result.emplace_back("text." + item.key(), item.value());
     return result;
 }
 
@@ -196,8 +203,10 @@ std::optional<LoraWeights> DreamBoothTrainer::lora() const {
 
 NamedTensors tuned_weights(const ModelBundle& bundle) {
     NamedTensors tensors;
-    for (const auto& weight : bundle.unet->named_parameters()) tensors.emplace_back("unet." + weight.key(), weight.value());
-    for (const auto& weight : bundle.text_encoder->named_parameters()) tensors.emplace_back("text." + weight.key(), weight.value());
+    for (const auto& weight : bundle.unet->named_parameters())
+        tensors.emplace_back("unet." + weight.key(), weight.value());
+    for (const auto& weight : bundle.text_encoder->named_parameters())
+        tensors.emplace_back("text." + weight.key(), weight.value());
     return tensors;
 }
 

@@ -42,7 +42,8 @@ public:
     DreamBoothTrainer(const ModelBundle& bundle, const DreamBoothParameters& parameters);
     ~DreamBoothTrainer();
 
-    /// Losses and gradients of mean squared error(instance) + prior weight * mean squared error(prior); `prior` may be null.
+    /// Losses and gradients of mean squared error(instance) + prior weight * mean squared error(prior);
+    /// `prior` may be null.
     TuningStep accumulate(const TuningBatch& instance, const TuningBatch* prior);
     /// Limits the gradient and takes one AdamW step, or marks the step as skipped.
     void apply(TuningStep& step);
@@ -70,15 +71,15 @@ private:
     ThreadPool pool_;
 };
 
-/// Counts a step in the report. Throws Error (Model) as soon as most of the `planned` steps were not finite: what little was
-/// learned from the others is of no use.
+/// Counts a step in the report. Throws Error (Model) as soon as most of the `planned` steps were not finite:
+/// what little was learned from the others is of no use.
 void count_step(TuneReport& report, const TuningStep& step, int planned);
 
 /// What a model learns from.
 struct TuningTask {
     std::span<const Image> instance;
     std::string instance_prompt, class_prompt;
-    AnswerMemory* memory = nullptr;   // of pictures of the class that this model drew before; may be null
+    AnswerMemory* memory = nullptr;  // of pictures of the class that this model drew before; may be null
 };
 
 struct TuningResult {
@@ -87,16 +88,16 @@ struct TuningResult {
     TuneReport report;
 };
 
-/// Draws the class pictures, then tunes. Throws Error (Cancelled) on a stop request, (InvalidArgument) without pictures.
-/// The same seed gives the same weights, whatever the number of threads.
-TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameters& parameters, const TuningTask& task,
-                            const JobControl& job);
+/// Draws the class pictures, then tunes. Throws Error (Cancelled) on a stop request, (InvalidArgument)
+/// without pictures. The same seed gives the same weights, whatever the number of threads.
+TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameters& parameters,
+                            const TuningTask& task, const JobControl& job);
 
 /// A copy of the model with a LoRA merged in.
 ModelBundle with_lora(const ModelBundle& bundle, const LoraWeights& weights, double strength);
 
-/// All weights of the UNet and the text encoder, as they are; and a copy of the model with such weights. A file that lacks one
-/// is refused: throws Error (Model).
+/// All weights of the UNet and the text encoder, as they are; and a copy of the model with such weights. A
+/// file that lacks one is refused: throws Error (Model).
 NamedTensors tuned_weights(const ModelBundle& bundle);
 ModelBundle with_weights(const ModelBundle& bundle, const SafetensorsFile& file);
 

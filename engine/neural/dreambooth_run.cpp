@@ -19,7 +19,8 @@
 namespace gse::neural {
 namespace {
 
-constexpr std::int64_t ClassBatch = 4;   // class pictures sampled at once; fixed, so that threads change nothing
+constexpr std::int64_t ClassBatch =
+    4;  // class pictures sampled at once; fixed, so that threads change nothing
 constexpr std::int64_t ProbeCount = 16;  // noise levels of the losses before and after
 constexpr std::int64_t ProbeBatch = 4;
 
@@ -42,7 +43,7 @@ private:
 
 /// Pictures as the VAE sees them: a distribution each, and the prompt they share.
 struct EncodedPictures {
-    torch::Tensor ids;        // [1,T]
+    torch::Tensor ids;              // [1,T]
     torch::Tensor mean, deviation;  // [N,C,h,w] scaled
 
     std::int64_t count() const { return mean.size(0); }
@@ -66,14 +67,10 @@ EncodedPictures encode_instance(const ModelBundle& bundle, const TuningTask& tas
 class ClassPictures {
 public:
     /// `memory` may be null.
-    ClassPictures(const ModelBundle& bundle, const DreamBoothParameters& parameters, const std::string& prompt, AnswerMemory* memory)
-        : bundle_(bundle),
-          parameters_(parameters),
-          sampler_steps_(parameters.class_steps),
-          prompt_(prompt),
-          memory_(memory),
-          context_(bundle.encode_prompts({"", prompt})),
-          ids_(bundle.token_ids({prompt})) {}
+    ClassPictures(const ModelBundle& bundle, const DreamBoothParameters& parameters,
+                  const std::string& prompt, AnswerMemory* memory)
+        : bundle_(bundle), parameters_(parameters), sampler_steps_(parameters.class_steps), prompt_(prompt),
+          memory_(memory), context_(bundle.encode_prompts({"", prompt})), ids_(bundle.token_ids({prompt})) {}
 
     EncodedPictures draw(ThreadPool& pool, const JobControl& job) {
         const std::int64_t batches = (parameters_.class_images + ClassBatch - 1) / ClassBatch;
@@ -92,20 +89,23 @@ public:
         thread_use().cached += found_;
         auto all = torch::cat(latents);
         if (!torch::isfinite(all).all().item<bool>())
-            throw Error(ErrorCode::Model, "a picture drawn from the model is not finite", "its weights are damaged",
-                        bundle_.path);
+            throw Error(ErrorCode::Model, "a picture drawn from the model is not finite",
+                        "its weights are damaged", bundle_.path);
         return {ids_, all, torch::zeros_like(all)};
     }
 
 private:
     /// Pictures in the batch with this number.
-    std::int64_t size_of(std::int64_t index) const { return std::min(ClassBatch, parameters_.class_images - index * ClassBatch); }
+    std::int64_t size_of(std::int64_t index) const {
+        return std::min(ClassBatch, parameters_.class_images - index * ClassBatch);
+    }
 
     torch::Tensor remembered_sample(std::int64_t index, const JobControl& job) {
         if (memory_ == nullptr) return sample(index, job);
         const auto side = bundle_.latent_size();
-        const auto question = fmt::format("pictures of the class\n{}\n{} steps, guidance {}, seed {}, batch {} of {}", prompt_, sampler_steps_,
-                                          parameters_.class_guidance, parameters_.seed, index, size_of(index));
+        const auto question =
+            fmt::format("pictures of the class\n{}\n{} steps, guidance {}, seed {}, batch {} of {}", prompt_,
+                        sampler_steps_, parameters_.class_guidance, parameters_.seed, index, size_of(index));
         auto latents = torch::empty({size_of(index), bundle_.latent_channels(), side, side}, torch::kFloat32);
         if (const auto answer = memory_->find(question); answer && answer->size() == latents.nbytes()) {
             std::copy(answer->begin(), answer->end(), static_cast<char*>(latents.data_ptr()));
@@ -113,7 +113,7 @@ private:
             return latents.to(bundle_.device);
         }
         const auto drawn = sample(index, job);
-        if (job.stop_requested()) return drawn;   // it is not finished
+        if (job.stop_requested()) return drawn;  // it is not finished
         latents.copy_(drawn);
         if (torch::isfinite(latents).all().item<bool>())
             memory_->keep(question, {static_cast<const char*>(latents.data_ptr()), latents.nbytes()});
@@ -145,7 +145,7 @@ private:
     std::int64_t sampler_steps_;
     std::string prompt_;
     AnswerMemory* memory_;
-    std::atomic<std::uint64_t> found_ = 0;   // batches that were drawn before
+    std::atomic<std::uint64_t> found_ = 0;  // batches that were drawn before
     torch::Tensor context_, ids_;
 };
 
@@ -180,8 +180,8 @@ public:
         std::vector<std::int64_t> rows, timesteps;
         for (std::int64_t i = 0; i < size; ++i) {
             rows.push_back(order_.next());
-            timesteps.push_back(
-                static_cast<std::int64_t>(random.below(static_cast<std::uint64_t>(bundle_.schedule.steps()))));
+            timesteps.push_back(static_cast<std::int64_t>(
+                random.below(static_cast<std::uint64_t>(bundle_.schedule.steps()))));
         }
         return make(rows, timesteps, random);
     }
@@ -225,12 +225,14 @@ double mean_loss(DreamBoothTrainer& trainer, const std::vector<TuningBatch>& bat
 
 void check_task(const ModelBundle& bundle, const TuningTask& task) {
     if (task.instance.empty())
-        throw Error(ErrorCode::InvalidArgument, "there are no pictures to learn from", "render at least one view");
+        throw Error(ErrorCode::InvalidArgument, "there are no pictures to learn from",
+                    "render at least one view");
     for (const auto& picture : task.instance)
         if (picture.channels != 3 || picture.pixel_count() == 0 ||
             std::any_of(picture.data.begin(), picture.data.end(), [](float v) { return !std::isfinite(v); }))
-            throw Error(ErrorCode::InvalidArgument, "a picture to learn from is empty or holds values that are not finite",
-                        {}, bundle.path);
+            throw Error(ErrorCode::InvalidArgument,
+                        "a picture to learn from is empty or holds values that are not finite", {},
+                        bundle.path);
 }
 
 /// Steps, report and stop requests; `prior` may be null.
@@ -257,8 +259,8 @@ void count_step(TuneReport& report, const TuningStep& step, int planned) {
     report.skipped += step.skipped ? 1 : 0;
     if (2 * report.skipped <= planned) return;
     throw Error(ErrorCode::Model,
-                fmt::format("{} of the first {} tuning steps were not finite: the model learns nothing", report.skipped,
-                            report.steps),
+                fmt::format("{} of the first {} tuning steps were not finite: the model learns nothing",
+                            report.skipped, report.steps),
                 "use a lower learning rate, or train_text_encoder off");
 }
 
@@ -276,20 +278,25 @@ void side_by_side(ThreadPool& pool, std::size_t count, const std::function<void(
     });
 }
 
-TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameters& parameters, const TuningTask& task,
-                            const JobControl& job) {
+TuningResult run_dreambooth(const ModelBundle& bundle, const DreamBoothParameters& parameters,
+                            const TuningTask& task, const JobControl& job) {
     if (bundle.kind != BundleKind::Plain)
-        throw Error(ErrorCode::Unsupported, fmt::format("a model of the kind \"{}\" cannot learn a scene", kind_name(bundle.kind)),
-                    is_few_step(bundle.kind) ? "let the plain model learn it, with the few steps as a LoRA (--lora)" : "leave DreamBooth off: it sees the scene",
+        throw Error(ErrorCode::Unsupported,
+                    fmt::format("a model of the kind \"{}\" cannot learn a scene", kind_name(bundle.kind)),
+                    is_few_step(bundle.kind)
+                        ? "let the plain model learn it, with the few steps as a LoRA (--lora)"
+                        : "leave DreamBooth off: it sees the scene",
                     bundle.path);
     check_task(bundle, task);
     const double start = wall_seconds();
     TuneReport report;
-    BatchSource instance(bundle, encode_instance(bundle, task), Random::stream(parameters.seed, InstanceStream).next());
+    BatchSource instance(bundle, encode_instance(bundle, task),
+                         Random::stream(parameters.seed, InstanceStream).next());
     std::optional<BatchSource> prior;
     if (parameters.prior_weight > 0 && parameters.class_images > 0) {
         ThreadPool pool(tuning_threads(parameters, bundle.device));
-        prior.emplace(bundle, ClassPictures(bundle, parameters, task.class_prompt, task.memory).draw(pool, job),
+        prior.emplace(bundle,
+                      ClassPictures(bundle, parameters, task.class_prompt, task.memory).draw(pool, job),
                       Random::stream(parameters.seed, PriorStream).next());
         report.class_seconds = wall_seconds() - start;
     }

@@ -15,9 +15,9 @@ namespace gse::neural {
 
 class KeptLatents {
 public:
-    /// Those of `picture`, by encode(picture) where they are not known; several threads may ask, for different pictures.
-    template <class Encode>
-    torch::Tensor of(const Image& picture, Encode&& encode) {
+    /// Those of `picture`, by encode(picture) where they are not known; several threads may ask, for
+    /// different pictures.
+    template <class Encode> torch::Tensor of(const Image& picture, Encode&& encode) {
         Hash hash;
         hash.image(picture);
         {
@@ -31,7 +31,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t Most = 256;   // 64 KB each of a picture of 512 pixels
+    static constexpr std::size_t Most = 256;  // 64 KB each of a picture of 512 pixels
     std::mutex mutex_;
     std::unordered_map<std::uint64_t, torch::Tensor> known_;
 };

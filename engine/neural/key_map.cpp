@@ -35,8 +35,7 @@ struct Rename {
 };
 
 /// Replaces the beginning of `name` by the first rule that fits.
-template <std::size_t N>
-std::string renamed(const std::string& name, const std::array<Rename, N>& rules) {
+template <std::size_t N> std::string renamed(const std::string& name, const std::array<Rename, N>& rules) {
     for (const auto& rule : rules)
         if (name.starts_with(rule.from)) return std::string(rule.to) + name.substr(rule.from.size());
     return name;
@@ -84,8 +83,8 @@ std::string unet_key(const std::string& name, const UNetConfig& config) {
 }
 
 constexpr std::array VaeAttentionNames{Rename{"group_norm.", "norm."}, Rename{"to_q.", "q."},
-                                  Rename{"to_k.", "k."}, Rename{"to_v.", "v."},
-                                  Rename{"to_out.0.", "proj_out."}};
+                                       Rename{"to_k.", "k."}, Rename{"to_v.", "v."},
+                                       Rename{"to_out.0.", "proj_out."}};
 constexpr std::array VaeResnetNames{Rename{"conv_shortcut.", "nin_shortcut."}};
 constexpr std::array VaeHalf{Rename{"conv_norm_out.", "norm_out."}};
 
@@ -101,7 +100,8 @@ std::string vae_half_key(const Words& words, std::int64_t levels) {
     }
     if (words[1] == "mid_block") {
         if (words[2] == "attentions") return "mid.attn_1." + renamed(join(words, 4), VaeAttentionNames);
-        return fmt::format("mid.block_{}.{}", words[3] == "0" ? 1 : 2, renamed(join(words, 4), VaeResnetNames));
+        return fmt::format("mid.block_{}.{}", words[3] == "0" ? 1 : 2,
+                           renamed(join(words, 4), VaeResnetNames));
     }
     return renamed(join(words, 1), VaeHalf);
 }
@@ -155,7 +155,8 @@ bool ignored_open_clip(const std::string& key, std::int64_t layers) {
     std::int64_t layer = 0;
     const char* digits = key.data() + blocks.size();
     const auto read = std::from_chars(digits, key.data() + key.size(), layer);
-    return read.ec == std::errc() ? layer >= layers : read.ec == std::errc::result_out_of_range && *digits != '-';
+    return read.ec == std::errc() ? layer >= layers
+                                  : read.ec == std::errc::result_out_of_range && *digits != '-';
 }
 
 const std::vector<std::int64_t>& shape_at(const SafetensorsFile& file, const std::string& key) {

@@ -7,11 +7,12 @@
 namespace gse::neural {
 namespace {
 
-constexpr unsigned char FirstOfUtf8 = 0x80;   // bytes from here on are parts of letters beyond ASCII
+constexpr unsigned char FirstOfUtf8 = 0x80;  // bytes from here on are parts of letters beyond ASCII
 
 }  // namespace
 
-std::string known_part(const std::string& sentence, const std::vector<std::string>& known, const std::string& signs) {
+std::string known_part(const std::string& sentence, const std::vector<std::string>& known,
+                       const std::string& signs) {
     std::string result, word;
     const auto append = [&](const std::string& kept) {
         if (!result.empty()) result += ' ';

@@ -6,8 +6,9 @@
 
 namespace gse::neural {
 
-/// The sentence without words that are not in `known` (lower case), its punctuation reduced to commas. `signs`: characters that are words of
-/// their own, and stay.
-std::string known_part(const std::string& sentence, const std::vector<std::string>& known, const std::string& signs = {});
+/// The sentence without words that are not in `known` (lower case), its punctuation reduced to commas.
+/// `signs`: characters that are words of their own, and stay.
+std::string known_part(const std::string& sentence, const std::vector<std::string>& known,
+                       const std::string& signs = {});
 
 }  // namespace gse::neural

@@ -32,7 +32,8 @@ std::string flat_name(std::string name) {
 torch::Tensor uniform(torch::IntArrayRef shape, double bound, Random& random) {
     auto tensor = torch::empty(shape, torch::kFloat32);
     float* values = tensor.data_ptr<float>();
-    for (std::int64_t i = 0; i < tensor.numel(); ++i) values[i] = static_cast<float>(random.uniform(-bound, bound));
+    for (std::int64_t i = 0; i < tensor.numel(); ++i)
+        values[i] = static_cast<float>(random.uniform(-bound, bound));
     return tensor;
 }
 
@@ -71,11 +72,12 @@ std::map<std::string, torch::Tensor> weights_by_layer(const torch::nn::Module& n
     return weights;
 }
 
-/// The weight with its change, some rows after the other, so that what is in between stays near the processor: as whole matrices it
-/// goes to memory and back five times.
+/// The weight with its change, some rows after the other, so that what is in between stays near the
+/// processor: as whole matrices it goes to memory and back five times.
 torch::Tensor changed_in_parts(const torch::Tensor& weight, const LoraFactor& factor, double strength) {
     constexpr std::int64_t numbers_at_once = 1 << 18;
-    const auto up = factor.up.to(torch::kFloat32).flatten(1) * (factor.scale() * strength), down = factor.down.to(torch::kFloat32).flatten(1);
+    const auto up = factor.up.to(torch::kFloat32).flatten(1) * (factor.scale() * strength),
+               down = factor.down.to(torch::kFloat32).flatten(1);
     const auto before = weight.flatten(1);
     auto changed = torch::empty_like(weight);
     auto after = changed.view({before.size(0), before.size(1)});
@@ -88,7 +90,9 @@ torch::Tensor changed_in_parts(const torch::Tensor& weight, const LoraFactor& fa
     return changed;
 }
 
-std::string shape_text(const torch::Tensor& tensor) { return fmt::format("[{}]", fmt::join(tensor.sizes(), ",")); }
+std::string shape_text(const torch::Tensor& tensor) {
+    return fmt::format("[{}]", fmt::join(tensor.sizes(), ","));
+}
 
 }  // namespace
 
@@ -96,8 +100,10 @@ torch::Tensor LoraFactor::change_of(const torch::Tensor& weight) const {
     const auto left = up.to(torch::kFloat32).flatten(1), right = down.to(torch::kFloat32).flatten(1);
     if (!mid.defined()) return (left.mm(right) * scale()).view(weight.sizes());
     // out x rank, rank x rank x kernel, rank x in: one matrix product on either side of the middle.
-    const auto rows = left.mm(mid.to(torch::kFloat32).flatten(1)).view({left.size(0), mid.size(1), -1});              // [out,r,kk]
-    return (rows.transpose(1, 2).matmul(right).transpose(1, 2) * scale()).reshape(weight.sizes());   // [out,in,kk]
+    const auto rows =
+        left.mm(mid.to(torch::kFloat32).flatten(1)).view({left.size(0), mid.size(1), -1});  // [out,r,kk]
+    return (rows.transpose(1, 2).matmul(right).transpose(1, 2) * scale())
+        .reshape(weight.sizes());  // [out,in,kk]
 }
 
 std::vector<LoraTarget> lora_targets(const torch::nn::Module& network) {
@@ -112,7 +118,8 @@ std::vector<LoraTarget> lora_targets(const torch::nn::Module& network) {
     return targets;
 }
 
-std::vector<LoraFactor> new_lora(const std::vector<LoraTarget>& targets, std::int64_t rank, std::uint64_t seed) {
+std::vector<LoraFactor> new_lora(const std::vector<LoraTarget>& targets, std::int64_t rank,
+                                 std::uint64_t seed) {
     std::vector<LoraFactor> factors;
     Random random(seed);
     for (const auto& target : targets) {
@@ -130,7 +137,8 @@ std::vector<LoraFactor> new_lora(const std::vector<LoraTarget>& targets, std::in
     return factors;
 }
 
-void check_lora(const torch::nn::Module& network, const std::vector<LoraFactor>& factors, const std::filesystem::path& path) {
+void check_lora(const torch::nn::Module& network, const std::vector<LoraFactor>& factors,
+                const std::filesystem::path& path) {
     const auto weights = weights_by_layer(network);
     std::size_t unknown = 0;
     const LoraFactor* first_unknown = nullptr;
@@ -140,18 +148,20 @@ void check_lora(const torch::nn::Module& network, const std::vector<LoraFactor>&
         if (found == weights.end()) {
             if (unknown++ == 0) first_unknown = &factor;
         } else if (!fits(factor, found->second)) {
-            throw Error(ErrorCode::Model,
-                        fmt::format("the LoRA's change of \"{}\" has another shape: {} and {} do not make {}", name,
-                                    shape_text(factor.down), shape_text(factor.up), shape_text(found->second)),
-                        "it was made for a model of another size: use it with the model it was made for", path);
+            throw Error(
+                ErrorCode::Model,
+                fmt::format("the LoRA's change of \"{}\" has another shape: {} and {} do not make {}", name,
+                            shape_text(factor.down), shape_text(factor.up), shape_text(found->second)),
+                "it was made for a model of another size: use it with the model it was made for", path);
         }
     }
     if (first_unknown == nullptr) return;
     const auto& name = first_unknown->key.empty() ? first_unknown->layer : first_unknown->key;
-    throw Error(ErrorCode::Model,
-                fmt::format("the LoRA changes a layer the model does not have, \"{}\" ({} of {} are not there)", name, unknown,
-                            factors.size()),
-                "it was made for another kind of model: use it with the one it was made for", path);
+    throw Error(
+        ErrorCode::Model,
+        fmt::format("the LoRA changes a layer the model does not have, \"{}\" ({} of {} are not there)", name,
+                    unknown, factors.size()),
+        "it was made for another kind of model: use it with the one it was made for", path);
 }
 
 void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& factors, double strength) {
@@ -163,20 +173,27 @@ void merge_lora(torch::nn::Module& network, const std::vector<LoraFactor>& facto
         auto here = factor;
         for (auto* part : {&here.down, &here.up, &here.mid})
             if (part->defined()) *part = part->to(weight.device());
-        weight.set_data(here.mid.defined() ? (weight.to(torch::kFloat32) + here.change_of(weight) * strength).to(weight.scalar_type())
-                                           : changed_in_parts(weight, here, strength));
+        weight.set_data(
+            here.mid.defined()
+                ? (weight.to(torch::kFloat32) + here.change_of(weight) * strength).to(weight.scalar_type())
+                : changed_in_parts(weight, here, strength));
     };
     std::set<std::string> layers;
     for (const auto& factor : factors) layers.insert(factor.layer);
-    const bool apart = layers.size() == factors.size() && (weights.empty() || weights.begin()->second.device().is_cpu());
-    const std::int64_t threads = apart ? part_threads() : 1;   // layers are of all sizes: each takes every n-th
+    const bool apart =
+        layers.size() == factors.size() && (weights.empty() || weights.begin()->second.device().is_cpu());
+    const std::int64_t threads =
+        apart ? part_threads() : 1;  // layers are of all sizes: each takes every n-th
     for_parts(threads, apart, [&](std::int64_t begin, std::int64_t end) {
         for (auto first = begin; first < end; ++first)
-            for (auto i = static_cast<std::size_t>(first); i < factors.size(); i += static_cast<std::size_t>(threads)) merge(factors[i]);
+            for (auto i = static_cast<std::size_t>(first); i < factors.size();
+                 i += static_cast<std::size_t>(threads))
+                merge(factors[i]);
     });
 }
 
-std::vector<LoraFactor> lora_between(const torch::nn::Module& before, const torch::nn::Module& after, std::int64_t rank) {
+std::vector<LoraFactor> lora_between(const torch::nn::Module& before, const torch::nn::Module& after,
+                                     std::int64_t rank) {
     const torch::NoGradGuard no_grad;
     const auto from = weights_by_layer(before);
     std::vector<LoraFactor> factors;
@@ -205,8 +222,11 @@ void write_lora(const std::filesystem::path& path, const LoraWeights& weights, t
     const auto add = [&](std::string_view prefix, const std::vector<LoraFactor>& factors) {
         for (const auto& factor : factors) {
             const auto stem = std::string(prefix) + factor.layer;
-            const auto plain = [type](const torch::Tensor& t) { return t.detach().to(torch::kCPU, type).contiguous(); };
-            tensors.emplace_back(stem + std::string(LoraAlpha), torch::tensor(static_cast<float>(factor.alpha)));
+            const auto plain = [type](const torch::Tensor& t) {
+                return t.detach().to(torch::kCPU, type).contiguous();
+            };
+            tensors.emplace_back(stem + std::string(LoraAlpha),
+                                 torch::tensor(static_cast<float>(factor.alpha)));
             tensors.emplace_back(stem + std::string(LoraDown), plain(factor.down));
             tensors.emplace_back(stem + std::string(LoraUp), plain(factor.up));
         }

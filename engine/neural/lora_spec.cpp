@@ -21,7 +21,9 @@ bool says_word(const std::string& text, std::string_view word) {
     const auto lower = [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); };
     std::string plain(text);
     std::transform(plain.begin(), plain.end(), plain.begin(), lower);
-    const auto is_letter = [&](std::size_t at) { return at < plain.size() && std::isalpha(static_cast<unsigned char>(plain[at])); };
+    const auto is_letter = [&](std::size_t at) {
+        return at < plain.size() && std::isalpha(static_cast<unsigned char>(plain[at]));
+    };
     for (auto at = plain.find(word); at != std::string::npos; at = plain.find(word, at + 1))
         if ((at == 0 || !is_letter(at - 1)) && !is_letter(at + word.size())) return true;
     return false;
@@ -51,7 +53,8 @@ LoraSpec parse_lora(const std::string& text) {
     if (!fs::exists(lora.file, ignored) && read_strength(text, colon, strength)) {
         if (!std::isfinite(strength) || std::abs(strength) > MostLoraStrength)
             throw Error(ErrorCode::InvalidArgument,
-                        fmt::format("the LoRA's strength {} is outside {}..{}", text.substr(colon + 1), -MostLoraStrength, MostLoraStrength),
+                        fmt::format("the LoRA's strength {} is outside {}..{}", text.substr(colon + 1),
+                                    -MostLoraStrength, MostLoraStrength),
                         "1 is as it was trained, 0 is without it", text.substr(0, colon));
         lora = {text.substr(0, colon), strength};
     }
@@ -71,10 +74,12 @@ std::vector<LoraSpec> find_loras(const std::vector<std::string>& texts) {
     for (const auto& text : texts) {
         const auto lora = parse_lora(text);
         if (!fs::exists(lora.file, ignored))
-            throw Error(ErrorCode::NotFound, "there is no LoRA file here", "name it as FILE or FILE:strength", lora.file);
+            throw Error(ErrorCode::NotFound, "there is no LoRA file here", "name it as FILE or FILE:strength",
+                        lora.file);
         if (fs::is_directory(lora.file, ignored) || lora.file.extension() != ".safetensors")
             throw Error(ErrorCode::Unsupported, "this is not a LoRA file that can be read",
-                        "LoRAs are read from .safetensors files; pickled ones can run programs: convert them", lora.file);
+                        "LoRAs are read from .safetensors files; pickled ones can run programs: convert them",
+                        lora.file);
         loras.push_back(lora);
     }
     return loras;
@@ -82,7 +87,8 @@ std::vector<LoraSpec> find_loras(const std::vector<std::string>& texts) {
 
 LoraMark lora_mark(const fs::path& file) {
     const auto header = safetensors_header(file);
-    const auto metadata = header.is_object() && header.contains("__metadata__") ? header["__metadata__"] : nlohmann::json();
+    const auto metadata =
+        header.is_object() && header.contains("__metadata__") ? header["__metadata__"] : nlohmann::json();
     std::vector<std::string> texts;
     for (const char* title : {"modelspec.title", "ss_output_name"})
         if (metadata.is_object() && metadata.contains(title) && metadata[title].is_string())

@@ -15,15 +15,16 @@ struct LoraSpec {
     double strength = 1;
 };
 
-/// "FILE" or "FILE:strength"; a colon that no number follows belongs to the name. A folder means the file in it that diffusers
-/// or PEFT writes. Throws Error (InvalidArgument) for a strength that is not within +-MostLoraStrength.
+/// "FILE" or "FILE:strength"; a colon that no number follows belongs to the name. A folder means the file in
+/// it that diffusers or PEFT writes. Throws Error (InvalidArgument) for a strength that is not within
+/// +-MostLoraStrength.
 LoraSpec parse_lora(const std::string& text);
 constexpr double MostLoraStrength = 10;
 /// The text that parse_lora() reads.
 std::string lora_text(const LoraSpec& lora);
 
-/// All of them, in order. Throws Error as parse_lora() does, and (NotFound, Unsupported) for a file that is not there or is
-/// pickled.
+/// All of them, in order. Throws Error as parse_lora() does, and (NotFound, Unsupported) for a file that is
+/// not there or is pickled.
 std::vector<LoraSpec> find_loras(const std::vector<std::string>& texts);
 
 /// What the file's metadata, its name or the name of its folder says: "lcm" or "tcd" as a word of its own.

@@ -5,8 +5,9 @@
 
 namespace gse::neural {
 
-/// While it lives, convolutions and matrix products of this thread compute in bfloat16 (mixed precision, Micikevicius et al.
-/// 2018; bfloat16 has the range of float, so losses need no scaling). Weights and their gradients stay in float.
+/// While it lives, convolutions and matrix products of this thread compute in bfloat16 (mixed precision,
+/// Micikevicius et al. 2018; bfloat16 has the range of float, so losses need no scaling). Weights and their
+/// gradients stay in float.
 class MixedPrecision {
 public:
     explicit MixedPrecision(bool on, bool cuda) : on_(on), cuda_(cuda) { set(on_); }

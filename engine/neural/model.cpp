@@ -36,47 +36,58 @@ struct Distilled {
 };
 using DistilledLoras = std::vector<Distilled>;
 
-std::shared_ptr<const ModelBundle> distilled(std::shared_ptr<const ModelBundle> bundle, const DistilledLoras& loras) {
+std::shared_ptr<const ModelBundle> distilled(std::shared_ptr<const ModelBundle> bundle,
+                                             const DistilledLoras& loras) {
     for (const auto& lora : loras) {
         auto merged = with_lora(*bundle, lora.weights, lora.strength);
-        if (merged.kind == BundleKind::Plain) merged.kind = lora.mark == LoraMark::Tcd ? BundleKind::Tcd : BundleKind::Lcm;
+        if (merged.kind == BundleKind::Plain)
+            merged.kind = lora.mark == LoraMark::Tcd ? BundleKind::Tcd : BundleKind::Lcm;
         bundle = std::make_shared<const ModelBundle>(std::move(merged));
     }
     return bundle;
 }
 
-/// A distilled model's answer at a noise level is not the score: the weights without what was distilled are probed, pull and learn.
+/// A distilled model's answer at a noise level is not the score: the weights without what was distilled are
+/// probed, pull and learn.
 class Model final : public TextToImage {
 public:
     using Bundle = std::shared_ptr<const ModelBundle>;
     Model(ModelBundle bundle, DistilledLoras fast)
-        : loaded_(std::make_shared<const ModelBundle>(std::move(bundle))), slow_(loaded_), fast_(std::move(fast)),
-          bundle_(distilled(slow_, fast_)) {}
+        : loaded_(std::make_shared<const ModelBundle>(std::move(bundle))), slow_(loaded_),
+          fast_(std::move(fast)), bundle_(distilled(slow_, fast_)) {}
     Model(Bundle loaded, Bundle tuned, std::optional<LoraWeights> lora, DistilledLoras fast)
-        : loaded_(std::move(loaded)), slow_(std::move(tuned)), fast_(std::move(fast)), bundle_(distilled(slow_, fast_)),
-          lora_(std::move(lora)) {}
+        : loaded_(std::move(loaded)), slow_(std::move(tuned)), fast_(std::move(fast)),
+          bundle_(distilled(slow_, fast_)), lora_(std::move(lora)) {}
 
     using TextToImage::attention;
     using TextToImage::tune;
     std::unique_ptr<edit::AttentionSource> attention(const AttentionParameters& parameters) const override {
         return std::make_unique<BundleAttentionSource>(slow_, parameters);
     }
-    std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const SdsParameters& parameters) const override {
+    std::unique_ptr<edit::Guidance> guidance(const std::string& prompt,
+                                             const SdsParameters& parameters) const override {
         return std::make_unique<SdsGuidance>(slow_, prompt, parameters);
     }
-    std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const SdsParameters& parameters) const override {
-        return std::make_unique<DiffusionViews>(bundle_, prompt, parameters, with_shapes(), parameters.restyle && restyles());
+    std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt,
+                                              const SdsParameters& parameters) const override {
+        return std::make_unique<DiffusionViews>(bundle_, prompt, parameters, with_shapes(),
+                                                parameters.restyle && restyles());
     }
     bool knows_scene() const override {
         const auto& facts = loaded_->facts;
         if (!facts.shape_unet.empty()) return shape_unet_shows_scene(loaded_->path / facts.shape_unet);
-        return !facts.shape_lora.empty() && !facts.shape_cameras.empty() && shows_scene(SafetensorsFile(loaded_->path / facts.shape_cameras));
+        return !facts.shape_lora.empty() && !facts.shape_cameras.empty() &&
+               shows_scene(SafetensorsFile(loaded_->path / facts.shape_cameras));
     }
     /// What was tuned draws by itself: the network beside it knows nothing of that.
-    bool restyles() const override { return bundle_ == loaded_ && loaded_->facts.shape_restyles && !loaded_->facts.shape_unet.empty() && knows_scene(); }
+    bool restyles() const override {
+        return bundle_ == loaded_ && loaded_->facts.shape_restyles && !loaded_->facts.shape_unet.empty() &&
+               knows_scene();
+    }
     std::vector<std::string> known_words() const override { return bundle_->facts.vocabulary; }
     std::vector<std::string> drawn_words() const override {
-        return restyles() && !loaded_->facts.vocabulary.empty() ? loaded_->facts.drawn_vocabulary : std::vector<std::string>{};
+        return restyles() && !loaded_->facts.vocabulary.empty() ? loaded_->facts.drawn_vocabulary
+                                                                : std::vector<std::string>{};
     }
     int image_size() const override { return static_cast<int>(bundle_->image_size()); }
     std::string name() const override { return bundle_->facts.name; }
@@ -86,24 +97,31 @@ public:
         const auto folder = loaded_->path / "clip";
         if (!has_clip(folder)) return nullptr;
         const auto& facts = loaded_->facts;
-        const auto viewpoint = facts.viewpoint.empty() ? std::filesystem::path() : loaded_->path / facts.viewpoint;
-        return load_clip_score({folder, loaded_->path / "tokenizer", facts.vocabulary, loaded_->device, viewpoint});
+        const auto viewpoint =
+            facts.viewpoint.empty() ? std::filesystem::path() : loaded_->path / facts.viewpoint;
+        return load_clip_score(
+            {folder, loaded_->path / "tokenizer", facts.vocabulary, loaded_->device, viewpoint});
     }
 
     Image sample(const SampleRequest& request) const override { return run(nullptr, request); }
-    Image img2img(const Image& image, const SampleRequest& request) const override { return run(&image, request); }
+    Image img2img(const Image& image, const SampleRequest& request) const override {
+        return run(&image, request);
+    }
 
     TunedModel tune(const DreamBoothParameters& parameters, std::span<const Image> instance,
                     const std::string& instance_prompt, const std::string& class_prompt,
                     const JobControl& job, AnswerMemory* memory) const override {
         auto result = guard_torch("tuning the model", [&] {
-            return run_dreambooth(*loaded_, parameters, {instance, instance_prompt, class_prompt, memory}, job);
+            return run_dreambooth(*loaded_, parameters, {instance, instance_prompt, class_prompt, memory},
+                                  job);
         });
-        return {std::make_shared<Model>(loaded_, std::move(result.bundle), std::move(result.lora), fast_), std::move(result.report)};
+        return {std::make_shared<Model>(loaded_, std::move(result.bundle), std::move(result.lora), fast_),
+                std::move(result.report)};
     }
     void save_lora(const std::filesystem::path& path) const override {
         if (!lora_)
-            throw Error(ErrorCode::InvalidArgument, "the model was not tuned as a LoRA", "tune it with a rank above 0", path);
+            throw Error(ErrorCode::InvalidArgument, "the model was not tuned as a LoRA",
+                        "tune it with a rank above 0", path);
         write_lora(path, *lora_);
     }
     bool save_tuning(const std::filesystem::path& path, std::uint64_t most_bytes) const override {
@@ -119,7 +137,8 @@ public:
         });
     }
     std::shared_ptr<TextToImage> load_tuning(const std::filesystem::path& path) const override {
-        const bool whole = guard_torch("reading a tuning", [&] { return SafetensorsFile(path).contains("unet.conv_in.weight"); });
+        const bool whole = guard_torch("reading a tuning",
+                                       [&] { return SafetensorsFile(path).contains("unet.conv_in.weight"); });
         if (!whole) return load_lora(path, 1.0);
         auto tuned = guard_torch("reading a tuning", [&] {
             return std::make_shared<const ModelBundle>(with_weights(*loaded_, SafetensorsFile(path)));
@@ -127,7 +146,8 @@ public:
         return std::make_shared<Model>(loaded_, std::move(tuned), std::nullopt, fast_);
     }
     using TextToImage::load_lora;
-    std::shared_ptr<TextToImage> load_lora(const std::filesystem::path& path, double strength) const override {
+    std::shared_ptr<TextToImage> load_lora(const std::filesystem::path& path,
+                                           double strength) const override {
         auto weights = read_lora(path);
         auto merged = guard_torch("merging a LoRA", [&] {
             return std::make_shared<const ModelBundle>(with_lora(*loaded_, weights, strength));
@@ -136,14 +156,17 @@ public:
     }
 
 private:
-    /// The weights in use with the network or the LoRA for new things that the model brings along; null where it brings none.
+    /// The weights in use with the network or the LoRA for new things that the model brings along; null where
+    /// it brings none.
     Bundle with_shapes() const {
         const auto& facts = loaded_->facts;
         if (facts.shape_unet.empty() && facts.shape_lora.empty()) return nullptr;
         const std::lock_guard lock(shapes_mutex_);
-        if (shapes_ == nullptr) shapes_ = guard_torch("reading what the model draws new things with", [&] {
-            return std::make_shared<const ModelBundle>(facts.shape_unet.empty() ? with_shape_lora() : with_shape_unet());
-        });
+        if (shapes_ == nullptr)
+            shapes_ = guard_torch("reading what the model draws new things with", [&] {
+                return std::make_shared<const ModelBundle>(facts.shape_unet.empty() ? with_shape_lora()
+                                                                                    : with_shape_unet());
+            });
         return shapes_;
     }
     ModelBundle with_shape_unet() const {
@@ -165,8 +188,10 @@ private:
             const torch::NoGradGuard no_grad;
             const auto side = bundle_->latent_size();
             const double strength = image != nullptr ? request.strength : 1;
-            const auto walk = image_to_image(sampler_of(bundle_->kind), bundle_->schedule, request.steps, {.strength = strength});
-            auto latents = seeded_noise({1, bundle_->latent_channels(), side, side}, request.seed).to(bundle_->device);
+            const auto walk = image_to_image(sampler_of(bundle_->kind), bundle_->schedule, request.steps,
+                                             {.strength = strength});
+            auto latents =
+                seeded_noise({1, bundle_->latent_channels(), side, side}, request.seed).to(bundle_->device);
             DenoiseJob job;
             job.sampler = walk.sampler.get();
             job.first = walk.first;
@@ -185,12 +210,12 @@ private:
         });
     }
 
-    const Bundle loaded_, slow_;             // as read; in use where many steps are taken (the same unless tuned)
+    const Bundle loaded_, slow_;  // as read; in use where many steps are taken (the same unless tuned)
     const DistilledLoras fast_;
     const Bundle bundle_;                    // in use where few are: the same with what was distilled
     const std::optional<LoraWeights> lora_;  // the tuning, when it is low-rank
     mutable std::mutex shapes_mutex_;
-    mutable Bundle shapes_;                  // of with_shapes(), once they were asked for
+    mutable Bundle shapes_;  // of with_shapes(), once they were asked for
 };
 
 }  // namespace
@@ -217,7 +242,10 @@ std::uint64_t refused_bytes(const std::string& text) {
     std::smatch found;
     if (!std::regex_search(text, found, pattern)) return 0;
     const std::string unit = found[2];
-    const double factor = unit == "Ki" ? 1024.0 : unit == "Mi" ? 1048576.0 : unit == "Gi" ? 1073741824.0 : 1.0;
+    const double factor = unit == "Ki"   ? 1024.0
+                          : unit == "Mi" ? 1048576.0
+                          : unit == "Gi" ? 1073741824.0
+                                         : 1.0;
     return static_cast<std::uint64_t>(std::strtod(found[1].str().c_str(), nullptr) * factor);
 }
 
@@ -238,20 +266,20 @@ std::unique_ptr<TextToImage> load_model(const std::filesystem::path& path, const
     DistilledLoras fast;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         const auto& lora = options.loras[i];
-        if (lora.strength == 0) continue;   // none, and the model stays what it is
+        if (lora.strength == 0) continue;  // none, and the model stays what it is
         const auto mark = lora_mark(lora.file);
-        if (mark == LoraMark::None) {   // nobody else holds these weights yet
+        if (mark == LoraMark::None) {  // nobody else holds these weights yet
             merge_lora(*bundle.unet, weights[i].unet, lora.strength);
             merge_lora(*bundle.text_encoder, weights[i].text, lora.strength);
-            bundle.facts.shape_restyles = false;   // the network beside it has none of that
+            bundle.facts.shape_restyles = false;  // the network beside it has none of that
         } else {
             fast.push_back({std::move(weights[i]), lora.strength, mark});
-            log::info("the LoRA \"{}\" was distilled, as its name says: views are redrawn in few steps ({})", lora.file.filename().string(),
-                      mark == LoraMark::Tcd ? "tcd" : "lcm");
+            log::info("the LoRA \"{}\" was distilled, as its name says: views are redrawn in few steps ({})",
+                      lora.file.filename().string(), mark == LoraMark::Tcd ? "tcd" : "lcm");
         }
     }
-    // Matrices of a small model are too small for OpenBLAS to share them out; its second thread would wait for them in a loop all the
-    // same, on the processor that the viewport needs.
+    // Matrices of a small model are too small for OpenBLAS to share them out; its second thread would wait
+    // for them in a loop all the same, on the processor that the viewport needs.
     set_blas_threads(is_small(bundle.unet->config()) ? 1 : torch::get_num_threads());
     return std::make_unique<Model>(std::move(bundle), std::move(fast));
 }

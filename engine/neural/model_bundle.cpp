@@ -1,6 +1,6 @@
 // Finding, checking and loading the parts of a text-to-image model.
-#include "engine/neural/shared_tokenizer.h"
 #include "engine/neural/model_bundle.h"
+#include "engine/neural/shared_tokenizer.h"
 
 #include <fmt/format.h>
 
@@ -41,7 +41,7 @@ struct Parts {
     fs::path folder() const { return single_file ? root.parent_path() : root; }
 };
 
-constexpr std::int64_t LargestImageSize = 8192;   // pixels of a side
+constexpr std::int64_t LargestImageSize = 8192;  // pixels of a side
 
 constexpr const char* FolderHint =
     "a model folder has model_index.json, tokenizer, text_encoder, unet, vae and scheduler, as diffusers "
@@ -92,8 +92,9 @@ Parts folder_parts(const fs::path& root) {
     if (index.is_object() && index.contains("transformer") && !fs::exists(root / "unet"))
         throw Error(ErrorCode::Unsupported,
                     fmt::format("this is a {}, which has a transformer instead of a UNet",
-                                index.contains("_class_name") && index["_class_name"].is_string() ? index["_class_name"].get<std::string>()
-                                                                                                   : std::string("model of another kind")),
+                                index.contains("_class_name") && index["_class_name"].is_string()
+                                    ? index["_class_name"].get<std::string>()
+                                    : std::string("model of another kind")),
                     "only Stable Diffusion 1.x and 2.x structures can be loaded", root / "model_index.json");
     parts.unet_file = find_weights(root / "unet", "diffusion_pytorch_model");
     parts.vae_file = find_weights(root / "vae", "diffusion_pytorch_model");
@@ -109,8 +110,7 @@ Parts folder_parts(const fs::path& root) {
 }
 
 /// A configuration beside the checkpoint (unet_config.json, ...), else what the tensors' shapes tell.
-template <class Config, class Infer>
-Config beside_or(const fs::path& path, Infer infer) {
+template <class Config, class Infer> Config beside_or(const fs::path& path, Infer infer) {
     return fs::exists(path) ? Config::from_json(read_json_file(path), path) : infer();
 }
 
@@ -148,15 +148,19 @@ Parts single_file_parts(const fs::path& path) {
     return parts;
 }
 
-/// gseditpro.json beside the weights. A checkpoint may share its folder with others: of its name and looks it tells nothing.
+/// gseditpro.json beside the weights. A checkpoint may share its folder with others: of its name and looks it
+/// tells nothing.
 void read_facts(Parts& parts) {
     const auto file = parts.folder() / "gseditpro.json";
     if (!fs::exists(file)) return;
     auto facts = ModelFacts::from_json(read_json_file(file), file);
     if (!parts.single_file) {
-        for (const auto& named : {facts.shape_lora, facts.shape_cameras, facts.shape_unet, facts.viewpoint})   // read when something new is drawn: too late to learn of it
+        for (const auto& named :
+             {facts.shape_lora, facts.shape_cameras, facts.shape_unet,
+              facts.viewpoint})  // read when something new is drawn: too late to learn of it
             if (!named.empty() && !fs::exists(parts.folder() / named))
-                throw Error(ErrorCode::NotFound, fmt::format("the model has no \"{}\", which this file names", named),
+                throw Error(ErrorCode::NotFound,
+                            fmt::format("the model has no \"{}\", which this file names", named),
                             "copy the whole folder of the model, or take the line out", file);
         parts.facts = std::move(facts);
     } else {
@@ -178,10 +182,11 @@ fs::path tiny_folder(const Parts& parts, const std::string& asked) {
 TinyAutoencoder load_tiny(const fs::path& folder, const VaeConfig& vae) {
     auto tiny = load_tiny_autoencoder(folder);
     const auto& config = tiny->config();
-    if (config.latent_channels != vae.latent_channels || config.factor() != vae.factor() || config.in_channels != 3 ||
-        config.out_channels != 3)
+    if (config.latent_channels != vae.latent_channels || config.factor() != vae.factor() ||
+        config.in_channels != 3 || config.out_channels != 3)
         throw Error(ErrorCode::Model,
-                    fmt::format("the tiny autoencoder has {} latent channels and {} pixels per cell, the model's VAE {} and {}",
+                    fmt::format("the tiny autoencoder has {} latent channels and {} pixels per cell, the "
+                                "model's VAE {} and {}",
                                 config.latent_channels, config.factor(), vae.latent_channels, vae.factor()),
                     "use the one that was made for this model, or none", folder);
     return tiny;
@@ -214,7 +219,8 @@ Parts find_parts(const fs::path& path) {
                     {}, path);
     if (parts.facts.image_size > LargestImageSize)
         throw Error(ErrorCode::Model,
-                    fmt::format("the model's pictures would be {} pixels wide, more than {}", parts.facts.image_size, LargestImageSize),
+                    fmt::format("the model's pictures would be {} pixels wide, more than {}",
+                                parts.facts.image_size, LargestImageSize),
                     "look at \"sample_size\" in the UNet's config.json", path);
     if (parts.facts.image_size % parts.vae.factor() != 0)
         throw Error(ErrorCode::Model, "the model's image size is not a multiple of the VAE's factor", {},
@@ -241,8 +247,7 @@ void check_tokenizer(const Tokenizer& tokenizer, const Parts& parts) {
                     {}, parts.tokenizer);
 }
 
-template <class Holder>
-void freeze(Holder& module, const torch::Device& device) {
+template <class Holder> void freeze(Holder& module, const torch::Device& device) {
     for (auto& parameter : module->parameters()) parameter.set_requires_grad(false);
     module->to(device);
     module->eval();
@@ -267,8 +272,7 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
     get("attention_threshold", facts.attention_threshold);
     if (json.contains("attention_layers") && json["attention_layers"].is_string())
         facts.attention_layers = {json["attention_layers"].get<std::string>()};
-    else
-        get("attention_layers", facts.attention_layers);
+    else get("attention_layers", facts.attention_layers);
     get("attention_sizes", facts.attention_sizes);
     get("attention_timesteps", facts.attention_timesteps);
     get("attention_absent_timesteps", facts.attention_absent_timesteps);
@@ -283,7 +287,8 @@ ModelFacts ModelFacts::from_json(const Json& json, const std::filesystem::path& 
     get("viewpoint", facts.viewpoint);
     get("shape_views", facts.shape_views);
     if (facts.image_size < 0 || facts.image_size > LargestImageSize)
-        throw Error(ErrorCode::Malformed, fmt::format("\"image_size\" is outside 0..{}", LargestImageSize), {}, path);
+        throw Error(ErrorCode::Malformed, fmt::format("\"image_size\" is outside 0..{}", LargestImageSize),
+                    {}, path);
     if (facts.shape_views < 1 || facts.shape_views > 64)
         throw Error(ErrorCode::Malformed, "\"shape_views\" is outside 1..64", {}, path);
     return facts;
@@ -316,7 +321,8 @@ namespace {
 /// The weights' files of a model, opened once.
 struct WeightFiles {
     SafetensorsFile unet, vae, text;
-    explicit WeightFiles(const Parts& parts) : unet(parts.unet_file), vae(parts.vae_file), text(parts.text_file) {}
+    explicit WeightFiles(const Parts& parts)
+        : unet(parts.unet_file), vae(parts.vae_file), text(parts.text_file) {}
 };
 
 /// Compares configurations and files without memory for a single weight; returns the bytes of the parameters.
@@ -333,8 +339,8 @@ std::uint64_t check_files(const Parts& parts, const WeightFiles& files, const Pl
 
 }  // namespace
 
-ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device, const std::string& taesd,
-                        const std::string& precision) {
+ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device,
+                        const std::string& taesd, const std::string& precision) {
     const auto parts = find_parts(path);
     return guard_torch("loading the model", [&] {
         const WeightFiles files(parts);
@@ -370,13 +376,14 @@ ModelDescription describe_model(const std::filesystem::path& path) {
     const auto parts = find_parts(path);
     return guard_torch("describing the model", [&] {
         const WeightFiles files(parts);
-        return ModelDescription{parts.facts.name,
-                                parts.single_file ? "single file" : "diffusers folder",
-                                parts.facts.image_size,
-                                static_cast<std::int64_t>(check_files(parts, files, plans_of(parts, files.vae)) / sizeof(float)),
-                                parts.scheduler.prediction_type,
-                                parts.facts.vocabulary,
-                                parts.kind};
+        return ModelDescription{
+            parts.facts.name,
+            parts.single_file ? "single file" : "diffusers folder",
+            parts.facts.image_size,
+            static_cast<std::int64_t>(check_files(parts, files, plans_of(parts, files.vae)) / sizeof(float)),
+            parts.scheduler.prediction_type,
+            parts.facts.vocabulary,
+            parts.kind};
     });
 }
 

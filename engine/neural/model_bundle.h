@@ -34,25 +34,28 @@ struct ModelFacts {
     std::vector<double> attention_absent_timesteps;
     /// Words the model was trained on; empty = an open vocabulary.
     std::vector<std::string> vocabulary;
-    /// Words that only the network of `shape_unet` was trained on besides: it is told them where it draws, nothing else is.
+    /// Words that only the network of `shape_unet` was trained on besides: it is told them where it draws,
+    /// nothing else is.
     std::vector<std::string> drawn_vocabulary;
     /// "plain", "lcm", "tcd" or "turbo" where the configurations do not tell; see bundle_kind().
     std::string kind;
     /// Folder of the tiny autoencoder, relative to the model's; "none" = the one beside it is not used.
     std::string taesd;
-    /// LoRA for redrawing views in which a new thing comes to be, relative to the model's folder. Such a model is told the side exactly:
-    /// it knows the eight of edit::side_blend(), and what lies between two by the mixture of both sentences. Empty = it has none.
+    /// LoRA for redrawing views in which a new thing comes to be, relative to the model's folder. Such a
+    /// model is told the side exactly: it knows the eight of edit::side_blend(), and what lies between two by
+    /// the mixture of both sentences. Empty = it has none.
     std::string shape_lora;
-    /// The embedding of cameras that goes with it, and the convolution in which it is shown the scene without what may change
-    /// (with_scene_inputs()), relative to the model's folder; empty = it is told and shown nothing.
+    /// The embedding of cameras that goes with it, and the convolution in which it is shown the scene without
+    /// what may change (with_scene_inputs()), relative to the model's folder; empty = it is told and shown
+    /// nothing.
     std::string shape_cameras;
-    /// Folder of a network of its own for the same, which takes the place of both (load_shape_unet()), relative to the model's; what is tuned or
-    /// merged with a LoRA does not change it. Empty = it has none.
+    /// Folder of a network of its own for the same, which takes the place of both (load_shape_unet()),
+    /// relative to the model's; what is tuned or merged with a LoRA does not change it. Empty = it has none.
     std::string shape_unet;
     /// Whether that network has learned to give what it is shown another colour, material or ground, too.
     bool shape_restyles = false;
-    /// Folder of the classifier that tells from where a picture shows a thing (ViewpointReader), relative to the model's; it needs an image-text
-    /// encoder beside it. Empty = it has none.
+    /// Folder of the classifier that tells from where a picture shows a thing (ViewpointReader), relative to
+    /// the model's; it needs an image-text encoder beside it. Empty = it has none.
     std::string viewpoint;
     /// Views of a scene that are denoised together with it (SceneViews).
     std::int64_t shape_views = 1;
@@ -81,7 +84,7 @@ struct ModelBundle {
     ModelFacts facts;
     torch::Device device = torch::kCPU;
     BundleKind kind = BundleKind::Plain;
-    TinyAutoencoder tiny{nullptr};   // where its files are
+    TinyAutoencoder tiny{nullptr};  // where its files are
 
     bool has_tiny() const { return !tiny.is_empty(); }
     std::int64_t latent_channels() const { return vae->config().latent_channels; }
@@ -90,20 +93,21 @@ struct ModelBundle {
     std::int64_t image_size() const { return facts.image_size; }
     std::int64_t latent_size() const { return facts.image_size / vae->config().factor(); }
     double scaling_factor() const { return vae->config().scaling_factor; }
-    /// The sentence as the text encoder is given it: without words that a model of a fixed vocabulary was not trained on. In pieces of letters
-    /// that mean nothing to it they disturb all others: "a shiny blue bear" was not blue.
+    /// The sentence as the text encoder is given it: without words that a model of a fixed vocabulary was not
+    /// trained on. In pieces of letters that mean nothing to it they disturb all others: "a shiny blue bear"
+    /// was not blue.
     std::string told(const std::string& sentence) const;
     /// Token ids [B,T] and conditioning [B,T,D] of some prompts, without a graph.
     torch::Tensor token_ids(const std::vector<std::string>& prompts) const;
     torch::Tensor encode_prompts(const std::vector<std::string>& prompts) const;
 };
 
-/// Loads a diffusers folder or a single-file checkpoint (.safetensors). All weights are frozen, and fp32 but for those of the
-/// UNet, where `precision` says otherwise (choose_precision). `taesd`: folder of the tiny autoencoder; empty = as the model says,
-/// or "taesd" beside the weights, "none" = none. Throws Error (NotFound, Malformed, Model, Unsupported, InvalidArgument) with one
-/// sentence.
-ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device = torch::kCPU, const std::string& taesd = {},
-                        const std::string& precision = "fp32");
+/// Loads a diffusers folder or a single-file checkpoint (.safetensors). All weights are frozen, and fp32 but
+/// for those of the UNet, where `precision` says otherwise (choose_precision). `taesd`: folder of the tiny
+/// autoencoder; empty = as the model says, or "taesd" beside the weights, "none" = none. Throws Error
+/// (NotFound, Malformed, Model, Unsupported, InvalidArgument) with one sentence.
+ModelBundle load_bundle(const std::filesystem::path& path, const torch::Device& device = torch::kCPU,
+                        const std::string& taesd = {}, const std::string& precision = "fp32");
 
 /// Checks that a LoRA fits the model's networks, from their configurations. Throws as check_lora() does.
 void check_lora(const std::filesystem::path& model, const LoraWeights& weights);

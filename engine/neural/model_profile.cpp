@@ -19,15 +19,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t LeastSdWidth = 320;   // channels of the UNet's first level; every Stable Diffusion has them
+constexpr std::int64_t LeastSdWidth =
+    320;  // channels of the UNet's first level; every Stable Diffusion has them
 constexpr std::int64_t Sd2TextWidth = 1024;
 
 /// What a model says about the machine.
 struct MachineDefaults {
     int threads = 1;
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("threads", self.threads, "Threads of the networks.", Range{1, 256});
     }
 };
@@ -43,13 +43,13 @@ std::vector<std::int64_t> shape_of(const nlohmann::json& header, const std::stri
 }
 
 /// The configuration in `path`, or what it would be without the file.
-template <class Config>
-Config config_or(const fs::path& path, Config otherwise) {
+template <class Config> Config config_or(const fs::path& path, Config otherwise) {
     return fs::exists(path) ? Config::from_json(read_json_file(path), path) : otherwise;
 }
 
 ModelKind size_of(const UNetConfig& unet, const SchedulerConfig& scheduler) {
-    if (unet.block_out_channels.empty() || unet.block_out_channels.front() < LeastSdWidth) return ModelKind::Small;
+    if (unet.block_out_channels.empty() || unet.block_out_channels.front() < LeastSdWidth)
+        return ModelKind::Small;
     if (!unet.use_linear_projection && unet.cross_attention_dim < Sd2TextWidth) return ModelKind::Sd1;
     return scheduler.prediction_type == "v_prediction" ? ModelKind::Sd2Velocity : ModelKind::Sd2;
 }
@@ -59,17 +59,22 @@ std::string stated_kind(const fs::path& folder) {
     const auto file = folder / "gseditpro.json";
     if (!fs::exists(file)) return {};
     const auto json = read_json_file(file);
-    return json.is_object() && json.contains("kind") && json["kind"].is_string() ? json["kind"].get<std::string>() : std::string();
+    return json.is_object() && json.contains("kind") && json["kind"].is_string()
+               ? json["kind"].get<std::string>()
+               : std::string();
 }
 
-ModelNature nature_of(const UNetConfig& unet, const SchedulerConfig& scheduler, std::int64_t latent_channels, const fs::path& folder) {
-    return {size_of(unet, scheduler), bundle_kind(unet, scheduler, latent_channels, stated_kind(folder), folder),
+ModelNature nature_of(const UNetConfig& unet, const SchedulerConfig& scheduler, std::int64_t latent_channels,
+                      const fs::path& folder) {
+    return {size_of(unet, scheduler),
+            bundle_kind(unet, scheduler, latent_channels, stated_kind(folder), folder),
             unet.time_cond_proj_dim > 0};
 }
 
 ModelNature checkpoint_nature(const fs::path& path) {
     const auto header = safetensors_header(path);
-    const auto first = header.is_object() ? shape_of(header, "input_blocks.0.0.weight") : std::vector<std::int64_t>{};
+    const auto first =
+        header.is_object() ? shape_of(header, "input_blocks.0.0.weight") : std::vector<std::int64_t>{};
     if (first.empty()) return {};
     UNetConfig unet;
     unet.block_out_channels = {first.front()};
@@ -111,8 +116,7 @@ void state_kind(Json& json, const ModelNature& nature) {
             scale = 7.5;
             guidance["image_guidance_scale"] = 1.0;
             break;
-        case BundleKind::Plain:
-            break;
+        case BundleKind::Plain: break;
     }
     guidance["view_guidance_scale"] = guidance["shape_guidance_scale"] = scale;
     json["request"] = std::move(request);
@@ -123,21 +127,36 @@ void state_kind(Json& json, const ModelNature& nature) {
 Json stated_by_size(ModelKind kind) {
     if (kind == ModelKind::Small) return Json::object();
     Json json;
-    json["request"] = {{"views", 16},          {"image_size", kind == ModelKind::Sd2Velocity ? 768 : 512},
-                       {"tau", 0.5},           {"evidence_px", 1.0},
-                       {"iterations", 4000},   {"geometry_share", 1.0},
-                       {"colour_coupling", 0.0}, {"shape_views", 8},
-                       {"shape_steps", 8},      {"view_steps", 8},
-                       {"shape_guided_until", 0.0}, {"shape_rounds", 2},
-                       {"shape_strength", 0.9}, {"add_rounds", 2},   // one was measured with the starter only, which draws the views of a thing together
-                       {"add_noise", 1.0}};   // less was measured with the starter only
-    json["guidance"] = {{"guidance_scale", 7.5}, {"view_guidance_scale", 7.5}, {"shape_guidance_scale", 7.5},
+    json["request"] = {
+        {"views", 16},
+        {"image_size", kind == ModelKind::Sd2Velocity ? 768 : 512},
+        {"tau", 0.5},
+        {"evidence_px", 1.0},
+        {"iterations", 4000},
+        {"geometry_share", 1.0},
+        {"colour_coupling", 0.0},
+        {"shape_views", 8},
+        {"shape_steps", 8},
+        {"view_steps", 8},
+        {"shape_guided_until", 0.0},
+        {"shape_rounds", 2},
+        {"shape_strength", 0.9},
+        {"add_rounds",
+         2},  // one was measured with the starter only, which draws the views of a thing together
+        {"add_noise", 1.0}};  // less was measured with the starter only
+    json["guidance"] = {{"guidance_scale", 7.5},
+                        {"view_guidance_scale", 7.5},
+                        {"shape_guidance_scale", 7.5},
                         {"t_max_end", 0.5}};
-    json["attention"] = {{"refinement", 1}};   // views.md 15; the starter's own maps are as good without
-    json["dreambooth"] = {{"steps", 400},           {"batch", 4},
-                          {"class_images", 200},    {"class_steps", 50},
-                          {"class_guidance", 7.5},  {"learning_rate", 5e-6},
-                          {"lora_learning_rate", 1e-4}, {"train_text_encoder", false}};
+    json["attention"] = {{"refinement", 1}};  // views.md 15; the starter's own maps are as good without
+    json["dreambooth"] = {{"steps", 400},
+                          {"batch", 4},
+                          {"class_images", 200},
+                          {"class_steps", 50},
+                          {"class_guidance", 7.5},
+                          {"learning_rate", 5e-6},
+                          {"lora_learning_rate", 1e-4},
+                          {"train_text_encoder", false}};
     json["job"] = {{"threads", std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 256)}};
     return json;
 }
@@ -167,7 +186,9 @@ void check_part(const std::string& part, const Json& fields) {
 void add(ModelProfile& profile, const Json& stated, const std::string& source) {
     for (const auto& [part, fields] : stated.items())
         for (const auto& [field, value] : fields.items()) {
-            const auto same = [&, &part = part, &field = field](const auto& e) { return e.part == part && e.field == field; };
+            const auto same = [&, &part = part, &field = field](const auto& e) {
+                return e.part == part && e.field == field;
+            };
             std::erase_if(profile.entries, same);
             profile.entries.push_back({part, field, value, source});
         }
@@ -179,12 +200,14 @@ Json read_stated(const fs::path& file) {
     if (!json.is_object() || !json.contains("profile")) return Json::object();
     const auto& stated = json["profile"];
     const char* hint = "correct or remove it";
-    if (!stated.is_object()) throw Error(ErrorCode::Malformed, "\"profile\" must be an object of settings", hint, file);
+    if (!stated.is_object())
+        throw Error(ErrorCode::Malformed, "\"profile\" must be an object of settings", hint, file);
     for (const auto& [part, fields] : stated.items()) {
         try {
             check_part(part, fields);
         } catch (const Error& error) {
-            throw Error(ErrorCode::Malformed, fmt::format("in the model's profile, in \"{}\": {}", part, error.message()), hint,
+            throw Error(ErrorCode::Malformed,
+                        fmt::format("in the model's profile, in \"{}\": {}", part, error.message()), hint,
                         file);
         }
     }
@@ -205,7 +228,7 @@ ModelNature model_nature(const fs::path& model, const std::vector<LoraSpec>& lor
                                config_or(model / "scheduler/scheduler_config.json", SchedulerConfig{}),
                                config_or(model / "vae/config.json", VaeConfig{}).latent_channels, model);
         }
-    } catch (const Error&) {   // said when it is loaded
+    } catch (const Error&) {  // said when it is loaded
         return {};
     }
     for (const auto& lora : loras) {

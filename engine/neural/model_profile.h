@@ -1,4 +1,5 @@
-// What a model states as defaults of an edit's settings, read from its small files and headers, without torch.
+// What a model states as defaults of an edit's settings, read from its small files and headers, without
+// torch.
 #pragma once
 
 #include <filesystem>
@@ -23,31 +24,34 @@ enum class ModelKind {
 struct ModelNature {
     ModelKind size = ModelKind::Small;
     BundleKind kind = BundleKind::Plain;
-    bool embeds_guidance = false;   // its UNet is told the guidance scale (LCM)
+    bool embeds_guidance = false;  // its UNet is told the guidance scale (LCM)
 };
 
 /// The default of one setting.
 struct ProfileEntry {
-    std::string part;   // "request", "guidance", "attention", "dreambooth" or "job"
+    std::string part;  // "request", "guidance", "attention", "dreambooth" or "job"
     std::string field;
     nlohmann::ordered_json value;
-    std::string source;   // "model" or "file gseditpro.json"
+    std::string source;  // "model" or "file gseditpro.json"
 };
 
 struct ModelProfile {
     ModelKind kind = ModelKind::Small;
     BundleKind bundle = BundleKind::Plain;
-    std::vector<ProfileEntry> entries;   // one per field; those of a small model are the settings' own defaults
+    std::vector<ProfileEntry>
+        entries;  // one per field; those of a small model are the settings' own defaults
 };
 
-/// A model folder's or checkpoint's kind. What is wrong with a model is said when it is loaded: here it is small.
+/// A model folder's or checkpoint's kind. What is wrong with a model is said when it is loaded: here it is
+/// small.
 ModelKind model_kind(const std::filesystem::path& model);
 
 /// The same with how it is walked; a LoRA that was distilled makes a plain model one of few steps.
 ModelNature model_nature(const std::filesystem::path& model, const std::vector<LoraSpec>& loras = {});
 
-/// What the kind states, and over it "profile" of gseditpro.json beside the weights: {"request": {"image_size": 512}, ...}.
-/// Throws Error (Malformed) that names the setting and the file: unknown, of the wrong type, out of its range.
+/// What the kind states, and over it "profile" of gseditpro.json beside the weights: {"request":
+/// {"image_size": 512}, ...}. Throws Error (Malformed) that names the setting and the file: unknown, of the
+/// wrong type, out of its range.
 ModelProfile model_profile(const std::filesystem::path& model, const std::vector<LoraSpec>& loras = {});
 
 }  // namespace gse::neural

@@ -10,7 +10,8 @@
 
 #include "engine/neural/network_use.h"
 
-// The OpenMP library behind torch has the first, whose number holds for the calling thread; OpenBLAS the others, for all of them.
+// The OpenMP library behind torch has the first, whose number holds for the calling thread; OpenBLAS the
+// others, for all of them.
 extern "C" {
 void omp_set_num_threads(int count) __attribute__((weak));
 void openblas_set_num_threads(int count) __attribute__((weak));
@@ -26,7 +27,7 @@ constexpr std::int64_t WidestSmallModel = 256;
 /// While it lives, the calling thread shares no operation out.
 class AloneHere {
 public:
-    AloneHere() : before_(torch::get_num_threads()) {   // which also sets up a thread that is new
+    AloneHere() : before_(torch::get_num_threads()) {  // which also sets up a thread that is new
         if (omp_set_num_threads != nullptr) omp_set_num_threads(1);
     }
     ~AloneHere() {
@@ -39,7 +40,8 @@ private:
     int before_;
 };
 
-/// While it lives, OpenBLAS leaves every product to the thread that asks for it; its own ones are lent to one at a time.
+/// While it lives, OpenBLAS leaves every product to the thread that asks for it; its own ones are lent to one
+/// at a time.
 class BlasAlone {
 public:
     BlasAlone() {
@@ -69,7 +71,8 @@ int part_threads() {
     return static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1u, most));
 }
 
-void for_parts(std::int64_t count, bool apart, const std::function<void(std::int64_t begin, std::int64_t end)>& body) {
+void for_parts(std::int64_t count, bool apart,
+               const std::function<void(std::int64_t begin, std::int64_t end)>& body) {
     if (count <= 0) return;
     const torch::NoGradGuard no_grad;
     if (!apart) return body(0, count);
@@ -84,9 +87,7 @@ void for_parts(std::int64_t count, bool apart, const std::function<void(std::int
         const auto before = thread_use();
         try {
             body(count * part / parts, count * (part + 1) / parts);
-        } catch (...) {
-            failures[i] = std::current_exception();
-        }
+        } catch (...) { failures[i] = std::current_exception(); }
         uses[i] = thread_use() - before;
     };
     {

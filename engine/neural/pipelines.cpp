@@ -18,7 +18,8 @@ torch::Tensor denoise(const ModelBundle& bundle, torch::Tensor latents, const De
     const torch::NoGradGuard no_grad;
     GSE_CHECK(job.sampler != nullptr);
     auto& sampler = *job.sampler;
-    const Conditioning conditioning{job.context.unsqueeze(0), job.guidance_scale, job.picture, job.image_guidance_scale};
+    const Conditioning conditioning{job.context.unsqueeze(0), job.guidance_scale, job.picture,
+                                    job.image_guidance_scale};
     latents = latents.to(bundle.device);
     for (std::int64_t i = job.first; i < sampler.step_count(); ++i) {
         if (job.control != nullptr && job.control->stop_requested())
@@ -27,8 +28,7 @@ torch::Tensor denoise(const ModelBundle& bundle, torch::Tensor latents, const De
         const auto t = torch::full({1}, sampler.timestep(i), torch::kFloat32);
         const auto output = guided_output(bundle.unet, input, t, conditioning, job.capture);
         torch::Tensor noise;
-        if (job.noise)
-            noise = job.noise(i).to(bundle.device);
+        if (job.noise) noise = job.noise(i).to(bundle.device);
         else if (sampler.needs_noise())
             noise = seeded_noise(latents.sizes(),
                                  Random::stream(job.seed, static_cast<std::uint64_t>(i) + 1).next())
@@ -71,7 +71,8 @@ SdsResult sds_gradient(const ModelBundle& bundle, const torch::Tensor& latents, 
     result.weight = 1.0 - static_cast<double>(schedule.alpha_cumprod(step.timestep));
     const auto& config = bundle.unet->config();
     if (takes_picture(config) || config.time_cond_proj_dim > 0) {
-        const Conditioning conditioning{step.context.unsqueeze(0), step.guidance_scale, step.picture, step.image_guidance_scale};
+        const Conditioning conditioning{step.context.unsqueeze(0), step.guidance_scale, step.picture,
+                                        step.image_guidance_scale};
         const auto output = guided_output(bundle.unet, result.noisy_latents, t, conditioning);
         result.gradient = result.weight * (schedule.to_epsilon(output, result.noisy_latents, t) - step.noise);
         return result;

@@ -37,9 +37,12 @@ SamplerKind sampler_of(BundleKind kind);
 /// Which autoencoder: the VAE, or the tiny one where the model has it.
 enum class Codec { Full, Quick };
 
-/// Images are [B,3,H,W] in [0,1]; latents are scaled (what the UNet sees). Encoding takes the posterior's mean.
-torch::Tensor image_to_latents(const ModelBundle& bundle, const torch::Tensor& image, Codec codec = Codec::Full);
-torch::Tensor latents_to_image(const ModelBundle& bundle, const torch::Tensor& latents, Codec codec = Codec::Full);
+/// Images are [B,3,H,W] in [0,1]; latents are scaled (what the UNet sees). Encoding takes the posterior's
+/// mean.
+torch::Tensor image_to_latents(const ModelBundle& bundle, const torch::Tensor& image,
+                               Codec codec = Codec::Full);
+torch::Tensor latents_to_image(const ModelBundle& bundle, const torch::Tensor& latents,
+                               Codec codec = Codec::Full);
 /// What a model that takes a picture is told of it: the same mean, not scaled; undefined for other models.
 torch::Tensor picture_latents(const ModelBundle& bundle, const torch::Tensor& image);
 
@@ -48,15 +51,15 @@ struct SdsStep {
     torch::Tensor noise;  // [1,C,h,w]
     std::int64_t timestep = 0;
     double guidance_scale = 7.5;
-    torch::Tensor context;               // [2,T,D] negative, positive
-    torch::Tensor picture = {};          // of a model that takes one
-    double image_guidance_scale = 1.5;   // of such a model
+    torch::Tensor context;              // [2,T,D] negative, positive
+    torch::Tensor picture = {};         // of a model that takes one
+    double image_guidance_scale = 1.5;  // of such a model
 };
 struct SdsResult {
     torch::Tensor noisy_latents;
     torch::Tensor epsilon_negative, epsilon_positive;  // of classifier-free guidance only
-    double weight = 0;       // 1 - alphas_cumprod[t]
-    torch::Tensor gradient;  // weight * (guided epsilon - noise), not reduced
+    double weight = 0;                                 // 1 - alphas_cumprod[t]
+    torch::Tensor gradient;                            // weight * (guided epsilon - noise), not reduced
 };
 /// Without a graph: the gradient is meant to be injected at `latents`.
 SdsResult sds_gradient(const ModelBundle& bundle, const torch::Tensor& latents, const SdsStep& step);

@@ -20,12 +20,14 @@ public:
                                             const ModelOptions& options) override {
         return neural::load_model(path, options);
     }
-    std::unique_ptr<edit::Segmenter> load_segmenter(const std::filesystem::path& path, const std::string& device) override {
+    std::unique_ptr<edit::Segmenter> load_segmenter(const std::filesystem::path& path,
+                                                    const std::string& device) override {
         keep_buffers();
-        prefer_one_blas_thread();   // views are segmented side by side
+        prefer_one_blas_thread();  // views are segmented side by side
         return load_sam_segmenter(path, device);
     }
-    std::unique_ptr<edit::TextSegmenter> load_text_segmenter(const std::filesystem::path& folder, const std::string& device) override {
+    std::unique_ptr<edit::TextSegmenter> load_text_segmenter(const std::filesystem::path& folder,
+                                                             const std::string& device) override {
         keep_buffers();
         prefer_one_blas_thread();
         return neural::load_text_segmenter(folder, device);
@@ -33,7 +35,7 @@ public:
     void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
                        const std::filesystem::path& work, const std::filesystem::path& output,
                        const JobControl& job) override {
-        set_blas_threads(torch::get_num_threads());   // batches, unlike edits, are worth it
+        set_blas_threads(torch::get_num_threads());  // batches, unlike edits, are worth it
         guard_torch("training the starter model",
                     [&] { neural::train_starter(parameters, source, work, output, job); });
     }

@@ -17,8 +17,8 @@
 namespace gse::neural {
 namespace {
 
-constexpr std::int64_t WidestSmallUNet = 256;   // channels: below, norms and copies take longer than products
-constexpr double WorthGain = 1.15;              // least ratio of the times for which rounding is accepted
+constexpr std::int64_t WidestSmallUNet = 256;  // channels: below, norms and copies take longer than products
+constexpr double WorthGain = 1.15;             // least ratio of the times for which rounding is accepted
 constexpr int Runs = 3;
 
 bool processor_has_bfloat16() {
@@ -41,37 +41,46 @@ bool multiplies_bfloat16(const torch::Device& device) {
 
 double layer_seconds(const UNetConfig& config, torch::Dtype dtype) {
     const torch::NoGradGuard no_grad;
-    const auto width = config.block_out_channels.front(), side = std::min<std::int64_t>(64, config.sample_size);
-    const auto image = torch::zeros({1, width, side, side}).to(dtype).contiguous(torch::MemoryFormat::ChannelsLast);
-    const auto kernel = torch::zeros({width, width, 3, 3}).to(dtype).contiguous(torch::MemoryFormat::ChannelsLast);
-    const auto tokens = torch::zeros({1, side * side, width}).to(dtype), matrix = torch::zeros({8 * width, width}).to(dtype);
+    const auto width = config.block_out_channels.front(),
+               side = std::min<std::int64_t>(64, config.sample_size);
+    const auto image =
+        torch::zeros({1, width, side, side}).to(dtype).contiguous(torch::MemoryFormat::ChannelsLast);
+    const auto kernel =
+        torch::zeros({width, width, 3, 3}).to(dtype).contiguous(torch::MemoryFormat::ChannelsLast);
+    const auto tokens = torch::zeros({1, side * side, width}).to(dtype),
+               matrix = torch::zeros({8 * width, width}).to(dtype);
     double least = std::numeric_limits<double>::infinity();
-    for (int run = 0; run <= Runs; ++run) {   // the first one prepares
+    for (int run = 0; run <= Runs; ++run) {  // the first one prepares
         const auto begin = std::chrono::steady_clock::now();
         torch::conv2d(image, kernel, {}, 1, 1);
         torch::linear(tokens, matrix);
-        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         if (run > 0) least = std::min(least, seconds);
     }
     return least;
 }
 
-torch::Dtype choose_precision(const std::string& setting, const UNetConfig& config, const torch::Device& device) {
+torch::Dtype choose_precision(const std::string& setting, const UNetConfig& config,
+                              const torch::Device& device) {
     if (setting == "fp32") return torch::kFloat32;
     if (setting != "auto" && setting != "bf16")
-        throw Error(ErrorCode::InvalidArgument, fmt::format("there is no precision \"{}\"", setting), "use auto, fp32 or bf16");
+        throw Error(ErrorCode::InvalidArgument, fmt::format("there is no precision \"{}\"", setting),
+                    "use auto, fp32 or bf16");
     const bool able = multiplies_bfloat16(device);
     if (setting == "bf16") {
         if (able) return torch::kBFloat16;
-        throw Error(ErrorCode::InvalidArgument, "this processor does not compute in bfloat16", "use the precision auto or fp32");
+        throw Error(ErrorCode::InvalidArgument, "this processor does not compute in bfloat16",
+                    "use the precision auto or fp32");
     }
     const auto& widths = config.block_out_channels;
     if (!able || *std::max_element(widths.begin(), widths.end()) <= WidestSmallUNet) return torch::kFloat32;
-    if (device.is_cuda()) return torch::kFloat32;   // as exact as it gets, where time is no concern
-    const double single = layer_seconds(config, torch::kFloat32), brief = layer_seconds(config, torch::kBFloat16);
+    if (device.is_cuda()) return torch::kFloat32;  // as exact as it gets, where time is no concern
+    const double single = layer_seconds(config, torch::kFloat32),
+                 brief = layer_seconds(config, torch::kBFloat16);
     const bool worth = brief * WorthGain < single;
-    log::info("the UNet computes in {}: a layer takes {:.1f} ms in fp32, {:.1f} ms in bf16", worth ? "bf16" : "fp32", single * 1e3,
-              brief * 1e3);
+    log::info("the UNet computes in {}: a layer takes {:.1f} ms in fp32, {:.1f} ms in bf16",
+              worth ? "bf16" : "fp32", single * 1e3, brief * 1e3);
     return worth ? torch::kBFloat16 : torch::kFloat32;
 }
 

@@ -13,7 +13,8 @@ class Tokenizer;
 
 class PromptReader {
 public:
-    /// Reads the tokenizer of a model folder, or the one beside a single-file checkpoint. Throws Error when there is none.
+    /// Reads the tokenizer of a model folder, or the one beside a single-file checkpoint. Throws Error when
+    /// there is none.
     explicit PromptReader(const std::filesystem::path& model);
     ~PromptReader();
     PromptReader(const PromptReader&) = delete;
@@ -24,7 +25,7 @@ public:
 
 private:
     std::unique_ptr<const Tokenizer> tokenizer_;
-    std::size_t tokens_ = 0;   // between start and end token
+    std::size_t tokens_ = 0;  // between start and end token
 };
 
 }  // namespace gse::neural

@@ -152,7 +152,8 @@ KeyShapes SafetensorsFile::shapes() const {
 
 torch::Tensor SafetensorsFile::read(const Entry& entry) const {
     auto tensor = torch::empty(entry.shape, torch::TensorOptions().dtype(entry.dtype));
-    file_.read(data_begin_ + entry.begin, {static_cast<std::byte*>(tensor.data_ptr()), entry.end - entry.begin});
+    file_.read(data_begin_ + entry.begin,
+               {static_cast<std::byte*>(tensor.data_ptr()), entry.end - entry.begin});
     return tensor;
 }
 
@@ -174,7 +175,8 @@ void SafetensorsFile::copy_to(const std::string& name, torch::Tensor target) con
     const auto scale = read(found->second);
     if (scale.dim() != 1 || values.dim() < 2 || scale.size(0) != values.size(0))
         malformed(path_, fmt::format("the scales of tensor \"{}\" are not one per row", name));
-    target.copy_((values.flatten(1).to(torch::kFloat32) * scale.to(torch::kFloat32).unsqueeze(1)).view(target.sizes()));
+    target.copy_((values.flatten(1).to(torch::kFloat32) * scale.to(torch::kFloat32).unsqueeze(1))
+                     .view(target.sizes()));
 }
 
 NamedTensors quantized(const NamedTensors& tensors) {
@@ -188,7 +190,11 @@ NamedTensors quantized(const NamedTensors& tensors) {
         }
         const auto rows = values.flatten(1);
         const auto scale = (rows.abs().amax(1) / Largest).clamp_min(std::numeric_limits<float>::min());
-        result.emplace_back(name, (rows / scale.unsqueeze(1)).round().clamp(-Largest, Largest).to(torch::kInt8).view(values.sizes()));
+        result.emplace_back(name, (rows / scale.unsqueeze(1))
+                                      .round()
+                                      .clamp(-Largest, Largest)
+                                      .to(torch::kInt8)
+                                      .view(values.sizes()));
         result.emplace_back(name + QuantizationScale, scale);
     }
     return result;

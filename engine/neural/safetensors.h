@@ -35,7 +35,8 @@ public:
     std::uint64_t data_bytes() const { return file_.size() - data_begin_; }
 
     torch::Tensor tensor(const std::string& name) const override;
-    /// One of quantized() as the numbers that it stands for. Throws Error as the others, and (Malformed) when its scales do not fit.
+    /// One of quantized() as the numbers that it stands for. Throws Error as the others, and (Malformed) when
+    /// its scales do not fit.
     void copy_to(const std::string& name, torch::Tensor target) const override;
 
 private:
@@ -52,8 +53,9 @@ using NamedTensors = std::vector<std::pair<std::string, torch::Tensor>>;
 
 /// What follows the name of a quantized tensor in that of its scales.
 inline constexpr const char* QuantizationScale = "_scale";
-/// Matrices and kernels in eight bits: whole numbers of -127 to 127 and, behind each tensor, one factor per row (its first dimension), by which
-/// they are multiplied; each number is off by half a factor at most. Everything else in fp16.
+/// Matrices and kernels in eight bits: whole numbers of -127 to 127 and, behind each tensor, one factor per
+/// row (its first dimension), by which they are multiplied; each number is off by half a factor at most.
+/// Everything else in fp16.
 NamedTensors quantized(const NamedTensors& tensors);
 
 /// Writes the tensors in the given order, atomically. Throws Error (Unwritable).

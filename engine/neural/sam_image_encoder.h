@@ -1,5 +1,5 @@
-// Image encoders of the Segment Anything model: a vision transformer with windows and relative positions (Kirillov et al. 2023; Li et
-// al. 2022, ViTDet), and MobileSAM's TinyViT (Zhang et al. 2023).
+// Image encoders of the Segment Anything model: a vision transformer with windows and relative positions
+// (Kirillov et al. 2023; Li et al. 2022, ViTDet), and MobileSAM's TinyViT (Zhang et al. 2023).
 #pragma once
 
 #include <array>
@@ -45,8 +45,8 @@ TORCH_MODULE(SamNeck);
 
 struct SamVitShape {
     std::int64_t width = 768, heads = 12, inner = 3072, out = 256;
-    std::int64_t patch = 16, side = 64;    // pixels; tokens along the side of the picture
-    std::vector<std::int64_t> windows;     // of each block, in tokens; `side` = attention to everything
+    std::int64_t patch = 16, side = 64;  // pixels; tokens along the side of the picture
+    std::vector<std::int64_t> windows;   // of each block, in tokens; `side` = attention to everything
 };
 std::shared_ptr<SamImageEncoderImpl> make_sam_vit(const SamVitShape& shape, const WeightOptions& options);
 
@@ -54,16 +54,18 @@ struct TinyVitShape {
     std::array<std::int64_t, 4> widths{64, 128, 160, 320};
     std::array<std::int64_t, 4> depths{2, 2, 6, 2};
     std::array<std::int64_t, 4> heads{2, 4, 5, 10};
-    std::array<std::int64_t, 4> windows{7, 7, 14, 7};   // the first has none
-    std::int64_t convolution_inner = 256;                // of the first layer's blocks
+    std::array<std::int64_t, 4> windows{7, 7, 14, 7};  // the first has none
+    std::int64_t convolution_inner = 256;              // of the first layer's blocks
     std::array<std::int64_t, 4> inner{0, 512, 640, 1280};
     std::int64_t out = 256;
     std::int64_t image_size = 1024;
 };
 std::shared_ptr<SamImageEncoderImpl> make_tiny_vit(const TinyVitShape& shape, const WeightOptions& options);
 
-/// [B,H,W,C] -> windows [B * rows * columns, w, w, C] of a picture enlarged with zeros at the right and the bottom, and back.
+/// [B,H,W,C] -> windows [B * rows * columns, w, w, C] of a picture enlarged with zeros at the right and the
+/// bottom, and back.
 torch::Tensor to_windows(const torch::Tensor& x, std::int64_t window);
-torch::Tensor from_windows(const torch::Tensor& windows, std::int64_t window, std::int64_t height, std::int64_t width);
+torch::Tensor from_windows(const torch::Tensor& windows, std::int64_t window, std::int64_t height,
+                           std::int64_t width);
 
 }  // namespace gse::neural

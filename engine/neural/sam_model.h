@@ -1,5 +1,5 @@
-// The Segment Anything model (Kirillov et al. 2023) and MobileSAM (Zhang et al. 2023): a picture is encoded once, then every set of
-// clicks costs a hundredth of that.
+// The Segment Anything model (Kirillov et al. 2023) and MobileSAM (Zhang et al. 2023): a picture is encoded
+// once, then every set of clicks costs a hundredth of that.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,12 @@
 
 namespace gse::neural {
 
-/// Sizes of the networks, as the tensors of a file tell them; only the side of MobileSAM's pictures stands in none.
+/// Sizes of the networks, as the tensors of a file tell them; only the side of MobileSAM's pictures stands in
+/// none.
 struct SamShape {
     std::variant<SamVitShape, TinyVitShape> encoder;
     SamDecoderShape decoder;
-    std::string name;   // "SAM ViT-B", "MobileSAM"
+    std::string name;  // "SAM ViT-B", "MobileSAM"
     std::int64_t image_size() const { return decoder.image_size; }
 };
 
@@ -33,11 +34,13 @@ public:
     explicit SamModelImpl(const SamShape& shape, const WeightOptions& options = {});
 
     const SamShape& shape() const { return shape_; }
-    /// Normalised pixels [1,3,S,S] of a picture [1,3,H,W] in [0,1]: its longer side S, antialiased, in steps of 1/255 as the weights
-    /// have seen them; zeros at the right and the bottom.
+    /// Normalised pixels [1,3,S,S] of a picture [1,3,H,W] in [0,1]: its longer side S, antialiased, in steps
+    /// of 1/255 as the weights have seen them; zeros at the right and the bottom.
     torch::Tensor pixels(const torch::Tensor& picture) const;
     /// [1,C,S/16,S/16].
-    torch::Tensor embed(const torch::Tensor& pixels, SamTrace* trace = nullptr) const { return encoder_->forward(pixels, trace); }
+    torch::Tensor embed(const torch::Tensor& pixels, SamTrace* trace = nullptr) const {
+        return encoder_->forward(pixels, trace);
+    }
     SamPromptEncoding encode(const SamPrompts& prompts) const { return prompt_encoder_->forward(prompts); }
     torch::Tensor dense_positions() const { return prompt_encoder_->dense_positions(); }
     SamMasks masks(const torch::Tensor& embedding, const SamPromptEncoding& prompts, bool several) const {
@@ -56,8 +59,9 @@ private:
 };
 TORCH_MODULE(SamModel);
 
-/// From a file (.safetensors, .pth, .pt) or a folder with model.safetensors; fp32. Throws Error (NotFound, Malformed, Unsupported,
-/// Model).
-SamModel load_sam(const std::filesystem::path& path, const torch::Device& device, std::int64_t mobile_image_size = MobileSamImageSize);
+/// From a file (.safetensors, .pth, .pt) or a folder with model.safetensors; fp32. Throws Error (NotFound,
+/// Malformed, Unsupported, Model).
+SamModel load_sam(const std::filesystem::path& path, const torch::Device& device,
+                  std::int64_t mobile_image_size = MobileSamImageSize);
 
 }  // namespace gse::neural

@@ -14,21 +14,26 @@
 namespace gse::neural {
 namespace {
 
-constexpr std::size_t MostPictures = 64;   // 4 MB each with SAM's weights
+constexpr std::size_t MostPictures = 64;  // 4 MB each with SAM's weights
 
 class SamSegmenter final : public edit::Segmenter {
 public:
-    SamSegmenter(SamModel model, const torch::Device& device) : model_(std::move(model)), device_(device), pictures_(MostPictures) {}
+    SamSegmenter(SamModel model, const torch::Device& device)
+        : model_(std::move(model)), device_(device), pictures_(MostPictures) {}
 
-    Mask segment(const Image& image, const std::vector<edit::PointPrompt>& points, const std::optional<edit::BoxPrompt>& box,
-                 const Image&) override {
+    Mask segment(const Image& image, const std::vector<edit::PointPrompt>& points,
+                 const std::optional<edit::BoxPrompt>& box, const Image&) override {
         GSE_CHECK_EQ(image.channels, 3);
         Mask mask(image.width, image.height);
         if (points.empty() && !box) return mask;
         return guard_torch("cutting out a mask", [&] {
             const torch::NoGradGuard no_grad;
-            const auto found = model_->masks(embedding(image), model_->encode(prompts(image, points, box)), false);
-            const auto inside = (model_->enlarge(found.logits, image.height, image.width) > 0).to(torch::kUInt8).cpu().contiguous();
+            const auto found =
+                model_->masks(embedding(image), model_->encode(prompts(image, points, box)), false);
+            const auto inside = (model_->enlarge(found.logits, image.height, image.width) > 0)
+                                    .to(torch::kUInt8)
+                                    .cpu()
+                                    .contiguous();
             std::copy_n(inside.data_ptr<std::uint8_t>(), mask.data.size(), mask.data.begin());
             return std::move(mask);
         });
@@ -37,12 +42,18 @@ public:
     std::string name() const override { return model_->shape().name; }
 
 private:
-    /// A click at x (pixel centres at .5) is at x s in the encoder's picture, and its prompts have their centres at 0.
-    SamPrompts prompts(const Image& image, const std::vector<edit::PointPrompt>& points, const std::optional<edit::BoxPrompt>& box) const {
+    /// A click at x (pixel centres at .5) is at x s in the encoder's picture, and its prompts have their
+    /// centres at 0.
+    SamPrompts prompts(const Image& image, const std::vector<edit::PointPrompt>& points,
+                       const std::optional<edit::BoxPrompt>& box) const {
         const double scale = model_->scale(image.height, image.width);
         SamPrompts prompts;
         if (points.empty()) {
-            prompts.boxes = torch::tensor({box->x0, box->y0, box->x1, box->y1}, torch::kFloat32).mul_(scale).sub_(0.5).view({1, 4}).to(device_);
+            prompts.boxes = torch::tensor({box->x0, box->y0, box->x1, box->y1}, torch::kFloat32)
+                                .mul_(scale)
+                                .sub_(0.5)
+                                .view({1, 4})
+                                .to(device_);
             return prompts;
         }
         std::vector<float> places;
@@ -68,9 +79,11 @@ private:
 
 }  // namespace
 
-std::unique_ptr<edit::Segmenter> load_sam_segmenter(const std::filesystem::path& path, const std::string& device) {
+std::unique_ptr<edit::Segmenter> load_sam_segmenter(const std::filesystem::path& path,
+                                                    const std::string& device) {
     const auto where = parse_device(device);
-    return guard_torch("loading the segmenter", [&] { return std::make_unique<SamSegmenter>(load_sam(path, where), where); });
+    return guard_torch("loading the segmenter",
+                       [&] { return std::make_unique<SamSegmenter>(load_sam(path, where), where); });
 }
 
 }  // namespace gse::neural

@@ -21,8 +21,10 @@ class NormedConvolutionImpl : public torch::nn::Module {
 public:
     NormedConvolutionImpl(const ConvolutionShape& shape, const WeightOptions& options) : shape_(shape) {
         const auto as = torch::TensorOptions().device(options.device).dtype(options.dtype);
-        auto convolution = std::make_shared<torch::nn::Module>(), norm = std::make_shared<torch::nn::Module>();
-        weight_ = convolution->register_parameter("weight", torch::zeros({shape.out, shape.in / shape.groups, shape.kernel, shape.kernel}, as));
+        auto convolution = std::make_shared<torch::nn::Module>(),
+             norm = std::make_shared<torch::nn::Module>();
+        weight_ = convolution->register_parameter(
+            "weight", torch::zeros({shape.out, shape.in / shape.groups, shape.kernel, shape.kernel}, as));
         scale_ = norm->register_parameter("weight", torch::ones({shape.out}, as));
         shift_ = norm->register_parameter("bias", torch::zeros({shape.out}, as));
         mean_ = norm->register_parameter("running_mean", torch::zeros({shape.out}, as), false);
@@ -32,8 +34,10 @@ public:
     }
     torch::Tensor forward(const torch::Tensor& x) const {
         const auto factor = scale_ / torch::sqrt(variance_ + BatchNormEps);
-        auto result = torch::conv2d(x, weight_ * factor.view({-1, 1, 1, 1}), shift_ - mean_ * factor, shape_.stride, shape_.kernel / 2, 1, shape_.groups);
-        thread_use().flop += 2.0 * static_cast<double>(result.numel() * shape_.in / shape_.groups * shape_.kernel * shape_.kernel);
+        auto result = torch::conv2d(x, weight_ * factor.view({-1, 1, 1, 1}), shift_ - mean_ * factor,
+                                    shape_.stride, shape_.kernel / 2, 1, shape_.groups);
+        thread_use().flop += 2.0 * static_cast<double>(result.numel() * shape_.in / shape_.groups *
+                                                       shape_.kernel * shape_.kernel);
         return result;
     }
 
@@ -48,11 +52,13 @@ class ConvolutionBlockImpl : public torch::nn::Module {
 public:
     ConvolutionBlockImpl(std::int64_t width, std::int64_t inner, const WeightOptions& options) {
         conv1_ = register_module("conv1", NormedConvolution(ConvolutionShape{width, inner}, options));
-        conv2_ = register_module("conv2", NormedConvolution(ConvolutionShape{inner, inner, 3, 1, inner}, options));
+        conv2_ =
+            register_module("conv2", NormedConvolution(ConvolutionShape{inner, inner, 3, 1, inner}, options));
         conv3_ = register_module("conv3", NormedConvolution(ConvolutionShape{inner, width}, options));
     }
     torch::Tensor forward(const torch::Tensor& x) const {
-        return torch::gelu(x + conv3_->forward(torch::gelu(conv2_->forward(torch::gelu(conv1_->forward(x))))));
+        return torch::gelu(x +
+                           conv3_->forward(torch::gelu(conv2_->forward(torch::gelu(conv1_->forward(x))))));
     }
 
 private:
@@ -65,7 +71,8 @@ class MergingImpl : public torch::nn::Module {
 public:
     MergingImpl(std::int64_t in, std::int64_t out, std::int64_t stride, const WeightOptions& options) {
         conv1_ = register_module("conv1", NormedConvolution(ConvolutionShape{in, out}, options));
-        conv2_ = register_module("conv2", NormedConvolution(ConvolutionShape{out, out, 3, stride, out}, options));
+        conv2_ =
+            register_module("conv2", NormedConvolution(ConvolutionShape{out, out, 3, stride, out}, options));
         conv3_ = register_module("conv3", NormedConvolution(ConvolutionShape{out, out}, options));
     }
     torch::Tensor forward(const torch::Tensor& x) const {
@@ -77,10 +84,12 @@ private:
 };
 TORCH_MODULE(Merging);
 
-/// Self-attention in a window with a learned bias for each pair of distances; the norm is inside, so that what was padded counts.
+/// Self-attention in a window with a learned bias for each pair of distances; the norm is inside, so that
+/// what was padded counts.
 class WindowAttentionImpl : public torch::nn::Module {
 public:
-    WindowAttentionImpl(std::int64_t width, std::int64_t heads, std::int64_t window, const WeightOptions& options)
+    WindowAttentionImpl(std::int64_t width, std::int64_t heads, std::int64_t window,
+                        const WeightOptions& options)
         : heads_(heads), window_(window) {
         norm_ = register_module("norm", LayerNorm(width, BlockNormEps, options));
         qkv_ = register_module("qkv", Linear(LinearImpl::Shape{width, 3 * width}, options));
@@ -93,21 +102,30 @@ public:
     torch::Tensor forward(const torch::Tensor& x) const {
         const auto batch = x.size(0), tokens = x.size(1), width = x.size(2), depth = width / heads_;
         // The rows are q, k and v of one head, then those of the next.
-        const auto qkv = qkv_->forward(norm_->forward(x)).view({batch, tokens, heads_, 3, depth}).permute({3, 0, 2, 1, 4}).reshape({3, batch * heads_, tokens, depth});
+        const auto qkv = qkv_->forward(norm_->forward(x))
+                             .view({batch, tokens, heads_, 3, depth})
+                             .permute({3, 0, 2, 1, 4})
+                             .reshape({3, batch * heads_, tokens, depth});
         thread_use().flop += 4.0 * static_cast<double>(batch * heads_ * tokens * tokens * depth);
-        auto scores = torch::bmm(qkv[0] * (1.0 / std::sqrt(static_cast<double>(depth))), qkv[1].transpose(1, 2));
+        auto scores =
+            torch::bmm(qkv[0] * (1.0 / std::sqrt(static_cast<double>(depth))), qkv[1].transpose(1, 2));
         scores = scores.view({batch, heads_, tokens, tokens}) + pair_biases();
-        const auto seen = torch::bmm(torch::softmax(scores, -1).view({batch * heads_, tokens, tokens}), qkv[2]);
-        return proj_->forward(seen.view({batch, heads_, tokens, depth}).transpose(1, 2).reshape({batch, tokens, width}));
+        const auto seen =
+            torch::bmm(torch::softmax(scores, -1).view({batch * heads_, tokens, tokens}), qkv[2]);
+        return proj_->forward(
+            seen.view({batch, heads_, tokens, depth}).transpose(1, 2).reshape({batch, tokens, width}));
     }
 
 private:
     /// [heads, w*w, w*w]: entry |dy| w + |dx| of each head's.
     torch::Tensor pair_biases() const {
-        const auto place = torch::arange(window_ * window_, torch::TensorOptions().dtype(torch::kInt64).device(biases_.device()));
+        const auto place = torch::arange(
+            window_ * window_, torch::TensorOptions().dtype(torch::kInt64).device(biases_.device()));
         const auto y = torch::div(place, window_, "floor"), x = place.remainder(window_);
-        const auto distance = (y.unsqueeze(1) - y.unsqueeze(0)).abs() * window_ + (x.unsqueeze(1) - x.unsqueeze(0)).abs();
-        return biases_.index_select(1, distance.flatten()).view({heads_, window_ * window_, window_ * window_});
+        const auto distance =
+            (y.unsqueeze(1) - y.unsqueeze(0)).abs() * window_ + (x.unsqueeze(1) - x.unsqueeze(0)).abs();
+        return biases_.index_select(1, distance.flatten())
+            .view({heads_, window_ * window_, window_ * window_});
     }
 
     std::int64_t heads_, window_;
@@ -125,7 +143,9 @@ public:
         fc1_ = register_module("fc1", Linear(LinearImpl::Shape{width, inner}, options));
         fc2_ = register_module("fc2", Linear(LinearImpl::Shape{inner, width}, options));
     }
-    torch::Tensor forward(const torch::Tensor& x) const { return fc2_->forward(torch::gelu(fc1_->forward(norm_->forward(x)))); }
+    torch::Tensor forward(const torch::Tensor& x) const {
+        return fc2_->forward(torch::gelu(fc1_->forward(norm_->forward(x))));
+    }
 
 private:
     LayerNorm norm_{nullptr};
@@ -136,11 +156,13 @@ TORCH_MODULE(TinyMlp);
 /// Windows, a depthwise convolution in place of its input, and the perceptron.
 class TinyBlockOfTokensImpl : public torch::nn::Module {
 public:
-    TinyBlockOfTokensImpl(const TinyVitShape& shape, std::size_t layer, std::int64_t side, const WeightOptions& options)
+    TinyBlockOfTokensImpl(const TinyVitShape& shape, std::size_t layer, std::int64_t side,
+                          const WeightOptions& options)
         : side_(side), window_(shape.windows[layer]) {
         const auto width = shape.widths[layer];
         attention_ = register_module("attn", WindowAttention(width, shape.heads[layer], window_, options));
-        local_ = register_module("local_conv", NormedConvolution(ConvolutionShape{width, width, 3, 1, width}, options));
+        local_ = register_module("local_conv",
+                                 NormedConvolution(ConvolutionShape{width, width, 3, 1, width}, options));
         mlp_ = register_module("mlp", TinyMlp(width, shape.inner[layer], options));
     }
 
@@ -154,9 +176,11 @@ public:
         if (window_ == side_) {
             seen = attention_->forward(x);
         } else {
-            const auto windows = attention_->forward(to_windows(x.view({batch, side_, side_, width}), window_).flatten(1, 2));
+            const auto windows =
+                attention_->forward(to_windows(x.view({batch, side_, side_, width}), window_).flatten(1, 2));
             note(".attn_windows", windows);
-            seen = from_windows(windows.view({-1, window_, window_, width}), window_, side_, side_).reshape({batch, tokens, width});
+            seen = from_windows(windows.view({-1, window_, window_, width}), window_, side_, side_)
+                       .reshape({batch, tokens, width});
         }
         const auto map = (x + seen).transpose(1, 2).reshape({batch, width, side_, side_});
         const auto local = local_->forward(map);
@@ -213,29 +237,38 @@ public:
 private:
     void add_patches(std::int64_t width, const WeightOptions& options) {
         // "seq": a convolution, gelu (without weights), a convolution.
-        auto sequence = std::make_shared<torch::nn::Module>(), patches = std::make_shared<torch::nn::Module>();
-        first_patch_ = sequence->register_module("0", NormedConvolution(ConvolutionShape{3, width / 2, 3, 2}, options));
-        second_patch_ = sequence->register_module("2", NormedConvolution(ConvolutionShape{width / 2, width, 3, 2}, options));
+        auto sequence = std::make_shared<torch::nn::Module>(),
+             patches = std::make_shared<torch::nn::Module>();
+        first_patch_ =
+            sequence->register_module("0", NormedConvolution(ConvolutionShape{3, width / 2, 3, 2}, options));
+        second_patch_ = sequence->register_module(
+            "2", NormedConvolution(ConvolutionShape{width / 2, width, 3, 2}, options));
         patches->register_module("seq", sequence);
         register_module("patch_embed", patches);
     }
 
-    std::shared_ptr<torch::nn::Module> make_layer(const TinyVitShape& shape, std::size_t i, const WeightOptions& options) {
+    std::shared_ptr<torch::nn::Module> make_layer(const TinyVitShape& shape, std::size_t i,
+                                                  const WeightOptions& options) {
         auto layer = std::make_shared<torch::nn::Module>();
         torch::nn::ModuleList blocks;
         for (std::int64_t k = 0; k < shape.depths[i]; ++k) {
             if (i == 0)
-                blocks->push_back(convolutions_.emplace_back(ConvolutionBlock(shape.widths[0], shape.convolution_inner, options)).ptr());
+                blocks->push_back(
+                    convolutions_
+                        .emplace_back(ConvolutionBlock(shape.widths[0], shape.convolution_inner, options))
+                        .ptr());
             else
-                blocks->push_back(blocks_[i].emplace_back(TinyBlockOfTokens(shape, i, side_[i], options)).ptr());
+                blocks->push_back(
+                    blocks_[i].emplace_back(TinyBlockOfTokens(shape, i, side_[i], options)).ptr());
         }
         layer->register_module("blocks", blocks);
         if (i + 1 < shape.widths.size())
-            mergings_.push_back(layer->register_module("downsample", Merging(shape.widths[i], shape.widths[i + 1], MergeStrides[i], options)));
+            mergings_.push_back(layer->register_module(
+                "downsample", Merging(shape.widths[i], shape.widths[i + 1], MergeStrides[i], options)));
         return layer;
     }
 
-    std::array<std::int64_t, 4> side_{};   // of the picture in pixels or tokens
+    std::array<std::int64_t, 4> side_{};  // of the picture in pixels or tokens
     NormedConvolution first_patch_{nullptr}, second_patch_{nullptr};
     std::vector<ConvolutionBlock> convolutions_;
     std::array<std::vector<TinyBlockOfTokens>, 4> blocks_;

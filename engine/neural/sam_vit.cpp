@@ -9,7 +9,8 @@ namespace {
 
 constexpr double EncoderNormEps = 1e-6;
 
-torch::Tensor table(torch::nn::Module& module, const char* name, torch::IntArrayRef shape, const WeightOptions& options) {
+torch::Tensor table(torch::nn::Module& module, const char* name, torch::IntArrayRef shape,
+                    const WeightOptions& options) {
     auto values = torch::empty(shape, torch::TensorOptions().device(options.device).dtype(options.dtype));
     if (options.initialize && !values.is_meta()) values.zero_();
     return module.register_parameter(name, values);
@@ -22,15 +23,17 @@ public:
         lin1_ = register_module("lin1", Linear(LinearImpl::Shape{width, inner}, options));
         lin2_ = register_module("lin2", Linear(LinearImpl::Shape{inner, width}, options));
     }
-    torch::Tensor forward(const torch::Tensor& x) const { return lin2_->forward(torch::gelu(lin1_->forward(x))); }
+    torch::Tensor forward(const torch::Tensor& x) const {
+        return lin2_->forward(torch::gelu(lin1_->forward(x)));
+    }
 
 private:
     Linear lin1_{nullptr}, lin2_{nullptr};
 };
 TORCH_MODULE(SamMlp);
 
-/// Self-attention in a square of tokens, with a learned bias for how far two of them are apart, one table per axis, multiplied
-/// with the unscaled query.
+/// Self-attention in a square of tokens, with a learned bias for how far two of them are apart, one table per
+/// axis, multiplied with the unscaled query.
 class SamAttentionImpl : public torch::nn::Module {
 public:
     SamAttentionImpl(std::int64_t width, std::int64_t heads, std::int64_t side, const WeightOptions& options)
@@ -44,7 +47,10 @@ public:
     /// [B,side,side,C].
     torch::Tensor forward(const torch::Tensor& x) const {
         const auto batch = x.size(0), tokens = side_ * side_, width = x.size(3), depth = width / heads_;
-        const auto qkv = qkv_->forward(x).view({batch, tokens, 3, heads_, depth}).permute({2, 0, 3, 1, 4}).reshape({3, batch * heads_, tokens, depth});
+        const auto qkv = qkv_->forward(x)
+                             .view({batch, tokens, 3, heads_, depth})
+                             .permute({2, 0, 3, 1, 4})
+                             .reshape({3, batch * heads_, tokens, depth});
         const auto row_table = by_distance(rows_), column_table = by_distance(columns_);
         auto output = torch::empty({batch * heads_, tokens, depth}, x.options());
         thread_use().flop += 4.0 * static_cast<double>(batch * heads_ * tokens * tokens * depth);
@@ -53,22 +59,29 @@ public:
         const auto together = std::max<std::int64_t>(1, most_scores / (tokens * tokens));
         for (std::int64_t first = 0; first < batch * heads_; first += together) {
             const auto count = std::min(together, batch * heads_ - first);
-            const auto q = qkv[0].narrow(0, first, count), k = qkv[1].narrow(0, first, count), v = qkv[2].narrow(0, first, count);
+            const auto q = qkv[0].narrow(0, first, count), k = qkv[1].narrow(0, first, count),
+                       v = qkv[2].narrow(0, first, count);
             const auto grid = q.reshape({count, side_, side_, depth});
             const auto by_row = torch::einsum("bhwc,hkc->bhwk", {grid, row_table}).unsqueeze(-1);
             const auto by_column = torch::einsum("bhwc,wkc->bhwk", {grid, column_table}).unsqueeze(-2);
             auto scores = torch::bmm(q * (1.0 / std::sqrt(static_cast<double>(depth))), k.transpose(1, 2));
-            scores = scores.view({count, side_, side_, side_, side_}).add_(by_row).add_(by_column).view({count, tokens, tokens});
+            scores = scores.view({count, side_, side_, side_, side_})
+                         .add_(by_row)
+                         .add_(by_column)
+                         .view({count, tokens, tokens});
             output.narrow(0, first, count).copy_(torch::bmm(torch::softmax(scores, -1), v));
         }
-        const auto merged = output.view({batch, heads_, side_, side_, depth}).permute({0, 2, 3, 1, 4}).reshape({batch, side_, side_, width});
+        const auto merged = output.view({batch, heads_, side_, side_, depth})
+                                .permute({0, 2, 3, 1, 4})
+                                .reshape({batch, side_, side_, width});
         return proj_->forward(merged);
     }
 
 private:
     /// [side (query), side (key), depth]: the row of the table for their distance.
     torch::Tensor by_distance(const torch::Tensor& distances) const {
-        const auto places = torch::arange(side_, torch::TensorOptions().dtype(torch::kInt64).device(distances.device()));
+        const auto places =
+            torch::arange(side_, torch::TensorOptions().dtype(torch::kInt64).device(distances.device()));
         return distances.index({places.unsqueeze(1) - places.unsqueeze(0) + (side_ - 1)});
     }
 
@@ -80,7 +93,8 @@ TORCH_MODULE(SamAttention);
 
 class SamBlockImpl : public torch::nn::Module {
 public:
-    SamBlockImpl(const SamVitShape& shape, std::int64_t window, const WeightOptions& options) : side_(shape.side), window_(window) {
+    SamBlockImpl(const SamVitShape& shape, std::int64_t window, const WeightOptions& options)
+        : side_(shape.side), window_(window) {
         norm1_ = register_module("norm1", LayerNorm(shape.width, EncoderNormEps, options));
         norm2_ = register_module("norm2", LayerNorm(shape.width, EncoderNormEps, options));
         attention_ = register_module("attn", SamAttention(shape.width, shape.heads, window, options));
@@ -88,10 +102,8 @@ public:
     }
     torch::Tensor forward(const torch::Tensor& x) const {
         auto seen = norm1_->forward(x);
-        if (window_ == side_)
-            seen = attention_->forward(seen);
-        else
-            seen = from_windows(attention_->forward(to_windows(seen, window_)), window_, side_, side_);
+        if (window_ == side_) seen = attention_->forward(seen);
+        else seen = from_windows(attention_->forward(to_windows(seen, window_)), window_, side_, side_);
         const auto summed = x + seen;
         return summed + mlp_->forward(norm2_->forward(summed));
     }
@@ -176,12 +188,18 @@ torch::Tensor to_windows(const torch::Tensor& x, std::int64_t window) {
     const auto below = (window - height % window) % window, right = (window - width % window) % window;
     const auto padded = torch::constant_pad_nd(x, {0, 0, 0, right, 0, below});
     const auto rows = (height + below) / window, columns = (width + right) / window;
-    return padded.view({batch, rows, window, columns, window, channels}).permute({0, 1, 3, 2, 4, 5}).reshape({-1, window, window, channels});
+    return padded.view({batch, rows, window, columns, window, channels})
+        .permute({0, 1, 3, 2, 4, 5})
+        .reshape({-1, window, window, channels});
 }
 
-torch::Tensor from_windows(const torch::Tensor& windows, std::int64_t window, std::int64_t height, std::int64_t width) {
-    const auto rows = (height + window - 1) / window, columns = (width + window - 1) / window, channels = windows.size(3);
-    const auto whole = windows.view({-1, rows, columns, window, window, channels}).permute({0, 1, 3, 2, 4, 5}).reshape({-1, rows * window, columns * window, channels});
+torch::Tensor from_windows(const torch::Tensor& windows, std::int64_t window, std::int64_t height,
+                           std::int64_t width) {
+    const auto rows = (height + window - 1) / window, columns = (width + window - 1) / window,
+               channels = windows.size(3);
+    const auto whole = windows.view({-1, rows, columns, window, window, channels})
+                           .permute({0, 1, 3, 2, 4, 5})
+                           .reshape({-1, rows * window, columns * window, channels});
     return whole.narrow(1, 0, height).narrow(2, 0, width);
 }
 

@@ -33,7 +33,8 @@ std::vector<double> ascending(const SchedulerConfig& config, const std::string& 
         } else if (spacing == "leading") {
             t = static_cast<double>(i * (total / count) + config.steps_offset);
         } else {
-            // The reference steps down by the difference of its first two values, which decides ties (goldens.md trap 23).
+            // The reference steps down by the difference of its first two values, which decides ties
+            // (goldens.md trap 23).
             const double all = static_cast<double>(total);
             const double stride = (all - all / static_cast<double>(count)) - all;
             t = std::nearbyint(all + static_cast<double>(count - 1 - i) * stride) - 1;
@@ -227,14 +228,10 @@ private:
     torch::Tensor extrapolate() const {
         const auto e = [&](std::size_t back) { return history_[history_.size() - back]; };
         switch (history_.size()) {
-            case 1:
-                return e(1);
-            case 2:
-                return (3 * e(1) - e(2)) / 2;
-            case 3:
-                return (23 * e(1) - 16 * e(2) + 5 * e(3)) / 12;
-            default:
-                return (55 * e(1) - 59 * e(2) + 37 * e(3) - 9 * e(4)) / 24;
+            case 1: return e(1);
+            case 2: return (3 * e(1) - e(2)) / 2;
+            case 3: return (23 * e(1) - 16 * e(2) + 5 * e(3)) / 12;
+            default: return (55 * e(1) - 59 * e(2) + 37 * e(3) - 9 * e(4)) / 24;
         }
     }
     double alpha(std::int64_t t) const {
@@ -320,26 +317,19 @@ std::unique_ptr<Sampler> make_sampler(SamplerKind kind, const NoiseSchedule& sch
     using enum SamplerKind;
     const bool any_prediction = kind == Ddim || kind == Ddpm || kind == Lcm || kind == Tcd;
     if (schedule.prediction() == Prediction::Sample && !any_prediction)
-        throw Error(ErrorCode::Unsupported, "a model that predicts the clean sample cannot be walked by this scheduler",
+        throw Error(ErrorCode::Unsupported,
+                    "a model that predicts the clean sample cannot be walked by this scheduler",
                     "use DDIMScheduler");
     switch (kind) {
-        case SamplerKind::Ddim:
-            return std::make_unique<DdimSampler>(schedule, steps, options.eta);
-        case SamplerKind::DdimInverse:
-            return std::make_unique<DdimInverseSampler>(schedule, steps);
-        case SamplerKind::Ddpm:
-            return std::make_unique<DdpmSampler>(schedule, steps);
-        case SamplerKind::Euler:
-            return std::make_unique<EulerSampler>(schedule, steps, false);
-        case SamplerKind::EulerAncestral:
-            return std::make_unique<EulerSampler>(schedule, steps, true);
-        case SamplerKind::Pndm:
-            return std::make_unique<PndmSampler>(schedule, steps);
-        case SamplerKind::DpmSolverPp2M:
-            return std::make_unique<DpmSolverSampler>(schedule, steps);
+        case SamplerKind::Ddim: return std::make_unique<DdimSampler>(schedule, steps, options.eta);
+        case SamplerKind::DdimInverse: return std::make_unique<DdimInverseSampler>(schedule, steps);
+        case SamplerKind::Ddpm: return std::make_unique<DdpmSampler>(schedule, steps);
+        case SamplerKind::Euler: return std::make_unique<EulerSampler>(schedule, steps, false);
+        case SamplerKind::EulerAncestral: return std::make_unique<EulerSampler>(schedule, steps, true);
+        case SamplerKind::Pndm: return std::make_unique<PndmSampler>(schedule, steps);
+        case SamplerKind::DpmSolverPp2M: return std::make_unique<DpmSolverSampler>(schedule, steps);
         case SamplerKind::Lcm:
-        case SamplerKind::Tcd:
-            return make_consistency_sampler(kind, schedule, steps, options);
+        case SamplerKind::Tcd: return make_consistency_sampler(kind, schedule, steps, options);
     }
     GSE_CHECK(false);
 }

@@ -40,9 +40,7 @@ Prediction prediction_of(const SchedulerConfig& config) {
 }  // namespace
 
 NoiseSchedule::NoiseSchedule(const SchedulerConfig& config)
-    : config_(config),
-      betas_(make_betas(config)),
-      alphas_cumprod_(torch::cumprod(1.0 - betas_, 0)),
+    : config_(config), betas_(make_betas(config)), alphas_cumprod_(torch::cumprod(1.0 - betas_, 0)),
       prediction_(prediction_of(config)) {
     const float* data = alphas_cumprod_.data_ptr<float>();
     values_.assign(data, data + alphas_cumprod_.numel());
@@ -125,8 +123,10 @@ std::int64_t first_step(std::int64_t step_count, double strength) {
     return std::max<std::int64_t>(0, step_count - kept);
 }
 
-ImageToImage image_to_image(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps, SamplerOptions options) {
-    if (kind == SamplerKind::Lcm || kind == SamplerKind::Tcd) return {make_sampler(kind, schedule, steps, options), 0};
+ImageToImage image_to_image(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps,
+                            SamplerOptions options) {
+    if (kind == SamplerKind::Lcm || kind == SamplerKind::Tcd)
+        return {make_sampler(kind, schedule, steps, options), 0};
     auto sampler = make_sampler(kind, schedule, steps, options);
     const auto count = sampler->step_count();
     return {std::move(sampler), std::min(first_step(count, options.strength), count - 1)};

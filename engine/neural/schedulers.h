@@ -1,4 +1,5 @@
-// Noise schedules of diffusion models and the samplers that walk them (DDIM, DDPM, Euler, PNDM, DPM++ 2M, LCM, TCD).
+// Noise schedules of diffusion models and the samplers that walk them (DDIM, DDPM, Euler, PNDM, DPM++ 2M,
+// LCM, TCD).
 #pragma once
 
 #include <torch/torch.h>
@@ -88,21 +89,25 @@ protected:
 
 /// What only some samplers go by; the others ignore it.
 struct SamplerOptions {
-    double eta = 0;                   // share of fresh noise: DDIM's eta, TCD's gamma
-    double strength = 1;              // LCM, TCD: image to image begins at this share of their table; see image_to_image()
-    std::int64_t original_steps = 0;  // LCM, TCD: of the solver they were distilled from; 0 = as the configuration says
-    bool any_level = false;           // TCD: visits every timestep, not only the solver's
+    double eta = 0;  // share of fresh noise: DDIM's eta, TCD's gamma
+    double strength =
+        1;  // LCM, TCD: image to image begins at this share of their table; see image_to_image()
+    std::int64_t original_steps =
+        0;  // LCM, TCD: of the solver they were distilled from; 0 = as the configuration says
+    bool any_level = false;  // TCD: visits every timestep, not only the solver's
 };
 
-/// Throws Error (InvalidArgument) for a number of steps that the schedule, or the table of a distilled model, does not have.
+/// Throws Error (InvalidArgument) for a number of steps that the schedule, or the table of a distilled model,
+/// does not have.
 std::unique_ptr<Sampler> make_sampler(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps,
                                       const SamplerOptions& options = {});
 
 /// LCM and TCD: the samplers of models distilled to few steps.
-std::unique_ptr<Sampler> make_consistency_sampler(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps,
-                                                  const SamplerOptions& options);
+std::unique_ptr<Sampler> make_consistency_sampler(SamplerKind kind, const NoiseSchedule& schedule,
+                                                  std::int64_t steps, const SamplerOptions& options);
 
-/// Shares of the sample and of what the network says in a consistency model's answer: at timestep 0 the sample itself.
+/// Shares of the sample and of what the network says in a consistency model's answer: at timestep 0 the
+/// sample itself.
 struct BoundaryScalings {
     double skip = 0, out = 1;
 };
@@ -113,9 +118,10 @@ struct ImageToImage {
     std::unique_ptr<Sampler> sampler;
     std::int64_t first = 0;
 };
-/// LCM and TCD take the strength into their table and do all `steps`; the others do the last int(steps * strength) of them,
-/// at least one.
-ImageToImage image_to_image(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps, SamplerOptions options);
+/// LCM and TCD take the strength into their table and do all `steps`; the others do the last int(steps *
+/// strength) of them, at least one.
+ImageToImage image_to_image(SamplerKind kind, const NoiseSchedule& schedule, std::int64_t steps,
+                            SamplerOptions options);
 
 /// The sampler a scheduler_config.json names. Throws Error (Model) for one that is not implemented.
 SamplerKind sampler_kind(const SchedulerConfig& config);

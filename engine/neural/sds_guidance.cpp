@@ -77,7 +77,8 @@ edit::GuidanceOutput SdsGuidance::evaluate(const edit::GuidanceInput& input) {
         SdsStep step{noise, t, parameters_.guidance_scale, context_for(prompt_, input.view_words)};
         step.image_guidance_scale = parameters_.image_guidance_scale;
         if (takes_picture(bundle_->unet->config()))
-            step.picture = input.original != nullptr ? original_latents(input) / bundle_->scaling_factor() : moments.mean.detach();
+            step.picture = input.original != nullptr ? original_latents(input) / bundle_->scaling_factor()
+                                                     : moments.mean.detach();
         auto result = sds_gradient(*bundle_, latents, step);
         if (input.original != nullptr && takes_difference()) {
             const auto deviation = latents.detach() - moments.mean.detach() * bundle_->scaling_factor();
@@ -85,8 +86,11 @@ edit::GuidanceOutput SdsGuidance::evaluate(const edit::GuidanceInput& input) {
         }
         edit::GuidanceOutput output;
         output.scalars["timestep"] = static_cast<double>(t);
-        if (!torch::isfinite(result.gradient).all().item<bool>()) {   // before the clamp, which would hide an infinity
-            output.gradient = Image(input.rendered.width, input.rendered.height, 3, std::numeric_limits<float>::quiet_NaN());
+        if (!torch::isfinite(result.gradient)
+                 .all()
+                 .item<bool>()) {  // before the clamp, which would hide an infinity
+            output.gradient = Image(input.rendered.width, input.rendered.height, 3,
+                                    std::numeric_limits<float>::quiet_NaN());
             return output;
         }
         const auto gradient =

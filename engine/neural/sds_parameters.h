@@ -27,28 +27,34 @@ struct SdsParameters {
     std::string before_prompt;
     double delta = 0.5;
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("t_min", self.t_min, "Lowest noise level, as a share of the schedule.", Range{0, 1});
         f("t_max_start", self.t_max_start, "Highest noise level at the first iteration.", Range{0, 1});
         f("t_max_end", self.t_max_end, "Highest noise level at the last iteration.", Range{0, 1});
         f("guidance_scale", self.guidance_scale,
-          "Classifier-free guidance: 1 = none, higher follows the prompt harder. Stable Diffusion works best from "
+          "Classifier-free guidance: 1 = none, higher follows the prompt harder. Stable Diffusion works best "
+          "from "
           "7.5 on.",
           Range{0, 200});
-        f("view_guidance_scale", self.view_guidance_scale,
-          "The same where views are redrawn (method views).", Range{0, 200});
-        f("shape_guidance_scale", self.shape_guidance_scale, "The same where they show something of a new shape.", Range{0, 200});
+        f("view_guidance_scale", self.view_guidance_scale, "The same where views are redrawn (method views).",
+          Range{0, 200});
+        f("shape_guidance_scale", self.shape_guidance_scale,
+          "The same where they show something of a new shape.", Range{0, 200});
         f("restyle", self.restyle,
-          "Another colour, material or ground is drawn by the network that is shown the scene, where the model has one; where its pictures "
+          "Another colour, material or ground is drawn by the network that is shown the scene, where the "
+          "model has one; where its pictures "
           "hardly show what was asked, the model itself draws them all the same.");
         f("plain_ground", self.plain_ground,
-          "What stands in nothing is shown to that network on a plain ground. So is what stands alone there, where pictures of the scene hardly "
+          "What stands in nothing is shown to that network on a plain ground. So is what stands alone there, "
+          "where pictures of the scene hardly "
           "show what was asked.");
         f("restyle_guidance_scale", self.restyle_guidance_scale,
-          "The same where a model that is shown the scene gives a thing another colour or material, or another ground.", Range{0, 200});
+          "The same where a model that is shown the scene gives a thing another colour or material, or "
+          "another ground.",
+          Range{0, 200});
         f("image_guidance_scale", self.image_guidance_scale,
-          "InstructPix2Pix: how closely the picture is kept to the unedited one. 1 = fast, with two thirds of the work; 1.5 is usual "
+          "InstructPix2Pix: how closely the picture is kept to the unedited one. 1 = fast, with two thirds "
+          "of the work; 1.5 is usual "
           "with it; below 1 turns all guidance off.",
           Range{0, 20});
         f("clamp", self.clamp, "Largest absolute gradient per latent value; 0 = no limit.", Range{0, 1e6});
@@ -61,7 +67,8 @@ struct SdsParameters {
         f("before_prompt", self.before_prompt,
           "What the scene shows before the edit; worked out from the prompt when empty.");
         f("delta", self.delta,
-          "Share of the pull on the unedited scene under its own sentence that is taken off: what the model would "
+          "Share of the pull on the unedited scene under its own sentence that is taken off: what the model "
+          "would "
           "change anyway, and its noise; 0 = plain score distillation, at half the cost.",
           Range{0, 1});
     }

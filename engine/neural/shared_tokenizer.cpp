@@ -13,8 +13,9 @@ namespace fs = std::filesystem;
 
 fs::path find_tokenizer(const fs::path& beside) {
     const char* assets = std::getenv("GSE_ASSETS");
-    const std::array<fs::path, 3> candidates{beside / "tokenizer", beside,
-                                             (assets != nullptr ? fs::path(assets) : assets_folder(GSE_ASSETS)) / "tokenizer"};
+    const std::array<fs::path, 3> candidates{
+        beside / "tokenizer", beside,
+        (assets != nullptr ? fs::path(assets) : assets_folder(GSE_ASSETS)) / "tokenizer"};
     for (const auto& candidate : candidates)
         if (fs::exists(candidate / "merges.txt")) return candidate;
     throw Error(ErrorCode::NotFound, "a single-file checkpoint has no tokenizer and none was found",

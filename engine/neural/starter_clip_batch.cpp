@@ -65,8 +65,7 @@ void compare_changes(const std::vector<std::int64_t>& from, const std::vector<st
 }  // namespace
 
 TwinBatchMaker::TwinBatchMaker(const ClipTraining& training)
-    : training_(training),
-      table_(training.vocabulary),
+    : training_(training), table_(training.vocabulary),
       members_(static_cast<std::uint64_t>(training.twins.group_size())) {}
 
 TwinBatch TwinBatchMaker::make(Random& random) const {

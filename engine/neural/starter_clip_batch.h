@@ -17,8 +17,8 @@ struct TwinBatch {
     torch::Tensor ids;       // [N,T] long
     torch::Tensor
         blocked;  // [N,N] bool: sentence [column] also holds for picture [row], so is no counter-example
-    torch::Tensor false_ids;   // [M,T] long: sentences that are not true of their picture
-    torch::Tensor false_of;    // [M] long: the picture of each
+    torch::Tensor false_ids;  // [M,T] long: sentences that are not true of their picture
+    torch::Tensor false_of;   // [M] long: the picture of each
     /// Changes of one picture and sentence to another of the group that can be seen.
     torch::Tensor from, to;     // [K] long
     torch::Tensor same_change;  // [K,K] bool, false on the diagonal: the two change the same words

@@ -1,8 +1,8 @@
 // Trains the image-text encoder: symmetric InfoNCE over pictures and sentences (Radford et al. 2021) in which
 // sentences that are true of another picture do not count against it, and the same over changes: the
 // difference of two twins' pictures must point where the difference of their sentences points (directional
-// CLIP loss, Gal et al. 2022), at right angles to changes of other things. Sentences with one word replaced count against
-// a picture's own (hard negative captions, Yuksekgonul et al. 2023).
+// CLIP loss, Gal et al. 2022), at right angles to changes of other things. Sentences with one word replaced
+// count against a picture's own (hard negative captions, Yuksekgonul et al. 2023).
 #include <cmath>
 #include <limits>
 
@@ -28,7 +28,8 @@ double share_right(const torch::Tensor& scores, const torch::Tensor& blocked) {
     return best.eq(torch::arange(best.size(0), best.options())).to(torch::kFloat).mean().item<double>();
 }
 
-/// What the sentences with a word replaced cost, and the share of them that fit their picture less than its own.
+/// What the sentences with a word replaced cost, and the share of them that fit their picture less than its
+/// own.
 struct Told {
     torch::Tensor loss;
     double right = 0;
@@ -44,7 +45,8 @@ Told tell_false(const torch::Tensor& pictures, const torch::Tensor& own, const t
 
 std::pair<torch::Tensor, std::vector<double>> batch_loss(const ClipModel& clip,
                                                          const ClipPreprocessing& preprocessing,
-                                                         const TwinBatch& batch, const StarterTrainParameters& weights) {
+                                                         const TwinBatch& batch,
+                                                         const StarterTrainParameters& weights) {
     const double direction_weight = weights.direction_weight;
     const auto device = clip->logit_scale.device();
     const auto pictures = clip->image_vectors(preprocessing.pixels(batch.pictures.to(device)));
@@ -74,9 +76,9 @@ std::pair<torch::Tensor, std::vector<double>> batch_loss(const ClipModel& clip,
                                           (1 - changes.diagonal()).mean() + UnrelatedWeight * mixed);
         direction = changes.diagonal().mean().item<double>();
     }
-    return {
-        loss,
-        {loss.item<double>(), agreement.item<double>(), share_right(cosines.detach(), blocked), direction, told.right}};
+    return {loss,
+            {loss.item<double>(), agreement.item<double>(), share_right(cosines.detach(), blocked), direction,
+             told.right}};
 }
 
 }  // namespace

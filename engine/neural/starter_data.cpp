@@ -26,8 +26,8 @@ struct CacheHeader {
 
 std::filesystem::path cache_path(const StarterTrainParameters& parameters, const StarterSource& source,
                                  const std::filesystem::path& work) {
-    const std::string key = fmt::format("{}|{}|{}|{}", source.identity(), parameters.image_size, parameters.pictures,
-                                        parameters.seed);
+    const std::string key = fmt::format("{}|{}|{}|{}", source.identity(), parameters.image_size,
+                                        parameters.pictures, parameters.seed);
     std::uint64_t hash = 1469598103934665603ULL;  // FNV-1a
     for (const char letter : key) hash = (hash ^ static_cast<unsigned char>(letter)) * 1099511628211ULL;
     return work / fmt::format("pictures-{:016x}.bin", hash);
@@ -44,7 +44,8 @@ void allocate(StarterPictures& pictures, int size, std::size_t count, bool outli
     pictures.outline.resize(outlines ? count * side * side : 0);
 }
 
-bool read_cache(const std::filesystem::path& path, const StarterTrainParameters& parameters, bool outlines, StarterPictures& pictures) {
+bool read_cache(const std::filesystem::path& path, const StarterTrainParameters& parameters, bool outlines,
+                StarterPictures& pictures) {
     std::ifstream stream(path, std::ios::binary);
     CacheHeader header;
     if (!stream || !stream.read(reinterpret_cast<char*>(&header), sizeof(header))) return false;
@@ -54,7 +55,8 @@ bool read_cache(const std::filesystem::path& path, const StarterTrainParameters&
         return false;
     allocate(pictures, parameters.image_size, count, outlines);
     for (auto* part : {&pictures.rgb, &pictures.coverage, &pictures.bare_twin, &pictures.outline})
-        if (!stream.read(reinterpret_cast<char*>(part->data()), static_cast<std::streamsize>(part->size()))) return false;
+        if (!stream.read(reinterpret_cast<char*>(part->data()), static_cast<std::streamsize>(part->size())))
+            return false;
     return true;
 }
 
@@ -65,8 +67,10 @@ void write_cache(const std::filesystem::path& path, const StarterPictures& pictu
                                  static_cast<std::uint32_t>(pictures.cells)};
         stream.write(reinterpret_cast<const char*>(&header), sizeof(header));
         for (const auto* part : {&pictures.rgb, &pictures.coverage, &pictures.bare_twin, &pictures.outline})
-            stream.write(reinterpret_cast<const char*>(part->data()), static_cast<std::streamsize>(part->size()));
-        if (!stream.flush()) throw Error(ErrorCode::Unwritable, "the picture cache cannot be written", "", path);
+            stream.write(reinterpret_cast<const char*>(part->data()),
+                         static_cast<std::streamsize>(part->size()));
+        if (!stream.flush())
+            throw Error(ErrorCode::Unwritable, "the picture cache cannot be written", "", path);
     });
 }
 
@@ -74,12 +78,14 @@ void store(StarterPictures& pictures, std::size_t index, const StarterPicture& p
     const std::size_t rgb_size = pictures.rgb.size() / pictures.count;
     const std::size_t coverage_size = pictures.coverage.size() / pictures.count;
     const std::size_t outline_size = pictures.outline.size() / pictures.count;
-    if (picture.rgb.size() != rgb_size || picture.coverage.size() != coverage_size || (outline_size > 0 && picture.outline.size() != outline_size))
+    if (picture.rgb.size() != rgb_size || picture.coverage.size() != coverage_size ||
+        (outline_size > 0 && picture.outline.size() != outline_size))
         throw Error(ErrorCode::InvalidArgument, "the picture source returned a picture of another size");
     std::memcpy(&pictures.rgb[index * rgb_size], picture.rgb.data(), rgb_size);
     std::memcpy(&pictures.coverage[index * coverage_size], picture.coverage.data(), coverage_size);
     pictures.bare_twin[index] = picture.bare_twin ? 1 : 0;
-    if (outline_size > 0) std::memcpy(&pictures.outline[index * outline_size], picture.outline.data(), outline_size);
+    if (outline_size > 0)
+        std::memcpy(&pictures.outline[index * outline_size], picture.outline.data(), outline_size);
 }
 
 }  // namespace
@@ -92,17 +98,22 @@ StarterPictures load_or_render_pictures(const StarterTrainParameters& parameters
         log::info("{} training pictures read from the cache", pictures.count);
         return pictures;
     }
-    allocate(pictures, parameters.image_size, static_cast<std::size_t>(parameters.pictures), source.has_outlines());
+    allocate(pictures, parameters.image_size, static_cast<std::size_t>(parameters.pictures),
+             source.has_outlines());
     ThreadPool pool(static_cast<unsigned>(parameters.threads));
     std::atomic<int> done{0};
-    pool.parallel_for(pictures.count, static_cast<std::size_t>(source.views_of_scene()), [&](std::size_t begin, std::size_t end, unsigned worker) {
-        for (std::size_t index = begin; index < end; ++index) {
-            if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "stopped while rendering the training pictures");
-            store(pictures, index, source.picture(index, parameters.image_size));
-            const int finished = done.fetch_add(1) + 1;
-            if (worker == 0) job.report("rendering pictures", finished, parameters.pictures);
-        }
-    });
+    pool.parallel_for(pictures.count, static_cast<std::size_t>(source.views_of_scene()),
+                      [&](std::size_t begin, std::size_t end, unsigned worker) {
+                          for (std::size_t index = begin; index < end; ++index) {
+                              if (job.stop_requested())
+                                  throw Error(ErrorCode::Cancelled,
+                                              "stopped while rendering the training pictures");
+                              store(pictures, index, source.picture(index, parameters.image_size));
+                              const int finished = done.fetch_add(1) + 1;
+                              if (worker == 0)
+                                  job.report("rendering pictures", finished, parameters.pictures);
+                          }
+                      });
     write_cache(path, pictures);
     return pictures;
 }

@@ -24,22 +24,25 @@ void expect_same(const Json& found, Json wanted, const std::filesystem::path& pa
                         StructureHint, path);
 }
 
-template <class Config>
-Config read_config(const std::filesystem::path& path) {
+template <class Config> Config read_config(const std::filesystem::path& path) {
     return Config::from_json(read_json_file(path), path);
 }
 
-/// For each token of `vocabulary` its row in the embedding of the folder's model, or -1 for a token that is new to it.
-/// Throws when that model has a token that the run has not: what it learned of a word would be lost.
-std::vector<std::int64_t> rows_before(const std::filesystem::path& folder, const StarterVocabulary& vocabulary) {
+/// For each token of `vocabulary` its row in the embedding of the folder's model, or -1 for a token that is
+/// new to it. Throws when that model has a token that the run has not: what it learned of a word would be
+/// lost.
+std::vector<std::int64_t> rows_before(const std::filesystem::path& folder,
+                                      const StarterVocabulary& vocabulary) {
     const auto file = folder / "tokenizer/vocab.json";
     const auto before = read_json_file(file), now = parse_json<Json>(vocabulary.vocab_json, "the vocabulary");
-    std::string lost;   // the longest is a whole word
+    std::string lost;  // the longest is a whole word
     for (const auto& token : before.items())
-        if (token.key().ends_with("</w>") && !now.contains(token.key()) && token.key().size() > lost.size()) lost = token.key();
+        if (token.key().ends_with("</w>") && !now.contains(token.key()) && token.key().size() > lost.size())
+            lost = token.key();
     if (!lost.empty())
         throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("the initial model knows \"{}\", which this run does not train", lost.substr(0, lost.size() - 4)),
+                    fmt::format("the initial model knows \"{}\", which this run does not train",
+                                lost.substr(0, lost.size() - 4)),
                     StructureHint, file);
     std::vector<std::int64_t> rows(now.size(), -1);
     for (const auto& [token, id] : now.items())
@@ -81,8 +84,7 @@ void add_half(torch::nn::Module& to, torch::nn::Module& from) {
     for (std::size_t i = 0; i < a.size(); ++i) a[i].lerp_(b[i], 0.5);
 }
 
-template <class Module>
-void fill(Module& module, const std::filesystem::path& path, const LoadPlan& plan) {
+template <class Module> void fill(Module& module, const std::filesystem::path& path, const LoadPlan& plan) {
     load_weights(*module, SafetensorsFile(path), plan);
 }
 
@@ -97,7 +99,8 @@ StarterParts fresh_parts(const StarterConfigs& configs, std::uint64_t seed) {
     return parts;
 }
 
-ClipModel initial_clip(const std::filesystem::path& folder, const ClipConfig& config, const StarterVocabulary& vocabulary) {
+ClipModel initial_clip(const std::filesystem::path& folder, const ClipConfig& config,
+                       const StarterVocabulary& vocabulary) {
     ClipModel clip(config);
     const auto weights = folder / "clip/model.safetensors";
     if (folder.empty() || !std::filesystem::exists(weights)) return clip;
@@ -134,14 +137,17 @@ StarterParts initial_parts(const std::filesystem::path& folder, const StarterCon
 UNet initial_shapes(const std::filesystem::path& folder, UNet unet) {
     const auto path = folder / "gseditpro.json";
     const Json facts = std::filesystem::exists(path) ? read_json_file(path) : Json::object();
-    if (facts.contains("shape_unet")) return load_shape_unet(folder / facts.at("shape_unet").get<std::string>());
+    if (facts.contains("shape_unet"))
+        return load_shape_unet(folder / facts.at("shape_unet").get<std::string>());
     if (!facts.contains("shape_lora")) return with_scene_inputs(unet);
     merge_lora(*unet, read_lora(folder / facts.at("shape_lora").get<std::string>()).unet, 1);
     const auto inputs = facts.value("shape_cameras", std::string());
-    return inputs.empty() ? with_scene_inputs(unet) : with_scene_inputs(unet, SafetensorsFile(folder / inputs), true);
+    return inputs.empty() ? with_scene_inputs(unet)
+                          : with_scene_inputs(unet, SafetensorsFile(folder / inputs), true);
 }
 
-std::vector<std::int64_t> fresh_tokens(const std::filesystem::path& folder, const StarterVocabulary& vocabulary) {
+std::vector<std::int64_t> fresh_tokens(const std::filesystem::path& folder,
+                                       const StarterVocabulary& vocabulary) {
     const auto rows = rows_before(folder, vocabulary);
     std::vector<std::int64_t> fresh;
     for (std::size_t row = 0; row < rows.size(); ++row)

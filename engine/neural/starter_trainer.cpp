@@ -13,12 +13,13 @@ namespace gse::neural {
 
 namespace {
 
-constexpr int ClipProjection = 96;   // numbers per picture or sentence
-constexpr int ClipPatches = 8;       // patches along a side
+constexpr int ClipProjection = 96;  // numbers per picture or sentence
+constexpr int ClipPatches = 8;      // patches along a side
 
 }  // namespace
 
-StarterConfigs starter_configs(const StarterTrainParameters& parameters, const StarterVocabulary& vocabulary) {
+StarterConfigs starter_configs(const StarterTrainParameters& parameters,
+                               const StarterVocabulary& vocabulary) {
     StarterConfigs configs;
     const int c = parameters.vae_channels;
     configs.vae.block_out_channels = {c, 3 * c, 6 * c};
@@ -68,24 +69,28 @@ bool trains(int steps, double minutes) { return steps > 0 || minutes > 0; }
 
 StarterTrainParameters checked(StarterTrainParameters parameters, const StarterSource& source) {
     if (parameters.initial.empty() && parameters.shapes)
-        throw Error(ErrorCode::InvalidArgument, "a LoRA for shapes needs a model beside which it works", "name it with --initial");
+        throw Error(ErrorCode::InvalidArgument, "a LoRA for shapes needs a model beside which it works",
+                    "name it with --initial");
     if (parameters.threads == 0)
-        parameters.threads =
-            parameters.device == "cpu" ? static_cast<int>(std::max(1u, std::thread::hardware_concurrency())) : 1;
-    if (parameters.shapes) {   // the model beside the LoRA stays as it is
+        parameters.threads = parameters.device == "cpu"
+                                 ? static_cast<int>(std::max(1u, std::thread::hardware_concurrency()))
+                                 : 1;
+    if (parameters.shapes) {  // the model beside the LoRA stays as it is
         parameters.vae_minutes = parameters.clip_minutes = 0;
         parameters.vae_steps = parameters.clip_steps = 0;
     }
     const bool all = trains(parameters.vae_steps, parameters.vae_minutes) &&
                      trains(parameters.unet_steps, parameters.unet_minutes);
     if (trains(parameters.clip_steps, parameters.clip_minutes) && source.twins() == nullptr)
-        throw Error(ErrorCode::InvalidArgument, "the picture source has no twins to train the image-text encoder on",
+        throw Error(ErrorCode::InvalidArgument,
+                    "the picture source has no twins to train the image-text encoder on",
                     "give it neither minutes nor steps");
     if (parameters.initial.empty() && !all)
         throw Error(ErrorCode::InvalidArgument, "a part of the model would stay untrained",
                     "give every stage minutes or steps, or name the model to keep it from with --initial");
     if (parameters.initial.empty() && !parameters.average.empty())
-        throw Error(ErrorCode::InvalidArgument, "there is nothing to average with", "name the other model with --initial");
+        throw Error(ErrorCode::InvalidArgument, "there is nothing to average with",
+                    "name the other model with --initial");
     return parameters;
 }
 
@@ -97,7 +102,8 @@ void add_clip(const StarterTrainParameters& parameters, const StarterSource& sou
     if (!trained && (parameters.initial.empty() || !std::filesystem::exists(kept))) return;
     const auto vocabulary = build_vocabulary(source.vocabulary());
     torch::manual_seed(parameters.seed + 2);
-    ClipModel clip = initial_clip(parameters.initial, starter_configs(parameters, vocabulary).clip, vocabulary);
+    ClipModel clip =
+        initial_clip(parameters.initial, starter_configs(parameters, vocabulary).clip, vocabulary);
     if (trained) {
         auto twin_parameters = parameters;
         twin_parameters.pictures = parameters.clip_pictures;
@@ -110,7 +116,8 @@ void add_clip(const StarterTrainParameters& parameters, const StarterSource& sou
 }  // namespace
 
 void train_starter(const StarterTrainParameters& requested, const StarterSource& source,
-                   const std::filesystem::path& work, const std::filesystem::path& output, const JobControl& job) {
+                   const std::filesystem::path& work, const std::filesystem::path& output,
+                   const JobControl& job) {
     const StarterTrainParameters parameters = checked(requested, source);
     const bool new_vae = trains(parameters.vae_steps, parameters.vae_minutes);
     const bool new_unet = trains(parameters.unet_steps, parameters.unet_minutes);
@@ -130,7 +137,7 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
     if (new_vae) train_vae(parts.vae, parameters, pictures, work, job);
     StarterLatents latents;
     if (new_vae || new_unet) latents = encode_pictures(parts.vae, parameters, pictures);
-    if (!new_vae) latents.deviation = 1.0 / parts.scaling_factor;   // what the UNet was trained with
+    if (!new_vae) latents.deviation = 1.0 / parts.scaling_factor;  // what the UNet was trained with
     log::info("latents have a standard deviation of {:.3f}", latents.deviation);
 
     configs.vae.scaling_factor = new_vae ? 1.0 / latents.deviation : parts.scaling_factor;
@@ -145,8 +152,7 @@ void train_starter(const StarterTrainParameters& requested, const StarterSource&
     };
     if (new_unet && parameters.shapes)
         train_shapes(parts.networks, training, fresh_tokens(parameters.initial, vocabulary), work, job);
-    else if (new_unet)
-        train_unet(parts.networks, training, work, job);
+    else if (new_unet) train_unet(parts.networks, training, work, job);
     export_starter(training, parts.vae, parts.networks, output);
     pictures = {};
     add_clip(parameters, source, work, output / "clip", job);

@@ -1,5 +1,5 @@
-// Trains the embedded starter model (VAE, text encoder, UNet in the Stable Diffusion structure) on captioned pictures.
-// No torch type appears here: the program hands over a picture source and gets a diffusers folder.
+// Trains the embedded starter model (VAE, text encoder, UNet in the Stable Diffusion structure) on captioned
+// pictures. No torch type appears here: the program hands over a picture source and gets a diffusers folder.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,13 @@ inline constexpr int StarterPartCount = 3;
 
 /// One training picture. `coverage` holds, per part, how much of each latent cell the part covers (0..255).
 struct StarterPicture {
-    std::vector<std::uint8_t> rgb;        // [S,S,3] display values
-    std::vector<std::uint8_t> coverage;   // [3,G,G], G = S / 4
-    /// The accessory map is that of the twin scene: the picture itself shows no accessory. Captions asked for with
-    /// `insertion` then name the accessory, so the words learn where it belongs before it is there.
+    std::vector<std::uint8_t> rgb;       // [S,S,3] display values
+    std::vector<std::uint8_t> coverage;  // [3,G,G], G = S / 4
+    /// The accessory map is that of the twin scene: the picture itself shows no accessory. Captions asked for
+    /// with `insertion` then name the accessory, so the words learn where it belongs before it is there.
     bool bare_twin = false;
-    /// How much of each pixel what is new covers (what is restyled, else the accessory, else the object), [S,S], 0..255; empty where the source
-    /// does not tell.
+    /// How much of each pixel what is new covers (what is restyled, else the accessory, else the object),
+    /// [S,S], 0..255; empty where the source does not tell.
     std::vector<std::uint8_t> outline = {};
 };
 
@@ -38,16 +38,17 @@ struct StarterCaption {
     };
     std::string text;
     std::vector<Grounding> groundings;
-    /// A picture taken from between two sides has two sentences: the other one, and how much it holds, in [0,1].
+    /// A picture taken from between two sides has two sentences: the other one, and how much it holds, in
+    /// [0,1].
     std::string next_text = {};
     double next_share = 0;
 };
 
 /// Where a picture was taken from.
 struct StarterCamera {
-    double azimuth = 0;     // radians from the scene's front, positive to the left
-    double elevation = 0;   // radians above the horizontal
-    double front = 0;       // azimuth at which the thing shows its front: it may be turned in the scene
+    double azimuth = 0;    // radians from the scene's front, positive to the left
+    double elevation = 0;  // radians above the horizontal
+    double front = 0;      // azimuth at which the thing shows its front: it may be turned in the scene
 };
 
 class StarterTwins;
@@ -60,16 +61,21 @@ public:
     /// A caption of picture `index`; `seed` varies the wording.
     virtual StarterCaption caption(std::uint64_t index, std::uint64_t seed, bool insertion) const = 0;
     virtual std::vector<std::string> vocabulary() const = 0;
-    /// How many pictures there are of each scene: picture s * views_of_scene() + v is view v of scene s. Captions of one scene that are
-    /// asked for with one seed differ in the side only.
+    /// How many pictures there are of each scene: picture s * views_of_scene() + v is view v of scene s.
+    /// Captions of one scene that are asked for with one seed differ in the side only.
     virtual int views_of_scene() const { return 1; }
-    virtual StarterCamera camera(std::uint64_t index) const { return static_cast<void>(index), StarterCamera{}; }
-    /// The same views of the same scenes without what the caption's edit brings: the accessory, else the object, whose coverage then is that
-    /// of the room in which another thing took its place. null = there are none.
+    virtual StarterCamera camera(std::uint64_t index) const {
+        return static_cast<void>(index), StarterCamera{};
+    }
+    /// The same views of the same scenes without what the caption's edit brings: the accessory, else the
+    /// object, whose coverage then is that of the room in which another thing took its place. null = there
+    /// are none.
     virtual const StarterSource* before() const { return nullptr; }
-    /// The part that the caption's edit gives another colour, material or ground: pictures of before() show it as it was, and there is no room.
-    /// null = something new comes.
-    virtual std::optional<StarterPart> restyled(std::uint64_t index) const { return static_cast<void>(index), std::nullopt; }
+    /// The part that the caption's edit gives another colour, material or ground: pictures of before() show
+    /// it as it was, and there is no room. null = something new comes.
+    virtual std::optional<StarterPart> restyled(std::uint64_t index) const {
+        return static_cast<void>(index), std::nullopt;
+    }
     /// Whether all pictures have their outline.
     virtual bool has_outlines() const { return false; }
     /// Changes when the same index would give another picture (names the picture cache).
@@ -84,18 +90,20 @@ struct StarterClaim {
     std::uint64_t facts = 0;
 };
 
-/// Groups of pictures of one scene from one place that differ in a word or two: picture g * group_size() + m is member
-/// m of group g. Coverage is not needed and may be zero.
+/// Groups of pictures of one scene from one place that differ in a word or two: picture g * group_size() + m
+/// is member m of group g. Coverage is not needed and may be zero.
 class StarterTwins : public StarterSource {
 public:
     virtual int group_size() const = 0;
     /// Everything that is true of a picture.
     virtual std::uint64_t facts(std::uint64_t index) const = 0;
-    /// A true sentence. `full`: it states nearly every fact, in one form for equal seeds, so that the sentences of a
-    /// group differ in nothing but what they state.
+    /// A true sentence. `full`: it states nearly every fact, in one form for equal seeds, so that the
+    /// sentences of a group differ in nothing but what they state.
     virtual StarterClaim claim(std::uint64_t index, std::uint64_t seed, bool full) const = 0;
-    /// Sentences that are false of the picture: claim() of the same arguments with one word replaced. May be empty.
-    virtual std::vector<std::string> false_claims(std::uint64_t index, std::uint64_t seed, bool full) const = 0;
+    /// Sentences that are false of the picture: claim() of the same arguments with one word replaced. May be
+    /// empty.
+    virtual std::vector<std::string> false_claims(std::uint64_t index, std::uint64_t seed,
+                                                  bool full) const = 0;
 };
 
 /// Everything that decides the result of a training run.
@@ -137,19 +145,19 @@ struct StarterTrainParameters {
     std::string device = "cpu";
     std::uint64_t seed = 1;
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("initial", self.initial,
           "Starter folder to go on from; parts with neither minutes nor steps stay as they are there.");
         f("average", self.average,
-          "Second starter folder: the run begins from the mean of its text encoder and UNet and those of the initial one.");
+          "Second starter folder: the run begins from the mean of its text encoder and UNet and those of the "
+          "initial one.");
         f("image_size", self.image_size, "Side of the training pictures in pixels.", Range{32, 256});
         f("pictures", self.pictures, "Number of training pictures rendered first.", Range{8, 1e6});
         f("vae_minutes", self.vae_minutes, "Time for the VAE; ignored when vae_steps is set.", Range{0, 1e5});
-        f("unet_minutes", self.unet_minutes, "Time for text encoder and UNet; ignored when unet_steps is set.",
-          Range{0, 1e5});
-        f("clip_minutes", self.clip_minutes, "Time for the image-text encoder; ignored when clip_steps is set.",
-          Range{0, 1e5});
+        f("unet_minutes", self.unet_minutes,
+          "Time for text encoder and UNet; ignored when unet_steps is set.", Range{0, 1e5});
+        f("clip_minutes", self.clip_minutes,
+          "Time for the image-text encoder; ignored when clip_steps is set.", Range{0, 1e5});
         f("vae_steps", self.vae_steps, "Steps of the VAE; 0 = go by time.", Range{0, 1e8});
         f("unet_steps", self.unet_steps, "Steps of the UNet; 0 = go by time.", Range{0, 1e8});
         f("clip_steps", self.clip_steps, "Steps of the image-text encoder; 0 = go by time.", Range{0, 1e8});
@@ -157,51 +165,63 @@ struct StarterTrainParameters {
           Range{0, 64});
         f("vae_batch", self.vae_batch, "Pictures per replica and VAE step.", Range{1, 4096});
         f("unet_batch", self.unet_batch, "Pictures per replica and UNet step.", Range{1, 4096});
-        f("clip_batch", self.clip_batch, "Groups of twin pictures per replica and step of the image-text encoder.",
-          Range{2, 4096});
+        f("clip_batch", self.clip_batch,
+          "Groups of twin pictures per replica and step of the image-text encoder.", Range{2, 4096});
         f("clip_pictures", self.clip_pictures, "Number of twin pictures rendered for the image-text encoder.",
           Range{8, 1e6});
         f("vae_lr", self.vae_lr, "Peak learning rate of the VAE (cosine to zero).", Range{0, 1});
-        f("unet_lr", self.unet_lr, "Peak learning rate of text encoder and UNet (cosine to zero).", Range{0, 1});
-        f("clip_lr", self.clip_lr, "Peak learning rate of the image-text encoder (cosine to zero).", Range{0, 1});
-        f("vae_channels", self.vae_channels, "Channels of the VAE at full resolution (x3, x6 below).", Range{8, 512});
+        f("unet_lr", self.unet_lr, "Peak learning rate of text encoder and UNet (cosine to zero).",
+          Range{0, 1});
+        f("clip_lr", self.clip_lr, "Peak learning rate of the image-text encoder (cosine to zero).",
+          Range{0, 1});
+        f("vae_channels", self.vae_channels, "Channels of the VAE at full resolution (x3, x6 below).",
+          Range{8, 512});
         f("unet_channels", self.unet_channels, "Channels of the UNet at latent resolution.", Range{16, 1024});
         f("text_width", self.text_width, "Width of the text encoder.", Range{32, 1024});
-        f("clip_width", self.clip_width, "Width of the image encoder of the image-text encoder.", Range{32, 1024});
+        f("clip_width", self.clip_width, "Width of the image encoder of the image-text encoder.",
+          Range{32, 1024});
         f("direction_weight", self.direction_weight,
           "Weight of the loss that makes picture changes point where sentence changes point.", Range{0, 10});
         f("false_weight", self.false_weight,
-          "Weight of the loss that tells a sentence from the same with one word replaced, in the image-text encoder.",
+          "Weight of the loss that tells a sentence from the same with one word replaced, in the image-text "
+          "encoder.",
           Range{0, 10});
         f("grounding_weight", self.grounding_weight,
           "Weight of the loss that makes the words of a part attend to that part.", Range{0, 10});
-        f("spread_weight", self.spread_weight, "Weight of the loss that spreads each word evenly over its part.",
-          Range{0, 10});
+        f("spread_weight", self.spread_weight,
+          "Weight of the loss that spreads each word evenly over its part.", Range{0, 10});
         f("insertion_share", self.insertion_share,
           "Share of pictures without accessory that are shown with a caption naming one (attention only).",
           Range{0, 1});
-        f("caption_dropout", self.caption_dropout, "Share of empty captions (classifier-free guidance).", Range{0, 1});
+        f("caption_dropout", self.caption_dropout, "Share of empty captions (classifier-free guidance).",
+          Range{0, 1});
         f("shapes", self.shapes,
-          "Leave the initial model as it is and train a LoRA beside it for views in which a new thing is drawn, told exactly from where, on from "
+          "Leave the initial model as it is and train a LoRA beside it for views in which a new thing is "
+          "drawn, told exactly from where, on from "
           "the one that it has, if any; neither VAE nor image-text encoder are trained then.");
         f("shape_rank", self.shape_rank, "Rank of that LoRA.", Range{1, 1024});
         f("restyled_share", self.restyled_share,
-          "Share of the scenes drawn with --pictures-only in which nothing new comes: the thing, its ground or what it wears gets another look.",
+          "Share of the scenes drawn with --pictures-only in which nothing new comes: the thing, its ground "
+          "or what it wears gets another look.",
           Range{0, 1});
         f("more_share", self.more_share,
-          "Share of the scenes drawn with --pictures-only that have things, materials, accessories or grounds which what finds things is not trained on.",
+          "Share of the scenes drawn with --pictures-only that have things, materials, accessories or "
+          "grounds which what finds things is not trained on.",
           Range{0, 1});
         f("more_looks", self.more_looks, "Of these only materials, colours and grounds.");
-        f("bf16", self.bf16, "Convolutions and matrix products of text encoder and UNet in bfloat16, norms and losses in float.");
+        f("bf16", self.bf16,
+          "Convolutions and matrix products of text encoder and UNet in bfloat16, norms and losses in "
+          "float.");
         f("device", self.device, "cpu or cuda.");
         f("seed", self.seed, "Seed of pictures, weights, wording and noise.");
     }
 };
 
-/// Trains in `work` (pictures, checkpoints, log.tsv; an interrupted run resumes there) and writes the finished model as
-/// a diffusers folder in fp16 to `output`. Throws Error; on a stop request the last checkpoint stays and Cancelled is
-/// thrown.
+/// Trains in `work` (pictures, checkpoints, log.tsv; an interrupted run resumes there) and writes the
+/// finished model as a diffusers folder in fp16 to `output`. Throws Error; on a stop request the last
+/// checkpoint stays and Cancelled is thrown.
 void train_starter(const StarterTrainParameters& parameters, const StarterSource& source,
-                   const std::filesystem::path& work, const std::filesystem::path& output, const JobControl& job);
+                   const std::filesystem::path& work, const std::filesystem::path& output,
+                   const JobControl& job);
 
 }  // namespace gse::neural

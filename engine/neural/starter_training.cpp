@@ -29,8 +29,8 @@ struct RunState {
     double seconds = 0;
 };
 
-void save_checkpoint(const std::filesystem::path& path, const Stage& stage, torch::optim::AdamW& optimizer, Ema& ema,
-                     const RunState& state) {
+void save_checkpoint(const std::filesystem::path& path, const Stage& stage, torch::optim::AdamW& optimizer,
+                     Ema& ema, const RunState& state) {
     torch::serialize::OutputArchive archive;
     archive.write("step", torch::tensor(state.step));
     archive.write("seconds", torch::tensor(state.seconds, torch::kDouble));
@@ -46,8 +46,8 @@ void save_checkpoint(const std::filesystem::path& path, const Stage& stage, torc
     write_file(path, bytes.view());
 }
 
-bool load_checkpoint(const std::filesystem::path& path, Stage& stage, torch::optim::AdamW& optimizer, Ema& ema,
-                     RunState& state) {
+bool load_checkpoint(const std::filesystem::path& path, Stage& stage, torch::optim::AdamW& optimizer,
+                     Ema& ema, RunState& state) {
     if (!std::filesystem::exists(path)) return false;
     torch::NoGradGuard no_grad;
     torch::serialize::InputArchive archive;
@@ -123,7 +123,7 @@ struct Team {
     Ema ema;
     RunState state;
     LogFile log;
-    std::vector<std::vector<double>> numbers;   // last numbers of each replica
+    std::vector<std::vector<double>> numbers;  // last numbers of each replica
     std::vector<double> sums;
     int summed = 0;
     double last_checkpoint = 0;
@@ -131,17 +131,14 @@ struct Team {
     bool stopped = false;
     std::exception_ptr failure;
 
-    Team(Stage& stage_in, StageClock& clock_in, const JobControl& job_in, const std::filesystem::path& work_in)
-        : stage(stage_in),
-          clock(clock_in),
-          job(job_in),
-          work(work_in),
+    Team(Stage& stage_in, StageClock& clock_in, const JobControl& job_in,
+         const std::filesystem::path& work_in)
+        : stage(stage_in), clock(clock_in), job(job_in), work(work_in),
           optimizer(stage_in.replicas[0], torch::optim::AdamWOptions(stage_in.peak_lr)
                                               .betas({0.9, 0.98})
                                               .weight_decay(stage_in.weight_decay)),
           ema(stage_in.replicas[0], stage_in.ema_limit),
-          log(work_in / (stage_in.name + ".tsv"), stage_in.columns),
-          numbers(stage_in.replicas.size()),
+          log(work_in / (stage_in.name + ".tsv"), stage_in.columns), numbers(stage_in.replicas.size()),
           sums(stage_in.columns.size(), 0.0) {}
 
     std::filesystem::path checkpoint_path() const { return work / (stage.name + ".ckpt"); }
@@ -189,7 +186,8 @@ struct Team {
 
     void tell(double lr, double norm) {
         for (const auto& values : numbers)
-            for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += values[i] / static_cast<double>(numbers.size());
+            for (std::size_t i = 0; i < sums.size(); ++i)
+                sums[i] += values[i] / static_cast<double>(numbers.size());
         ++summed;
         const double progress = clock.progress(state.step);
         job.report("training " + stage.name, static_cast<int>(progress * 1000), 1000);
@@ -220,7 +218,8 @@ double StageClock::seconds() const {
 }
 
 double StageClock::progress(std::int64_t step) const {
-    const double done = steps_ > 0 ? static_cast<double>(step) / steps_ : seconds() / std::max(seconds_, 1e-9);
+    const double done =
+        steps_ > 0 ? static_cast<double>(step) / steps_ : seconds() / std::max(seconds_, 1e-9);
     return std::min(done, 1.0);
 }
 
@@ -251,7 +250,8 @@ void run_stage(Stage& stage, StageClock clock, const std::filesystem::path& work
     Team team(stage, clock, job, work);
     if (load_checkpoint(team.checkpoint_path(), stage, team.optimizer, team.ema, team.state))
         log::info("{}: resuming at step {}", stage.name, team.state.step);
-    for (std::size_t r = 1; r < stage.replicas.size(); ++r) copy_parameters(stage.replicas[0], stage.replicas[r]);
+    for (std::size_t r = 1; r < stage.replicas.size(); ++r)
+        copy_parameters(stage.replicas[0], stage.replicas[r]);
     clock.start(team.state.seconds);
     team.last_checkpoint = clock.seconds();
     team.finished = clock.progress(team.state.step) >= 1.0;
@@ -274,12 +274,14 @@ void run_stage(Stage& stage, StageClock clock, const std::filesystem::path& work
         }
     };
     std::vector<std::thread> threads;
-    for (std::size_t replica = 1; replica < stage.replicas.size(); ++replica) threads.emplace_back(serve, replica);
+    for (std::size_t replica = 1; replica < stage.replicas.size(); ++replica)
+        threads.emplace_back(serve, replica);
     serve(0);
     for (auto& thread : threads) thread.join();
     if (team.failure) std::rethrow_exception(team.failure);
     if (team.stopped && !team.finished)
-        throw Error(ErrorCode::Cancelled, "training was stopped", "run the same command again to go on", work);
+        throw Error(ErrorCode::Cancelled, "training was stopped", "run the same command again to go on",
+                    work);
     copy_parameters(team.ema.values(), stage.replicas[0]);
 }
 

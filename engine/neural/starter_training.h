@@ -52,8 +52,8 @@ private:
     std::int64_t count_ = 0;
 };
 
-/// One training stage: `replicas` own modules; loss(replica, step) builds the loss of that replica's share of the batch
-/// and returns numbers for the log.
+/// One training stage: `replicas` own modules; loss(replica, step) builds the loss of that replica's share of
+/// the batch and returns numbers for the log.
 struct Stage {
     std::string name;
     std::vector<Parameters> replicas;
@@ -61,13 +61,12 @@ struct Stage {
     double weight_decay = 0.01;
     double ema_limit = 0.999;
     std::function<std::pair<torch::Tensor, std::vector<double>>(std::size_t replica, std::int64_t step)> loss;
-    std::vector<std::string> columns;   // names of the numbers
+    std::vector<std::string> columns;  // names of the numbers
     /// Called with the averaged weights whenever a checkpoint has been written; may be empty.
     std::function<void(const Parameters& averaged)> checkpoint;
 };
 
 /// Runs the stage to its end, resuming from work/<name>.ckpt; leaves the EMA weights in replica 0.
 void run_stage(Stage& stage, StageClock clock, const std::filesystem::path& work, const JobControl& job);
-
 
 }  // namespace gse::neural

@@ -1,11 +1,16 @@
 // Trains text encoder and UNet: v-prediction on cached latents, plus losses that place each word's attention.
 //
-// The attention losses use the generator's own part masks (TokenCompose, Wang et al. 2023, uses segmentations likewise):
-//   place:  per latent cell, the attention that all words of a part receive together against the part's coverage
-//           (binary cross-entropy, balanced between inside and outside as far as the outside is not much larger);
-//   spread: KL from the part's coverage to each word's own attention over the image, so a word covers its part evenly.
-// Pictures without an accessory are also shown with a caption that names one ("insertion"): there only the attention
-// losses count, with the mask of the twin scene, so the words learn where a thing belongs before it is there.
+// The attention losses use the generator's own part masks (TokenCompose, Wang et al. 2023, uses segmentations
+// likewise):
+//   place:  per latent cell, the attention that all words of a part receive together against the part's
+//   coverage
+//           (binary cross-entropy, balanced between inside and outside as far as the outside is not much
+//           larger);
+//   spread: KL from the part's coverage to each word's own attention over the image, so a word covers its
+//   part evenly.
+// Pictures without an accessory are also shown with a caption that names one ("insertion"): there only the
+// attention losses count, with the mask of the twin scene, so the words learn where a thing belongs before it
+// is there.
 #include <cmath>
 #include <unordered_map>
 
@@ -20,7 +25,8 @@ namespace gse::neural {
 namespace {
 
 constexpr int TrainTimesteps = 1000;
-constexpr double MostOutsideAreas = 3;   // areas of the part that count as its outside in the balance of the place loss
+constexpr double MostOutsideAreas =
+    3;  // areas of the part that count as its outside in the balance of the place loss
 
 /// One replica's batch.
 struct Batch {
@@ -36,11 +42,8 @@ struct Batch {
 class BatchMaker {
 public:
     explicit BatchMaker(const UNetTraining& training)
-        : parameters_(training.parameters),
-          pictures_(training.pictures),
-          latents_(training.latents),
-          source_(training.source),
-          table_(training.vocabulary) {}
+        : parameters_(training.parameters), pictures_(training.pictures), latents_(training.latents),
+          source_(training.source), table_(training.vocabulary) {}
 
     Batch make(Random& random) const {
         const std::int64_t size = parameters_.unet_batch;
@@ -63,7 +66,8 @@ public:
 private:
     std::int64_t fill_row(Batch& batch, std::int64_t i, Random& random) const {
         const std::uint64_t picture = random.below(pictures_.count);
-        const bool insertion = pictures_.bare_twin[picture] != 0 && random.uniform() < parameters_.insertion_share;
+        const bool insertion =
+            pictures_.bare_twin[picture] != 0 && random.uniform() < parameters_.insertion_share;
         batch.timesteps[i] = static_cast<std::int64_t>(random.below(TrainTimesteps));
         copy_coverage(batch, i, picture, insertion);
         if (insertion) batch.diffusion[i] = 0.0;
@@ -79,10 +83,10 @@ private:
         const auto cells = static_cast<std::size_t>(pictures_.cells * pictures_.cells);
         const std::uint8_t* from = &pictures_.coverage[picture * StarterPartCount * cells];
         float* to = batch.coverage[i].data_ptr<float>();
-        for (std::size_t k = 0; k < StarterPartCount * cells; ++k) to[k] = static_cast<float>(from[k]) / 255.0f;
+        for (std::size_t k = 0; k < StarterPartCount * cells; ++k)
+            to[k] = static_cast<float>(from[k]) / 255.0f;
         // Without the accessory in the picture its map only serves insertion captions.
-        if (pictures_.bare_twin[picture] != 0 && !insertion)
-            std::fill(to + 2 * cells, to + 3 * cells, 0.0f);
+        if (pictures_.bare_twin[picture] != 0 && !insertion) std::fill(to + 2 * cells, to + 3 * cells, 0.0f);
     }
 
     void fill_words(Batch& batch, std::int64_t i, const StarterCaption& caption, bool insertion) const {
@@ -115,32 +119,36 @@ struct AttentionLosses {
 
 /// Losses of one captured layer; probabilities [B,heads,hw,T].
 AttentionLosses layer_losses(const AttentionCapture::Map& map, const Batch& batch) {
-    const auto probabilities = map.probabilities.to(torch::kFloat).mean(1);                    // [B,hw,T]
-    auto coverage = torch::adaptive_avg_pool2d(batch.coverage, {map.height, map.width}).flatten(2);  // [B,3,hw]
-    const auto area = coverage.sum(2);                                                         // [B,3]
+    const auto probabilities = map.probabilities.to(torch::kFloat).mean(1);  // [B,hw,T]
+    auto coverage =
+        torch::adaptive_avg_pool2d(batch.coverage, {map.height, map.width}).flatten(2);  // [B,3,hw]
+    const auto area = coverage.sum(2);                                                   // [B,3]
     const auto named = (batch.words.sum(1) > 0).to(torch::kFloat) * (area > 0.5).to(torch::kFloat);  // [B,3]
     const auto count = named.sum().clamp_min(1.0);
 
-    const auto together = torch::bmm(probabilities, batch.words).transpose(1, 2).clamp(1e-4, 1 - 1e-4);  // [B,3,hw]
+    const auto together =
+        torch::bmm(probabilities, batch.words).transpose(1, 2).clamp(1e-4, 1 - 1e-4);  // [B,3,hw]
     const auto outside = 1 - coverage;
     const auto inside_loss = -(coverage * together.log()).sum(2) / area.clamp_min(1e-3);
-    // The balance is bounded: with full balance a small part would be allowed many times its area of false attention.
+    // The balance is bounded: with full balance a small part would be allowed many times its area of false
+    // attention.
     const auto outside_area = torch::minimum(outside.sum(2), area * MostOutsideAreas).clamp_min(1e-3);
     const auto outside_loss = -(outside * (1 - together).log()).sum(2) / outside_area;
     const auto place = (0.5 * (inside_loss + outside_loss) * named).sum() / count;
 
-    const auto share = probabilities / probabilities.sum(1, true).clamp_min(1e-6);             // [B,hw,T]
-    const auto target = coverage / area.unsqueeze(2).clamp_min(1e-3);                          // [B,3,hw]
-    const auto cross = -torch::bmm(target, (share + 1e-6).log());                              // [B,3,T]
-    const auto entropy = -(target * (target + 1e-9).log()).sum(2, true);                       // [B,3,1]
-    const auto pairs = batch.words.transpose(1, 2) * named.unsqueeze(2);                       // [B,3,T]
+    const auto share = probabilities / probabilities.sum(1, true).clamp_min(1e-6);  // [B,hw,T]
+    const auto target = coverage / area.unsqueeze(2).clamp_min(1e-3);               // [B,3,hw]
+    const auto cross = -torch::bmm(target, (share + 1e-6).log());                   // [B,3,T]
+    const auto entropy = -(target * (target + 1e-9).log()).sum(2, true);            // [B,3,1]
+    const auto pairs = batch.words.transpose(1, 2) * named.unsqueeze(2);            // [B,3,T]
     const auto spread = ((cross - entropy) * pairs).sum() / pairs.sum().clamp_min(1.0);
     return {place, spread};
 }
 
 /// Mean over the supervised layers: the decoder's, from 8x8 cells up.
 AttentionLosses attention_losses(const AttentionCapture& capture, const Batch& batch) {
-    AttentionLosses total{torch::zeros({}, batch.coverage.device()), torch::zeros({}, batch.coverage.device())};
+    AttentionLosses total{torch::zeros({}, batch.coverage.device()),
+                          torch::zeros({}, batch.coverage.device())};
     int layers = 0;
     for (const auto& map : capture.maps) {
         if (map.layer.rfind("up_blocks", 0) != 0) continue;
@@ -155,8 +163,8 @@ AttentionLosses attention_losses(const AttentionCapture& capture, const Batch& b
 
 void move_to(Batch& batch, const torch::Device& device) {
     if (device.is_cpu()) return;
-    for (auto* tensor : {&batch.ids, &batch.latents, &batch.noise, &batch.timesteps, &batch.words, &batch.coverage,
-                         &batch.diffusion})
+    for (auto* tensor : {&batch.ids, &batch.latents, &batch.noise, &batch.timesteps, &batch.words,
+                         &batch.coverage, &batch.diffusion})
         *tensor = tensor->to(device);
 }
 
@@ -180,10 +188,11 @@ std::pair<torch::Tensor, std::vector<double>> batch_loss(StarterNetworks& networ
     const auto per_sample = (predicted - velocity).square().mean({1, 2, 3});
     const auto diffusion = (per_sample * batch.diffusion).sum() / batch.diffusion.sum().clamp_min(1.0);
     const auto attention = attention_losses(capture, batch);
-    const auto loss =
-        diffusion + parameters.grounding_weight * attention.place + parameters.spread_weight * attention.spread;
-    return {loss, {loss.item<double>(), diffusion.item<double>(), attention.place.item<double>(),
-                   attention.spread.item<double>()}};
+    const auto loss = diffusion + parameters.grounding_weight * attention.place +
+                      parameters.spread_weight * attention.spread;
+    return {loss,
+            {loss.item<double>(), diffusion.item<double>(), attention.place.item<double>(),
+             attention.spread.item<double>()}};
 }
 
 Parameters trainable(StarterNetworks& networks) {
@@ -220,7 +229,8 @@ void train_unet(StarterNetworks& networks, const UNetTraining& training, const s
         if (training.preview) training.preview(averaged);
     };
     stage.loss = [&](std::size_t r, std::int64_t step) {
-        Random random = Random::stream(parameters.seed * 3 + 2, static_cast<std::uint64_t>(step) * replicas.size() + r);
+        Random random =
+            Random::stream(parameters.seed * 3 + 2, static_cast<std::uint64_t>(step) * replicas.size() + r);
         Batch batch = batches.make(random);
         move_to(batch, device);
         return batch_loss(replicas[r], batch, alphas_cumprod, parameters);

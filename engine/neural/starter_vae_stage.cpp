@@ -48,22 +48,24 @@ void train_vae(AutoencoderKl& vae, const StarterTrainParameters& parameters, con
         stage.replicas.push_back(replica->parameters());
     }
     stage.loss = [&](std::size_t r, std::int64_t step) {
-        Random random = Random::stream(parameters.seed * 3 + 1, static_cast<std::uint64_t>(step) * replicas.size() + r);
+        Random random =
+            Random::stream(parameters.seed * 3 + 1, static_cast<std::uint64_t>(step) * replicas.size() + r);
         torch::Tensor images;
         torch::Tensor noise;
         {
             images = picture_batch(pictures, parameters.vae_batch, random).to(device);
             auto generator = at::make_generator<at::CPUGeneratorImpl>(random.next());
             const std::int64_t cells = pictures.cells;
-            noise = torch::randn({parameters.vae_batch, replicas[r]->config().latent_channels, cells, cells}, generator)
+            noise = torch::randn({parameters.vae_batch, replicas[r]->config().latent_channels, cells, cells},
+                                 generator)
                         .to(device);
         }
         const auto [mean, logvar] = replicas[r]->encode_moments(images);
         const auto decoded = replicas[r]->decode(mean + torch::exp(0.5 * logvar) * noise);
         const auto mse = (decoded - images).square().mean();
         const auto kl = 0.5 * (mean.square() + logvar.exp() - 1 - logvar).mean();
-        const auto loss = (decoded - images).abs().mean() + MseWeight * mse + EdgeWeight * edge_loss(decoded, images) +
-                          KlWeight * kl;
+        const auto loss = (decoded - images).abs().mean() + MseWeight * mse +
+                          EdgeWeight * edge_loss(decoded, images) + KlWeight * kl;
         const double psnr = -10 * std::log10(std::max(mse.item<double>() / 4, 1e-12));
         return std::pair{loss, std::vector<double>{loss.item<double>(), psnr, kl.item<double>()}};
     };
@@ -82,7 +84,8 @@ StarterLatents encode_pictures(AutoencoderKl& vae, const StarterTrainParameters&
     latents.mean = torch::empty({count, vae->config().latent_channels, cells, cells});
     const auto encode = [&](std::int64_t begin) {
         const std::int64_t size = std::min(batch, count - begin);
-        auto* bytes = const_cast<std::uint8_t*>(&pictures.rgb[static_cast<std::size_t>(begin * side * side * 3)]);
+        auto* bytes =
+            const_cast<std::uint8_t*>(&pictures.rgb[static_cast<std::size_t>(begin * side * side * 3)]);
         const auto images = torch::from_blob(bytes, {size, side, side, 3}, torch::kUInt8)
                                 .permute({0, 3, 1, 2})
                                 .to(torch::kFloat)

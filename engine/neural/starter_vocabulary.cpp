@@ -14,11 +14,13 @@ std::string utf8(unsigned code) {
     return {static_cast<char>(0xC0 | (code >> 6)), static_cast<char>(0x80 | (code & 0x3F))};
 }
 
-/// The printable symbol of every byte, in CLIP's id order (openai/CLIP simple_tokenizer: printable bytes first).
+/// The printable symbol of every byte, in CLIP's id order (openai/CLIP simple_tokenizer: printable bytes
+/// first).
 std::vector<std::string> symbols_of_bytes() {
     std::vector<std::string> symbols;
     const auto printable = [](unsigned byte) {
-        return (byte >= '!' && byte <= '~') || (byte >= 0xA1 && byte <= 0xAC) || (byte >= 0xAE && byte <= 0xFF);
+        return (byte >= '!' && byte <= '~') || (byte >= 0xA1 && byte <= 0xAC) ||
+               (byte >= 0xAE && byte <= 0xFF);
     };
     for (unsigned byte = 0; byte < 256; ++byte)
         if (printable(byte)) symbols.push_back(utf8(byte));

@@ -13,16 +13,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double LatentMagnitude = 3;   // the decoder was trained on latents within it
+constexpr double LatentMagnitude = 3;  // the decoder was trained on latents within it
 
 constexpr const char* DiffusersFile = "diffusion_pytorch_model.safetensors";
 constexpr const char* EncoderFile = "taesd_encoder.safetensors";
 constexpr const char* DecoderFile = "taesd_decoder.safetensors";
 
-/// The faster layout; with a graph the plain one, in which sums round as the reference's do and the same ReLUs let gradients
-/// through.
+/// The faster layout; with a graph the plain one, in which sums round as the reference's do and the same
+/// ReLUs let gradients through.
 torch::Tensor laid_out(const torch::Tensor& x) {
-    return x.contiguous(torch::GradMode::is_enabled() ? torch::MemoryFormat::Contiguous : torch::MemoryFormat::ChannelsLast);
+    return x.contiguous(torch::GradMode::is_enabled() ? torch::MemoryFormat::Contiguous
+                                                      : torch::MemoryFormat::ChannelsLast);
 }
 
 /// An original file holds one half, whose decoder counts the clamp as a layer of its own.
@@ -38,9 +39,9 @@ LoadPlan half_plan(std::int64_t layers_before) {
 }
 
 /// Calls use(module, file, plan) for each file and what it holds of `model`.
-template <class Use>
-void for_each_file(TinyAutoencoder model, const fs::path& folder, Use use) {
-    if (fs::exists(folder / DiffusersFile)) return use(*model, SafetensorsFile(folder / DiffusersFile), LoadPlan{{}, {}, "tiny autoencoder"});
+template <class Use> void for_each_file(TinyAutoencoder model, const fs::path& folder, Use use) {
+    if (fs::exists(folder / DiffusersFile))
+        return use(*model, SafetensorsFile(folder / DiffusersFile), LoadPlan{{}, {}, "tiny autoencoder"});
     TinyHalf encoder = model->encoder_half(), decoder = model->decoder_half();
     use(*encoder, SafetensorsFile(folder / EncoderFile), half_plan(0));
     use(*decoder, SafetensorsFile(folder / DecoderFile), half_plan(1));
@@ -53,7 +54,7 @@ TinyBlockImpl::TinyBlockImpl(std::int64_t channels, const WeightOptions& options
     first = Conv2d(shape, options);
     second = Conv2d(shape, options);
     third = Conv2d(shape, options);
-    torch::nn::ModuleList list;   // a ReLU stands between them
+    torch::nn::ModuleList list;  // a ReLU stands between them
     for (const auto& layer : {first, second, third}) {
         list->push_back(layer.ptr());
         if (list->size() < 5) list->push_back(std::make_shared<torch::nn::Module>());
@@ -87,7 +88,8 @@ void TinyHalfImpl::add_plain(std::function<torch::Tensor(const torch::Tensor&)> 
 
 void TinyHalfImpl::finish() { register_module("layers", list_); }
 
-std::shared_ptr<TinyHalfImpl> TinyHalfImpl::encoder(const TinyAutoencoderConfig& config, const WeightOptions& options) {
+std::shared_ptr<TinyHalfImpl> TinyHalfImpl::encoder(const TinyAutoencoderConfig& config,
+                                                    const WeightOptions& options) {
     auto half = std::make_shared<TinyHalfImpl>();
     const auto channels = config.channels;
     for (std::size_t level = 0; level < config.encoder_blocks.size(); ++level) {
@@ -100,7 +102,8 @@ std::shared_ptr<TinyHalfImpl> TinyHalfImpl::encoder(const TinyAutoencoderConfig&
     return half;
 }
 
-std::shared_ptr<TinyHalfImpl> TinyHalfImpl::decoder(const TinyAutoencoderConfig& config, const WeightOptions& options) {
+std::shared_ptr<TinyHalfImpl> TinyHalfImpl::decoder(const TinyAutoencoderConfig& config,
+                                                    const WeightOptions& options) {
     auto half = std::make_shared<TinyHalfImpl>();
     const auto channels = config.channels;
     half->add_convolution({config.latent_channels, channels}, options);
@@ -108,7 +111,9 @@ std::shared_ptr<TinyHalfImpl> TinyHalfImpl::decoder(const TinyAutoencoderConfig&
     for (std::size_t level = 0; level < config.decoder_blocks.size(); ++level) {
         half->add_blocks(config.decoder_blocks[level], channels, options);
         if (level + 1 == config.decoder_blocks.size()) break;
-        half->add_plain([](const torch::Tensor& x) { return torch::upsample_nearest2d(x, {x.size(2) * 2, x.size(3) * 2}); });
+        half->add_plain([](const torch::Tensor& x) {
+            return torch::upsample_nearest2d(x, {x.size(2) * 2, x.size(3) * 2});
+        });
         half->add_convolution({channels, channels, 3, 1, 1, false}, options);
     }
     half->add_convolution({channels, config.out_channels}, options);
@@ -121,7 +126,8 @@ torch::Tensor TinyHalfImpl::forward(torch::Tensor x) const {
     return x;
 }
 
-TinyAutoencoderImpl::TinyAutoencoderImpl(const TinyAutoencoderConfig& config, const WeightOptions& options) : config_(config) {
+TinyAutoencoderImpl::TinyAutoencoderImpl(const TinyAutoencoderConfig& config, const WeightOptions& options)
+    : config_(config) {
     encoder = register_module("encoder", TinyHalf(TinyHalfImpl::encoder(config_, options)));
     decoder = register_module("decoder", TinyHalf(TinyHalfImpl::decoder(config_, options)));
 }
@@ -146,18 +152,23 @@ bool has_tiny_autoencoder(const fs::path& folder) {
 TinyAutoencoder load_tiny_autoencoder(const fs::path& folder) {
     if (!has_tiny_autoencoder(folder))
         throw Error(ErrorCode::NotFound, "there is no tiny autoencoder (TAESD) here",
-                    fmt::format("its folder has {} and config.json, or {} and {}", DiffusersFile, EncoderFile, DecoderFile), folder);
+                    fmt::format("its folder has {} and config.json, or {} and {}", DiffusersFile, EncoderFile,
+                                DecoderFile),
+                    folder);
     const auto stated = folder / "config.json";
-    const auto config = fs::exists(stated) ? TinyAutoencoderConfig::from_json(read_json_file(stated), stated) : TinyAutoencoderConfig{};
+    const auto config = fs::exists(stated) ? TinyAutoencoderConfig::from_json(read_json_file(stated), stated)
+                                           : TinyAutoencoderConfig{};
     const TinyAutoencoder described(config, WeightOptions{torch::kMeta, torch::kFloat32, false});
-    for_each_file(described, folder, [](const torch::nn::Module& module, const SafetensorsFile& file, const LoadPlan& plan) {
-        check_weights(module, file.shapes(), plan, file.path());
-    });
+    for_each_file(described, folder,
+                  [](const torch::nn::Module& module, const SafetensorsFile& file, const LoadPlan& plan) {
+                      check_weights(module, file.shapes(), plan, file.path());
+                  });
     require_memory(weight_bytes(*described), "the tiny autoencoder");
     TinyAutoencoder model(config, WeightOptions{torch::kCPU, torch::kFloat32, false});
-    for_each_file(model, folder, [](torch::nn::Module& module, const SafetensorsFile& file, const LoadPlan& plan) {
-        load_weights(module, file, plan);
-    });
+    for_each_file(model, folder,
+                  [](torch::nn::Module& module, const SafetensorsFile& file, const LoadPlan& plan) {
+                      load_weights(module, file, plan);
+                  });
     model->eval();
     for (auto& parameter : model->parameters()) parameter.set_requires_grad(false);
     return model;

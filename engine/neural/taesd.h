@@ -1,5 +1,5 @@
-// The tiny autoencoder (TAESD, Ollin Boer Bohan; AutoencoderTiny in diffusers): 14 times cheaper than the VAE, for probes, rounds
-// and previews. Its latents are the UNet's own, without another scale.
+// The tiny autoencoder (TAESD, Ollin Boer Bohan; AutoencoderTiny in diffusers): 14 times cheaper than the
+// VAE, for probes, rounds and previews. Its latents are the UNet's own, without another scale.
 #pragma once
 
 #include <filesystem>
@@ -23,8 +23,10 @@ TORCH_MODULE(TinyBlock);
 /// One half: a row of layers, named by their places in it.
 class TinyHalfImpl : public torch::nn::Module {
 public:
-    static std::shared_ptr<TinyHalfImpl> encoder(const TinyAutoencoderConfig& config, const WeightOptions& options);
-    static std::shared_ptr<TinyHalfImpl> decoder(const TinyAutoencoderConfig& config, const WeightOptions& options);
+    static std::shared_ptr<TinyHalfImpl> encoder(const TinyAutoencoderConfig& config,
+                                                 const WeightOptions& options);
+    static std::shared_ptr<TinyHalfImpl> decoder(const TinyAutoencoderConfig& config,
+                                                 const WeightOptions& options);
     torch::Tensor forward(torch::Tensor x) const;
 
 private:
@@ -55,8 +57,8 @@ private:
 };
 TORCH_MODULE(TinyAutoencoder);
 
-/// From a folder with config.json and diffusion_pytorch_model.safetensors, or with taesd_encoder.safetensors and
-/// taesd_decoder.safetensors; fp32. Throws Error (NotFound, Malformed, Model).
+/// From a folder with config.json and diffusion_pytorch_model.safetensors, or with taesd_encoder.safetensors
+/// and taesd_decoder.safetensors; fp32. Throws Error (NotFound, Malformed, Model).
 TinyAutoencoder load_tiny_autoencoder(const std::filesystem::path& folder);
 
 /// Whether load_tiny_autoencoder() would find files there.

@@ -267,8 +267,8 @@ void Tokenizer::read_added_tokens(const std::filesystem::path& folder) {
         return;
     for (const auto& [id, value] : json["added_tokens_decoder"].items()) {
         const auto token = content_of(value);
-        if (!id.empty() && !vocabulary_.contains(token) && id.find_first_not_of("0123456789") == std::string::npos &&
-            id.size() < 10)
+        if (!id.empty() && !vocabulary_.contains(token) &&
+            id.find_first_not_of("0123456789") == std::string::npos && id.size() < 10)
             add(token, std::stoll(id));
     }
 }

@@ -12,7 +12,7 @@
 namespace gse::neural {
 namespace {
 
-constexpr std::uint64_t MostPickleBytes = 64 << 20;   // a state dictionary's has some hundred thousand
+constexpr std::uint64_t MostPickleBytes = 64 << 20;  // a state dictionary's has some hundred thousand
 constexpr const char* PickleName = "data.pkl";
 
 torch::Dtype dtype_of(StoredType type) {
@@ -47,13 +47,14 @@ std::unique_ptr<TensorFile> open_tensor_file(const std::filesystem::path& path) 
     const auto start = read_start(path, magic_bytes);
     if (start == "PK\x03\x04") return std::make_unique<TorchFile>(path);
     if (start.starts_with('\x80'))
-        throw Error(ErrorCode::Unsupported, "this is a pickle of the format before PyTorch 1.6, which is not read",
+        throw Error(ErrorCode::Unsupported,
+                    "this is a pickle of the format before PyTorch 1.6, which is not read",
                     "save it again with a newer PyTorch, or convert it to .safetensors", path);
     return std::make_unique<SafetensorsFile>(path);
 }
 
 TorchFile::TorchFile(const std::filesystem::path& path) : path_(path) {
-    const InputFile readable(path_);   // says what is wrong where it cannot be opened
+    const InputFile readable(path_);  // says what is wrong where it cannot be opened
     int error = 0;
     archive_ = zip_open(path_.c_str(), ZIP_RDONLY, &error);
     if (archive_ == nullptr) damaged(path_, "it is no zip archive");
@@ -66,7 +67,8 @@ TorchFile::TorchFile(const std::filesystem::path& path) : path_(path) {
             if (text.ends_with("/data.pkl")) folder_ = text.substr(0, text.rfind('/') + 1);
         }
         if (folder_.empty())
-            throw Error(ErrorCode::Unsupported, "this archive was not written by torch.save", "use .safetensors, .pth or .pt weights", path_);
+            throw Error(ErrorCode::Unsupported, "this archive was not written by torch.save",
+                        "use .safetensors, .pth or .pt weights", path_);
         const auto bytes = entry_size(PickleName);
         if (bytes > MostPickleBytes) damaged(path_, "its description is impossibly large");
         pickle.resize(static_cast<std::size_t>(bytes));
@@ -85,7 +87,8 @@ TorchFile::~TorchFile() { zip_discard(archive_); }
 void TorchFile::check_storages() const {
     for (const auto& [name, tensor] : tensors_) {
         std::uint64_t bytes = 0;
-        if (__builtin_mul_overflow(static_cast<std::uint64_t>(tensor.elements), torch::elementSize(dtype_of(tensor.type)), &bytes) ||
+        if (__builtin_mul_overflow(static_cast<std::uint64_t>(tensor.elements),
+                                   torch::elementSize(dtype_of(tensor.type)), &bytes) ||
             entry_size("data/" + tensor.storage) != bytes)
             damaged(path_, fmt::format("the numbers of tensor \"{}\" have another size than was said", name));
     }
@@ -94,7 +97,8 @@ void TorchFile::check_storages() const {
 std::uint64_t TorchFile::entry_size(const std::string& name) const {
     zip_stat_t stat;
     zip_stat_init(&stat);
-    if (zip_stat(archive_, (folder_ + name).c_str(), ZIP_FL_ENC_RAW, &stat) != 0 || (stat.valid & ZIP_STAT_SIZE) == 0)
+    if (zip_stat(archive_, (folder_ + name).c_str(), ZIP_FL_ENC_RAW, &stat) != 0 ||
+        (stat.valid & ZIP_STAT_SIZE) == 0)
         damaged(path_, fmt::format("it has no entry \"{}\"", name));
     return stat.size;
 }
@@ -114,7 +118,9 @@ void TorchFile::read_entry(const std::string& name, void* target, std::uint64_t 
     char beyond = 0;
     const bool whole = done == bytes && zip_fread(file, &beyond, 1) == 0;
     zip_fclose(file);
-    if (!whole) throw Error(ErrorCode::Unreadable, fmt::format("the entry \"{}\" cannot be read", name), "download the file again", path_);
+    if (!whole)
+        throw Error(ErrorCode::Unreadable, fmt::format("the entry \"{}\" cannot be read", name),
+                    "download the file again", path_);
 }
 
 KeyShapes TorchFile::shapes() const {
@@ -125,9 +131,11 @@ KeyShapes TorchFile::shapes() const {
 
 torch::Tensor TorchFile::tensor(const std::string& name) const {
     const auto found = tensors_.find(name);
-    if (found == tensors_.end()) throw Error(ErrorCode::Model, fmt::format("the weights file has no tensor \"{}\"", name), {}, path_);
+    if (found == tensors_.end())
+        throw Error(ErrorCode::Model, fmt::format("the weights file has no tensor \"{}\"", name), {}, path_);
     const auto& stored = found->second;
-    require_memory(static_cast<std::uint64_t>(stored.elements) * torch::elementSize(dtype_of(stored.type)), fmt::format("the tensor \"{}\"", name));
+    require_memory(static_cast<std::uint64_t>(stored.elements) * torch::elementSize(dtype_of(stored.type)),
+                   fmt::format("the tensor \"{}\"", name));
     auto storage = torch::empty({stored.elements}, torch::TensorOptions().dtype(dtype_of(stored.type)));
     read_entry("data/" + stored.storage, storage.data_ptr(), storage.nbytes());
     return storage.as_strided(stored.shape, stored.strides, stored.offset).contiguous();

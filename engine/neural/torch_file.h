@@ -1,4 +1,5 @@
-// Files that torch.save writes (.pth, .pt): a zip archive of raw numbers and a pickle that says what they are.
+// Files that torch.save writes (.pth, .pt): a zip archive of raw numbers and a pickle that says what they
+// are.
 #pragma once
 
 #include <mutex>
@@ -29,9 +30,9 @@ private:
 
     std::filesystem::path path_;
     zip* archive_ = nullptr;
-    std::string folder_;   // of its entries, with "/" behind it
+    std::string folder_;  // of its entries, with "/" behind it
     StoredTensors tensors_;
-    mutable std::mutex mutex_;   // libzip's handle serves one thread at a time
+    mutable std::mutex mutex_;  // libzip's handle serves one thread at a time
 };
 
 }  // namespace gse::neural

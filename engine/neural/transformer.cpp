@@ -87,9 +87,12 @@ torch::Tensor TransformerBlockImpl::forward(torch::Tensor tokens, const torch::T
                                             const CaptureSite& site) const {
     const bool wanted = site.capture != nullptr &&
                         (!site.capture->wants || site.capture->wants(site.layer, site.height, site.width));
-    const bool affine = wanted && site.together == 1 && std::max(site.height, site.width) <= site.capture->self_attention_side;
+    const bool affine = wanted && site.together == 1 &&
+                        std::max(site.height, site.width) <= site.capture->self_attention_side;
     auto normed = norm1->forward(tokens);
-    if (site.together > 1) normed = normed.reshape({tokens.size(0) / site.together, -1, tokens.size(2)});   // the tokens of all views
+    if (site.together > 1)
+        normed =
+            normed.reshape({tokens.size(0) / site.together, -1, tokens.size(2)});  // the tokens of all views
     const auto attended = attn1->forward(normed, normed, affine);
     if (affine) store_affinity(attended.probabilities, site);
     tokens = tokens + attended.output.reshape(tokens.sizes());

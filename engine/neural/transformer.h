@@ -42,7 +42,7 @@ struct CaptureSite {
     AttentionCapture* capture = nullptr;
     std::string layer;
     std::int64_t height = 0, width = 0;
-    std::int64_t together = 1;   // as in SceneViews
+    std::int64_t together = 1;  // as in SceneViews
 };
 
 class TransformerBlockImpl : public torch::nn::Module {
@@ -61,8 +61,8 @@ TORCH_MODULE(TransformerBlock);
 class SpatialTransformerImpl : public torch::nn::Module {
 public:
     SpatialTransformerImpl(const TransformerShape& shape, const WeightOptions& options);
-    torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& context,
-                          AttentionCapture* capture, std::int64_t together = 1) const;
+    torch::Tensor forward(const torch::Tensor& x, const torch::Tensor& context, AttentionCapture* capture,
+                          std::int64_t together = 1) const;
     std::string layer_name;  // where it stands in the UNet, for captures
     std::string capture_name() const { return layer_name + ".transformer_blocks.0.attn2"; }
 

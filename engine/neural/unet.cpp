@@ -4,15 +4,16 @@
 #include <cmath>
 
 #include "engine/base/check.h"
-#include "engine/neural/transformer.h"
 #include "engine/neural/network_use.h"
+#include "engine/neural/transformer.h"
 
 namespace gse::neural {
 
 torch::Tensor guidance_embedding(const torch::Tensor& w, std::int64_t width) {
     const auto half = width / 2;
     const auto options = torch::TensorOptions().dtype(torch::kFloat32).device(w.device());
-    const auto frequency = (torch::arange(half, options) * (-std::log(10000.0) / static_cast<double>(half - 1))).exp();
+    const auto frequency =
+        (torch::arange(half, options) * (-std::log(10000.0) / static_cast<double>(half - 1))).exp();
     const auto angle = (w.to(torch::kFloat32) * 1000.0).reshape({-1, 1}) * frequency;
     std::vector<torch::Tensor> parts{angle.sin(), angle.cos()};
     if (width % 2 == 1) parts.push_back(torch::zeros({w.numel(), 1}, options));
@@ -66,12 +67,15 @@ UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : con
     register_module("time_embedding", time);
     if (config_.camera_dim > 0) {
         auto camera = std::make_shared<torch::nn::Module>();
-        camera_linear_1 = camera->register_module("linear_1", Linear(LinearImpl::Shape{config_.camera_dim, build.time_width()}, options));
-        camera_linear_2 = camera->register_module("linear_2", Linear(LinearImpl::Shape{build.time_width(), build.time_width()}, options));
+        camera_linear_1 = camera->register_module(
+            "linear_1", Linear(LinearImpl::Shape{config_.camera_dim, build.time_width()}, options));
+        camera_linear_2 = camera->register_module(
+            "linear_2", Linear(LinearImpl::Shape{build.time_width(), build.time_width()}, options));
         register_module("camera_embedding", camera);
     }
     if (config_.inpaint_channels > 0)
-        conv_inpaint = register_module("conv_inpaint", Conv2d(Conv2dImpl::Shape{config_.inpaint_channels, widths[0]}, options));
+        conv_inpaint = register_module(
+            "conv_inpaint", Conv2d(Conv2dImpl::Shape{config_.inpaint_channels, widths[0]}, options));
 
     std::vector<std::int64_t> skips = {widths[0]};  // channels of the stored activations
     build_down(build, skips);
@@ -83,9 +87,11 @@ UNetImpl::UNetImpl(const UNetConfig& config, const WeightOptions& options) : con
         register_module("conv_out", Conv2d(Conv2dImpl::Shape{widths[0], config_.out_channels}, options));
     if (config_.outline_scale > 0) {
         auto outline = std::make_shared<torch::nn::Module>();
-        conv_outline_1 = outline->register_module("conv_1", Conv2d(Conv2dImpl::Shape{widths[0], widths[0]}, options));
-        conv_outline_2 =
-            outline->register_module("conv_2", Conv2d(Conv2dImpl::Shape{widths[0], config_.outline_scale * config_.outline_scale}, options));
+        conv_outline_1 =
+            outline->register_module("conv_1", Conv2d(Conv2dImpl::Shape{widths[0], widths[0]}, options));
+        conv_outline_2 = outline->register_module(
+            "conv_2",
+            Conv2d(Conv2dImpl::Shape{widths[0], config_.outline_scale * config_.outline_scale}, options));
         register_module("outline", outline);
     }
 }
@@ -172,7 +178,8 @@ torch::Tensor UNetImpl::time_projection(const torch::Tensor& timesteps, std::int
                                    : torch::cat({angle.sin(), angle.cos()}, 1);
 }
 
-torch::Tensor UNetImpl::time_embedding(const torch::Tensor& projection, const torch::Tensor& time_condition) const {
+torch::Tensor UNetImpl::time_embedding(const torch::Tensor& projection,
+                                       const torch::Tensor& time_condition) const {
     auto sum = projection;
     if (time_condition.defined()) {
         GSE_CHECK(!time_cond_proj.is_empty());
@@ -190,7 +197,8 @@ std::pair<std::size_t, std::size_t> UNetImpl::last_wanted(const AttentionCapture
         for (std::size_t j = 0; j < up_[i].resnets.size(); ++j) {
             const auto& skip = skips[--left];
             if (up_[i].attentions.empty()) continue;
-            if (!capture.wants || capture.wants(up_[i].attentions[j]->capture_name(), skip.size(2), skip.size(3)))
+            if (!capture.wants ||
+                capture.wants(up_[i].attentions[j]->capture_name(), skip.size(2), skip.size(3)))
                 last = {i, j};
         }
     return last;
@@ -206,9 +214,12 @@ torch::Tensor UNetImpl::forward(const torch::Tensor& sample, const torch::Tensor
     thread_use().unet += static_cast<std::uint64_t>(sample.size(0));
     auto embedded = time_embedding(time_projection(timesteps, sample.size(0)).to(type), time_condition);
     if (views.cameras.defined() && !camera_linear_1.is_empty())
-        embedded = embedded + camera_linear_2->forward(apply_silu(camera_linear_1->forward(views.cameras.to(type))));
+        embedded =
+            embedded + camera_linear_2->forward(apply_silu(camera_linear_1->forward(views.cameras.to(type))));
     const auto time = apply_silu(embedded);
-    const auto together = [&](const torch::Tensor& map) { return map.size(2) < sample.size(2) ? views.together : 1; };
+    const auto together = [&](const torch::Tensor& map) {
+        return map.size(2) < sample.size(2) ? views.together : 1;
+    };
     auto x = conv_in->forward(sample.to(type).contiguous(torch::MemoryFormat::ChannelsLast));
     if (views.inpaint.defined() && !conv_inpaint.is_empty())
         x = x + conv_inpaint->forward(views.inpaint.to(type).contiguous(torch::MemoryFormat::ChannelsLast));

@@ -14,8 +14,10 @@ namespace gse::neural {
 /// config.json of the folder "viewpoint".
 struct ViewpointConfig {
     std::int64_t image_size = 64;
-    std::int64_t sectors = 24;                          // of the full turn; the first is centred on the front, the next lie to the left
-    std::vector<std::int64_t> widths = {24, 48, 96, 128};   // channels; each level has half the pixels per side of the one before
+    std::int64_t sectors =
+        24;  // of the full turn; the first is centred on the front, the next lie to the left
+    std::vector<std::int64_t> widths = {
+        24, 48, 96, 128};  // channels; each level has half the pixels per side of the one before
     std::int64_t hidden = 160;
     std::int64_t groups = 8;
 
@@ -43,7 +45,8 @@ class ViewpointReader {
 public:
     /// Throws Error (NotFound, Malformed, Model) with one sentence.
     ViewpointReader(const std::filesystem::path& folder, torch::Device device);
-    /// [sectors] shares that sum to 1, of a picture [H,W,3] in [0,1]; of one that is not square the middle is seen.
+    /// [sectors] shares that sum to 1, of a picture [H,W,3] in [0,1]; of one that is not square the middle is
+    /// seen.
     std::vector<float> shares(const Image& picture) const;
 
 private:

@@ -78,12 +78,12 @@ std::set<std::string> check_weights(const torch::nn::Module& module, const KeySh
 
 std::uint64_t weight_bytes(const torch::nn::Module& module) {
     std::uint64_t bytes = 0;
-    for (const auto& parameter : module.parameters()) bytes += static_cast<std::uint64_t>(parameter.numel()) * sizeof(float);
+    for (const auto& parameter : module.parameters())
+        bytes += static_cast<std::uint64_t>(parameter.numel()) * sizeof(float);
     return bytes;
 }
 
-std::set<std::string> load_weights(torch::nn::Module& module, const TensorFile& file,
-                                   const LoadPlan& plan) {
+std::set<std::string> load_weights(torch::nn::Module& module, const TensorFile& file, const LoadPlan& plan) {
     auto used = check_weights(module, file.shapes(), plan, file.path());
     const auto parameters = module.named_parameters().pairs();
     const auto load = [&](const std::string& name, torch::Tensor value) {
@@ -94,11 +94,13 @@ std::set<std::string> load_weights(torch::nn::Module& module, const TensorFile& 
         if (source.row >= 0) tensor = tensor.chunk(source.rows, 0)[static_cast<std::size_t>(source.row)];
         value.copy_(tensor.reshape(value.sizes()));
     };
-    // Reading, converting and the pages of the new weights take one thread each their time; every n-th, because sizes grow with the level.
+    // Reading, converting and the pages of the new weights take one thread each their time; every n-th,
+    // because sizes grow with the level.
     const std::int64_t threads = part_threads();
     for_parts(threads, true, [&](std::int64_t begin, std::int64_t end) {
         for (auto first = begin; first < end; ++first)
-            for (auto i = static_cast<std::size_t>(first); i < parameters.size(); i += static_cast<std::size_t>(threads))
+            for (auto i = static_cast<std::size_t>(first); i < parameters.size();
+                 i += static_cast<std::size_t>(threads))
                 load(parameters[i].first, parameters[i].second);
     });
     return used;

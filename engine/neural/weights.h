@@ -31,8 +31,7 @@ struct LoadPlan {
 
 /// Copies all parameters of `module` from `file`. Throws Error (Model) that names the missing, the left-over
 /// or the mis-shaped key (the first, and how many more). Returns the keys of the file that were used.
-std::set<std::string> load_weights(torch::nn::Module& module, const TensorFile& file,
-                                   const LoadPlan& plan);
+std::set<std::string> load_weights(torch::nn::Module& module, const TensorFile& file, const LoadPlan& plan);
 
 /// The same check on names and shapes only (module on torch::kMeta, a manifest): `shapes` are the keys of the
 /// file.
@@ -42,10 +41,11 @@ std::set<std::string> check_weights(const torch::nn::Module& module, const KeySh
 /// Bytes of all parameters in 32-bit floats; the module may be on torch::kMeta.
 std::uint64_t weight_bytes(const torch::nn::Module& module);
 
-/// A network of `config` with the weights of `file`. Both are compared, and the memory is looked for, before any of it is taken:
-/// sizes come from files. Throws Error as load_weights, and OutOfMemory.
+/// A network of `config` with the weights of `file`. Both are compared, and the memory is looked for, before
+/// any of it is taken: sizes come from files. Throws Error as load_weights, and OutOfMemory.
 template <class Network, class Config>
-Network loaded_network(const Config& config, const TensorFile& file, const LoadPlan& plan, const torch::Device& device = torch::kCPU) {
+Network loaded_network(const Config& config, const TensorFile& file, const LoadPlan& plan,
+                       const torch::Device& device = torch::kCPU) {
     const Network described(config, WeightOptions{torch::kMeta, torch::kFloat32, false});
     check_weights(*described, file.shapes(), plan, file.path());
     if (device.is_cpu()) require_memory(weight_bytes(*described), "the " + plan.what);

@@ -17,20 +17,23 @@
 namespace gse::pipeline {
 namespace {
 
-constexpr int Side = 256;             // pixels of a picture
+constexpr int Side = 256;  // pixels of a picture
 constexpr double Fov = 40 * Degree;
-constexpr double Behind = 2;          // how far behind its front a thing may reach, in its longer side on the screen
-constexpr double Gap = 0.1;           // of its longer side: what lies farther behind it is something else
-constexpr double Half = 0.5;          // of what a pixel shows, or of a row's votes
-constexpr double LeastSeen = 0.3;     // of the candidates' pixels: less where something stands in the way
-constexpr double LeastAgreement = 0.4;   // IoU of outline and expectation
-constexpr float Unseen = 0.6f;           // how probably a row that no view has shown yet is the thing's: above a half, its other sides are
+constexpr double Behind = 2;  // how far behind its front a thing may reach, in its longer side on the screen
+constexpr double Gap = 0.1;   // of its longer side: what lies farther behind it is something else
+constexpr double Half = 0.5;  // of what a pixel shows, or of a row's votes
+constexpr double LeastSeen = 0.3;       // of the candidates' pixels: less where something stands in the way
+constexpr double LeastAgreement = 0.4;  // IoU of outline and expectation
+constexpr float Unseen =
+    0.6f;  // how probably a row that no view has shown yet is the thing's: above a half, its other sides are
 
-/// Where the views lie: turned from the first one about the vertical, raised; those next to what is known come first.
+/// Where the views lie: turned from the first one about the vertical, raised; those next to what is known
+/// come first.
 struct Turn {
-    double azimuth = 0, raised = 0;   // degrees
+    double azimuth = 0, raised = 0;  // degrees
 };
-constexpr std::array<Turn, 10> Turns{{{40, 0}, {-40, 0}, {0, 40}, {80, 0}, {-80, 0}, {120, 0}, {-120, 0}, {180, 40}, {160, 0}, {-160, 0}}};
+constexpr std::array<Turn, 10> Turns{
+    {{40, 0}, {-40, 0}, {0, 40}, {80, 0}, {-80, 0}, {120, 0}, {-120, 0}, {180, 40}, {160, 0}, {-160, 0}}};
 
 /// Trimmed bounds along the axes.
 struct Bounds {
@@ -47,7 +50,8 @@ std::optional<Bounds> bounds_of(const GaussianSet& set, const std::vector<std::u
             if (rows[row] != 0) values.push_back(positions[row * 3 + static_cast<std::size_t>(axis)]);
         if (values.empty()) return std::nullopt;
         const auto at = [&](double share) {
-            const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+            const auto place =
+                values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
             std::nth_element(values.begin(), place, values.end());
             return static_cast<double>(*place);
         };
@@ -59,7 +63,8 @@ std::optional<Bounds> bounds_of(const GaussianSet& set, const std::vector<std::u
 std::optional<edit::BoxPrompt> box_of(const Mask& mask) {
     const auto box = localize::bounds_of(mask);
     if (box.width == 0) return std::nullopt;
-    return edit::BoxPrompt{1.0 * box.left, 1.0 * box.top, 1.0 * box.left + box.width, 1.0 * box.top + box.height};
+    return edit::BoxPrompt{1.0 * box.left, 1.0 * box.top, 1.0 * box.left + box.width,
+                           1.0 * box.top + box.height};
 }
 
 Mask above_half(const Image& image) {
@@ -74,16 +79,20 @@ double depth_of(const GaussianSet& set, const Camera& camera, std::size_t row) {
     return dot(camera.forward(), at - camera.centre());
 }
 
-/// Those of `rows` that a way of neighbouring cells joins to the front: what stands behind a gap is another thing.
-void keep_joined(const GaussianSet& set, const std::vector<std::uint8_t>& front, double cell, std::vector<std::uint8_t>& rows) {
+/// Those of `rows` that a way of neighbouring cells joins to the front: what stands behind a gap is another
+/// thing.
+void keep_joined(const GaussianSet& set, const std::vector<std::uint8_t>& front, double cell,
+                 std::vector<std::uint8_t>& rows) {
     using Cell = std::array<std::int64_t, 3>;
     const auto positions = set.spans().position;
     const auto cell_of = [&](std::size_t row) {
         Cell at{};
-        for (std::size_t axis = 0; axis < 3; ++axis) at[axis] = static_cast<std::int64_t>(std::floor(static_cast<double>(positions[row * 3 + axis]) / cell));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            at[axis] =
+                static_cast<std::int64_t>(std::floor(static_cast<double>(positions[row * 3 + axis]) / cell));
         return at;
     };
-    std::map<Cell, bool> reached;   // of the cells that hold a row
+    std::map<Cell, bool> reached;  // of the cells that hold a row
     for (std::size_t row = 0; row < rows.size(); ++row)
         if (rows[row] != 0) reached.emplace(cell_of(row), false);
     std::vector<Cell> open;
@@ -102,27 +111,33 @@ void keep_joined(const GaussianSet& set, const std::vector<std::uint8_t>& front,
             for (std::int64_t y = -1; y <= 1; ++y)
                 for (std::int64_t x = -1; x <= 1; ++x) reach({at[0] + x, at[1] + y, at[2] + z});
     }
-    for (std::size_t row = 0; row < rows.size(); ++row) rows[row] &= rows[row] != 0 && reached[cell_of(row)] ? 1 : 0;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        rows[row] &= rows[row] != 0 && reached[cell_of(row)] ? 1 : 0;
 }
 
 /// Rows that touch each other, by cells that their ellipsoids reach.
 class Parts {
 public:
-    Parts(const GaussianSet& set, double cell) : positions_(set.spans().position), scales_(set.spans().log_scale), cell_(cell), parents_(set.size()) {
+    Parts(const GaussianSet& set, double cell)
+        : positions_(set.spans().position), scales_(set.spans().log_scale), cell_(cell),
+          parents_(set.size()) {
         std::iota(parents_.begin(), parents_.end(), 0u);
     }
     void add(std::uint32_t row) {
-        constexpr double deviations = 2, most = 4;   // cells
+        constexpr double deviations = 2, most = 4;  // cells
         double widest = 0;
         std::array<std::int64_t, 3> at{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
             widest = std::max(widest, std::exp(static_cast<double>(scales_[row * std::size_t{3} + axis])));
-            at[axis] = static_cast<std::int64_t>(std::floor(static_cast<double>(positions_[row * std::size_t{3} + axis]) / cell_));
+            at[axis] = static_cast<std::int64_t>(
+                std::floor(static_cast<double>(positions_[row * std::size_t{3} + axis]) / cell_));
         }
-        const auto reach = static_cast<std::int64_t>(std::clamp(std::ceil(deviations * widest / cell_), 1.0, most));
+        const auto reach =
+            static_cast<std::int64_t>(std::clamp(std::ceil(deviations * widest / cell_), 1.0, most));
         for (std::int64_t z = -reach; z <= reach; ++z)
             for (std::int64_t y = -reach; y <= reach; ++y)
-                for (std::int64_t x = -reach; x <= reach; ++x) join(row, owners_.try_emplace({at[0] + x, at[1] + y, at[2] + z}, row).first->second);
+                for (std::int64_t x = -reach; x <= reach; ++x)
+                    join(row, owners_.try_emplace({at[0] + x, at[1] + y, at[2] + z}, row).first->second);
     }
     std::uint32_t part_of(std::uint32_t row) {
         while (parents_[row] != row) row = parents_[row] = parents_[parents_[row]];
@@ -135,12 +150,16 @@ private:
     std::span<const float> positions_, scales_;
     double cell_;
     std::vector<std::uint32_t> parents_;
-    std::map<std::array<std::int64_t, 3>, std::uint32_t> owners_;   // of each cell that is reached
+    std::map<std::array<std::int64_t, 3>, std::uint32_t> owners_;  // of each cell that is reached
 };
 
-/// Takes in the candidates that hang on nothing but the thing: crumbs that no view gave to it, and that would float where it goes.
-void take_in_crumbs(const GaussianSet& set, const std::vector<std::uint8_t>& candidates, const Bounds& bounds, std::vector<std::uint8_t>& rows) {
-    constexpr double cell_share = 0.03, around = 0.25, most = 0.05;   // of the longest side; of the thing's rows: more of them are something else
+/// Takes in the candidates that hang on nothing but the thing: crumbs that no view gave to it, and that would
+/// float where it goes.
+void take_in_crumbs(const GaussianSet& set, const std::vector<std::uint8_t>& candidates, const Bounds& bounds,
+                    std::vector<std::uint8_t>& rows) {
+    constexpr double cell_share = 0.03, around = 0.25,
+                     most =
+                         0.05;  // of the longest side; of the thing's rows: more of them are something else
     const Vec3 sides = bounds.high - bounds.low;
     const double longest = std::max({sides[0], sides[1], sides[2]});
     if (!(longest > 0)) return;
@@ -148,15 +167,19 @@ void take_in_crumbs(const GaussianSet& set, const std::vector<std::uint8_t>& can
     const auto near = [&](std::size_t row) {
         for (int axis = 0; axis < 3; ++axis) {
             const auto value = static_cast<double>(positions[row * 3 + static_cast<std::size_t>(axis)]);
-            if (!(value > bounds.low[axis] - around * longest && value < bounds.high[axis] + around * longest)) return false;
+            if (!(value > bounds.low[axis] - around * longest &&
+                  value < bounds.high[axis] + around * longest))
+                return false;
         }
         return true;
     };
     Parts parts(set, cell_share * longest);
     std::vector<std::uint32_t> left;
     for (std::size_t row = 0; row < rows.size(); ++row)
-        if (rows[row] == 0 && near(row)) left.push_back(static_cast<std::uint32_t>(row)), parts.add(left.back());
-    std::map<std::uint32_t, std::size_t> sizes;   // of the parts; those with a row that cannot be the thing are too large
+        if (rows[row] == 0 && near(row))
+            left.push_back(static_cast<std::uint32_t>(row)), parts.add(left.back());
+    std::map<std::uint32_t, std::size_t>
+        sizes;  // of the parts; those with a row that cannot be the thing are too large
     const auto thing = static_cast<std::size_t>(std::count(rows.begin(), rows.end(), std::uint8_t{1}));
     for (const auto row : left) sizes[parts.part_of(row)] += candidates[row] != 0 ? 1 : rows.size();
     for (const auto row : left)
@@ -171,9 +194,13 @@ std::vector<std::uint8_t> candidates_of(const GaussianSet& set, const SeenThing&
     std::vector<std::uint8_t> rows = seen.front;
     if (depths.empty()) return rows;
     std::sort(depths.begin(), depths.end());
-    const auto at = [&](double share) { return depths[static_cast<std::size_t>(share * static_cast<double>(depths.size() - 1))]; };
+    const auto at = [&](double share) {
+        return depths[static_cast<std::size_t>(share * static_cast<double>(depths.size() - 1))];
+    };
     const auto box = box_of(seen.mask);
-    const double longer = box ? std::max((box->x1 - box->x0) / seen.camera.fx, (box->y1 - box->y0) / seen.camera.fy) * at(0.5) : 0;
+    const double longer =
+        box ? std::max((box->x1 - box->x0) / seen.camera.fx, (box->y1 - box->y0) / seen.camera.fy) * at(0.5)
+            : 0;
     const double nearest = at(0.02) - 0.1 * longer, farthest = at(0.98) + Behind * longer;
     for (std::size_t row = 0; row < set.size(); ++row) {
         if (seen.cone[row] == 0) continue;
@@ -193,14 +220,18 @@ std::vector<Camera> cameras_around(const SeenThing& seen, const Bounds& bounds) 
     const Vec3 from = normalized(seen.camera.centre() - centre);
     const double elevation = std::asin(std::clamp(dot(from, up), -1.0, 1.0));
     Vec3 level = from - up * dot(from, up);
-    if (length(level) < 1e-3) level = up * dot(seen.camera.rotation.row(1), up) - seen.camera.rotation.row(1);   // seen from right above
+    if (length(level) < 1e-3)
+        level =
+            up * dot(seen.camera.rotation.row(1), up) - seen.camera.rotation.row(1);  // seen from right above
     level = normalized(level);
     const Vec3 side = cross(up, level);
     std::vector<Camera> cameras;
     for (const auto& turn : Turns) {
         const double azimuth = turn.azimuth * Degree;
-        const double height = std::clamp(std::clamp(elevation, 5 * Degree, 35 * Degree) + turn.raised * Degree, -1.3, 1.3);
-        const Vec3 outward = (level * std::cos(azimuth) + side * std::sin(azimuth)) * std::cos(height) + up * std::sin(height);
+        const double height =
+            std::clamp(std::clamp(elevation, 5 * Degree, 35 * Degree) + turn.raised * Degree, -1.3, 1.3);
+        const Vec3 outward =
+            (level * std::cos(azimuth) + side * std::sin(azimuth)) * std::cos(height) + up * std::sin(height);
         cameras.push_back(Camera::look_at(centre + outward * distance, centre, up, Fov, Side, Side));
     }
     return cameras;
@@ -209,12 +240,16 @@ std::vector<Camera> cameras_around(const SeenThing& seen, const Bounds& bounds) 
 /// What is known of the rows after some views.
 class Knowledge {
 public:
-    explicit Knowledge(const std::vector<std::uint8_t>& candidates) : candidates_(candidates), masked_(candidates.size()), total_(candidates.size()) {}
+    explicit Knowledge(const std::vector<std::uint8_t>& candidates)
+        : candidates_(candidates), masked_(candidates.size()), total_(candidates.size()) {}
     void vote(std::span<const double> masked, std::span<const double> total) {
-        for (std::size_t row = 0; row < masked_.size(); ++row) masked_[row] += masked[row], total_[row] += total[row];
+        for (std::size_t row = 0; row < masked_.size(); ++row)
+            masked_[row] += masked[row], total_[row] += total[row];
     }
     bool known(std::size_t row) const { return total_[row] > LeastEvidence; }
-    bool inside(std::size_t row) const { return candidates_[row] != 0 && known(row) && masked_[row] > Half * total_[row]; }
+    bool inside(std::size_t row) const {
+        return candidates_[row] != 0 && known(row) && masked_[row] > Half * total_[row];
+    }
     /// [N] 1 for rows that count, `unseen` for candidates that no view has shown yet, 0 for the rest.
     void expectation(float unseen, std::vector<float>& values) const {
         values.assign(masked_.size(), 0);
@@ -226,12 +261,14 @@ public:
         result.weight.resize(masked_.size());
         result.evidence = total_;
         for (std::size_t row = 0; row < masked_.size(); ++row)
-            if (total_[row] > 0) result.weight[row] = candidates_[row] != 0 ? static_cast<float>(masked_[row] / total_[row]) : 0.0f;
+            if (total_[row] > 0)
+                result.weight[row] =
+                    candidates_[row] != 0 ? static_cast<float>(masked_[row] / total_[row]) : 0.0f;
         return result;
     }
 
 private:
-    static constexpr double LeastEvidence = 0.5;   // pixels, as spread_to_unseen counts
+    static constexpr double LeastEvidence = 0.5;  // pixels, as spread_to_unseen counts
     const std::vector<std::uint8_t>& candidates_;
     std::vector<double> masked_, total_;
 };
@@ -239,9 +276,11 @@ private:
 /// Votes view by view.
 class Follower {
 public:
-    Follower(const GaussianSet& set, const std::vector<std::uint8_t>& candidates, const raster::Settings& settings, edit::Segmenter& segmenter, Painter& painter)
-        : set_(set), settings_(settings), segmenter_(segmenter), painter_(painter), candidates_(candidates.begin(), candidates.end()),
-          alone_(set.filtered(candidates)), ones_(alone_.size(), 1), masked_(set.size()), total_(set.size()) {}
+    Follower(const GaussianSet& set, const std::vector<std::uint8_t>& candidates,
+             const raster::Settings& settings, edit::Segmenter& segmenter, Painter& painter)
+        : set_(set), settings_(settings), segmenter_(segmenter), painter_(painter),
+          candidates_(candidates.begin(), candidates.end()), alone_(set.filtered(candidates)),
+          ones_(alone_.size(), 1), masked_(set.size()), total_(set.size()) {}
 
     void first(const SeenThing& seen, Knowledge& knowledge) {
         Mask mask = seen.mask;
@@ -278,7 +317,8 @@ private:
     bool hidden(const Camera& camera, const Mask& possible) {
         const Mask whole = above_half(shown(alone_, camera, ones_));
         std::size_t pixels = 0, seen = 0;
-        for (std::size_t i = 0; i < whole.data.size(); ++i) pixels += whole.data[i], seen += whole.data[i] & possible.data[i];
+        for (std::size_t i = 0; i < whole.data.size(); ++i)
+            pixels += whole.data[i], seen += whole.data[i] & possible.data[i];
         return pixels == 0 || static_cast<double>(seen) < LeastSeen * static_cast<double>(pixels);
     }
     void vote(const Camera& camera, const Mask& mask, Knowledge& knowledge) {
@@ -293,8 +333,8 @@ private:
     const raster::Settings& settings_;
     edit::Segmenter& segmenter_;
     Painter& painter_;
-    std::vector<float> candidates_;   // [N] 1 for the rows that can be the thing
-    GaussianSet alone_;               // these rows only
+    std::vector<float> candidates_;  // [N] 1 for the rows that can be the thing
+    GaussianSet alone_;              // these rows only
     std::vector<float> ones_;
     std::vector<double> masked_, total_;
     std::vector<float> values_;
@@ -324,8 +364,9 @@ void close_holes(Mask& mask, const Mask& possible) {
         if (outside[i] == 0) mask.data[i] |= possible.data[i];
 }
 
-std::vector<std::uint8_t> follow_around(const GaussianSet& set, const SeenThing& seen, const raster::Settings& settings, edit::Segmenter& segmenter, Painter& painter,
-                                        const JobControl& control) {
+std::vector<std::uint8_t> follow_around(const GaussianSet& set, const SeenThing& seen,
+                                        const raster::Settings& settings, edit::Segmenter& segmenter,
+                                        Painter& painter, const JobControl& control) {
     const auto candidates = candidates_of(set, seen);
     const auto bounds = bounds_of(set, candidates);
     if (!bounds) return candidates;
@@ -335,13 +376,15 @@ std::vector<std::uint8_t> follow_around(const GaussianSet& set, const SeenThing&
     const auto cameras = cameras_around(seen, *bounds);
     for (std::size_t i = 0; i < cameras.size(); ++i) {
         if (control.stop_requested()) throw Error(ErrorCode::Cancelled, "cutting out the thing was stopped");
-        control.report("cutting it out from all sides", static_cast<int>(i), static_cast<int>(cameras.size()));
+        control.report("cutting it out from all sides", static_cast<int>(i),
+                       static_cast<int>(cameras.size()));
         follower.look(cameras[i], knowledge);
     }
     auto weights = knowledge.weights();
     localize::spread_to_unseen(set.spans(), {}, weights, &painter.pool());
     std::vector<std::uint8_t> rows(set.size(), 0);
-    for (std::size_t row = 0; row < rows.size(); ++row) rows[row] = candidates[row] != 0 && static_cast<double>(weights.weight[row]) > Half ? 1 : 0;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        rows[row] = candidates[row] != 0 && static_cast<double>(weights.weight[row]) > Half ? 1 : 0;
     take_in_crumbs(set, candidates, *bounds, rows);
     return rows;
 }

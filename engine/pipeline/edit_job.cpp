@@ -21,8 +21,9 @@
 namespace gse::pipeline {
 namespace {
 
-constexpr std::size_t InstanceViews = 12;   // renders a tuning learns from (method 2.6: 8 to 16)
-constexpr double NearInstance = 0.6;        // share of the fitted distance of every other one, where views are automatic
+constexpr std::size_t InstanceViews = 12;  // renders a tuning learns from (method 2.6: 8 to 16)
+constexpr double NearInstance =
+    0.6;  // share of the fitted distance of every other one, where views are automatic
 
 /// The first label of a scene file.
 std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::path& path) {
@@ -35,13 +36,15 @@ std::vector<std::uint8_t> label_of(const Scene& scene, const std::filesystem::pa
 }
 
 /// What the box of --cut-out holds.
-std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const EditRecipe& recipe, edit::Segmenter* segmenter, const JobControl& control) {
+std::vector<std::uint8_t> labelled_by_box(const Scene& scene, const EditRecipe& recipe,
+                                          edit::Segmenter* segmenter, const JobControl& control) {
     const auto& job = recipe.job;
     auto request = cut_out_request(job.cut_out, scene, job.up);
     request.ground = edit::names_ground(recipe.request.source);
     auto bits = cut_out(drawable(scene.gaussians), request, segmenter, control);
     if (std::find(bits.begin(), bits.end(), std::uint8_t{1}) != bits.end()) return bits;
-    throw Error(ErrorCode::InvalidArgument, fmt::format("nothing is seen in the box \"{}\" of --cut-out", job.cut_out),
+    throw Error(ErrorCode::InvalidArgument,
+                fmt::format("nothing is seen in the box \"{}\" of --cut-out", job.cut_out),
                 "look at what gseditpro render shows with the same azimuth, elevation and zoom");
 }
 
@@ -61,7 +64,8 @@ std::vector<float> splat_attention(EditJob& job) {
     const auto& set = job.drawn();
     std::vector<double> inside(set.size()), all(set.size());
     for (std::size_t v = 0; v < job.views().size(); ++v)
-        job.painter().rasterizer().contributions(set.spans(), job.views()[v].camera, job.plan().settings, job.located().views[v].map, inside, all);
+        job.painter().rasterizer().contributions(set.spans(), job.views()[v].camera, job.plan().settings,
+                                                 job.located().views[v].map, inside, all);
     std::vector<float> result(set.size());
     for (std::size_t row = 0; row < result.size(); ++row)
         result[row] = all[row] > 0 ? static_cast<float>(std::clamp(inside[row] / all[row], 0.0, 1.0)) : 0.0f;
@@ -74,7 +78,10 @@ void warn_unknown_words(const std::vector<std::string>& words, const std::vector
         if (std::find(known.begin(), known.end(), word) != known.end()) continue;
         const auto nearest = edit::nearest_words(word, known, 1);
         if (nearest.empty()) log::warning("the model does not know the word \"{}\" and leaves it out", word);
-        else log::warning("the model does not know the word \"{}\" and leaves it out; the nearest it knows is \"{}\"", word, nearest.front());
+        else
+            log::warning(
+                "the model does not know the word \"{}\" and leaves it out; the nearest it knows is \"{}\"",
+                word, nearest.front());
     }
 }
 
@@ -82,7 +89,8 @@ EditJob::EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCach
     : recipe_(std::move(recipe)), control_(std::move(control)) {
     check_recipe(nullptr);
     if (recipe_.job.use_label && !recipe_.job.cut_out.empty())
-        throw Error(ErrorCode::InvalidArgument, "--use-label and --cut-out both say what may change", "leave one of them out");
+        throw Error(ErrorCode::InvalidArgument, "--use-label and --cut-out both say what may change",
+                    "leave one of them out");
     times_.begin("load_scene");
     recipe_.job.scene = std::filesystem::absolute(recipe_.job.scene).lexically_normal().string();
     recipe_.job.lora = absolute_loras(recipe_.job);
@@ -118,7 +126,8 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
     check_recipe(model.get());
     GSE_CHECK(input.view_words.empty() || input.view_words.size() == input.cameras.size());
     GivenCameras given;
-    for (std::size_t i = 0; i < input.view_words.size(); ++i) given.words[input.cameras[i].name] = input.view_words[i];
+    for (std::size_t i = 0; i < input.view_words.size(); ++i)
+        given.words[input.cameras[i].name] = input.view_words[i];
     given.cameras = std::move(input.cameras);
     begin(std::move(input.scene), std::move(model), std::move(input.segmenters), given);
 }
@@ -126,7 +135,8 @@ EditJob::EditJob(EditRecipe recipe, EditJobInput input, JobControl control)
 void EditJob::check_recipe(const neural::TextToImage* model) {
     auto& request = recipe_.request;
     hints_.target_open = request.target.empty() && !request.source.empty();
-    if (hints_.target_open) request.target = edit::guessed_target(request.prompt, edit::as_told(request.source), hints_.said);
+    if (hints_.target_open)
+        request.target = edit::guessed_target(request.prompt, edit::as_told(request.source), hints_.said);
     recipe_.request = edit::validated(recipe_.request);
     check_fields(recipe_.job);
     check_fields(recipe_.guidance);
@@ -136,7 +146,8 @@ void EditJob::check_recipe(const neural::TextToImage* model) {
     const auto drawn = !edit::edits_by_views(recipe_.request) ? std::vector<std::string>{}
                        : model != nullptr                     ? edit::with_dyes(model->drawn_words(), known)
                                                               : drawn_words(model_path(recipe_.job));
-    edit::require_known_words(recipe_.request, known, drawn, recipe_.job.brings_label() || !hints_.label.empty());
+    edit::require_known_words(recipe_.request, known, drawn,
+                              recipe_.job.brings_label() || !hints_.label.empty());
     check_length();
     parse_colour(recipe_.request.background);
     parse_up(recipe_.job.up, {});
@@ -153,24 +164,32 @@ void EditJob::check_length() const {
     for (const auto& word : {recipe_.request.source, recipe_.request.target}) {
         const auto first = edit::first_word(recipe_.request.prompt, word);
         if (first < words.size() && first + edit::words_of(word).size() > read)
-            throw Error(ErrorCode::InvalidArgument,
-                        fmt::format("the model reads {} words of a sentence and stops before \"{}\"", read, word),
-                        "shorten the sentence, or move the word forward");
+            throw Error(
+                ErrorCode::InvalidArgument,
+                fmt::format("the model reads {} words of a sentence and stops before \"{}\"", read, word),
+                "shorten the sentence, or move the word forward");
     }
-    log::warning("the model reads {} words of the sentence: from \"{}\" on nothing counts", read, words[read]);
+    log::warning("the model reads {} words of the sentence: from \"{}\" on nothing counts", read,
+                 words[read]);
 }
 
-void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters, const GivenCameras& given) {
-    workplace_ = std::make_unique<Workplace>(std::move(scene), std::move(model), recipe_.job, std::move(segmenters));
+void EditJob::begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
+                    const GivenCameras& given) {
+    workplace_ =
+        std::make_unique<Workplace>(std::move(scene), std::move(model), recipe_.job, std::move(segmenters));
     auto words = edit::words_of(recipe_.request.prompt);
     for (auto& word : edit::words_of(recipe_.request.source)) words.push_back(std::move(word));
     std::sort(words.begin(), words.end());
     words.erase(std::unique(words.begin(), words.end()), words.end());
     const auto known = workplace_->model().known_words();
-    warn_unknown_words(words, edit::edits_by_views(recipe_.request) ? edit::words_to_say(known, edit::with_dyes(workplace_->model().drawn_words(), known)) : known);
+    warn_unknown_words(
+        words, edit::edits_by_views(recipe_.request)
+                   ? edit::words_to_say(known, edit::with_dyes(workplace_->model().drawn_words(), known))
+                   : known);
     views_ = std::make_shared<const Views>(choose_views(workplace_->scene(), recipe_, given));
     if (views_->automatic && !given.cameras.empty())
-        log::info("{} stored views are too few to search from: an orbit around the scene is used", given.cameras.size());
+        log::info("{} stored views are too few to search from: an orbit around the scene is used",
+                  given.cameras.size());
     located_ = std::make_shared<const Located>();
     edited_ = std::make_shared<const Edited>();
 }
@@ -182,26 +201,30 @@ std::vector<Image> EditJob::instance_pictures() {
     std::vector<View> views = farthest_views(chosen.views, InstanceViews);
     if (chosen.automatic) {
         const int side = recipe_.request.image_size;
-        const auto closer = orbit_views(nearer(chosen.orbit, NearInstance), static_cast<int>(views.size()), side, side);
+        const auto closer =
+            orbit_views(nearer(chosen.orbit, NearInstance), static_cast<int>(views.size()), side, side);
         for (std::size_t i = 1; i < views.size(); i += 2) views[i] = closer[i];
     }
     std::vector<Image> pictures;
     for (const auto& view : views)
-        pictures.push_back(workplace_->painter().paint(drawn().spans(), view.camera, render_settings()).colour);
+        pictures.push_back(
+            workplace_->painter().paint(drawn().spans(), view.camera, render_settings()).colour);
     return pictures;
 }
 
 void EditJob::tune() {
     times_.begin("dreambooth");
-    auto tuned = model().tune(recipe_.dreambooth, instance_pictures(), edit::instance_sentence(recipe_.request),
-                              edit::without_identifier(model_prompt()), control_);
+    auto tuned =
+        model().tune(recipe_.dreambooth, instance_pictures(), edit::instance_sentence(recipe_.request),
+                     edit::without_identifier(model_prompt()), control_);
     workplace_->take_model(std::move(tuned.model));
     tuning_ = std::move(tuned.report);
     times_.end();
-    log::info("{} {:.0f} s: loss on the scene {:.3f} to {:.3f}, on what the model knew {:.3f} to {:.3f}",
-              times_.networks("dreambooth").flop > 0 ? "tuned in" : "the tuning was read from the cache; it took", tuning_->seconds,
-              tuning_->instance_before, tuning_->instance_after, tuning_->prior_before,
-              tuning_->prior_after);
+    log::info(
+        "{} {:.0f} s: loss on the scene {:.3f} to {:.3f}, on what the model knew {:.3f} to {:.3f}",
+        times_.networks("dreambooth").flop > 0 ? "tuned in" : "the tuning was read from the cache; it took",
+        tuning_->seconds, tuning_->instance_before, tuning_->instance_after, tuning_->prior_before,
+        tuning_->prior_after);
 }
 
 std::optional<neural::TunedModel> EditJob::tuned() const {
@@ -226,7 +249,8 @@ void EditJob::locate() {
     const auto labelled = std::count(result.label.bits->begin(), result.label.bits->end(), std::uint8_t{1});
     log::info("mode {} ({}); {} of {} splats labelled, {} new", edit::mode_name(result.mode), result.reason,
               labelled, scene().gaussians.size(), result.seeds.size());
-    if (const auto use = times_.networks("locate"); use.cached > 0) log::info("located with {}", use_text(use));
+    if (const auto use = times_.networks("locate"); use.cached > 0)
+        log::info("located with {}", use_text(use));
 }
 
 /// The same from the views chosen already; the networks are asked only about pictures they have not seen.
@@ -274,7 +298,7 @@ void EditJob::take_settings(const EditRecipe& recipe, bool relabels) {
     static_cast<edit::LoopSettings&>(recipe_.request) = request;
     recipe_.request.tau = request.tau;
     recipe_.guidance = recipe.guidance;
-    plan_.reset();   // how far masks are grown, and whether the label counts at all
+    plan_.reset();  // how far masks are grown, and whether the label counts at all
     if (before.attention_threshold != request.attention_threshold || before.left_out != request.left_out ||
         (relabels && before.tau != request.tau))
         locate_again(request.attention_threshold, request.left_out);
@@ -293,10 +317,10 @@ OrbitParameters EditJob::film_orbit() const {
         for (std::size_t row = 0; row < source->size(); ++row)
             if ((*source)[row] != 0 && result().base_to_new[row] >= 0)
                 bits[static_cast<std::size_t>(result().base_to_new[row])] = 1;
-    constexpr double Around = 1.3, FromViews = 1.25;   // of the radius
+    constexpr double Around = 1.3, FromViews = 1.25;  // of the radius
     OrbitParameters orbit = localize::focus_orbit(drawn_result(), bits, views_->orbit);
-    double most = FromViews * views_->orbit.radius;   // a stray row is not worth stepping back for
-    if (source && located().mode == edit::EditMode::Add)   // the views may have been about its head only
+    double most = FromViews * views_->orbit.radius;       // a stray row is not worth stepping back for
+    if (source && located().mode == edit::EditMode::Add)  // the views may have been about its head only
         most = std::max(most, Around * localize::focus_orbit(drawn(), *source, views_->orbit).radius);
     orbit.radius = std::min(Around * orbit.radius, most);
     return orbit;
@@ -313,12 +337,12 @@ void EditJob::run(const EditObserver& observer) {
     edited.seconds = wall_seconds() - start;
     edited_ = std::make_shared<const Edited>(std::move(edited));
     times_.end();
-    log::info("edited in {:.1f} s ({} steps): {}; with what came before it {}", edited_->seconds, result().history.size(),
-              use_text(edited_->use), use_text(times_.networks()));
+    log::info("edited in {:.1f} s ({} steps): {}; with what came before it {}", edited_->seconds,
+              result().history.size(), use_text(edited_->use), use_text(times_.networks()));
 }
 
 Edited EditJob::probe(const ProbeSize& size) {
-    const log::Quiet nothing_said;   // of how well a few steps did: they only tell what a step takes
+    const log::Quiet nothing_said;  // of how well a few steps did: they only tell what a step takes
     EditRecipe plain = recipe_;
     plain.request.iterations = plain.request.fit_steps = size.steps;
     plain.request.dynamic_mask = plain.request.look_again = plain.request.early_stop = false;

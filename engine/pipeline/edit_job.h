@@ -22,39 +22,43 @@ namespace gse::pipeline {
 /// What a job works on when it is in memory already.
 struct EditJobInput {
     Scene scene;
-    std::vector<View> cameras;                     // fewer than LeastViewpoints = an orbit is fitted
+    std::vector<View> cameras;  // fewer than LeastViewpoints = an orbit is fitted
     std::shared_ptr<neural::TextToImage> model;
-    std::vector<std::uint8_t> label = {};          // [N] made by hand: says where when the words do not; empty = none
-    std::vector<std::string> view_words = {};      // one for each of `cameras` where it is known; else from the recipe's front
-    std::optional<neural::TunedModel> tuned = {};  // what another job learned of this scene for these words and settings
-    std::vector<std::string> said = {};            // words that the scene is known to show: no news
+    std::vector<std::uint8_t> label = {};  // [N] made by hand: says where when the words do not; empty = none
+    std::vector<std::string> view_words =
+        {};  // one for each of `cameras` where it is known; else from the recipe's front
+    std::optional<neural::TunedModel> tuned =
+        {};  // what another job learned of this scene for these words and settings
+    std::vector<std::string> said = {};  // words that the scene is known to show: no news
     Segmenters segmenters = {};
 };
 
 /// A run from stage to stage (views.h, search.h, loop.h): keeps what each came to and how long it took.
 class EditJob {
 public:
-    /// Checks the request, reads the scene, loads the model, chooses the views. Throws Error before anything is written.
-    /// `cache`: see open_recipe_model().
+    /// Checks the request, reads the scene, loads the model, chooses the views. Throws Error before anything
+    /// is written. `cache`: see open_recipe_model().
     EditJob(EditRecipe recipe, JobControl control, std::shared_ptr<DiskCache> cache = nullptr);
     /// The same for what is in memory; the recipe's files are not read.
     EditJob(EditRecipe recipe, EditJobInput input, JobControl control);
 
-    /// DreamBooth: from here on this job works with a model of its own, which learned the scene from renders of its views.
-    /// locate() begins with it when the recipe asks for it.
+    /// DreamBooth: from here on this job works with a model of its own, which learned the scene from renders
+    /// of its views. locate() begins with it when the recipe asks for it.
     void tune();
-    /// Works out which word is new where the recipe does not say, looks from all views, moves in on what was found, looks again. With a label made by hand, a word that the model does
-    /// not know is not looked for, and one that is not found does no harm. A search that comes to nothing is a result too:
-    /// see found().
+    /// Works out which word is new where the recipe does not say, looks from all views, moves in on what was
+    /// found, looks again. With a label made by hand, a word that the model does not know is not looked for,
+    /// and one that is not found does no harm. A search that comes to nothing is a result too: see found().
     void locate();
     /// Whether something may change: located().problem says why not.
     bool found() const { return located_->found(); }
     /// Labels what an unsure search found all the same.
     void locate_anyway();
-    /// The same from the views chosen already, with another attention threshold, or without some views (`left_out` of the request):
-    /// no network is asked anything.
+    /// The same from the views chosen already, with another attention threshold, or without some views
+    /// (`left_out` of the request): no network is asked anything.
     void locate_again(double attention_threshold, const std::string& left_out);
-    void locate_again(double attention_threshold) { locate_again(attention_threshold, recipe_.request.left_out); }
+    void locate_again(double attention_threshold) {
+        locate_again(attention_threshold, recipe_.request.left_out);
+    }
     /// Who is told of the views while locate() looks; empty = nobody.
     void watch_views(ViewWatch watch) { workplace_->watch_views(std::move(watch)); }
     /// The attention threshold in force: the request's, or what the model states.
@@ -65,17 +69,18 @@ public:
     void use_label(const std::vector<std::uint8_t>& bits);
     /// Runs the edit loop.
     void run(const EditObserver& observer = {});
-    /// Runs a plain loop of that many steps, for its time; where views lead it, that many are redrawn first. Of a large scene
-    /// on a part of the splats, see probe_scene().
+    /// Runs a plain loop of that many steps, for its time; where views lead it, that many are redrawn first.
+    /// Of a large scene on a part of the splats, see probe_scene().
     struct ProbeSize {
         int steps = 1, edited_views = 1, view_steps = 1, polish = 0;
-        bool early = false;   // only redraws, as in a round that is not the last; no step follows
+        bool early = false;  // only redraws, as in a round that is not the last; no step follows
     };
     Edited probe(const ProbeSize& size);
     /// Replaces where to report and what stops (a job that located goes on to edit).
     void set_control(JobControl control) { control_ = std::move(control); }
-    /// Takes the settings of the loop and of the guidance, and the label's thresholds, of a recipe with the same search_key():
-    /// no network is asked. `relabels` = false: an artist's own label is used, which follows no share of the votes.
+    /// Takes the settings of the loop and of the guidance, and the label's thresholds, of a recipe with the
+    /// same search_key(): no network is asked. `relabels` = false: an artist's own label is used, which
+    /// follows no share of the votes.
     void take_settings(const EditRecipe& recipe, bool relabels = true);
 
     const EditRecipe& recipe() const { return recipe_; }
@@ -130,7 +135,8 @@ public:
 private:
     void check_recipe(const neural::TextToImage* model);
     void check_length() const;
-    void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters, const GivenCameras& given);
+    void begin(Scene scene, std::shared_ptr<neural::TextToImage> model, Segmenters segmenters,
+               const GivenCameras& given);
     void take(Located located);
     void look_again(const EditRecipe& recipe);
     std::vector<Image> instance_pictures();
@@ -144,11 +150,12 @@ private:
     std::shared_ptr<const Views> views_;
     std::shared_ptr<const Located> located_;
     std::shared_ptr<const Edited> edited_;
-    std::optional<edit::EditPlan> plan_;   // follows from what was located
+    std::optional<edit::EditPlan> plan_;  // follows from what was located
     std::optional<neural::TuneReport> tuning_;
 };
 
-/// The attention itself on the splats of a located job: sum(alpha T map) / sum(alpha T) over the views, [N] in [0,1].
+/// The attention itself on the splats of a located job: sum(alpha T map) / sum(alpha T) over the views, [N]
+/// in [0,1].
 std::vector<float> splat_attention(EditJob& job);
 
 /// Warns about words the model was not trained on and suggests the nearest known ones.

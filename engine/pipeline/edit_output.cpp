@@ -36,8 +36,8 @@ Image with_points(const Image& render, const std::vector<edit::PointPrompt>& poi
     Image picture = render;
     const int arm = std::max(1, render.width / 48);
     for (const auto& point : points) {
-        const std::array<float, 3> colour = point.positive ? std::array<float, 3>{0.1f, 1, 0.2f}
-                                                           : std::array<float, 3>{1, 0.1f, 0.1f};
+        const std::array<float, 3> colour =
+            point.positive ? std::array<float, 3>{0.1f, 1, 0.2f} : std::array<float, 3>{1, 0.1f, 0.1f};
         const int x = static_cast<int>(point.x), y = static_cast<int>(point.y);
         for (int k = -arm; k <= arm; ++k)
             for (const auto& [u, v] : {std::pair{x + k, y}, std::pair{x, y + k}})
@@ -47,7 +47,9 @@ Image with_points(const Image& render, const std::vector<edit::PointPrompt>& poi
     return picture;
 }
 
-void write_json(const fs::path& path, const nlohmann::ordered_json& json) { write_file(path, json_text(json, 2) + "\n"); }
+void write_json(const fs::path& path, const nlohmann::ordered_json& json) {
+    write_file(path, json_text(json, 2) + "\n");
+}
 
 void write_evidence_pictures(const fs::path& folder, const edit::ViewEvidence& evidence, std::size_t view) {
     const std::string stem = fmt::format("view_{:03}", view);
@@ -69,7 +71,8 @@ Image heat_map(const Image& map) {
     return picture;
 }
 
-void write_evidence(const fs::path& folder, ThreadPool& threads, const edit::LocateResult& located, const std::vector<View>& views) {
+void write_evidence(const fs::path& folder, ThreadPool& threads, const edit::LocateResult& located,
+                    const std::vector<View>& views) {
     threads.parallel_for(located.views.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t v = begin; v < end; ++v) write_evidence_pictures(folder, located.views[v], v);
     });
@@ -104,7 +107,9 @@ void write_labelled_source(const fs::path& path, const EditJob& job) {
 
 std::uint64_t bytes_of_results(const EditJob& job) {
     const auto& recipe = job.recipe();
-    const auto pixels = [](int side) { return static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side) * 3; };
+    const auto pixels = [](int side) {
+        return static_cast<std::uint64_t>(side) * static_cast<std::uint64_t>(side) * 3;
+    };
     return 2 * job.scene().gaussians.byte_size() + job.views().size() * pixels(recipe.request.image_size) +
            static_cast<std::uint64_t>(recipe.job.turntable_frames) * pixels(recipe.job.turntable_size) / 10;
 }
@@ -113,7 +118,7 @@ void write_before_after(const fs::path& folder, EditJob& job) {
     const int side = job.recipe().job.turntable_size, frames = job.recipe().job.turntable_frames;
     raster::Settings settings = job.plan().settings;
     const OrbitParameters orbit = job.film_orbit();
-    const double front = job.film_front();   // what was edited faces the first picture
+    const double front = job.film_front();  // what was edited faces the first picture
     const auto pair = [&](double azimuth) {
         const Camera camera = orbit_camera(orbit, front + azimuth, side, side);
         const Image before = job.painter().paint(job.drawn().spans(), camera, settings).colour;
@@ -143,9 +148,9 @@ double psnr_outside(EditJob& job) {
     double error = 0;
     for (std::size_t v = 0; v < job.views().size(); ++v) {
         const auto& camera = job.views()[v].camera;
-        const Image before =
-            job.painter().paint(job.drawn().spans(), camera, job.plan().settings).colour;
-        const Image& after = job.painter().paint(job.drawn_result().spans(), camera, job.plan().settings).colour;
+        const Image before = job.painter().paint(job.drawn().spans(), camera, job.plan().settings).colour;
+        const Image& after =
+            job.painter().paint(job.drawn_result().spans(), camera, job.plan().settings).colour;
         const evaluate::Region outside{&job.plan().masks[v], false};
         error += std::pow(10, -evaluate::psnr_db(before, after, outside) / 10);
     }
@@ -155,12 +160,10 @@ double psnr_outside(EditJob& job) {
 nlohmann::ordered_json history_json(const edit::EditResult& result) {
     nlohmann::ordered_json lines = nlohmann::ordered_json::array();
     for (const auto& record : result.history) {
-        nlohmann::ordered_json line{{"iteration", record.iteration},
-                                    {"view", record.view},
-                                    {"preservation", record.preservation},
-                                    {"anchor", record.anchor},
-                                    {"guidance_norm", record.guidance_norm},
-                                    {"preservation_norm", record.preservation_norm}};
+        nlohmann::ordered_json line{
+            {"iteration", record.iteration},         {"view", record.view},
+            {"preservation", record.preservation},   {"anchor", record.anchor},
+            {"guidance_norm", record.guidance_norm}, {"preservation_norm", record.preservation_norm}};
         for (const auto& [name, value] : record.guidance) line["guidance_" + name] = value;
         lines.push_back(std::move(line));
     }
@@ -178,10 +181,10 @@ void add_search(nlohmann::ordered_json& report, const EditJob& job) {
     report["segmenter"] = job.segmenter_name();
     report["views"] = job.views().size();
     if (job.front_read()) report["front_read"] = *job.front_read() / Degree;
-    if (located.on_ground) report["plain_ground"] = true;   // that the networks saw below the scene
+    if (located.on_ground) report["plain_ground"] = true;  // that the networks saw below the scene
     report["failed_views"] = located.failed_views;
     if (located.broken_attention > 0) report["broken_attention"] = located.broken_attention;
-    report["confidence"] = nullptr;   // nothing was looked for
+    report["confidence"] = nullptr;  // nothing was looked for
     if (confidence.value >= 0) {
         report["confidence"] = confidence.value;
         report["confidence_of"] = {{"agreement", confidence.agreement},
@@ -199,7 +202,8 @@ void add_search(nlohmann::ordered_json& report, const EditJob& job) {
 nlohmann::ordered_json locate_report(EditJob& job) {
     nlohmann::ordered_json report;
     report["splats"] = job.scene().gaussians.size();
-    report["labelled"] = std::count(job.located().label.bits->begin(), job.located().label.bits->end(), std::uint8_t{1});
+    report["labelled"] =
+        std::count(job.located().label.bits->begin(), job.located().label.bits->end(), std::uint8_t{1});
     report["new"] = job.located().seeds.size();
     add_search(report, job);
     report["seconds"] = job.times().to_json();
@@ -224,10 +228,13 @@ nlohmann::ordered_json make_report(EditJob& job) {
     nlohmann::ordered_json report;
     report["splats"] = result.set.size();
     report["splats_before"] = job.scene().gaussians.size();
-    report["labelled"] = std::count(job.located().label.bits->begin(), job.located().label.bits->end(), std::uint8_t{1});
-    report["added"] = std::count_if(result.label.begin(), result.label.end(), [](auto bit) { return bit != 0; }) -
-                      std::count_if(result.base_to_new.begin(), result.base_to_new.end(),
-                                    [&](std::int64_t row) { return row >= 0 && result.label[static_cast<std::size_t>(row)] != 0; });
+    report["labelled"] =
+        std::count(job.located().label.bits->begin(), job.located().label.bits->end(), std::uint8_t{1});
+    report["added"] =
+        std::count_if(result.label.begin(), result.label.end(), [](auto bit) { return bit != 0; }) -
+        std::count_if(result.base_to_new.begin(), result.base_to_new.end(), [&](std::int64_t row) {
+            return row >= 0 && result.label[static_cast<std::size_t>(row)] != 0;
+        });
     report["removed"] = std::count(result.base_to_new.begin(), result.base_to_new.end(), std::int64_t{-1});
     report["changed_outside_label"] = result.changed_outside_label;
     report["nonfinite_before"] = result.unusable_before;
@@ -245,7 +252,10 @@ nlohmann::ordered_json make_report(EditJob& job) {
     report["skipped_rows"] = result.skipped_rows;
     if (result.kept_chroma >= 0) report["kept_chroma"] = result.kept_chroma;
     if (const auto& polish = result.polish)
-        report["polish"] = {{"steps", polish->steps}, {"kept", polish->kept}, {"held_out_error_before", polish->before}, {"held_out_error_after", polish->after}};
+        report["polish"] = {{"steps", polish->steps},
+                            {"kept", polish->kept},
+                            {"held_out_error_before", polish->before},
+                            {"held_out_error_after", polish->after}};
     report["cloned"] = result.cloned;
     report["split"] = result.split;
     report["pruned"] = result.pruned;

@@ -34,7 +34,8 @@ ProjectData project_of(EditJob& job, const nlohmann::ordered_json& report) {
     fill_pending(job, report, result);
     EditNode node = node_of(result);
     node.id = FirstEdit;
-    node.delta = std::make_shared<const SceneDelta>(make_delta(before.current, *before.row_ids, result.set, *result.base_to_new, node.id));
+    node.delta = std::make_shared<const SceneDelta>(
+        make_delta(before.current, *before.row_ids, result.set, *result.base_to_new, node.id));
     project.state = with_result(before, std::move(node), result);
     project.thumbnail = result.thumbnail;
     project.ui["request"] = fields_to_json(job.recipe().request);

@@ -8,8 +8,8 @@
 
 namespace gse::pipeline {
 
-/// Of a job that has run, with its report (edit_output.h): as the window has it after Apply. The scene's file is read again for its
-/// fingerprint. Throws Error.
+/// Of a job that has run, with its report (edit_output.h): as the window has it after Apply. The scene's file
+/// is read again for its fingerprint. Throws Error.
 ProjectData project_of(EditJob& job, const nlohmann::ordered_json& report);
 
 }  // namespace gse::pipeline

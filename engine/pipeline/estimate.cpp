@@ -13,13 +13,15 @@
 namespace gse::pipeline {
 namespace {
 
-constexpr double LookAgainRounds = 2;             // over all views, when something is added
+constexpr double LookAgainRounds = 2;  // over all views, when something is added
 constexpr double UsualFollow = 0.6;
 constexpr int ProbeSteps = 5;
-constexpr double LibrariesMb = 300;   // of torch, until the first load was measured
+constexpr double LibrariesMb = 300;  // of torch, until the first load was measured
 
 /// Words that all views are searched for: a new thing, too, unless it is drawn.
-double words_of_search(edit::EditMode mode, bool drawn) { return mode == edit::EditMode::Add && !drawn ? 2 : 1; }
+double words_of_search(edit::EditMode mode, bool drawn) {
+    return mode == edit::EditMode::Add && !drawn ? 2 : 1;
+}
 
 /// Masks that could follow the edit while the loop runs.
 double refreshes(const edit::EditRequest& request, int first_iteration) {
@@ -35,8 +37,8 @@ double looks_again(const edit::EditRequest& request, edit::EditMode mode) {
     return mode == edit::EditMode::Add && request.look_again ? LookAgainRounds * request.views : 0;
 }
 
-/// Whether one view is drawn before all others, for the colour of a new thing that the sentence leaves open; not where the search has
-/// drawn it.
+/// Whether one view is drawn before all others, for the colour of a new thing that the sentence leaves open;
+/// not where the search has drawn it.
 bool draws_key_view(const edit::EditRequest& request, edit::EditMode mode, bool drawn) {
     if (drawn || !edit::round_plan(request, mode).anew) return false;
     const auto thing = new_thing(request, mode);
@@ -45,8 +47,8 @@ bool draws_key_view(const edit::EditRequest& request, edit::EditMode mode, bool 
 
 /// What the rounds that begin after an iteration ask of the model; one that was begun is not begun again.
 struct Redrawing {
-    double views = 0, early = 0;   // pictures of the last round, and of those before it
-    double steps = 0;              // denoising steps of single pictures; those that are not guided count half
+    double views = 0, early = 0;  // pictures of the last round, and of those before it
+    double steps = 0;             // denoising steps of single pictures; those that are not guided count half
     double pictures() const { return views + early; }
     Redrawing& operator+=(const Redrawing& more) {
         views += more.views;
@@ -56,7 +58,8 @@ struct Redrawing {
     }
 };
 
-Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, int first_iteration, bool drawn) {
+Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, int first_iteration,
+                         bool drawn) {
     const auto plan = edit::round_plan(request, mode);
     Redrawing left;
     const auto draw = [&](int round, double views) {
@@ -64,7 +67,8 @@ Redrawing redrawing_from(const edit::EditRequest& request, edit::EditMode mode, 
         left.steps += views * plan.guided_steps_of(round);
     };
     if (first_iteration == 0 && draws_key_view(request, mode, drawn)) draw(0, 1);
-    for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds; ++round) draw(round, plan.views);
+    for (int round = (first_iteration + plan.fit_steps - 1) / plan.fit_steps; round < plan.rounds; ++round)
+        draw(round, plan.views);
     return left;
 }
 
@@ -100,13 +104,14 @@ private:
 void add_idea(Sum& sum, const Measured& measured) {
     if (measured.idea >= 0) return sum.add(1, measured.idea, measured.idea_tflop);
     const GateParameters gate;
-    constexpr double halves = 2;   // with and without the prompt
+    constexpr double halves = 2;  // with and without the prompt
     const double passes = gate.views * std::round(gate.steps * gate.strength) * halves;
     sum.add(passes, std::max(0.0, measured.pass), measured.pass_tflop);
 }
 
-/// What a scene takes beside its own splats: the working set and two sets put together (the newest snapshot and the one that is
-/// looked at); of the labelled rows gradients, two moments, anchors, colours at birth and scratch; and the snapshots.
+/// What a scene takes beside its own splats: the working set and two sets put together (the newest snapshot
+/// and the one that is looked at); of the labelled rows gradients, two moments, anchors, colours at birth and
+/// scratch; and the snapshots.
 double scene_work_mb(const PlannedMemory& memory) {
     constexpr double sets = 1 + 2, labelled_sets = 6;
     return (sets + labelled_sets * memory.labelled_share) * memory.scene + memory.snapshots;
@@ -126,7 +131,8 @@ Cost estimated_cost(const Measured& measured, const edit::EditRequest& asked, co
     const bool by_views = edit::edits_by_views(asked);
     auto request = measured.restyles > 0 && by_views ? edit::restyling(asked, work.mode) : asked;
     if (by_views && work.mode != edit::EditMode::Modify)
-        request.prompt = edit::with_usual_colour(edit::as_told(request.prompt), new_thing(request, work.mode), work.words);
+        request.prompt =
+            edit::with_usual_colour(edit::as_told(request.prompt), new_thing(request, work.mode), work.words);
     Sum sum;
     sum.add(work.loaded ? 0 : 1, measured.load);
     sum.add(work.tune_steps, measured.tune_step, measured.tune_step_tflop);
@@ -145,7 +151,7 @@ Cost estimated_cost(const Measured& measured, const edit::EditRequest& asked, co
         sum.add(polish, measured.polish, measured.polish_tflop);
         if (polish > 0) left += held_out(request, work.mode);
         sum.add(left.views, std::max(0.0, measured.redraw_view), std::max(0.0, measured.redraw_view_tflop));
-        const bool apart = measured.redraw_early >= 0;   // else as in the last round
+        const bool apart = measured.redraw_early >= 0;  // else as in the last round
         sum.add(left.early, std::max(0.0, apart ? measured.redraw_early : measured.redraw_view),
                 std::max(0.0, apart ? measured.redraw_early_tflop : measured.redraw_view_tflop));
         sum.add(left.steps, measured.redraw, measured.redraw_tflop);
@@ -157,11 +163,13 @@ Cost estimated_cost(const Measured& measured, const edit::EditRequest& asked, co
     }
     sum.add(steps * size, measured.raster);
     // Before it was seen: every view drawn before and after, which is about a step of the loop.
-    sum.add(1, measured.finish >= 0 ? measured.finish : request.views * size * std::max(0.0, measured.raster));
+    sum.add(1,
+            measured.finish >= 0 ? measured.finish : request.views * size * std::max(0.0, measured.raster));
     return sum.cost();
 }
 
-std::array<Cost, edit::Qualities.size()> costs_by_quality(const Measured& measured, edit::EditRequest request, const PlannedWork& work) {
+std::array<Cost, edit::Qualities.size()> costs_by_quality(const Measured& measured, edit::EditRequest request,
+                                                          const PlannedWork& work) {
     std::array<Cost, edit::Qualities.size()> costs;
     for (std::size_t i = 0; i < costs.size(); ++i) {
         request.quality = edit::Qualities[i];
@@ -188,9 +196,10 @@ void measure_search(Measured& measured, const EditJob& job, double seconds) {
     const auto& place = job.place_cost();
     const double words = words_of_search(job.located().mode, place.views > 0);
     auto use = job.times().networks("locate");
-    if (use.cached > 0) return;   // what it would have taken was not seen
+    if (use.cached > 0) return;  // what it would have taken was not seen
     if (place.views > 0) {
-        const double steps = static_cast<double>(place.views) * edit::guided_steps_of_place(job.recipe().request);
+        const double steps =
+            static_cast<double>(place.views) * edit::guided_steps_of_place(job.recipe().request);
         measured.place_step = place.seconds / steps;
         measured.place_step_tflop = tflop_of(place.use) / steps;
         use = use - place.use;
@@ -214,7 +223,8 @@ double stage_seconds(const edit::EditResult& result, const char* stage) {
 /// Per step, beside the model's part.
 double raster_seconds(const edit::EditResult& result) {
     double sum = 0;
-    for (const char* stage : {"render", "preserve", "backward", "optimise", "densify", "snapshot"}) sum += stage_seconds(result, stage);
+    for (const char* stage : {"render", "preserve", "backward", "optimise", "densify", "snapshot"})
+        sum += stage_seconds(result, stage);
     return sum;
 }
 
@@ -224,7 +234,7 @@ void measure_redrawing(Measured& measured, const EditJob& job) {
     const double views = static_cast<double>(result.redrawn_views);
     const auto all = redrawing_from(job.recipe().request, job.located().mode, 0, job.place_cost().views > 0);
     if (views <= 0 || all.pictures() <= 0) return;
-    const double seconds = stage_seconds(result, "guidance") / views;   // of a picture, over all rounds
+    const double seconds = stage_seconds(result, "guidance") / views;  // of a picture, over all rounds
     const double steps = all.steps / all.pictures();
     if (measured.redraw < 0 || measured.redraw_view < 0) {
         measured.redraw = seconds / steps;
@@ -234,7 +244,8 @@ void measure_redrawing(Measured& measured, const EditJob& job) {
         return;
     }
     const double early = measured.redraw_early >= 0 ? measured.redraw_early : measured.redraw_view;
-    const double expected = (all.views * measured.redraw_view + all.early * early) / all.pictures() + steps * measured.redraw;
+    const double expected =
+        (all.views * measured.redraw_view + all.early * early) / all.pictures() + steps * measured.redraw;
     if (expected <= 0) return;
     for (auto* part : {&measured.redraw, &measured.redraw_view, &measured.redraw_early})
         if (*part > 0) *part *= seconds / expected;
@@ -246,9 +257,11 @@ void measure_pulling(Measured& measured, const EditJob& job, const Edited& edite
     measured.guidance = stage_seconds(result, "guidance") / steps;
     const auto refreshed = static_cast<double>(result.masks_refreshed);
     const auto mode = job.located().mode;
-    const double looks = stage_seconds(result, "dynamic_mask") > 0 ? refreshed + looks_again(request, mode) : 0;
+    const double looks =
+        stage_seconds(result, "dynamic_mask") > 0 ? refreshed + looks_again(request, mode) : 0;
     const double masks = looks * std::max(0.0, measured.question_tflop);
-    if (looks <= 0 || measured.question_tflop >= 0) measured.guidance_tflop = std::max(0.0, tflop_of(edited.use) - masks) / steps;
+    if (looks <= 0 || measured.question_tflop >= 0)
+        measured.guidance_tflop = std::max(0.0, tflop_of(edited.use) - masks) / steps;
     const double could = refreshes(request, request.iterations - steps);
     if (refreshed <= 0 || could <= 0 || result.stopped) return;
     measured.follow = refreshed / could;
@@ -261,7 +274,8 @@ void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
     const auto& result = job.result();
     const int steps = static_cast<int>(result.history.size());
     if (steps < least_steps || steps == 0) return;
-    if (result.polish && result.polish->steps > 0) measured.polish = stage_seconds(result, "polish") / result.polish->steps;
+    if (result.polish && result.polish->steps > 0)
+        measured.polish = stage_seconds(result, "polish") / result.polish->steps;
     if (led_by_views(job)) measure_redrawing(measured, job);
     else measure_pulling(measured, job, job.edited(), steps);
     measured.raster = raster_seconds(result) / steps;
@@ -270,7 +284,8 @@ void measure_loop(Measured& measured, const EditJob& job, int least_steps) {
 
 bool steps_measured(const Measured& measured, const EditJob& job) {
     if (!led_by_views(job)) return measured.guidance >= 0;
-    return measured.redraw >= 0 && measured.redraw_view >= 0 && (job.recipe().request.polish_steps == 0 || measured.polish >= 0);
+    return measured.redraw >= 0 && measured.redraw_view >= 0 &&
+           (job.recipe().request.polish_steps == 0 || measured.polish >= 0);
 }
 
 namespace {
@@ -288,28 +303,35 @@ void probe_polish(Measured& measured, EditJob& job, const EditJob::ProbeSize& si
     const Edited edited = job.probe({size.steps, size.edited_views, size.view_steps, polish_steps});
     const auto& polish = edited.result.polish;
     if (!polish || polish->steps == 0) return;
-    const double judging = edit::HeldOutViews * (measured.redraw_view_tflop + guided_steps(job, size.view_steps) * measured.redraw_tflop);
+    const double judging = edit::HeldOutViews * (measured.redraw_view_tflop +
+                                                 guided_steps(job, size.view_steps) * measured.redraw_tflop);
     measured.polish = stage_seconds(edited.result, "polish") / polish->steps;
-    measured.polish_tflop = std::max(0.0, tflop_of(edited.use) - tflop_of(redrawn.use) - judging) / polish->steps;
+    measured.polish_tflop =
+        std::max(0.0, tflop_of(edited.use) - tflop_of(redrawn.use) - judging) / polish->steps;
 }
 
-/// Redraws with one step and with three: what a step takes, and what a view takes beside its steps, in the last round and in others.
+/// Redraws with one step and with three: what a step takes, and what a view takes beside its steps, in the
+/// last round and in others.
 Edited probe_views(Measured& measured, EditJob& job) {
-    constexpr double pixels_at_once = 8 * 64 * 64;   // as many as the model takes in one piece
+    constexpr double pixels_at_once = 8 * 64 * 64;  // as many as the model takes in one piece
     constexpr int more_steps = 3, least_outlines = 3;
     const auto plan = edit::round_plan(job.recipe().request, job.located().mode);
     const double side = job.model().image_size();
-    const int views = std::clamp(static_cast<int>(pixels_at_once / (side * side)), std::min(plan.anew ? least_outlines : 1, plan.views), plan.views);
+    const int views = std::clamp(static_cast<int>(pixels_at_once / (side * side)),
+                                 std::min(plan.anew ? least_outlines : 1, plan.views), plan.views);
     const bool early = plan.rounds > 1;
-    job.probe({1, views, 1, 0, early});   // the first pass of a model takes longer than the others
+    job.probe({1, views, 1, 0, early});  // the first pass of a model takes longer than the others
     const Edited many = job.probe({1, views, more_steps, 0, early});
     Edited one = job.probe({ProbeSteps, views, 1});
     const Edited first_round = early ? job.probe({1, views, 1, 0, true}) : one;
     const auto redrawn = static_cast<double>(one.result.redrawn_views);
-    if (redrawn <= 0 || many.result.redrawn_views != one.result.redrawn_views || first_round.result.redrawn_views != one.result.redrawn_views)
+    if (redrawn <= 0 || many.result.redrawn_views != one.result.redrawn_views ||
+        first_round.result.redrawn_views != one.result.redrawn_views)
         return one;
     const double first = guided_steps(job, 1), more = guided_steps(job, more_steps) - first;
-    const auto seconds_of = [&](const Edited& edited) { return stage_seconds(edited.result, "guidance") / redrawn; };
+    const auto seconds_of = [&](const Edited& edited) {
+        return stage_seconds(edited.result, "guidance") / redrawn;
+    };
     const auto work_of = [&](const Edited& edited) { return tflop_of(edited.use) / redrawn; };
     measured.redraw = std::max(0.0, (seconds_of(many) - seconds_of(first_round)) / more);
     measured.redraw_tflop = std::max(0.0, (work_of(many) - work_of(first_round)) / more);
@@ -339,7 +361,7 @@ void measure_steps(Measured& measured, EditJob& job) {
         measured.begin = std::max(0.0, edited.seconds - raster - stage_seconds(result, "guidance"));
         measured.rows = static_cast<double>(std::max<std::size_t>(1, result.base_to_new.size()));
     } catch (const Error& error) {
-        if (error.code() == ErrorCode::Cancelled) throw;   // else: the edit itself will say what is wrong
+        if (error.code() == ErrorCode::Cancelled) throw;  // else: the edit itself will say what is wrong
     }
 }
 

@@ -11,7 +11,8 @@ std::shared_ptr<const Image> coloured_map(const Image& render, const Image& map)
         const float m = std::clamp(map.data[i], 0.0f, 1.0f);
         const float colour[3] = {std::min(1.0f, 1.7f * m), m * m, 0.35f + 0.4f * m * (1 - m) - 0.35f * m};
         for (std::size_t c = 0; c < 3; ++c)
-            picture->data[i * 3 + c] = 0.35f * (1 - m) * render.data[i * 3 + c] + (0.25f + 0.75f * m) * colour[c];
+            picture->data[i * 3 + c] =
+                0.35f * (1 - m) * render.data[i * 3 + c] + (0.25f + 0.75f * m) * colour[c];
     }
     return picture;
 }
@@ -29,7 +30,8 @@ std::shared_ptr<const Image> masked_picture(const Image& render, const Mask& mas
 }
 
 SeenView refreshed(SeenView shown, const edit::ViewEvidence& evidence) {
-    const bool made = !evidence.mask.data.empty() || evidence.failed;   // else the view is only attended so far
+    const bool made =
+        !evidence.mask.data.empty() || evidence.failed;  // else the view is only attended so far
     shown.mask = made ? std::make_shared<const Mask>(evidence.mask) : nullptr;
     shown.mask_picture = made ? masked_picture(evidence.render, evidence.mask) : nullptr;
     shown.points = evidence.points;
@@ -52,10 +54,13 @@ SeenView seen_view(const View& view, const edit::ViewEvidence& evidence) {
     return refreshed(std::move(shown), evidence);
 }
 
-void ArrivingViews::add(const View& view, std::size_t index, std::size_t count, const edit::ViewEvidence& evidence) {
-    SeenView seen = seen_view(view, evidence);   // before others have to wait
+void ArrivingViews::add(const View& view, std::size_t index, std::size_t count,
+                        const edit::ViewEvidence& evidence) {
+    SeenView seen = seen_view(view, evidence);  // before others have to wait
     const std::lock_guard lock(mutex_);
-    const bool same_place = index < views_.size() && (views_[index].render == nullptr || views_[index].camera.translation == view.camera.translation);
+    const bool same_place =
+        index < views_.size() &&
+        (views_[index].render == nullptr || views_[index].camera.translation == view.camera.translation);
     if (views_.size() != count || !same_place) {
         views_.clear();
         views_.resize(count);

@@ -59,7 +59,8 @@ Easing read_easing(const nlohmann::json& key, const std::filesystem::path& path)
     if (found == key.end() || found->is_null() || *found == "linear") return Easing::Linear;
     for (const auto easing : {Easing::Linear, Easing::In, Easing::Out, Easing::InOut})
         if (*found == static_cast<int>(easing)) return easing;
-    throw_bad_path(fmt::format("a camera of this path has the easing {}; 0 to 3 are known", found->dump()), path);
+    throw_bad_path(fmt::format("a camera of this path has the easing {}; 0 to 3 are known", found->dump()),
+                   path);
 }
 
 /// One entry of a path file; every number of it finite.
@@ -67,7 +68,8 @@ CameraKey read_key(const nlohmann::json& entry, int width, int height, const std
     const auto& p = entry.at("position");
     const auto& q = entry.at("rotation");
     const Vec3 eye{p.at(0).get<double>(), p.at(1).get<double>(), p.at(2).get<double>()};
-    const Quat rotation{q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(), q.at(3).get<double>()};
+    const Quat rotation{q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(),
+                        q.at(3).get<double>()};
     const double focal = entry.at("focal_length_mm").get<double>() / SensorMm * width;
     const double time = entry.at("time").get<double>(), size = dot(rotation, rotation);
     if (!(focal > 0) || !(size > 1e-12) || !std::isfinite(focal + size + length(eye) + time))
@@ -91,15 +93,17 @@ Image transparent_picture(const raster::ForwardOutput& output) {
     Image picture(output.colour.width, output.colour.height, 4);
     for (std::size_t i = 0; i < picture.pixel_count(); ++i) {
         const float alpha = std::clamp(output.alpha.data[i], 0.0f, 1.0f);
-        for (std::size_t c = 0; c < 3; ++c)   // the render is over black: colour times alpha
-            picture.data[i * 4 + c] = alpha > 0 ? std::clamp(output.colour.data[i * 3 + c] / alpha, 0.0f, 1.0f) : 0.0f;
+        for (std::size_t c = 0; c < 3; ++c)  // the render is over black: colour times alpha
+            picture.data[i * 4 + c] =
+                alpha > 0 ? std::clamp(output.colour.data[i * 3 + c] / alpha, 0.0f, 1.0f) : 0.0f;
         picture.data[i * 4 + 3] = alpha;
     }
     return picture;
 }
 
 void write_film(const std::filesystem::path& output, const FilmRequest& request, const JobControl& job) {
-    if (request.cameras.empty()) throw Error(ErrorCode::InvalidArgument, "the film has no frames", "give it some", output);
+    if (request.cameras.empty())
+        throw Error(ErrorCode::InvalidArgument, "the film has no frames", "give it some", output);
     const bool film = output.has_extension();
     if (film && output.extension() != ".mp4" && output.extension() != ".webm")
         throw Error(ErrorCode::InvalidArgument, "films are written as .mp4, .webm, or as PNGs into a folder",
@@ -120,7 +124,8 @@ void write_film(const std::filesystem::path& output, const FilmRequest& request,
         if (request.second)
             picture = side_by_side(picture, painter.paint(request.second->spans(), camera, settings).colour);
         if (film) {
-            if (!writer) writer = std::make_unique<VideoWriter>(output, picture.width, picture.height, request.fps);
+            if (!writer)
+                writer = std::make_unique<VideoWriter>(output, picture.width, picture.height, request.fps);
             writer->add(picture);
         } else {
             write_png(folder->path() / frame_name(frame), picture);
@@ -129,13 +134,14 @@ void write_film(const std::filesystem::path& output, const FilmRequest& request,
     }
     if (writer) writer->finish();
     if (!folder) return;
-    const nlohmann::ordered_json report{{"fps", request.fps}, {"frames", total}, {"files", folder->listing()}};
+    const nlohmann::ordered_json report{
+        {"fps", request.fps}, {"frames", total}, {"files", folder->listing()}};
     write_file(folder->path() / FramesReport, report.dump(1) + "\n");
     folder->commit();
 }
 
-std::vector<Camera> turn_cameras(const OrbitParameters& orbit, const TurntableParameters& turn, double start_degrees, int width,
-                                 int height) {
+std::vector<Camera> turn_cameras(const OrbitParameters& orbit, const TurntableParameters& turn,
+                                 double start_degrees, int width, int height) {
     std::vector<Camera> cameras;
     for (const double azimuth : turntable_azimuths(turn, start_degrees))
         cameras.push_back(orbit_camera(orbit, azimuth, width, height));
@@ -165,7 +171,8 @@ std::vector<CameraKey> load_camera_path(const std::filesystem::path& path, int w
         const auto json = parse_json(read_file(path), "the camera path");
         for (const auto& entry : json.at("keyframes")) keys.push_back(read_key(entry, width, height, path));
     } catch (const nlohmann::json::exception&) {
-        throw Error(ErrorCode::Malformed, "this is not a camera path", "use a file that Export > Camera path wrote", path);
+        throw Error(ErrorCode::Malformed, "this is not a camera path",
+                    "use a file that Export > Camera path wrote", path);
     }
     const auto not_later = [](const auto& a, const auto& b) { return a.time >= b.time; };
     if (std::adjacent_find(keys.begin(), keys.end(), not_later) != keys.end())
@@ -178,10 +185,12 @@ std::vector<Camera> path_cameras(const std::vector<CameraKey>& keys, double fps,
     if (keys.empty() || fps <= 0) return cameras;
     const double total = std::round((keys.back().time - keys.front().time) * fps) + 1;
     if (!(total <= MostFilmFrames))
-        throw Error(ErrorCode::InvalidArgument,
-                    fmt::format("the camera path takes {:.0f} frames at {} frames a second, and a film has {} at most", total, fps,
-                                MostFilmFrames),
-                    "bring its cameras closer together in time, or take fewer frames a second");
+        throw Error(
+            ErrorCode::InvalidArgument,
+            fmt::format(
+                "the camera path takes {:.0f} frames at {} frames a second, and a film has {} at most", total,
+                fps, MostFilmFrames),
+            "bring its cameras closer together in time, or take fewer frames a second");
     const auto frames = static_cast<int>(total);
     std::size_t segment = 0;
     for (int frame = 0; frame < frames; ++frame) {
@@ -193,9 +202,10 @@ std::vector<Camera> path_cameras(const std::vector<CameraKey>& keys, double fps,
         const double t = eased(a.easing, span > 0 ? std::clamp((time - a.time) / span, 0.0, 1.0) : 0.0);
         const auto& before = keys[segment > 0 ? segment - 1 : segment];
         const auto& after = keys[std::min(segment + 2, keys.size() - 1)];
-        const Vec3 eye = catmull_rom({before.camera.centre(), a.camera.centre(), b.camera.centre(), after.camera.centre()}, t);
-        const Quat rotation =
-            glm::slerp(quaternion(a.camera.rotation.transposed()), quaternion(b.camera.rotation.transposed()), t);
+        const Vec3 eye = catmull_rom(
+            {before.camera.centre(), a.camera.centre(), b.camera.centre(), after.camera.centre()}, t);
+        const Quat rotation = glm::slerp(quaternion(a.camera.rotation.transposed()),
+                                         quaternion(b.camera.rotation.transposed()), t);
         const double focal = (1 - t) * a.camera.fx / a.camera.width + t * b.camera.fx / b.camera.width;
         cameras.push_back(camera_at(eye, rotation, focal * width, width, height));
     }

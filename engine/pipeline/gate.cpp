@@ -12,12 +12,13 @@
 namespace gse::pipeline {
 namespace {
 
-constexpr int WrittenSide = 256;   // pictures of small models are enlarged to about this, pixel by pixel
+constexpr int WrittenSide = 256;  // pictures of small models are enlarged to about this, pixel by pixel
 
 /// The same view at another size.
 Camera resized_camera(const Camera& camera, int side) {
     Camera result = camera;
-    const double scale_x = static_cast<double>(side) / camera.width, scale_y = static_cast<double>(side) / camera.height;
+    const double scale_x = static_cast<double>(side) / camera.width,
+                 scale_y = static_cast<double>(side) / camera.height;
     result.width = result.height = side;
     result.fx *= scale_x;
     result.cx *= scale_x;
@@ -54,11 +55,11 @@ Gate look_through_gate(EditJob& job, const GateParameters& parameters) {
     const auto& views = job.views();
     const std::size_t count = std::min(views.size(), static_cast<std::size_t>(std::max(1, parameters.views)));
     for (std::size_t i = 0; i < count; ++i) {
-        if (job.control().stop_requested()) throw Error(ErrorCode::Cancelled, "the pictures before the edit were stopped");
+        if (job.control().stop_requested())
+            throw Error(ErrorCode::Cancelled, "the pictures before the edit were stopped");
         const std::size_t view = i * views.size() / count;
         const Camera camera = resized_camera(views[view].camera, job.model().image_size());
-        const Image before =
-            job.painter().paint(job.drawn().spans(), camera, job.render_settings()).colour;
+        const Image before = job.painter().paint(job.drawn().spans(), camera, job.render_settings()).colour;
         neural::SampleRequest request;
         request.prompt = job.model_prompt();
         if (!job.view_words().empty()) request.prompt += ", " + job.view_words()[view];

@@ -6,9 +6,10 @@
 
 namespace gse::pipeline {
 
-/// The state with the label of what a job found active: that of the same word, whatever it is called now, else a new one. Where the
-/// search is no new one (`fresh` = false: another threshold, or views left out), what was corrected by hand stays, and so does how
-/// sure is sure enough. The job must be of the state's splats.
+/// The state with the label of what a job found active: that of the same word, whatever it is called now,
+/// else a new one. Where the search is no new one (`fresh` = false: another threshold, or views left out),
+/// what was corrected by hand stays, and so does how sure is sure enough. The job must be of the state's
+/// splats.
 DocumentState with_located_label(DocumentState state, const EditJob& job, bool fresh);
 
 }  // namespace gse::pipeline

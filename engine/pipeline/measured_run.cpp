@@ -22,7 +22,8 @@ void measure_load(MeasuredRun& run) {
 
 }  // namespace
 
-std::shared_ptr<MeasuredRun> begin_run(std::shared_ptr<neural::TextToImage> model, bool fits, const ModelLoad& load, const PlannedMemory& memory,
+std::shared_ptr<MeasuredRun> begin_run(std::shared_ptr<neural::TextToImage> model, bool fits,
+                                       const ModelLoad& load, const PlannedMemory& memory,
                                        std::shared_ptr<ArrivingViews> arriving) {
     const auto run = std::make_shared<MeasuredRun>();
     run->first_load = model == nullptr;
@@ -33,11 +34,12 @@ std::shared_ptr<MeasuredRun> begin_run(std::shared_ptr<neural::TextToImage> mode
     return run;
 }
 
-void load_model(MeasuredRun& run, const JobParameters& job, const std::shared_ptr<DiskCache>& cache, const JobControl& control) {
+void load_model(MeasuredRun& run, const JobParameters& job, const std::shared_ptr<DiskCache>& cache,
+                const JobControl& control) {
     control.report("loading the model", 0, 0);
     if (run.model) use_threads(job);
     else run.model = open_recipe_model(job, cache);
-    run.segmenters = open_segmenters(job, cache);   // after the model: its failure is not the model's
+    run.segmenters = open_segmenters(job, cache);  // after the model: its failure is not the model's
 }
 
 void measure_peak(MeasuredRun& run, const PeakMemory& peak) {
@@ -46,7 +48,8 @@ void measure_peak(MeasuredRun& run, const PeakMemory& peak) {
 }
 
 void look(MeasuredRun& run) {
-    if (run.arriving) run.job->watch_views([views = run.arriving](const auto&... seen) { views->add(seen...); });
+    if (run.arriving)
+        run.job->watch_views([views = run.arriving](const auto&... seen) { views->add(seen...); });
     run.job->locate();
     run.job->watch_views({});
     const auto& times = run.job->times();
@@ -61,14 +64,17 @@ void look(MeasuredRun& run) {
 }
 
 void take_known_parts(Measured& measured, const Measured& known) {
-    measured.redraw = known.redraw, measured.redraw_view = known.redraw_view, measured.redraw_early = known.redraw_early;
+    measured.redraw = known.redraw, measured.redraw_view = known.redraw_view,
+    measured.redraw_early = known.redraw_early;
     measured.question_tflop = known.question_tflop;
 }
 
 void throw_what_ended(const edit::EditResult& result) {
     const char* kept = "; what the edit had reached can be applied";
-    if (const auto& shortage = result.shortage) throw Error(ErrorCode::Foreign, shortage->message() + kept, shortage->hint());
-    if (const auto& failure = result.failure) throw Error(failure->code(), failure->message() + kept, failure->hint());
+    if (const auto& shortage = result.shortage)
+        throw Error(ErrorCode::Foreign, shortage->message() + kept, shortage->hint());
+    if (const auto& failure = result.failure)
+        throw Error(failure->code(), failure->message() + kept, failure->hint());
 }
 
 }  // namespace gse::pipeline

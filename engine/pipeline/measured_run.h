@@ -15,22 +15,24 @@ namespace gse::pipeline {
 struct MeasuredRun {
     std::shared_ptr<EditJob> job;
     std::shared_ptr<neural::TextToImage> model;
-    std::vector<float> attention;   // per splat, see splat_attention()
+    std::vector<float> attention;  // per splat, see splat_attention()
     Measured measured;
     ModelLoad loaded;
-    bool first_load = false;   // in this process: the libraries come with it
+    bool first_load = false;  // in this process: the libraries come with it
     PlannedMemory memory;
     neural::NetworkUse use;
     Segmenters segmenters;
-    std::shared_ptr<ArrivingViews> arriving;   // is told of the views while they are looked from
+    std::shared_ptr<ArrivingViews> arriving;  // is told of the views while they are looked from
 };
 
 /// `model`: the one in memory, if any; `fits`: it is the one that is wanted.
-std::shared_ptr<MeasuredRun> begin_run(std::shared_ptr<neural::TextToImage> model, bool fits, const ModelLoad& load, const PlannedMemory& memory,
+std::shared_ptr<MeasuredRun> begin_run(std::shared_ptr<neural::TextToImage> model, bool fits,
+                                       const ModelLoad& load, const PlannedMemory& memory,
                                        std::shared_ptr<ArrivingViews> arriving);
 
 /// Model and segmenters of the recipe, where they are not in memory.
-void load_model(MeasuredRun& run, const JobParameters& job, const std::shared_ptr<DiskCache>& cache, const JobControl& control);
+void load_model(MeasuredRun& run, const JobParameters& job, const std::shared_ptr<DiskCache>& cache,
+                const JobControl& control);
 
 /// Locates, and measures what that took.
 void look(MeasuredRun& run);

@@ -11,14 +11,14 @@ namespace gse::pipeline {
 struct FoundModel {
     std::string name;
     std::string path;
-    std::string structure;     // "Stable Diffusion 1.x", "starter", ...
+    std::string structure;  // "Stable Diffusion 1.x", "starter", ...
     std::uint64_t bytes = 0;
     bool usable = false;
-    std::string problem;       // what is missing or not supported, and what to do; empty where nothing is
+    std::string problem;  // what is missing or not supported, and what to do; empty where nothing is
 };
 
-/// The starter model first, then what lies in GSE_MODELS (folders, separated by colons), in the usual folders of other programs and
-/// at `also`. Throws nothing: what cannot be read says so in its `problem`.
+/// The starter model first, then what lies in GSE_MODELS (folders, separated by colons), in the usual folders
+/// of other programs and at `also`. Throws nothing: what cannot be read says so in its `problem`.
 std::vector<FoundModel> find_models(const std::vector<std::string>& also);
 
 }  // namespace gse::pipeline

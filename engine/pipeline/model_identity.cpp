@@ -23,7 +23,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t PieceBytes = std::size_t{1} << 20;
-constexpr std::array<std::string_view, 4> ModelEndings{".safetensors", ".json", ".txt", ".bin"};   // nothing else of a model is read
+constexpr std::array<std::string_view, 4> ModelEndings{".safetensors", ".json", ".txt",
+                                                       ".bin"};  // nothing else of a model is read
 
 std::string digest_of(const fs::path& path) {
     const InputFile file(path);
@@ -40,10 +41,13 @@ std::string digest_of(const fs::path& path) {
 /// The digest, from memory where size, times and place say that the file is the one it was taken of.
 std::string contents_of(const fs::path& path, AnswerMemory& memory) {
     struct stat status {};
-    if (stat(path.c_str(), &status) != 0) return digest_of(path);   // which says what is wrong
-    const auto seconds = [](const timespec& time) { return fmt::format("{}.{:09}", time.tv_sec, time.tv_nsec); };
-    const auto question = fmt::format("contents of {}: device {}, file {}, {} bytes, changed {} and {}", fs::absolute(path).string(),
-                                      status.st_dev, status.st_ino, status.st_size, seconds(status.st_mtim), seconds(status.st_ctim));
+    if (stat(path.c_str(), &status) != 0) return digest_of(path);  // which says what is wrong
+    const auto seconds = [](const timespec& time) {
+        return fmt::format("{}.{:09}", time.tv_sec, time.tv_nsec);
+    };
+    const auto question = fmt::format("contents of {}: device {}, file {}, {} bytes, changed {} and {}",
+                                      fs::absolute(path).string(), status.st_dev, status.st_ino,
+                                      status.st_size, seconds(status.st_mtim), seconds(status.st_ctim));
     if (auto known = memory.find(question)) return *known;
     auto digest = digest_of(path);
     memory.keep(question, digest);
@@ -51,18 +55,24 @@ std::string contents_of(const fs::path& path, AnswerMemory& memory) {
 }
 
 bool belongs_to_model(const fs::path& path) {
-    return std::find(ModelEndings.begin(), ModelEndings.end(), path.extension().string()) != ModelEndings.end();
+    return std::find(ModelEndings.begin(), ModelEndings.end(), path.extension().string()) !=
+           ModelEndings.end();
 }
 
 /// One line per file below a folder: its name there and its contents.
 std::string contents_below(const fs::path& folder, AnswerMemory& memory) {
     std::vector<std::string> lines;
     std::error_code failure;
-    for (fs::recursive_directory_iterator at(folder, fs::directory_options::follow_directory_symlink, failure), end; !failure && at != end;
-         at.increment(failure))
+    for (fs::recursive_directory_iterator
+             at(folder, fs::directory_options::follow_directory_symlink, failure),
+         end;
+         !failure && at != end; at.increment(failure))
         if (at->is_regular_file(failure) && belongs_to_model(at->path()))
-            lines.push_back(at->path().lexically_relative(folder).generic_string() + " " + contents_of(at->path(), memory));
-    if (failure) throw Error(ErrorCode::Unreadable, "the folder cannot be read (" + failure.message() + ")", "", folder);
+            lines.push_back(at->path().lexically_relative(folder).generic_string() + " " +
+                            contents_of(at->path(), memory));
+    if (failure)
+        throw Error(ErrorCode::Unreadable, "the folder cannot be read (" + failure.message() + ")", "",
+                    folder);
     std::sort(lines.begin(), lines.end());
     return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
@@ -112,21 +122,27 @@ std::string digest_of_text(const std::string& text) {
 
 }  // namespace
 
-std::string segmenter_identity(const fs::path& path, const std::string& device, AnswerMemory& memory, int version) {
-    return digest_of_text(fmt::format("segmenter, version {}\n{}\n{}device {}\n", version, processor(), library_line(memory), device) +
-                          (fs::is_directory(path) ? contents_below(path, memory) : "weights " + contents_of(path, memory) + "\n"));
+std::string segmenter_identity(const fs::path& path, const std::string& device, AnswerMemory& memory,
+                               int version) {
+    return digest_of_text(fmt::format("segmenter, version {}\n{}\n{}device {}\n", version, processor(),
+                                      library_line(memory), device) +
+                          (fs::is_directory(path) ? contents_below(path, memory)
+                                                  : "weights " + contents_of(path, memory) + "\n"));
 }
 
 std::string model_identity(const JobParameters& job, AnswerMemory& memory, int version) {
     const auto path = model_path(job);
     const bool folder = fs::is_directory(path);
-    std::string text = fmt::format("version {}\n{}\nname {}\n", version, processor(), path.filename().string());
+    std::string text =
+        fmt::format("version {}\n{}\nname {}\n", version, processor(), path.filename().string());
     text += library_line(memory);
-    text += fmt::format("device {}, precision {}, tiny autoencoder {}\n", job.device, job.precision, job.taesd == "none" ? "off" : "on");
+    text += fmt::format("device {}, precision {}, tiny autoencoder {}\n", job.device, job.precision,
+                        job.taesd == "none" ? "off" : "on");
     text += folder ? contents_below(path, memory) : contents_beside(path, memory);
-    if (const auto tiny = named_taesd(job, folder ? path : path.parent_path()); !tiny.empty() && fs::is_directory(tiny))
+    if (const auto tiny = named_taesd(job, folder ? path : path.parent_path());
+        !tiny.empty() && fs::is_directory(tiny))
         text += "tiny autoencoder\n" + contents_below(tiny, memory);
-    for (const auto& lora : neural::find_loras(job.lora))   // its name may say that it was distilled
+    for (const auto& lora : neural::find_loras(job.lora))  // its name may say that it was distilled
         text += fmt::format("lora {} {} {}\n", static_cast<int>(neural::lora_mark(lora.file)), lora.strength,
                             contents_of(lora.file, memory));
     return digest_of_text(text);

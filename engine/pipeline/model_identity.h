@@ -1,4 +1,5 @@
-// What a model's answers follow from, as text: contents of its files, how it is loaded, the code that computes.
+// What a model's answers follow from, as text: contents of its files, how it is loaded, the code that
+// computes.
 #pragma once
 
 #include <filesystem>
@@ -9,14 +10,17 @@
 
 namespace gse::pipeline {
 
-/// Raised when an answer changes that stays the same by files and settings: what is kept of earlier versions is not found then.
+/// Raised when an answer changes that stays the same by files and settings: what is kept of earlier versions
+/// is not found then.
 constexpr int AnswersVersion = 4;
 
-/// Changes with the contents of weights, configurations, vocabularies, LoRAs, the tiny autoencoder and the networks' library, with
-/// device, precision and processor, and with `version`; of names, only the model's own counts. The contents of a file are read
-/// once as long as its size and times stay (remembered in `memory`). Throws Error (NotFound, Unreadable).
+/// Changes with the contents of weights, configurations, vocabularies, LoRAs, the tiny autoencoder and the
+/// networks' library, with device, precision and processor, and with `version`; of names, only the model's
+/// own counts. The contents of a file are read once as long as its size and times stay (remembered in
+/// `memory`). Throws Error (NotFound, Unreadable).
 std::string model_identity(const JobParameters& job, AnswerMemory& memory, int version = AnswersVersion);
 /// The same of a segmenter's weights: a file or a folder.
-std::string segmenter_identity(const std::filesystem::path& weights, const std::string& device, AnswerMemory& memory, int version = AnswersVersion);
+std::string segmenter_identity(const std::filesystem::path& weights, const std::string& device,
+                               AnswerMemory& memory, int version = AnswersVersion);
 
 }  // namespace gse::pipeline

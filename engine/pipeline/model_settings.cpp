@@ -14,7 +14,8 @@ neural::ModelProfile profile_of(const JobParameters& job) {
 neural::ModelProfile profile_of(const JobParameters&) { return {}; }
 #endif
 
-void apply_profile(const neural::ModelProfile& profile, EditRecipe& recipe, const std::set<std::string>& set_by_user) {
+void apply_profile(const neural::ModelProfile& profile, EditRecipe& recipe,
+                   const std::set<std::string>& set_by_user) {
     nlohmann::ordered_json stated = nlohmann::ordered_json::object();
     recipe.sources.clear();
     for (const auto& entry : profile.entries) {

@@ -35,7 +35,7 @@ std::shared_ptr<const neural::PromptReader> reader_of(const fs::path& model) {
     reader = nullptr;
     try {
         reader = std::make_shared<const neural::PromptReader>(model);
-    } catch (const Error& error) {   // what is wrong with the model is said when it is loaded
+    } catch (const Error& error) {  // what is wrong with the model is said when it is loaded
         log::debug("where sentences are cut is not known: {}", error.what());
     }
     return reader;
@@ -48,7 +48,7 @@ std::size_t words_read(const fs::path& model, const std::vector<std::string>& wo
     if (!reader) return words.size();
     const auto known = edit::words_to_say(model_words(model), drawn_words(model));
     std::vector<std::string> told;
-    std::vector<std::size_t> places;   // of what is told, in the sentence
+    std::vector<std::size_t> places;  // of what is told, in the sentence
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (words[i] != edit::Identifier && !edit::knows(known, words[i])) continue;
         told.push_back(words[i]);

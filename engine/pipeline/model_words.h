@@ -8,19 +8,20 @@
 
 namespace gse::pipeline {
 
-/// A small JSON file of a model (gseditpro.json, unet/config.json); null where there is none, discarded where it is damaged.
+/// A small JSON file of a model (gseditpro.json, unet/config.json); null where there is none, discarded where
+/// it is damaged.
 nlohmann::json model_json(const std::filesystem::path& path);
 
 /// Words of the model in `folder` (gseditpro.json), empty for an open vocabulary; no network is loaded.
 std::vector<std::string> model_words(const std::filesystem::path& folder);
 
-/// Words that it draws besides and does not look for (neural::TextToImage::drawn_words()), and colours that it is dyed in (edit::dye_words());
-/// empty for an open vocabulary.
+/// Words that it draws besides and does not look for (neural::TextToImage::drawn_words()), and colours that
+/// it is dyed in (edit::dye_words()); empty for an open vocabulary.
 std::vector<std::string> drawn_words(const std::filesystem::path& folder);
 
-/// How many words of a sentence the model's text encoder reads; all of them where that is not known. Words that a model of a fixed vocabulary
-/// is not told take no room. Reads the model's
-/// tokenizer when it is another model than last time.
+/// How many words of a sentence the model's text encoder reads; all of them where that is not known. Words
+/// that a model of a fixed vocabulary is not told take no room. Reads the model's tokenizer when it is
+/// another model than last time.
 std::size_t words_read(const std::filesystem::path& model, const std::vector<std::string>& words);
 
 }  // namespace gse::pipeline

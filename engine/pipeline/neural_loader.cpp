@@ -12,14 +12,15 @@ std::atomic<neural::Api*> loaded_api = nullptr;
 std::atomic<int> wanted_threads = 1;
 thread_local std::uint64_t cached_answers = 0;
 
-constexpr PluginName Networks{"libgse_neural.so",          "gse_neural_api",
-                              "the networks' library",     "this build has no networks",
+constexpr PluginName Networks{"libgse_neural.so",           "gse_neural_api",
+                              "the networks' library",      "this build has no networks",
                               "build with -DGSE_NEURAL=ON", "install libtorch1.13"};
 
 }  // namespace
 
 neural::Api& neural_api() {
-    static neural::Api* const api = loaded_api = reinterpret_cast<neural::Api* (*)()>(load_plugin(Networks))();
+    static neural::Api* const api = loaded_api =
+        reinterpret_cast<neural::Api* (*)()>(load_plugin(Networks))();
     return *api;
 }
 

@@ -24,13 +24,14 @@ Renamed renamed_by(const EditJob& job) {
 namespace {
 
 void require_steps(const EditJob& job) {
-    if (job.result().iterations == 0) throw Error(ErrorCode::Cancelled, "the edit was stopped before its first step");
+    if (job.result().iterations == 0)
+        throw Error(ErrorCode::Cancelled, "the edit was stopped before its first step");
 }
 
 }  // namespace
 
 void fill_pending(EditJob& job, PendingResult& pending) {
-    require_steps(job);   // before the work of a report
+    require_steps(job);  // before the work of a report
     fill_pending(job, make_report(job), pending);
 }
 
@@ -51,7 +52,8 @@ void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingRes
     pending.changed_outside_label = result.changed_outside_label;
     constexpr int thumbnail_px = 96;
     const Camera camera = orbit_camera(job.film_orbit(), job.film_front() + 0.35, thumbnail_px, thumbnail_px);
-    pending.thumbnail = std::make_shared<const Image>(job.painter().paint(job.drawn_result().spans(), camera, job.plan().settings).colour);
+    pending.thumbnail = std::make_shared<const Image>(
+        job.painter().paint(job.drawn_result().spans(), camera, job.plan().settings).colour);
 }
 
 EditNode node_of(const PendingResult& result) {
@@ -67,8 +69,12 @@ EditNode node_of(const PendingResult& result) {
 
 DocumentState with_result(const DocumentState& before, EditNode node, const PendingResult& result) {
     DocumentState state = with_edit(before, std::move(node), result.target, result.adds);
-    const auto called = [](const std::string& name) { return [&name](const NamedLabel& label) { return label.name == name; }; };
-    if (result.renamed.to.empty() || std::any_of(state.labels.begin(), state.labels.end(), called(result.renamed.to))) return state;
+    const auto called = [](const std::string& name) {
+        return [&name](const NamedLabel& label) { return label.name == name; };
+    };
+    if (result.renamed.to.empty() ||
+        std::any_of(state.labels.begin(), state.labels.end(), called(result.renamed.to)))
+        return state;
     const auto label = std::find_if(state.labels.begin(), state.labels.end(), called(result.renamed.from));
     if (label != state.labels.end()) label->name = result.renamed.to;
     return state;
@@ -77,7 +83,8 @@ DocumentState with_result(const DocumentState& before, EditNode node, const Pend
 std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann::json& jobs) {
     try {
         const auto edit = jobs.find("edit");
-        if (edit == jobs.end() || state.stack.empty() || edit->value("id", std::uint64_t{0}) != state.stack.back().id)
+        if (edit == jobs.end() || state.stack.empty() ||
+            edit->value("id", std::uint64_t{0}) != state.stack.back().id)
             return std::nullopt;
         const EditNode node = state.stack.back();
         auto stack = state.stack;

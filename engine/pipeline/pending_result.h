@@ -24,7 +24,7 @@ Renamed renamed_by(const EditJob& job);
 /// What came of an edit that has not been applied yet.
 struct PendingResult {
     GaussianSet before, set;
-    std::shared_ptr<const std::vector<std::int64_t>> base_to_new;   // [before rows]
+    std::shared_ptr<const std::vector<std::int64_t>> base_to_new;  // [before rows]
     std::string name, recipe, target;
     std::uint64_t seed = 0;
     bool adds = false;
@@ -42,11 +42,12 @@ void fill_pending(EditJob& job, const nlohmann::ordered_json& report, PendingRes
 /// The edit of the stack that it becomes, without identity and delta.
 EditNode node_of(const PendingResult& result);
 
-/// The state with that edit, its node complete, on the stack (stack_edits.h). A label that bore the name of what became another thing bears the
-/// new thing's, where no other does.
+/// The state with that edit, its node complete, on the stack (stack_edits.h). A label that bore the name of
+/// what became another thing bears the new thing's, where no other does.
 DocumentState with_result(const DocumentState& state, EditNode node, const PendingResult& result);
 
-/// The edit that was running or waiting when a project was kept (`jobs` of it) comes off the stack again and waits to be applied.
+/// The edit that was running or waiting when a project was kept (`jobs` of it) comes off the stack again and
+/// waits to be applied.
 std::optional<PendingResult> take_back_edit(DocumentState& state, const nlohmann::json& jobs);
 
 }  // namespace gse::pipeline

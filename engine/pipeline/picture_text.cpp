@@ -50,7 +50,9 @@ std::string parameters_text(const EditRecipe& recipe) {
 }
 
 PngText picture_text(const EditRecipe& recipe, const Json& recipe_json) {
-    return {{"Recipe", json_text(recipe_json)}, {"Software", "GSEditPro"}, {"parameters", parameters_text(recipe)}};
+    return {{"Recipe", json_text(recipe_json)},
+            {"Software", "GSEditPro"},
+            {"parameters", parameters_text(recipe)}};
 }
 
 }  // namespace gse::pipeline

@@ -13,7 +13,7 @@ ProbeScene probe_scene(const GaussianSet& scene, const edit::EditPlan& plan, std
     ProbeScene probe{scene, plan};
     if (scene.size() <= most || most == 0) return probe;
     const std::size_t every = (scene.size() + most - 1) / most;
-    std::array<std::size_t, 2> seen{};   // not labelled, labelled
+    std::array<std::size_t, 2> seen{};  // not labelled, labelled
     std::vector<unsigned char> keep(scene.size(), 0);
     probe.plan.label.clear();
     for (std::size_t row = 0; row < scene.size(); ++row) {

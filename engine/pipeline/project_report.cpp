@@ -47,11 +47,16 @@ Json project_json(const ProjectSummary& summary, const std::filesystem::path& pa
 }
 
 std::string project_text(const ProjectSummary& summary, const std::filesystem::path& path) {
-    std::string text = fmt::format("{}\n  scene         {}{}\n  splats        {}\n  views         {}\n", printable(path.string()),
-                                   summary.scene.empty() ? "inside the project" : printable(summary.scene.string()),
-                                   summary.scene_found ? "" : " (not there)", summary.splats, summary.views.size());
-    for (const EditNode& edit : summary.stack) text += fmt::format("  edit {:<9}{}{}\n", edit.id, printable(edit.name), edit.enabled ? "" : " (off)");
-    for (const NamedLabel& label : summary.labels) text += fmt::format("  label         {} (threshold {:.3g})\n", printable(label.name), label.threshold);
+    std::string text = fmt::format(
+        "{}\n  scene         {}{}\n  splats        {}\n  views         {}\n", printable(path.string()),
+        summary.scene.empty() ? "inside the project" : printable(summary.scene.string()),
+        summary.scene_found ? "" : " (not there)", summary.splats, summary.views.size());
+    for (const EditNode& edit : summary.stack)
+        text +=
+            fmt::format("  edit {:<9}{}{}\n", edit.id, printable(edit.name), edit.enabled ? "" : " (off)");
+    for (const NamedLabel& label : summary.labels)
+        text +=
+            fmt::format("  label         {} (threshold {:.3g})\n", printable(label.name), label.threshold);
     return text;
 }
 

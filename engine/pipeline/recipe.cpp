@@ -53,11 +53,13 @@ EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::files
     int version = 0;
     read_field("version", version, json.at("version"));
     if (version != RecipeVersion)
-        throw Error(ErrorCode::InvalidArgument, fmt::format("\"version\" is {}, and this program reads {}", version, RecipeVersion));
+        throw Error(ErrorCode::InvalidArgument,
+                    fmt::format("\"version\" is {}, and this program reads {}", version, RecipeVersion));
     const auto read = [&](const char* part, auto& parameters) {
         if (!json.contains(part)) return false;
         if (!json[part].is_object())
-            throw Error(ErrorCode::InvalidArgument, fmt::format("\"{}\" must be an object of settings", part));
+            throw Error(ErrorCode::InvalidArgument,
+                        fmt::format("\"{}\" must be an object of settings", part));
         fields_from_json(parameters, json[part]);
         for (const auto& field : json[part].items()) recipe.given.insert(part + ("." + field.key()));
         return true;
@@ -68,7 +70,8 @@ EditRecipe recipe_from_json(const nlohmann::ordered_json& json, const std::files
     read("attention", recipe.attention);
     recipe.use_dreambooth = read("dreambooth", recipe.dreambooth);
     for (auto& lora : recipe.job.lora) lora = lora_beside(path_of_text(lora), folder);
-    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd, &recipe.job.segmenter, &recipe.job.text_segmenter}) {
+    for (auto* name : {&recipe.job.scene, &recipe.job.cameras, &recipe.job.model, &recipe.job.taesd,
+                       &recipe.job.segmenter, &recipe.job.text_segmenter}) {
         *name = path_of_text(*name);
         if (name->empty() || *name == "none" || std::filesystem::path(*name).is_absolute()) continue;
         *name = std::filesystem::weakly_canonical(folder / *name).string();
@@ -87,13 +90,15 @@ nlohmann::ordered_json read_recipe_json(const std::filesystem::path& path) {
     if (path.extension() == ".png") {
         const auto chunks = read_png_text(path);
         const auto found = chunks.find("Recipe");
-        if (found == chunks.end()) throw Error(ErrorCode::InvalidArgument, "this picture carries no recipe", RecipeHint, path);
+        if (found == chunks.end())
+            throw Error(ErrorCode::InvalidArgument, "this picture carries no recipe", RecipeHint, path);
         text = found->second;
     } else {
         text = read_file(path);
     }
     auto json = try_parse_json<nlohmann::ordered_json>(text);
-    if (!json.is_object() || !json.contains("version")) throw Error(ErrorCode::Malformed, "this is not a recipe", RecipeHint, path);
+    if (!json.is_object() || !json.contains("version"))
+        throw Error(ErrorCode::Malformed, "this is not a recipe", RecipeHint, path);
     return json;
 }
 
@@ -107,13 +112,15 @@ EditRecipe read_recipe(const std::filesystem::path& path) {
 }
 
 std::string search_key(const EditRecipe& recipe) {
-    Json key{fields_to_json<edit::EditWords>(recipe.request), fields_to_json<edit::SearchSettings>(recipe.request),
-             fields_to_json(recipe.attention), surroundings(recipe.job), recipe.job.use_label};
+    Json key{fields_to_json<edit::EditWords>(recipe.request),
+             fields_to_json<edit::SearchSettings>(recipe.request), fields_to_json(recipe.attention),
+             surroundings(recipe.job), recipe.job.use_label};
     if (!recipe.job.cut_out.empty()) key.push_back({{"cut_out", recipe.job.cut_out}});
     if (!recipe.job.looked_from.empty()) key.push_back({{"looked_from", recipe.job.looked_from}});
     if (recipe.use_dreambooth) key.push_back(fields_to_json(recipe.dreambooth));
     if (!recipe.job.segmenter.empty()) key.push_back({{"segmenter", recipe.job.segmenter}});
-    if (recipe.job.rasterizer == "cuda") key.push_back({{"rasterizer", recipe.job.rasterizer}});   // other last digits
+    if (recipe.job.rasterizer == "cuda")
+        key.push_back({{"rasterizer", recipe.job.rasterizer}});  // other last digits
     if (!recipe.job.text_segmenter.empty()) key.push_back({{"text_segmenter", recipe.job.text_segmenter}});
     if (!recipe.guidance.plain_ground) key.push_back({{"plain_ground", false}});
     return key.dump();
@@ -122,16 +129,20 @@ std::string search_key(const EditRecipe& recipe) {
 std::string valid_search_key(EditRecipe recipe) {
     try {
         recipe.request = edit::validated(recipe.request);
-    } catch (const Error&) {
-        return {};
-    }
+    } catch (const Error&) { return {}; }
     return search_key(recipe);
 }
 
 std::string tuning_key(const EditRecipe& recipe) {
     const auto& request = recipe.request;
-    return Json{fields_to_json(recipe.dreambooth), request.source, request.prompt, request.views, request.image_size,
-                request.elevation, request.background, surroundings(recipe.job)}
+    return Json{fields_to_json(recipe.dreambooth),
+                request.source,
+                request.prompt,
+                request.views,
+                request.image_size,
+                request.elevation,
+                request.background,
+                surroundings(recipe.job)}
         .dump();
 }
 

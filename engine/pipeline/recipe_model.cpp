@@ -22,24 +22,27 @@ void use_threads(const JobParameters& job) { set_network_threads(job.threads); }
 std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job) {
     auto& api = neural_api();
     use_threads(job);
-    return api.load_model(model_path(job), {job.device, neural::find_loras(job.lora), job.taesd, job.precision});
+    return api.load_model(model_path(job),
+                          {job.device, neural::find_loras(job.lora), job.taesd, job.precision});
 }
 
-std::shared_ptr<neural::TextToImage> open_recipe_model(const JobParameters& job, std::shared_ptr<DiskCache> cache) {
+std::shared_ptr<neural::TextToImage> open_recipe_model(const JobParameters& job,
+                                                       std::shared_ptr<DiskCache> cache) {
     if (!cache) return load_recipe_model(job);
     use_threads(job);
     std::string identity;
     try {
         if (cache->most_bytes() > 0) identity = model_identity(job, *cache);
-    } catch (const std::exception& failure) {   // loading says better what is wrong
+    } catch (const std::exception& failure) {  // loading says better what is wrong
         log::debug("the model's files cannot be compared: {}", failure.what());
         return load_recipe_model(job);
     }
-    auto model = std::make_shared<RememberingModel>(std::move(cache), std::move(identity), [job = JobParameters(job)]() mutable {
-        job.threads = network_threads();   // they may have been set since
-        return load_recipe_model(job);
-    });
-    if (!model->known()) model->real();   // what is wrong with it is said now
+    auto model = std::make_shared<RememberingModel>(
+        std::move(cache), std::move(identity), [job = JobParameters(job)]() mutable {
+            job.threads = network_threads();  // they may have been set since
+            return load_recipe_model(job);
+        });
+    if (!model->known()) model->real();  // what is wrong with it is said now
     return model;
 }
 
@@ -58,13 +61,13 @@ CacheSettings load_cache_settings() {
     try {
         const auto json = load_settings();
         if (json.contains("cache_mb")) fields_from_json(settings, {{"cache_mb", json["cache_mb"]}});
-    } catch (const Error& error) {
-        log::warning("{}; the default is used", error.what());
-    }
+    } catch (const Error& error) { log::warning("{}; the default is used", error.what()); }
     return settings;
 }
 
-std::uint64_t bytes_of(const CacheSettings& settings) { return static_cast<std::uint64_t>(settings.cache_mb) << 20; }
+std::uint64_t bytes_of(const CacheSettings& settings) {
+    return static_cast<std::uint64_t>(settings.cache_mb) << 20;
+}
 
 std::shared_ptr<DiskCache> open_answer_cache(const CacheSettings& settings) {
     return std::make_shared<DiskCache>(cache_folder() / "answers", bytes_of(settings));

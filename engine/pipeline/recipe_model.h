@@ -1,4 +1,5 @@
-// The model of a recipe: loaded, or opened so that it is loaded only when it is asked something that no run asked before.
+// The model of a recipe: loaded, or opened so that it is loaded only when it is asked something that no run
+// asked before.
 #pragma once
 
 #include <filesystem>
@@ -20,10 +21,12 @@ std::shared_ptr<neural::TextToImage> load_recipe_model(const JobParameters& job)
 /// Sets how many threads the networks take from here on, loaded or not.
 void use_threads(const JobParameters& job);
 
-/// The same model, whose attention maps, comparisons of pictures with sentences, class pictures and tunings are kept in `cache`,
-/// under the contents of all files it is made of (model_identity.h). A model that was loaded before is not loaded until something
-/// is asked that the cache does not hold. Null: load_recipe_model(). Throws Error.
-std::shared_ptr<neural::TextToImage> open_recipe_model(const JobParameters& job, std::shared_ptr<DiskCache> cache);
+/// The same model, whose attention maps, comparisons of pictures with sentences, class pictures and tunings
+/// are kept in `cache`, under the contents of all files it is made of (model_identity.h). A model that was
+/// loaded before is not loaded until something is asked that the cache does not hold. Null:
+/// load_recipe_model(). Throws Error.
+std::shared_ptr<neural::TextToImage> open_recipe_model(const JobParameters& job,
+                                                       std::shared_ptr<DiskCache> cache);
 
 /// What loading a model took; memory of the process in MB, or -1 where it is not known.
 struct ModelLoad {
@@ -40,10 +43,10 @@ const neural::TextToImage& without_memory(const neural::TextToImage& model);
 struct CacheSettings {
     int cache_mb = 512;
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("cache_mb", self.cache_mb,
-          "Most that answers of the networks take on the disk, MB; what was used least recently goes first; 0 = none are kept.",
+          "Most that answers of the networks take on the disk, MB; what was used least recently goes first; "
+          "0 = none are kept.",
           Range{0, 1e6});
     }
 };

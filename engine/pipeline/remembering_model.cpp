@@ -27,14 +27,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <class T>
-void put(std::string& bytes, const T& value) {
+template <class T> void put(std::string& bytes, const T& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
 /// Takes a value off the front; false where there are too few bytes.
-template <class T>
-bool take(std::string_view& bytes, T& value) {
+template <class T> bool take(std::string_view& bytes, T& value) {
     if (bytes.size() < sizeof value) return false;
     std::memcpy(&value, bytes.data(), sizeof value);
     bytes.remove_prefix(sizeof value);
@@ -72,9 +70,11 @@ std::optional<std::vector<Image>> images_in(std::string_view bytes, std::size_t 
     while (images.size() < count) {
         std::int32_t width = 0, height = 0, channels = 0;
         if (!take(bytes, width) || !take(bytes, height) || !take(bytes, channels)) return std::nullopt;
-        if (std::min({width, height, channels}) < 0 || std::max(width, height) > most_side || channels > most_channels) return std::nullopt;
-        const auto size = std::size_t{sizeof(float)} * static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
-                          static_cast<std::size_t>(channels);
+        if (std::min({width, height, channels}) < 0 || std::max(width, height) > most_side ||
+            channels > most_channels)
+            return std::nullopt;
+        const auto size = std::size_t{sizeof(float)} * static_cast<std::size_t>(width) *
+                          static_cast<std::size_t>(height) * static_cast<std::size_t>(channels);
         if (bytes.size() < size) return std::nullopt;
         images.emplace_back(width, height, channels);
         std::memcpy(images.back().data.data(), bytes.data(), size);
@@ -87,7 +87,8 @@ std::optional<std::vector<Image>> images_in(std::string_view bytes, std::size_t 
 std::optional<std::string> bytes_of(const edit::RoundTargets& targets) {
     std::string bytes, images;
     for (const auto* list : {&targets.images, &targets.changes, &targets.outlines}) {
-        if (!std::all_of(list->begin(), list->end(), [](const Image& image) { return finite(image.data); })) return std::nullopt;
+        if (!std::all_of(list->begin(), list->end(), [](const Image& image) { return finite(image.data); }))
+            return std::nullopt;
         put(bytes, static_cast<std::uint32_t>(list->size()));
         images += bytes_of(*list);
     }
@@ -120,7 +121,8 @@ std::string digest_of(const Image& image) {
 /// A file of a library that reads and writes by name; gone when this is.
 class ScratchFile {
 public:
-    ScratchFile() : path_(std::filesystem::temp_directory_path() / ("gseditpro-" + writer_mark() + ".safetensors")) {}
+    ScratchFile()
+        : path_(std::filesystem::temp_directory_path() / ("gseditpro-" + writer_mark() + ".safetensors")) {}
     ~ScratchFile() {
         std::error_code ignored;
         std::filesystem::remove(path_, ignored);
@@ -133,15 +135,18 @@ private:
     std::filesystem::path path_;
 };
 
-/// Text-image vectors: pictures one by one, sentences (a hundred short ones per word) in one entry that grows.
+/// Text-image vectors: pictures one by one, sentences (a hundred short ones per word) in one entry that
+/// grows.
 class RememberingScore final : public edit::TextImageScore {
 public:
     explicit RememberingScore(std::shared_ptr<const RememberingModel> model) : model_(std::move(model)) {
         const auto kept = model_->cache().find(sentences_question());
         std::string_view bytes = kept ? std::string_view(*kept) : std::string_view();
         std::uint32_t length = 0, count = 0;
-        while (take(bytes, length) && take(bytes, count) && bytes.size() >= length + std::size_t{count} * sizeof(float)) {
-            known_[std::string(bytes.substr(0, length))] = floats_in(bytes.substr(length, count * sizeof(float)));
+        while (take(bytes, length) && take(bytes, count) &&
+               bytes.size() >= length + std::size_t{count} * sizeof(float)) {
+            known_[std::string(bytes.substr(0, length))] =
+                floats_in(bytes.substr(length, count * sizeof(float)));
             bytes.remove_prefix(length + count * sizeof(float));
         }
     }
@@ -150,16 +155,18 @@ public:
     RememberingScore& operator=(const RememberingScore&) = delete;
 
     std::vector<float> image(const Image& image) override {
-        keep_sentences();   // those asked about the picture before
+        keep_sentences();  // those asked about the picture before
         const auto question = model_->question("vector of a picture", digest_of(image));
-        if (const auto answer = model_->cache().find(question)) return count_cached_answer(), floats_in(*answer);
+        if (const auto answer = model_->cache().find(question))
+            return count_cached_answer(), floats_in(*answer);
         auto vector = score().image(image);
         if (finite(vector)) model_->cache().keep(question, bytes_of(vector));
         return vector;
     }
     std::vector<float> viewpoint(const Image& image) override {
         const auto question = model_->question("viewpoint of a picture", digest_of(image));
-        if (const auto answer = model_->cache().find(question)) return count_cached_answer(), floats_in(*answer);
+        if (const auto answer = model_->cache().find(question))
+            return count_cached_answer(), floats_in(*answer);
         auto shares = score().viewpoint(image);
         if (finite(shares)) model_->cache().keep(question, bytes_of(shares));
         return shares;
@@ -185,7 +192,7 @@ private:
             put(bytes, static_cast<std::uint32_t>(vector.size()));
             bytes += sentence + bytes_of(vector);
         }
-        if (bytes.size() > MostSentenceBytes) return known_.clear();   // begins anew
+        if (bytes.size() > MostSentenceBytes) return known_.clear();  // begins anew
         model_->cache().keep(sentences_question(), bytes);
     }
 
@@ -195,7 +202,7 @@ private:
     }
 
     std::shared_ptr<const RememberingModel> model_;
-    std::unique_ptr<edit::TextImageScore> score_;   // when it is needed
+    std::unique_ptr<edit::TextImageScore> score_;  // when it is needed
     std::map<std::string, std::vector<float>> known_;
     bool changed_ = false;
 };
@@ -204,8 +211,12 @@ private:
 class ModelMemory final : public AnswerMemory {
 public:
     ModelMemory(DiskCache& cache, std::string about) : cache_(cache), about_(std::move(about)) {}
-    std::optional<std::string> find(std::string_view question) override { return cache_.find(about_ + std::string(question)); }
-    void keep(std::string_view question, std::string_view answer) override { cache_.keep(about_ + std::string(question), answer); }
+    std::optional<std::string> find(std::string_view question) override {
+        return cache_.find(about_ + std::string(question));
+    }
+    void keep(std::string_view question, std::string_view answer) override {
+        cache_.keep(about_ + std::string(question), answer);
+    }
 
 private:
     DiskCache& cache_;
@@ -213,18 +224,26 @@ private:
 };
 
 std::string question_of(const edit::AttentionQuery& query, const neural::AttentionParameters& parameters) {
-    return Json{fields_to_json(parameters), query.prompt, query.words, query.view_words, query.absent, query.repeats, query.seed,
+    return Json{fields_to_json(parameters),
+                query.prompt,
+                query.words,
+                query.view_words,
+                query.absent,
+                query.repeats,
+                query.seed,
                 digest_of(query.image)}
         .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// Everything of a round that its pictures follow from.
-std::string question_of(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const std::string& prompt,
-                        const neural::SdsParameters& parameters) {
+std::string question_of(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
+                        const std::string& prompt, const neural::SdsParameters& parameters) {
     Json seen = Json::array();
     for (const auto& view : views) {
         Digest digest;
-        for (const auto* image : {&view.rendered, &view.original, &view.depth, &view.backdrop.picture, &view.backdrop.depth}) digest.image(*image);
+        for (const auto* image :
+             {&view.rendered, &view.original, &view.depth, &view.backdrop.picture, &view.backdrop.depth})
+            digest.image(*image);
         digest.bytes(view.mask.data.data(), view.mask.data.size());
         const auto& camera = view.view.camera;
         Json numbers{camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy, view.elevation};
@@ -233,18 +252,29 @@ std::string question_of(const std::vector<edit::RoundView>& views, const edit::R
         if (view.azimuth) numbers.push_back(*view.azimuth);
         seen.push_back({digest.hex(), numbers, view.view_words});
     }
-    return Json{fields_to_json(parameters), prompt,     input.sentence, input.round, input.rounds, input.steps, input.strength, input.seed, input.anew,
-                input.guided_until,         input.noise, seen}
+    return Json{fields_to_json(parameters),
+                prompt,
+                input.sentence,
+                input.round,
+                input.rounds,
+                input.steps,
+                input.strength,
+                input.seed,
+                input.anew,
+                input.guided_until,
+                input.noise,
+                seen}
         .dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string question_of(const neural::DreamBoothParameters& parameters, std::span<const Image> instance,
                         const std::string& instance_prompt, const std::string& class_prompt) {
     auto settings = fields_to_json(parameters);
-    settings.erase("threads");   // the result is the same
+    settings.erase("threads");  // the result is the same
     Json pictures = Json::array();
     for (const auto& image : instance) pictures.push_back(digest_of(image));
-    return Json{settings, instance_prompt, class_prompt, pictures}.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return Json{settings, instance_prompt, class_prompt, pictures}.dump(-1, ' ', false,
+                                                                        Json::error_handler_t::replace);
 }
 
 /// A tuning as an entry: length of the report, report, weights.
@@ -260,15 +290,17 @@ std::string tuning_bytes(const neural::TuneReport& report, std::string_view weig
 /// Attention of a model, from its cache where the same was asked before.
 class RememberingAttention final : public edit::AttentionSource {
 public:
-    RememberingAttention(std::shared_ptr<const RememberingModel> model, const neural::AttentionParameters& parameters)
+    RememberingAttention(std::shared_ptr<const RememberingModel> model,
+                         const neural::AttentionParameters& parameters)
         : model_(std::move(model)), parameters_(parameters) {}
 
     std::vector<Image> locate(const edit::AttentionQuery& query) override {
         const auto question = model_->question("attention", question_of(query, parameters_));
         if (const auto answer = model_->cache().find(question))
-            if (auto maps = images_in(*answer, query.words.size())) return count_cached_answer(), std::move(*maps);
+            if (auto maps = images_in(*answer, query.words.size()))
+                return count_cached_answer(), std::move(*maps);
         if (!source_) source_ = model_->real().attention(parameters_);
-        auto maps = source_->locate(query);   // the source may have prepared it
+        auto maps = source_->locate(query);  // the source may have prepared it
         if (std::all_of(maps.begin(), maps.end(), [](const Image& map) { return finite(map.data); }))
             model_->cache().keep(question, bytes_of(maps));
         return maps;
@@ -278,7 +310,8 @@ public:
     void prepare(std::span<const edit::AttentionQuery> queries) override {
         std::vector<edit::AttentionQuery> unknown;
         for (const auto& query : queries)
-            if (!model_->cache().find(model_->question("attention", question_of(query, parameters_)))) unknown.push_back(query);
+            if (!model_->cache().find(model_->question("attention", question_of(query, parameters_))))
+                unknown.push_back(query);
         if (unknown.empty()) return;
         if (!source_) source_ = model_->real().attention(parameters_);
         source_->prepare(unknown);
@@ -286,24 +319,28 @@ public:
     std::size_t at_once() const override { return source_ ? source_->at_once() : UsuallyAtOnce; }
 
 private:
-    static constexpr std::size_t UsuallyAtOnce = 8;   // the source says how many it takes once it is loaded
+    static constexpr std::size_t UsuallyAtOnce = 8;  // the source says how many it takes once it is loaded
 
     std::shared_ptr<const RememberingModel> model_;
     const neural::AttentionParameters parameters_;
-    std::unique_ptr<edit::AttentionSource> source_;   // when it is needed
+    std::unique_ptr<edit::AttentionSource> source_;  // when it is needed
 };
 
 /// What a model draws into views, from its cache where that was kept.
 class RememberingViews final : public edit::ViewGuidance {
 public:
-    RememberingViews(std::shared_ptr<const RememberingModel> model, std::string prompt, const neural::SdsParameters& parameters)
+    RememberingViews(std::shared_ptr<const RememberingModel> model, std::string prompt,
+                     const neural::SdsParameters& parameters)
         : model_(std::move(model)), prompt_(std::move(prompt)), parameters_(parameters) {}
 
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) override {
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
+                            const JobControl& job) override {
         if (!input.keep) return drawn_by_networks(views, input, job);
-        const auto question = model_->question("drawn views", question_of(views, input, prompt_, parameters_));
+        const auto question =
+            model_->question("drawn views", question_of(views, input, prompt_, parameters_));
         if (const auto answer = model_->cache().find(question))
-            if (auto targets = targets_in(*answer, views.size())) return count_cached_answer(), std::move(*targets);
+            if (auto targets = targets_in(*answer, views.size()))
+                return count_cached_answer(), std::move(*targets);
         auto targets = drawn_by_networks(views, input, job);
         if (const auto bytes = bytes_of(targets)) model_->cache().keep(question, *bytes);
         return targets;
@@ -312,7 +349,8 @@ public:
     bool restyles() const override { return parameters_.restyle && model_->restyles(); }
 
 private:
-    edit::RoundTargets drawn_by_networks(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) {
+    edit::RoundTargets drawn_by_networks(const std::vector<edit::RoundView>& views,
+                                         const edit::RoundInput& input, const JobControl& job) {
         if (!views_) views_ = model_->real().views(prompt_, parameters_);
         return views_->edit(views, input, job);
     }
@@ -320,11 +358,12 @@ private:
     std::shared_ptr<const RememberingModel> model_;
     const std::string prompt_;
     const neural::SdsParameters parameters_;
-    std::unique_ptr<edit::ViewGuidance> views_;   // when it is needed
+    std::unique_ptr<edit::ViewGuidance> views_;  // when it is needed
 };
 
 RememberingModel::RememberingModel(std::shared_ptr<DiskCache> cache, std::string identity, Loader loader)
-    : cache_(std::move(cache)), identity_(std::move(identity)), loaded_identity_(identity_), loader_(std::move(loader)) {}
+    : cache_(std::move(cache)), identity_(std::move(identity)), loaded_identity_(identity_),
+      loader_(std::move(loader)) {}
 
 const neural::TextToImage& RememberingModel::real() const {
     const std::lock_guard lock(mutex_);
@@ -332,7 +371,7 @@ const neural::TextToImage& RememberingModel::real() const {
     const double start = wall_seconds();
     ModelLoad load;
     load.before_mb = current_rss_mb();
-    real_ = loader_();   // may throw; asked again then
+    real_ = loader_();  // may throw; asked again then
     loader_ = nullptr;
     load.after_mb = current_rss_mb();
     load.seconds = wall_seconds() - start;
@@ -366,9 +405,7 @@ std::optional<RememberingModel::Facts> RememberingModel::kept_facts() const {
         facts.threshold = json.at("threshold").get<double>();
         facts.attention_size = json.at("attention_size").get<int>();
         return facts;
-    } catch (const nlohmann::json::exception&) {
-        return std::nullopt;
-    }
+    } catch (const nlohmann::json::exception&) { return std::nullopt; }
 }
 
 bool RememberingModel::known() const {
@@ -380,28 +417,47 @@ bool RememberingModel::known() const {
 const RememberingModel::Facts& RememberingModel::facts() const {
     if (known()) return *facts_;
     const auto& model = real();
-    Facts facts{model.known_words(), model.drawn_words(), model.image_size(), model.name(), model.kind(), model.text_image_score() != nullptr, model.knows_scene(), model.restyles(), 0.5, 0};
+    Facts facts{model.known_words(),
+                model.drawn_words(),
+                model.image_size(),
+                model.name(),
+                model.kind(),
+                model.text_image_score() != nullptr,
+                model.knows_scene(),
+                model.restyles(),
+                0.5,
+                0};
     const auto attention = model.attention();
     facts.threshold = attention->threshold();
     facts.attention_size = attention->image_size();
-    const nlohmann::json json{{"words", facts.words},   {"drawn_words", facts.drawn_words}, {"image_size", facts.image_size}, {"name", facts.name},
-                              {"kind", facts.kind},     {"scores", facts.scores},         {"knows_scene", facts.knows_scene},
-                              {"restyles", facts.restyles},   {"threshold", facts.threshold},     {"attention_size", facts.attention_size}};
+    const nlohmann::json json{{"words", facts.words},
+                              {"drawn_words", facts.drawn_words},
+                              {"image_size", facts.image_size},
+                              {"name", facts.name},
+                              {"kind", facts.kind},
+                              {"scores", facts.scores},
+                              {"knows_scene", facts.knows_scene},
+                              {"restyles", facts.restyles},
+                              {"threshold", facts.threshold},
+                              {"attention_size", facts.attention_size}};
     cache_->keep("facts of " + identity_, json_text(json));
     const std::lock_guard lock(mutex_);
     if (!facts_) facts_ = std::move(facts);
     return *facts_;
 }
 
-std::unique_ptr<edit::AttentionSource> RememberingModel::attention(const neural::AttentionParameters& parameters) const {
+std::unique_ptr<edit::AttentionSource> RememberingModel::attention(
+    const neural::AttentionParameters& parameters) const {
     return std::make_unique<RememberingAttention>(shared_from_this(), parameters);
 }
 
-std::unique_ptr<edit::Guidance> RememberingModel::guidance(const std::string& prompt, const neural::SdsParameters& parameters) const {
+std::unique_ptr<edit::Guidance> RememberingModel::guidance(const std::string& prompt,
+                                                           const neural::SdsParameters& parameters) const {
     return real().guidance(prompt, parameters);
 }
 
-std::unique_ptr<edit::ViewGuidance> RememberingModel::views(const std::string& prompt, const neural::SdsParameters& parameters) const {
+std::unique_ptr<edit::ViewGuidance> RememberingModel::views(const std::string& prompt,
+                                                            const neural::SdsParameters& parameters) const {
     return std::make_unique<RememberingViews>(shared_from_this(), prompt, parameters);
 }
 
@@ -413,23 +469,26 @@ bool RememberingModel::save_tuning(const std::filesystem::path& path, std::uint6
     return real().save_tuning(path, most_bytes);
 }
 
-std::shared_ptr<neural::TextToImage> RememberingModel::load_lora(const std::filesystem::path& path, double strength) const {
+std::shared_ptr<neural::TextToImage> RememberingModel::load_lora(const std::filesystem::path& path,
+                                                                 double strength) const {
     return real().load_lora(path, strength);
 }
 
-std::shared_ptr<RememberingModel> RememberingModel::tuned_model(const std::string& question, Loader loader) const {
+std::shared_ptr<RememberingModel> RememberingModel::tuned_model(const std::string& question,
+                                                                Loader loader) const {
     Digest digest;
     digest.text(question);
     auto model = std::make_shared<RememberingModel>(cache_, digest.hex(), std::move(loader));
     model->loaded_identity_ = loaded_identity_;
     auto facts = this->facts();
-    facts.restyles = false;   // a tuning changes none of the others
+    facts.restyles = false;  // a tuning changes none of the others
     model->facts_ = std::move(facts);
     return model;
 }
 
-neural::TunedModel RememberingModel::tune(const neural::DreamBoothParameters& parameters, std::span<const Image> instance,
-                                          const std::string& instance_prompt, const std::string& class_prompt, const JobControl& job,
+neural::TunedModel RememberingModel::tune(const neural::DreamBoothParameters& parameters,
+                                          std::span<const Image> instance, const std::string& instance_prompt,
+                                          const std::string& class_prompt, const JobControl& job,
                                           AnswerMemory*) const {
     const auto asked = fmt::format("tuning of {} on {} threads\n{}", loaded_identity_, network_threads(),
                                    question_of(parameters, instance, instance_prompt, class_prompt));
@@ -454,7 +513,7 @@ neural::TunedModel RememberingModel::tune(const neural::DreamBoothParameters& pa
         const ScratchFile file;
         if (tuned.model->save_tuning(file.path(), cache_->largest_bytes()))
             cache_->keep(asked, tuning_bytes(tuned.report, read_file(file.path())));
-    } catch (const Error& error) {   // it is only not remembered
+    } catch (const Error& error) {  // it is only not remembered
         log::debug("{}", error.what());
     }
     return {tuned_model(asked, [model = std::move(tuned.model)] { return model; }), std::move(tuned.report)};

@@ -1,4 +1,5 @@
-// A model that remembers beyond the end of the program what it answered, and is loaded only for what it did not.
+// A model that remembers beyond the end of the program what it answered, and is loaded only for what it did
+// not.
 #pragma once
 
 #include <functional>
@@ -15,9 +16,11 @@
 
 namespace gse::pipeline {
 
-/// Answers attention maps, views drawn to find a place (RoundInput::keep), text-image vectors and tunings from a cache where it can; the rest goes to the networks. Answers are
-/// the same bit by bit. Counted in network_use().cached.
-class RememberingModel final : public neural::TextToImage, public std::enable_shared_from_this<RememberingModel> {
+/// Answers attention maps, views drawn to find a place (RoundInput::keep), text-image vectors and tunings
+/// from a cache where it can; the rest goes to the networks. Answers are the same bit by bit. Counted in
+/// network_use().cached.
+class RememberingModel final : public neural::TextToImage,
+                               public std::enable_shared_from_this<RememberingModel> {
 public:
     using Loader = std::function<std::shared_ptr<neural::TextToImage>()>;
 
@@ -27,9 +30,12 @@ public:
     using TextToImage::attention;
     using TextToImage::load_lora;
     using TextToImage::tune;
-    std::unique_ptr<edit::AttentionSource> attention(const neural::AttentionParameters& parameters) const override;
-    std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const neural::SdsParameters& parameters) const override;
-    std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const neural::SdsParameters& parameters) const override;
+    std::unique_ptr<edit::AttentionSource> attention(
+        const neural::AttentionParameters& parameters) const override;
+    std::unique_ptr<edit::Guidance> guidance(const std::string& prompt,
+                                             const neural::SdsParameters& parameters) const override;
+    std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt,
+                                              const neural::SdsParameters& parameters) const override;
     bool knows_scene() const override { return facts().knows_scene; }
     bool restyles() const override { return facts().restyles; }
     std::vector<std::string> known_words() const override { return facts().words; }
@@ -38,13 +44,17 @@ public:
     std::string name() const override { return facts().name; }
     neural::BundleKind kind() const override { return facts().kind; }
     Image sample(const neural::SampleRequest& request) const override { return real().sample(request); }
-    Image img2img(const Image& image, const neural::SampleRequest& request) const override { return real().img2img(image, request); }
+    Image img2img(const Image& image, const neural::SampleRequest& request) const override {
+        return real().img2img(image, request);
+    }
     std::unique_ptr<edit::TextImageScore> text_image_score() const override;
     neural::TunedModel tune(const neural::DreamBoothParameters& parameters, std::span<const Image> instance,
-                            const std::string& instance_prompt, const std::string& class_prompt, const JobControl& job,
-                            AnswerMemory* memory) const override;
+                            const std::string& instance_prompt, const std::string& class_prompt,
+                            const JobControl& job, AnswerMemory* memory) const override;
     bool save_tuning(const std::filesystem::path& path, std::uint64_t most_bytes) const override;
-    std::shared_ptr<TextToImage> load_tuning(const std::filesystem::path& path) const override { return real().load_tuning(path); }
+    std::shared_ptr<TextToImage> load_tuning(const std::filesystem::path& path) const override {
+        return real().load_tuning(path);
+    }
     void save_lora(const std::filesystem::path& path) const override { real().save_lora(path); }
     std::shared_ptr<TextToImage> load_lora(const std::filesystem::path& path, double strength) const override;
 
@@ -64,9 +74,9 @@ private:
         int image_size = 0;
         std::string name;
         neural::BundleKind kind = neural::BundleKind::Plain;
-        bool scores = false;       // it has a text-image encoder
+        bool scores = false;  // it has a text-image encoder
         bool knows_scene = false, restyles = false;
-        double threshold = 0.5;    // of its attention
+        double threshold = 0.5;  // of its attention
         int attention_size = 0;
     };
     const Facts& facts() const;
@@ -77,9 +87,9 @@ private:
 
     const std::shared_ptr<DiskCache> cache_;
     const std::string identity_;
-    std::string loaded_identity_;   // of a tuned model: what it was before, which another tuning begins at
+    std::string loaded_identity_;  // of a tuned model: what it was before, which another tuning begins at
     mutable std::mutex mutex_;
-    mutable Loader loader_;   // until it has been called
+    mutable Loader loader_;  // until it has been called
     mutable std::shared_ptr<TextToImage> real_;
     mutable std::optional<ModelLoad> load_;
     mutable std::optional<Facts> facts_;

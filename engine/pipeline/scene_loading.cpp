@@ -13,14 +13,13 @@
 namespace gse::pipeline {
 namespace {
 
-constexpr double LeastVisibleShare = 0.05;   // cameras that see less of the splats belong to another world
+constexpr double LeastVisibleShare = 0.05;  // cameras that see less of the splats belong to another world
 
 /// Up as the mean of the cameras' own (they stand upright more often than not); nothing when they disagree.
 std::optional<Vec3> up_of_cameras(const std::vector<View>& views) {
     constexpr double least_agreement = 0.5;
     Vec3 sum;
-    for (const auto& view : views)
-        sum = sum - view.camera.rotation.row(1);
+    for (const auto& view : views) sum = sum - view.camera.rotation.row(1);
     const double share = length(sum) / static_cast<double>(std::max<std::size_t>(views.size(), 1));
     if (views.empty() || share < least_agreement) return std::nullopt;
     return normalized(sum);
@@ -28,20 +27,24 @@ std::optional<Vec3> up_of_cameras(const std::vector<View>& views) {
 
 }  // namespace
 
-SceneCameras cameras_of_scene(const GaussianSet& set, const std::filesystem::path& scene_path, const std::string& named) {
+SceneCameras cameras_of_scene(const GaussianSet& set, const std::filesystem::path& scene_path,
+                              const std::string& named) {
     SceneCameras cameras;
     if (named == "none") return cameras;
     try {
         if (!named.empty()) cameras.views = load_cameras(named, scene_path);
-        else if (const auto found = find_cameras(scene_path)) cameras.views = load_cameras(*found, scene_path);
+        else if (const auto found = find_cameras(scene_path))
+            cameras.views = load_cameras(*found, scene_path);
     } catch (const Error& error) {
         if (!named.empty()) throw;
         cameras.notes.push_back(std::string("The cameras beside the scene cannot be used: ") + error.what());
     }
-    if (cameras.views.empty() || visible_share(cameras.views, set.position()) >= LeastVisibleShare) return cameras;
+    if (cameras.views.empty() || visible_share(cameras.views, set.position()) >= LeastVisibleShare)
+        return cameras;
     cameras.views.clear();
-    cameras.notes.push_back(named.empty() ? "The cameras found beside the scene look elsewhere; they are left out."
-                                          : "The cameras look elsewhere than at this scene; they are left out.");
+    cameras.notes.push_back(named.empty()
+                                ? "The cameras found beside the scene look elsewhere; they are left out."
+                                : "The cameras look elsewhere than at this scene; they are left out.");
     return cameras;
 }
 
@@ -57,7 +60,8 @@ LoadedScene load_scene_with_cameras(const std::filesystem::path& path, const std
     SceneCameras found = cameras_of_scene(loaded.scene.gaussians, path, cameras);
     loaded.views = std::move(found.views);
     loaded.notes = std::move(found.notes);
-    if (auto note = guess_up(loaded.scene.info, loaded.views); !note.empty()) loaded.notes.push_back(std::move(note));
+    if (auto note = guess_up(loaded.scene.info, loaded.views); !note.empty())
+        loaded.notes.push_back(std::move(note));
     return loaded;
 }
 

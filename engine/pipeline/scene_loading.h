@@ -15,18 +15,20 @@ struct SceneCameras {
     std::vector<std::string> notes;
 };
 
-/// The cameras named, or those found beside the scene; none for "none". Those that look elsewhere are left out. Throws Error
-/// where named ones cannot be read; of those found a note says so.
-SceneCameras cameras_of_scene(const GaussianSet& set, const std::filesystem::path& scene_path, const std::string& named = {});
+/// The cameras named, or those found beside the scene; none for "none". Those that look elsewhere are left
+/// out. Throws Error where named ones cannot be read; of those found a note says so.
+SceneCameras cameras_of_scene(const GaussianSet& set, const std::filesystem::path& scene_path,
+                              const std::string& named = {});
 
-/// Takes up from the cameras where the file does not state it. Returns the sentence that says so; empty = nothing was guessed.
+/// Takes up from the cameras where the file does not state it. Returns the sentence that says so; empty =
+/// nothing was guessed.
 std::string guess_up(SceneInfo& info, const std::vector<View>& views);
 
 /// A scene, its cameras, and which way is up where the file does not say and the cameras do.
 struct LoadedScene {
     Scene scene;
     std::vector<View> views;
-    std::vector<std::string> notes;   // one sentence each
+    std::vector<std::string> notes;  // one sentence each
 };
 
 /// `cameras` as `named` above. Throws Error.

@@ -7,8 +7,8 @@
 
 namespace gse::pipeline {
 
-/// Loads the scene and its cameras and sums both up: format, counts, bounds (world units), odd rows, warnings. Of a .png: its
-/// size in pixels and its text, as pictures of edits carry it. Throws Error.
+/// Loads the scene and its cameras and sums both up: format, counts, bounds (world units), odd rows,
+/// warnings. Of a .png: its size in pixels and its text, as pictures of edits carry it. Throws Error.
 nlohmann::ordered_json scene_report(const std::filesystem::path& path);
 
 /// The same for a terminal, a line each; what comes from the file is escaped.

@@ -28,7 +28,8 @@ std::array<float, 3> parse_colour(const std::string& text) {
             return {static_cast<float>(value >> 16 & 255) / 255, static_cast<float>(value >> 8 & 255) / 255,
                     static_cast<float>(value & 255) / 255};
     }
-    throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not a colour", "use black, white, grey or #rrggbb");
+    throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not a colour",
+                "use black, white, grey or #rrggbb");
 }
 
 Vec3 parse_up(const std::string& text, const SceneInfo& info) {
@@ -38,7 +39,8 @@ Vec3 parse_up(const std::string& text, const SceneInfo& info) {
     if (axis == "x") return {sign, 0, 0};
     if (axis == "y") return {0, sign, 0};
     if (axis == "z") return {0, 0, sign};
-    throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not an up axis", "use auto, x, y, z, -x, -y or -z");
+    throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not an up axis",
+                "use auto, x, y, z, -x, -y or -z");
 }
 
 raster::Settings raster_settings(const RenderParameters& parameters, const SceneInfo& info) {
@@ -51,7 +53,8 @@ raster::Settings raster_settings(const RenderParameters& parameters, const Scene
 
 namespace {
 
-OrbitParameters fitted(const SceneStatistics& statistics, const SceneInfo& info, const RenderParameters& parameters) {
+OrbitParameters fitted(const SceneStatistics& statistics, const SceneInfo& info,
+                       const RenderParameters& parameters) {
     OrbitParameters orbit = fit_orbit(statistics, parse_up(parameters.up, info));
     // fit_orbit assumes its own field of view; keep what is framed when another one is asked for.
     const double fov = parameters.fov * Degree;
@@ -69,7 +72,8 @@ std::vector<Vec3> some_points_in(const Bounds& bounds, const GaussianSet& set) {
     std::vector<Vec3> points;
     for (std::size_t row = 0; row < set.size(); row += step) {
         const Vec3 at{position[row * 3], position[row * 3 + 1], position[row * 3 + 2]};
-        if (at.x >= bounds.low.x && at.y >= bounds.low.y && at.z >= bounds.low.z && at.x <= bounds.high.x && at.y <= bounds.high.y && at.z <= bounds.high.z)
+        if (at.x >= bounds.low.x && at.y >= bounds.low.y && at.z >= bounds.low.z && at.x <= bounds.high.x &&
+            at.y <= bounds.high.y && at.z <= bounds.high.z)
             points.push_back(at);
     }
     return points;
@@ -89,8 +93,10 @@ OrbitParameters whole_orbit(const Scene& scene, const RenderParameters& paramete
     const auto fitting_from = [&](Vec3 centre) {
         double fitting = 0;
         for (int side = 0; side < Sides; ++side) {
-            const auto camera = orbit_camera(orbit, 2 * std::numbers::pi * side / Sides, parameters.width, parameters.height);
-            fitting = std::max(fitting, fitting_distance(points, centre, camera.rotation, orbit.fov_x, parameters.width, parameters.height));
+            const auto camera =
+                orbit_camera(orbit, 2 * std::numbers::pi * side / Sides, parameters.width, parameters.height);
+            fitting = std::max(fitting, fitting_distance(points, centre, camera.rotation, orbit.fov_x,
+                                                         parameters.width, parameters.height));
         }
         return fitting;
     };
@@ -113,12 +119,14 @@ std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit) {
     if (orbit > 0) return orbit_views(scene_orbit(load_scene(path), usual), orbit, usual.width, usual.height);
     std::vector<View> views = only_cameras(path) ? load_cameras(path) : scene_cameras(path, "");
     if (views.empty())
-        throw Error(ErrorCode::NotFound, project ? "the project holds no viewpoints" : "there are no cameras beside the scene",
+        throw Error(ErrorCode::NotFound,
+                    project ? "the project holds no viewpoints" : "there are no cameras beside the scene",
                     "--orbit 24 makes viewpoints around the scene", path);
     return views;
 }
 
-Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path, const RenderParameters& parameters) {
+Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path,
+                     const RenderParameters& parameters) {
     if (parameters.view >= 0 || !parameters.cameras.empty()) {
         const auto views = scene_cameras(scene_path, parameters.cameras);
         const auto index = static_cast<std::size_t>(std::max(parameters.view, 0));
@@ -128,10 +136,12 @@ Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path
                         "choose a smaller --view or name the cameras with --cameras", scene_path);
         return views[index].camera.resized(parameters.width, parameters.height);
     }
-    return orbit_camera(whole_orbit(scene, parameters), parameters.azimuth * Degree, parameters.width, parameters.height);
+    return orbit_camera(whole_orbit(scene, parameters), parameters.azimuth * Degree, parameters.width,
+                        parameters.height);
 }
 
-Painter::Painter(unsigned threads, const std::string& rasterizer) : pool_(threads), rasterizer_(raster::make_rasterizer(rasterizer, pool_)) {}
+Painter::Painter(unsigned threads, const std::string& rasterizer)
+    : pool_(threads), rasterizer_(raster::make_rasterizer(rasterizer, pool_)) {}
 
 const raster::ForwardOutput& Painter::paint(const GaussianSpans& gaussians, const Camera& camera,
                                             const raster::Settings& settings) {
@@ -155,7 +165,8 @@ Image side_by_side(const Image& left, const Image& right) {
     Image result(left.width + line + right.width, std::max(left.height, right.height), 3, 1.0f);
     const auto copy = [&](const Image& from, int offset) {
         for (int y = 0; y < from.height; ++y)
-            std::copy_n(&from.data[static_cast<std::size_t>(y * from.width) * 3], static_cast<std::size_t>(from.width) * 3,
+            std::copy_n(&from.data[static_cast<std::size_t>(y * from.width) * 3],
+                        static_cast<std::size_t>(from.width) * 3,
                         &result.data[static_cast<std::size_t>(y * result.width + offset) * 3]);
     };
     copy(left, 0);

@@ -33,19 +33,23 @@ struct RenderParameters {
     bool antialiased = false;
     int sh_degree = 3;
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("width", self.width, "Picture width in pixels.", Range{1, 16384});
         f("height", self.height, "Picture height in pixels.", Range{1, 16384});
-        f("azimuth", self.azimuth, "Direction of the automatic camera in degrees, 0 = front.", Range{-3600, 3600});
-        f("elevation", self.elevation, "Height of the automatic camera in degrees above the horizon.", Range{-89, 89});
-        f("zoom", self.zoom, "Nearer (above 1) or farther (below 1) than from where the picture shows all of the scene.", Range{0.01, 100});
+        f("azimuth", self.azimuth, "Direction of the automatic camera in degrees, 0 = front.",
+          Range{-3600, 3600});
+        f("elevation", self.elevation, "Height of the automatic camera in degrees above the horizon.",
+          Range{-89, 89});
+        f("zoom", self.zoom,
+          "Nearer (above 1) or farther (below 1) than from where the picture shows all of the scene.",
+          Range{0.01, 100});
         f("fov", self.fov, "Horizontal field of view of the automatic camera in degrees.", Range{5, 150});
         f("up", self.up, "World up: auto, x, y, z, -x, -y or -z.");
         f("background", self.background, "black, white, grey or #rrggbb.");
         f("view", self.view, "Index of a camera from --cameras instead of the automatic one; -1 = automatic.",
           Range{-1, 1e9});
-        f("cameras", self.cameras, "COLMAP folder, transforms.json or cameras.json; found beside the scene when empty.");
+        f("cameras", self.cameras,
+          "COLMAP folder, transforms.json or cameras.json; found beside the scene when empty.");
         f("antialiased", self.antialiased, "Opacity compensation for scenes trained with it.");
         f("sh_degree", self.sh_degree, "Highest spherical-harmonics degree shown.", Range{0, 3});
     }
@@ -61,20 +65,21 @@ raster::Settings raster_settings(const RenderParameters& parameters, const Scene
 
 /// The orbit fitted to the scene under these parameters.
 OrbitParameters scene_orbit(const Scene& scene, const RenderParameters& parameters);
-/// The same, around the middle and from where all is seen, where a picture of that shape at a zoom of 1 would cut off the top or the
-/// bottom of what stands tall, from some side.
+/// The same, around the middle and from where all is seen, where a picture of that shape at a zoom of 1 would
+/// cut off the top or the bottom of what stands tall, from some side.
 OrbitParameters whole_orbit(const Scene& scene, const RenderParameters& parameters);
 
 /// The cameras named, or those found beside the scene; none when there are none.
 std::vector<View> scene_cameras(const std::filesystem::path& scene_path, const std::string& cameras);
 
-/// Viewpoints to be written elsewhere: those that a project holds, that a camera file or folder names, or that are found
-/// beside a scene; with `orbit` > 0 so many around the scene of the project or file instead. Throws Error (NotFound when
-/// there are none).
+/// Viewpoints to be written elsewhere: those that a project holds, that a camera file or folder names, or
+/// that are found beside a scene; with `orbit` > 0 so many around the scene of the project or file instead.
+/// Throws Error (NotFound when there are none).
 std::vector<View> viewpoints_of(const std::filesystem::path& path, int orbit = 0);
 
 /// The one camera `render` uses: the one named, or one of whole_orbit().
-Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path, const RenderParameters& parameters);
+Camera choose_camera(const Scene& scene, const std::filesystem::path& scene_path,
+                     const RenderParameters& parameters);
 
 /// A rasterizer with its threads.
 class Painter {
@@ -99,8 +104,7 @@ struct TurntableParameters {
     double degrees = 360;
     bool ease = false;
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("frames", self.frames, "Number of frames.", Range{1, 100000});
         f("fps", self.fps, "Frames per second of the film.", Range{1, 240});
         f("degrees", self.degrees, "How far to turn.", Range{-36000, 36000});

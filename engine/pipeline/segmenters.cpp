@@ -23,8 +23,7 @@ namespace gse::pipeline {
 namespace {
 
 /// Weights that are loaded now, for as long as somebody has them: they may take gigabytes.
-template <class Kind>
-class Shared {
+template <class Kind> class Shared {
 public:
     template <class Load>
     std::shared_ptr<Kind> get(const std::string& weights, const JobParameters& job, const Load& load) {
@@ -54,25 +53,30 @@ private:
 
 std::shared_ptr<edit::Segmenter> load_clicks(const JobParameters& job) {
     static Shared<edit::Segmenter> shared;
-    return shared.get(job.segmenter, job, [&](neural::Api& api) { return api.load_segmenter(job.segmenter, job.device); });
+    return shared.get(job.segmenter, job,
+                      [&](neural::Api& api) { return api.load_segmenter(job.segmenter, job.device); });
 }
 
 std::shared_ptr<edit::TextSegmenter> load_words(const JobParameters& job) {
     static Shared<edit::TextSegmenter> shared;
-    return shared.get(job.text_segmenter, job, [&](neural::Api& api) { return api.load_text_segmenter(job.text_segmenter, job.device); });
+    return shared.get(job.text_segmenter, job, [&](neural::Api& api) {
+        return api.load_text_segmenter(job.text_segmenter, job.device);
+    });
 }
 
 std::string bits_of(const Mask& mask) {
     std::string bytes((mask.data.size() + 7) / 8, '\0');
     for (std::size_t i = 0; i < mask.data.size(); ++i)
-        if (mask.data[i] != 0) bytes[i / 8] = static_cast<char>(static_cast<unsigned char>(bytes[i / 8]) | 1u << i % 8);
+        if (mask.data[i] != 0)
+            bytes[i / 8] = static_cast<char>(static_cast<unsigned char>(bytes[i / 8]) | 1u << i % 8);
     return bytes;
 }
 
 std::optional<Mask> mask_in(const std::string& bytes, int width, int height) {
     Mask mask(width, height);
     if (bytes.size() != (mask.data.size() + 7) / 8) return std::nullopt;
-    for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] = static_cast<unsigned char>(bytes[i / 8]) >> i % 8 & 1u;
+    for (std::size_t i = 0; i < mask.data.size(); ++i)
+        mask.data[i] = static_cast<unsigned char>(bytes[i / 8]) >> i % 8 & 1u;
     return mask;
 }
 
@@ -85,12 +89,12 @@ public:
             name_ = std::move(*known);
             return;
         }
-        name_ = real().name();   // what is wrong with the weights is said now
+        name_ = real().name();  // what is wrong with the weights is said now
         cache_->keep(question, name_);
     }
 
-    Mask segment(const Image& image, const std::vector<edit::PointPrompt>& points, const std::optional<edit::BoxPrompt>& box,
-                 const Image& hint) override {
+    Mask segment(const Image& image, const std::vector<edit::PointPrompt>& points,
+                 const std::optional<edit::BoxPrompt>& box, const Image& hint) override {
         const auto asked = question(image, points, box);
         if (const auto known = cache_->find(asked))
             if (auto mask = mask_in(*known, image.width, image.height)) return std::move(*mask);
@@ -108,11 +112,13 @@ public:
     }
 
 private:
-    std::string question(const Image& image, const std::vector<edit::PointPrompt>& points, const std::optional<edit::BoxPrompt>& box) const {
+    std::string question(const Image& image, const std::vector<edit::PointPrompt>& points,
+                         const std::optional<edit::BoxPrompt>& box) const {
         Digest digest;
         digest.image(image);
         auto text = fmt::format("mask by segmenter {} in {}:", identity_, digest.hex());
-        for (const auto& point : points) text += fmt::format(" {} {} {}", point.x, point.y, point.positive ? "in" : "out");
+        for (const auto& point : points)
+            text += fmt::format(" {} {} {}", point.x, point.y, point.positive ? "in" : "out");
         if (box) text += fmt::format(" box {} {} {} {}", box->x0, box->y0, box->x1, box->y1);
         return text;
     }
@@ -132,22 +138,25 @@ public:
         : job_(std::move(job)), cache_(std::move(cache)), identity_(std::move(identity)) {
         const auto question = "text segmenter works: " + identity_;
         if (cache_->find(question)) return;
-        real();   // what is wrong with the weights is said now
+        real();  // what is wrong with the weights is said now
         cache_->keep(question, "yes");
     }
 
     std::pair<Mask, double> segment(const Image& image, const std::string& noun) override {
         Digest digest;
         digest.image(image);
-        const auto asked = fmt::format("mask by text segmenter {} in {} of {}", identity_, digest.hex(), noun);
+        const auto asked =
+            fmt::format("mask by text segmenter {} in {} of {}", identity_, digest.hex(), noun);
         double score = 0;
         if (const auto known = cache_->find(asked); known && known->size() > sizeof score) {
             std::memcpy(&score, known->data(), sizeof score);
-            if (auto mask = mask_in(known->substr(sizeof score), image.width, image.height); mask && score >= 0 && score <= 1)
+            if (auto mask = mask_in(known->substr(sizeof score), image.width, image.height);
+                mask && score >= 0 && score <= 1)
                 return {std::move(*mask), score};
         }
         auto found = real().segment(image, noun);
-        cache_->keep(asked, std::string(reinterpret_cast<const char*>(&found.second), sizeof found.second) + bits_of(found.first));
+        cache_->keep(asked, std::string(reinterpret_cast<const char*>(&found.second), sizeof found.second) +
+                                bits_of(found.first));
         return found;
     }
 
@@ -171,7 +180,8 @@ public:
         : words_(std::move(words)), clicks_(std::move(clicks)) {}
 
     std::pair<Mask, double> segment(const Image& image, const std::string& noun) override {
-        constexpr double least_agreement = 0.5;   // IoU from which both are taken to mean the same thing; by judgement
+        constexpr double least_agreement =
+            0.5;  // IoU from which both are taken to mean the same thing; by judgement
         auto found = words_->segment(image, noun);
         if (found.second < edit::LeastTextScore || found.first.count() == 0) return found;
         auto sharp = clicks_->segment(image, {}, edit::bounds_of(found.first), {});
@@ -186,14 +196,15 @@ private:
 
 /// The one that remembers, or the weights themselves where nothing is to be remembered.
 template <class Remembering, class Kind>
-std::shared_ptr<Kind> open(const std::string& weights, const JobParameters& job, const std::shared_ptr<DiskCache>& cache,
+std::shared_ptr<Kind> open(const std::string& weights, const JobParameters& job,
+                           const std::shared_ptr<DiskCache>& cache,
                            std::shared_ptr<Kind> (*load)(const JobParameters&)) {
     if (weights.empty()) return nullptr;
     if (!cache || cache->most_bytes() == 0) return load(job);
     std::string identity;
     try {
         identity = segmenter_identity(weights, job.device, *cache);
-    } catch (const std::exception& failure) {   // loading says better what is wrong
+    } catch (const std::exception& failure) {  // loading says better what is wrong
         log::debug("the segmenter's weights cannot be compared: {}", failure.what());
         return load(job);
     }
@@ -202,14 +213,16 @@ std::shared_ptr<Kind> open(const std::string& weights, const JobParameters& job,
 
 }  // namespace
 
-std::shared_ptr<edit::TextSegmenter> sharpened(std::shared_ptr<edit::TextSegmenter> words, std::shared_ptr<edit::Segmenter> clicks) {
+std::shared_ptr<edit::TextSegmenter> sharpened(std::shared_ptr<edit::TextSegmenter> words,
+                                               std::shared_ptr<edit::Segmenter> clicks) {
     return words && clicks ? std::make_shared<SharpenedWords>(std::move(words), std::move(clicks)) : words;
 }
 
 Segmenters open_segmenters(const JobParameters& job, const std::shared_ptr<DiskCache>& cache) {
     Segmenters opened;
     opened.clicks = open<RememberingSegmenter>(job.segmenter, job, cache, load_clicks);
-    opened.words = sharpened(open<RememberingWords>(job.text_segmenter, job, cache, load_words), opened.clicks);
+    opened.words =
+        sharpened(open<RememberingWords>(job.text_segmenter, job, cache, load_words), opened.clicks);
     return opened;
 }
 

@@ -6,8 +6,7 @@
 namespace gse::pipeline {
 namespace {
 
-template <class Report, class F>
-void visit_report(Report& report, F&& f) {
+template <class Report, class F> void visit_report(Report& report, F&& f) {
     f("steps", report.steps);
     f("skipped", report.skipped);
     f("class_seconds", report.class_seconds);
@@ -33,9 +32,7 @@ std::optional<neural::TuneReport> tuning_from_json(std::string_view text) {
     neural::TuneReport report;
     try {
         visit_report(report, [&](const char* name, auto& value) { json.at(name).get_to(value); });
-    } catch (const nlohmann::json::exception&) {
-        return std::nullopt;
-    }
+    } catch (const nlohmann::json::exception&) { return std::nullopt; }
     return report;
 }
 

@@ -14,16 +14,20 @@
 namespace gse::pipeline {
 namespace {
 
-constexpr int PictureSide = 256, RowGap = 6, RowCaption = 22, Directions = 4;   // pixels
+constexpr int PictureSide = 256, RowGap = 6, RowCaption = 22, Directions = 4;  // pixels
 constexpr float SheetColour = 0.1f;
-constexpr double RowLetters = 10, FirstAzimuth = 0.35;   // radians from the front, as in before_after.png
+constexpr double RowLetters = 10, FirstAzimuth = 0.35;  // radians from the front, as in before_after.png
 constexpr DrawColour RowText{0.85f, 0.85f, 0.85f};
 
 std::vector<Image> around(EditJob& job, const GaussianSet& set) {
     std::vector<Image> pictures;
     for (int i = 0; i < Directions; ++i) {
         const double azimuth = job.film_front() + FirstAzimuth + 2 * std::numbers::pi * i / Directions;
-        pictures.push_back(job.painter().paint(set.spans(), orbit_camera(job.film_orbit(), azimuth, PictureSide, PictureSide), job.plan().settings).colour);
+        pictures.push_back(job.painter()
+                               .paint(set.spans(),
+                                      orbit_camera(job.film_orbit(), azimuth, PictureSide, PictureSide),
+                                      job.plan().settings)
+                               .colour);
     }
     return pictures;
 }
@@ -37,7 +41,8 @@ EditRecipe variation_of(EditRecipe recipe, int index) {
 
 std::string variation_caption(const EditJob& job, const std::string& name) {
     const auto& verdict = job.edited().verdict;
-    const auto score = verdict && verdict->score ? fmt::format(", score {:.2f}", *verdict->score) : std::string();
+    const auto score =
+        verdict && verdict->score ? fmt::format(", score {:.2f}", *verdict->score) : std::string();
     return fmt::format("{}: seed {}{}", name, job.recipe().request.seed, score);
 }
 
@@ -49,7 +54,8 @@ void VariationSheet::add(EditJob& job, const std::string& name) {
 void VariationSheet::write(const std::filesystem::path& path) const {
     GSE_CHECK(!rows_.empty());
     constexpr int row_height = RowCaption + PictureSide + RowGap;
-    Image sheet(Directions * (PictureSide + RowGap) + RowGap, static_cast<int>(rows_.size()) * row_height + RowGap, 3, SheetColour);
+    Image sheet(Directions * (PictureSide + RowGap) + RowGap,
+                static_cast<int>(rows_.size()) * row_height + RowGap, 3, SheetColour);
     for (std::size_t r = 0; r < rows_.size(); ++r) {
         const int top = static_cast<int>(r) * row_height;
         draw_text(sheet, RowGap, top + RowCaption - 6, rows_[r].caption, RowLetters, RowText);
@@ -57,7 +63,8 @@ void VariationSheet::write(const std::filesystem::path& path) const {
             for (int y = 0; y < PictureSide; ++y)
                 for (int x = 0; x < PictureSide; ++x)
                     for (int c = 0; c < 3; ++c)
-                        sheet.at(RowGap + static_cast<int>(i) * (PictureSide + RowGap) + x, top + RowCaption + y, c) =
+                        sheet.at(RowGap + static_cast<int>(i) * (PictureSide + RowGap) + x,
+                                 top + RowCaption + y, c) =
                             std::clamp(rows_[r].pictures[i].at(x, y, c), 0.0f, 1.0f);
     }
     write_png(path, sheet);

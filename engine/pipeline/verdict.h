@@ -14,13 +14,15 @@
 namespace gse::pipeline {
 
 struct Verdict {
-    /// Mean cosine of the pictures' and the sentences' change; none when the model has no encoder to tell, or it does not know what the sentence says.
+    /// Mean cosine of the pictures' and the sentences' change; none when the model has no encoder to tell, or
+    /// it does not know what the sentence says.
     std::optional<double> score;
-    std::string verdict;   // the score in a sentence; empty without one
-    bool warns = false;    // the pictures do not show the edit
-    /// Where a new thing is one that the model draws and its encoder has no word for: the same of the thing that it has a word for and that the
-    /// pictures show most. Says nothing of whether it is the right one, but what is like none is a lump. Of such a ground: how much of the way to
-    /// its usual colour the pictures have gone (edit/usual_look.h).
+    std::string verdict;  // the score in a sentence; empty without one
+    bool warns = false;   // the pictures do not show the edit
+    /// Where a new thing is one that the model draws and its encoder has no word for: the same of the thing
+    /// that it has a word for and that the pictures show most. Says nothing of whether it is the right one,
+    /// but what is like none is a lump. Of such a ground: how much of the way to its usual colour the
+    /// pictures have gone (edit/usual_look.h).
     std::optional<double> likeness = {};
 
     /// Whether another way of drawing is worth a try.
@@ -35,8 +37,8 @@ Verdict judge(const neural::TextToImage& model, const edit::EditRequest& request
               const std::vector<PicturePair>& pictures);
 
 /// Of the redrawn views of a round that the fit uses, against the scene as they were drawn from.
-Verdict judge_targets(const neural::TextToImage& model, const edit::EditRequest& request, const std::string& told,
-                      const edit::ViewTargets& round);
+Verdict judge_targets(const neural::TextToImage& model, const edit::EditRequest& request,
+                      const std::string& told, const edit::ViewTargets& round);
 
 /// {"score", "verdict", "warns"}, and "likeness" where it was asked.
 nlohmann::ordered_json verdict_to_json(const Verdict& verdict);

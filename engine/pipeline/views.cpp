@@ -43,7 +43,8 @@ std::string key_of(const Views& views, const EditRecipe& recipe) {
     for (const auto& view : views.views) {
         const Camera& camera = view.camera;
         const Vec3 centre = camera.centre();
-        for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy, centre.x, centre.y, centre.z}) key.bytes(&value, sizeof value);
+        for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy, centre.x, centre.y, centre.z})
+            key.bytes(&value, sizeof value);
         for (int i = 0; i < 9; ++i) {
             const double value = camera.rotation(i / 3, i % 3);
             key.bytes(&value, sizeof value);
@@ -61,8 +62,7 @@ Views finished(Views views, const EditRecipe& recipe, const std::map<std::string
     const auto front = parse_front(recipe.job.front);
     views.front = direction_at(views.orbit, front.value_or(0));
     for (const auto& view : views.views) {
-        if (!words.empty())
-            views.words.push_back(words.at(view.name));
+        if (!words.empty()) views.words.push_back(words.at(view.name));
         else if (front) {
             views.azimuths.push_back(azimuth_of(view.camera, views.orbit) - *front);
             views.words.push_back(edit::view_words(views.azimuths.back(), recipe.request.sided_view_words));
@@ -90,11 +90,13 @@ double looked_from(const Camera& camera, const Vec3& up) {
 }
 
 std::string turned_to(const Camera& camera, const Vec3& up) {
-    constexpr double WholeDegrees = 1;   // what rounding may be off by
-    constexpr double FromAbove = 0.9;    // sine of 64 degrees: from there no side is looked at
+    constexpr double WholeDegrees = 1;  // what rounding may be off by
+    constexpr double FromAbove = 0.9;   // sine of 64 degrees: from there no side is looked at
     if (std::abs(dot(camera.forward(), normalized(up))) > FromAbove) return {};
     const double degrees = looked_from(camera, up);
-    return std::abs(std::remainder(degrees - HomeAzimuth / Degree, 360)) <= WholeDegrees ? std::string() : fmt::format("{:.0f}", degrees);
+    return std::abs(std::remainder(degrees - HomeAzimuth / Degree, 360)) <= WholeDegrees
+               ? std::string()
+               : fmt::format("{:.0f}", degrees);
 }
 
 Views facing(Views views, double front, const EditRecipe& recipe) {
@@ -111,12 +113,17 @@ std::vector<View> farthest_views(const std::vector<View>& views, std::size_t cou
     std::vector<double> distance(views.size(), std::numeric_limits<double>::infinity());
     std::vector<std::size_t> chosen{0};
     // From one place, as on a tripod, they differ by where they look.
-    const bool turns = std::all_of(views.begin(), views.end(), [&](const View& view) { return view.camera.centre() == views.front().camera.centre(); });
-    const auto place_of = [turns](const View& view) { return turns ? view.camera.forward() : view.camera.centre(); };
+    const bool turns = std::all_of(views.begin(), views.end(), [&](const View& view) {
+        return view.camera.centre() == views.front().camera.centre();
+    });
+    const auto place_of = [turns](const View& view) {
+        return turns ? view.camera.forward() : view.camera.centre();
+    };
     while (chosen.size() < count) {
         const Vec3 last = place_of(views[chosen.back()]);
-        for (std::size_t i = 0; i < views.size(); ++i) distance[i] = std::min(distance[i], length(place_of(views[i]) - last));
-        distance[chosen.back()] = -1;   // not once more
+        for (std::size_t i = 0; i < views.size(); ++i)
+            distance[i] = std::min(distance[i], length(place_of(views[i]) - last));
+        distance[chosen.back()] = -1;  // not once more
         chosen.push_back(
             static_cast<std::size_t>(std::max_element(distance.begin(), distance.end()) - distance.begin()));
     }
@@ -139,7 +146,8 @@ std::vector<double> azimuths_around(const Views& views) {
 std::vector<double> elevations_above(const Views& views) {
     std::vector<double> elevations;
     for (const auto& view : views.views)
-        elevations.push_back(std::asin(dot(normalized(view.camera.centre() - views.orbit.centre), normalized(views.orbit.up))));
+        elevations.push_back(std::asin(
+            dot(normalized(view.camera.centre() - views.orbit.centre), normalized(views.orbit.up))));
     return elevations;
 }
 
@@ -155,11 +163,10 @@ std::optional<double> parse_front(const std::string& text, const std::string& op
     double value = 0;
     try {
         value = std::stod(text, &used);
-    } catch (const std::exception&) {
-        used = 0;
-    }
+    } catch (const std::exception&) { used = 0; }
     if (used == 0 || used != text.size() || !std::isfinite(value))
-        throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not an angle", "give " + option + " in degrees, for example 0, or none");
+        throw Error(ErrorCode::InvalidArgument, "\"" + text + "\" is not an angle",
+                    "give " + option + " in degrees, for example 0, or none");
     return value * Degree;
 }
 
@@ -180,7 +187,7 @@ Views choose_views(const Scene& scene, const EditRecipe& recipe, const GivenCame
     render.up = recipe.job.up;
     render.elevation = recipe.request.elevation;
     const OrbitParameters orbit = scene_orbit(scene, render);
-    if (given.cameras.size() < LeastViewpoints) return views_on(orbit, recipe);   // bookmarks, not a capture
+    if (given.cameras.size() < LeastViewpoints) return views_on(orbit, recipe);  // bookmarks, not a capture
     Views views;
     views.orbit = orbit;
     views.views = farthest_views(given.cameras, static_cast<std::size_t>(recipe.request.views));

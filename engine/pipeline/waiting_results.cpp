@@ -9,7 +9,9 @@ namespace {
 
 std::size_t bytes_of(const PendingResult& result) {
     const auto& set = result.set;
-    return (set.position().size() + set.log_scale().size() + set.rotation().size() + set.opacity_logit().size() + set.sh().size()) * sizeof(float);
+    return (set.position().size() + set.log_scale().size() + set.rotation().size() +
+            set.opacity_logit().size() + set.sh().size()) *
+           sizeof(float);
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 namespace gse::pipeline {
 
-/// What edits of one scene came to with different seeds or settings. One of them is shown, and is what operators mean, until all are set
-/// aside for another edit to run.
+/// What edits of one scene came to with different seeds or settings. One of them is shown, and is what
+/// operators mean, until all are set aside for another edit to run.
 class WaitingResults {
 public:
     /// Of splats, in all that are kept: the oldest are dropped where there are more.
@@ -29,8 +29,11 @@ public:
     std::optional<std::size_t> shown() const { return shown_; }
     /// Whether the one that is shown is what the last edit came to.
     bool shows_last() const { return shown_ && *shown_ + 1 == results_.size(); }
-    /// The one that is shown, or will be once the edit that it was set aside for has come to nothing; null without any.
-    const PendingResult* kept() const { return results_.empty() ? nullptr : &results_[shown_.value_or(back_)]; }
+    /// The one that is shown, or will be once the edit that it was set aside for has come to nothing; null
+    /// without any.
+    const PendingResult* kept() const {
+        return results_.empty() ? nullptr : &results_[shown_.value_or(back_)];
+    }
     /// No result has it.
     std::uint64_t next_seed() const;
 

@@ -19,9 +19,11 @@ namespace {
 /// Adds up what a guidance takes.
 class MeteredViews final : public edit::ViewGuidance {
 public:
-    MeteredViews(std::unique_ptr<edit::ViewGuidance> views, PlaceCost& cost) : views_(std::move(views)), cost_(cost) {}
+    MeteredViews(std::unique_ptr<edit::ViewGuidance> views, PlaceCost& cost)
+        : views_(std::move(views)), cost_(cost) {}
 
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) override {
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
+                            const JobControl& job) override {
         const auto before = network_use();
         const edit::StageTimer timer(cost_.seconds);
         auto targets = views_->edit(views, input, job);
@@ -37,18 +39,23 @@ private:
 
 }  // namespace
 
-Workplace::Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job, Segmenters segmenters)
-    : scene_(std::move(scene)), model_(std::move(model)), painter_(0, job.rasterizer), segmenters_(std::move(segmenters)) {
+Workplace::Workplace(Scene scene, std::shared_ptr<neural::TextToImage> model, const JobParameters& job,
+                     Segmenters segmenters)
+    : scene_(std::move(scene)), model_(std::move(model)), painter_(0, job.rasterizer),
+      segmenters_(std::move(segmenters)) {
     if (!segmenters_.clicks) segmenters_.clicks = edit::make_default_segmenter();
     const auto statistics = compute_statistics(scene_.gaussians);
     if (statistics.visible_rows == 0)
-        throw Error(ErrorCode::InvalidArgument, "the scene has no splat that can be seen", "open another scene", job.scene);
+        throw Error(ErrorCode::InvalidArgument, "the scene has no splat that can be seen",
+                    "open another scene", job.scene);
     drawn_ = drawable(scene_.gaussians);
     unusable_ = statistics.nan_rows + statistics.infinite_rows;
     if (unusable_ > 0)
-        log::warning("{} of {} splats hold values that cannot be drawn ({} NaN, {} infinite or absurd); they stay as they are "
-                     "and count nowhere",
-                     unusable_, statistics.count, statistics.nan_rows, statistics.infinite_rows);
+        log::warning(
+            "{} of {} splats hold values that cannot be drawn ({} NaN, {} infinite or absurd); they stay as "
+            "they are "
+            "and count nowhere",
+            unusable_, statistics.count, statistics.nan_rows, statistics.infinite_rows);
     scene_.info.up = parse_up(job.up, scene_.info);
 }
 
@@ -76,7 +83,8 @@ void Workplace::ask(const neural::AttentionParameters& attention) {
     if (attention_ == nullptr) ask_anew(attention);
 }
 
-std::optional<edit::PlainGround> Workplace::ground(const std::string& sentence, const std::vector<View>& views) {
+std::optional<edit::PlainGround> Workplace::ground(const std::string& sentence,
+                                                   const std::vector<View>& views) {
     if (!model_->knows_scene()) return std::nullopt;
     if (!ground_) {
         ground_ = edit::ground_below(sentence, drawn_, views, scene_.info.up, painter_.rasterizer());
@@ -85,28 +93,34 @@ std::optional<edit::PlainGround> Workplace::ground(const std::string& sentence, 
     return *ground_ ? edit::plain_ground(sentence, (*ground_)->standing, scene_.info.up) : std::nullopt;
 }
 
-edit::LocateTools Workplace::tools(const Views& views, const std::optional<edit::PlainGround>& ground, const JobControl& control) {
+edit::LocateTools Workplace::tools(const Views& views, const std::optional<edit::PlainGround>& ground,
+                                   const JobControl& control) {
     const std::string key = ground ? fmt::format("{} on {}", views.key, ground->ground) : views.key;
     if (renders_key_ != key) renders_ = {};
     renders_key_ = key;
-    edit::LocateTools tools{painter_.rasterizer(), *attention_, segmenters_.clicks.get(), segmenters_.words.get(), control};
+    edit::LocateTools tools{painter_.rasterizer(), *attention_, segmenters_.clicks.get(),
+                            segmenters_.words.get(), control};
     tools.memory = &renders_;
     tools.threads = &threads_;
     tools.recognition = recognition_.get();
     if (watch_)
-        tools.seen = [watch = watch_, list = &views.views](std::size_t view, const edit::ViewEvidence& evidence) {
+        tools.seen = [watch = watch_, list = &views.views](std::size_t view,
+                                                           const edit::ViewEvidence& evidence) {
             watch((*list)[view], view, list->size(), evidence);
         };
     return tools;
 }
 
-std::vector<Image> Workplace::pictures(const std::vector<View>& views, const raster::Settings& settings, const std::optional<edit::PlainGround>& ground,
+std::vector<Image> Workplace::pictures(const std::vector<View>& views, const raster::Settings& settings,
+                                       const std::optional<edit::PlainGround>& ground,
                                        const JobControl& control) {
     std::vector<Image> pictures;
     for (const auto& view : views) {
         if (control.stop_requested()) throw Error(ErrorCode::Cancelled, "the search was stopped");
         const auto& painted = painter_.paint(drawn_.spans(), view.camera, settings);
-        pictures.push_back(ground ? edit::before_plain(*ground, view.camera, painted.colour, painted.alpha, settings.background) : painted.colour);
+        pictures.push_back(ground ? edit::before_plain(*ground, view.camera, painted.colour, painted.alpha,
+                                                       settings.background)
+                                  : painted.colour);
         for (auto& value : pictures.back().data) value = std::clamp(value, 0.0f, 1.0f);
     }
     return pictures;

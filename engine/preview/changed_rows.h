@@ -13,12 +13,15 @@ struct RowRun {
     std::size_t begin = 0, end = 0;
 };
 
-/// Appends the rows of [begin, end) whose position, scale, rotation or opacity differ in any bit; both sets have one size. Runs
-/// are in order; a few equal rows between two runs are sent along, which is cheaper than another copy.
-void changed_geometry(const GaussianSet& from, const GaussianSet& to, std::size_t begin, std::size_t end, std::vector<RowRun>& runs);
+/// Appends the rows of [begin, end) whose position, scale, rotation or opacity differ in any bit; both sets
+/// have one size. Runs are in order; a few equal rows between two runs are sent along, which is cheaper than
+/// another copy.
+void changed_geometry(const GaussianSet& from, const GaussianSet& to, std::size_t begin, std::size_t end,
+                      std::vector<RowRun>& runs);
 
 /// The same for the coefficients; both sets have one degree.
-void changed_harmonics(const GaussianSet& from, const GaussianSet& to, std::size_t begin, std::size_t end, std::vector<RowRun>& runs);
+void changed_harmonics(const GaussianSet& from, const GaussianSet& to, std::size_t begin, std::size_t end,
+                       std::vector<RowRun>& runs);
 
 /// Whether so many rows differ (estimated from a sample) that looking for them costs more than it saves.
 bool mostly_changed(const GaussianSet& from, const GaussianSet& to);

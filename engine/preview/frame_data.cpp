@@ -10,7 +10,7 @@ namespace {
 
 constexpr double FrustumMargin = 0.3;  // of half the field of view, as in engine/raster/conventions.h
 constexpr float BlurPx2 = 0.3f;
-constexpr float SmallestNear = 1e-6f;   // where nothing lies before the camera
+constexpr float SmallestNear = 1e-6f;  // where nothing lies before the camera
 constexpr std::size_t LongestLoop = 50000;
 constexpr std::uint32_t BinRounds = 16;
 constexpr std::uint64_t MatrixBudget = 8u << 20;  // entries
@@ -25,7 +25,8 @@ std::array<float, 2> ratio_limits(double size, double focal, double centre) {
 
 }  // namespace
 
-shaders::FrameData frame_data(const FrameRequest& request, const Division& division, const SceneFacts& facts) {
+shaders::FrameData frame_data(const FrameRequest& request, const Division& division,
+                              const SceneFacts& facts) {
     const Camera& camera = request.camera;
     const Display& display = request.display;
     shaders::FrameData data{};
@@ -36,15 +37,15 @@ shaders::FrameData frame_data(const FrameRequest& request, const Division& divis
         data.rotation[row] = {to_float(camera.rotation(row, 0)), to_float(camera.rotation(row, 1)),
                               to_float(camera.rotation(row, 2)), eye_high[row]};
     data.eye_rest = {to_float(eye.x - eye_high[0]), to_float(eye.y - eye_high[1]),
-                     to_float(eye.z - eye_high[2]),
-                     near_plane > 0 ? near_plane : SmallestNear};
+                     to_float(eye.z - eye_high[2]), near_plane > 0 ? near_plane : SmallestNear};
     data.lens = {to_float(camera.fx), to_float(camera.fy), to_float(camera.cx), to_float(camera.cy)};
     const auto x = ratio_limits(camera.width, camera.fx, camera.cx),
                y = ratio_limits(camera.height, camera.fy, camera.cy);
     data.ratio = {x[0], x[1], y[0], y[1]};
     double scale = display.depth_scale;
     if (!(scale > 0)) scale = std::max(length(facts.middle - eye), 1e-12);
-    data.optics = {BlurPx2, std::numeric_limits<float>::max(), std::max(display.centre_radius_px, 0.6f), to_float(scale)};
+    data.optics = {BlurPx2, std::numeric_limits<float>::max(), std::max(display.centre_radius_px, 0.6f),
+                   to_float(scale)};
     data.background = {display.background[0], display.background[1], display.background[2],
                        display.transparent ? 1.0f : 0.0f};
     const bool tints = display.mode <= Mode::Ellipsoids || display.mode == Mode::Labels;

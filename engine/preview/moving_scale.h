@@ -6,12 +6,13 @@
 
 namespace gse::preview {
 
-/// Follows the time frames take: part of it does not depend on the picture's size and other work comes and goes, so no
-/// formula knows the right size. Few sizes, so that pictures keep their memory.
+/// Follows the time frames take: part of it does not depend on the picture's size and other work comes and
+/// goes, so no formula knows the right size. Few sizes, so that pictures keep their memory.
 class MovingScale {
 public:
-    static constexpr double FrameMs = 50;   // a frame may take this long while the camera moves
-    static constexpr int Levels = 10;       // each has 0.71 of the pixels of the one before; the last one 0.21 of the width
+    static constexpr double FrameMs = 50;  // a frame may take this long while the camera moves
+    static constexpr int Levels =
+        10;  // each has 0.71 of the pixels of the one before; the last one 0.21 of the width
 
     /// Share of the full width and height.
     double scale() const { return std::exp2(-0.25 * level_); }

@@ -42,32 +42,19 @@ struct Code {
 
 Code code_of(Pass pass) {
     switch (pass) {
-        case Pass::Project:
-            return {shaders::project_comp, "project"};
-        case Pass::SortCount:
-            return {shaders::sort_count_comp, "sort count"};
-        case Pass::SortScatter:
-            return {shaders::sort_scatter_comp, "sort scatter"};
-        case Pass::ScanBlocks:
-            return {shaders::scan_blocks_comp, "scan blocks"};
-        case Pass::ScanSpine:
-            return {shaders::scan_spine_comp, "scan spine"};
-        case Pass::ScanApply:
-            return {shaders::scan_apply_comp, "scan apply"};
-        case Pass::BinCount:
-            return {shaders::bin_count_comp, "bin count"};
-        case Pass::BinPlace:
-            return {shaders::bin_place_comp, "bin place"};
-        case Pass::BinCountLimited:
-            return {shaders::bin_count_limited_comp, "bin count in rounds"};
-        case Pass::BinPlaceLimited:
-            return {shaders::bin_place_limited_comp, "bin place in rounds"};
-        case Pass::Blend:
-            return {shaders::blend_comp, "blend"};
-        case Pass::BlendPortable:
-            return {shaders::blend_portable_comp, "blend portable"};
-        case Pass::Pick:
-            return {shaders::pick_comp, "pick"};
+        case Pass::Project: return {shaders::project_comp, "project"};
+        case Pass::SortCount: return {shaders::sort_count_comp, "sort count"};
+        case Pass::SortScatter: return {shaders::sort_scatter_comp, "sort scatter"};
+        case Pass::ScanBlocks: return {shaders::scan_blocks_comp, "scan blocks"};
+        case Pass::ScanSpine: return {shaders::scan_spine_comp, "scan spine"};
+        case Pass::ScanApply: return {shaders::scan_apply_comp, "scan apply"};
+        case Pass::BinCount: return {shaders::bin_count_comp, "bin count"};
+        case Pass::BinPlace: return {shaders::bin_place_comp, "bin place"};
+        case Pass::BinCountLimited: return {shaders::bin_count_limited_comp, "bin count in rounds"};
+        case Pass::BinPlaceLimited: return {shaders::bin_place_limited_comp, "bin place in rounds"};
+        case Pass::Blend: return {shaders::blend_comp, "blend"};
+        case Pass::BlendPortable: return {shaders::blend_portable_comp, "blend portable"};
+        case Pass::Pick: return {shaders::pick_comp, "pick"};
     }
     return {};
 }

@@ -53,8 +53,9 @@ void Uploader::replace(const std::shared_ptr<vulkan::Buffer>& target, std::span<
 
 void Uploader::flush(vk::CommandBuffer commands) {
     if (copies_.empty()) return;
-    vulkan::compute_barrier(commands);   // what is replaced may still be read
-    for (const auto& copy : copies_) commands.copyBuffer(copy.staging.handle(), copy.target->handle(), copy.parts);
+    vulkan::compute_barrier(commands);  // what is replaced may still be read
+    for (const auto& copy : copies_)
+        commands.copyBuffer(copy.staging.handle(), copy.target->handle(), copy.parts);
     copies_.clear();
     vulkan::compute_barrier(commands);
 }
@@ -72,7 +73,8 @@ void SceneStore::begin(const GaussianSet& set) {
     pending->set = set;
     pending->geometry = !same_geometry(set, shown_);
     pending->harmonics = !same_harmonics(set, shown_);
-    const bool comparable = set.size() > 0 && set.size() == shown_.size() && set.sh_degree() == shown_.sh_degree();
+    const bool comparable =
+        set.size() > 0 && set.size() == shown_.size() && set.sh_degree() == shown_.sh_degree();
     pending->patches = comparable && !mostly_changed(shown_, set);
     if (pending->patches) {
         pending->chunks = chunks_;
@@ -120,7 +122,8 @@ void SceneStore::pack_slice(Pending& pending) {
     }
 }
 
-void SceneStore::patch_slice(Pending& pending, const SceneChunk& chunk, std::size_t begin, std::size_t end) const {
+void SceneStore::patch_slice(Pending& pending, const SceneChunk& chunk, std::size_t begin,
+                             std::size_t end) const {
     std::vector<RowRun> runs;
     const auto append = [&](std::vector<Patch>& patches, std::uint64_t row_bytes, auto&& pack) {
         Patch& patch = patches[begin / ChunkRows];
@@ -140,16 +143,19 @@ void SceneStore::patch_slice(Pending& pending, const SceneChunk& chunk, std::siz
     if (!pending.harmonics) return;
     runs.clear();
     changed_harmonics(shown_, pending.set, begin, end, runs);
-    append(pending.harmonics_patches, harmonics_texels(pending.set.sh_degree()) * 8, [&](const RowRun& run, std::byte* out) {
-        pack_harmonics(pending.set, run.begin, run.end, reinterpret_cast<std::uint16_t*>(out));
-    });
+    append(pending.harmonics_patches, harmonics_texels(pending.set.sh_degree()) * 8,
+           [&](const RowRun& run, std::byte* out) {
+               pack_harmonics(pending.set, run.begin, run.end, reinterpret_cast<std::uint16_t*>(out));
+           });
 }
 
 void SceneStore::apply_patches(Pending& pending) {
     for (std::size_t i = 0; i < pending.chunks.size(); ++i) {
         auto &geometry = pending.geometry_patches[i], &harmonics = pending.harmonics_patches[i];
-        if (!geometry.parts.empty()) uploader_.replace(pending.chunks[i].geometry, geometry.bytes, std::move(geometry.parts));
-        if (!harmonics.parts.empty()) uploader_.replace(pending.chunks[i].harmonics, harmonics.bytes, std::move(harmonics.parts));
+        if (!geometry.parts.empty())
+            uploader_.replace(pending.chunks[i].geometry, geometry.bytes, std::move(geometry.parts));
+        if (!harmonics.parts.empty())
+            uploader_.replace(pending.chunks[i].harmonics, harmonics.bytes, std::move(harmonics.parts));
     }
 }
 

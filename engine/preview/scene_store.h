@@ -77,9 +77,9 @@ private:
     struct Pending {
         GaussianSet set;
         std::vector<SceneChunk> chunks;
-        bool geometry = false, harmonics = false;  // to be packed
-        bool patches = false;                      // into the buffers shown, changed rows only
-        std::vector<Patch> geometry_patches, harmonics_patches;   // per chunk
+        bool geometry = false, harmonics = false;                // to be packed
+        bool patches = false;                                    // into the buffers shown, changed rows only
+        std::vector<Patch> geometry_patches, harmonics_patches;  // per chunk
         std::size_t next_row = 0;
     };
     std::shared_ptr<vulkan::Buffer> make(std::uint64_t bytes, vk::Format format, const char* name);

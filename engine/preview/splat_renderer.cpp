@@ -53,13 +53,8 @@ struct SplatRenderer::State {
     };
 
     State(vulkan::Device& on, const RendererOptions& wanted)
-        : device(on),
-          options(wanted),
-          passes(on.shared<Passes>()),
-          workspace(on, passes),
-          clock(on),
-          recorder(on, passes, workspace, clock),
-          store(on, wanted.always_stage),
+        : device(on), options(wanted), passes(on.shared<Passes>()), workspace(on, passes), clock(on),
+          recorder(on, passes, workspace, clock), store(on, wanted.always_stage),
           portable(wanted.portable_blend || !on.info().is_cpu || on.info().subgroup_size != 8 ||
                    !on.info().subgroup_vote_and_broadcast) {}
 
@@ -126,8 +121,8 @@ FramePlan SplatRenderer::State::plan_frame(const FrameRequest& request, bool lig
     result.has_values = has_values;
     result.store_depth = request.want_depth;
     result.store_light = light;
-    result.data = frame_data(request, result.division,
-                             {middle, fitted_near_plane(store.shown().spans(), camera)});
+    result.data =
+        frame_data(request, result.division, {middle, fitted_near_plane(store.shown().spans(), camera)});
     return result;
 }
 
@@ -237,10 +232,8 @@ void SplatRenderer::set_values(std::shared_ptr<const std::vector<float>> values)
     state_->values = std::move(values);
     const auto& wanted = state_->values;
     const std::size_t rows = state_->store.shown().size();
-    if (!wanted || wanted->size() == rows)
-        state_->apply_values();
-    else if (!state_->store.busy())
-        GSE_CHECK_EQ(wanted->size(), rows);
+    if (!wanted || wanted->size() == rows) state_->apply_values();
+    else if (!state_->store.busy()) GSE_CHECK_EQ(wanted->size(), rows);
 }
 
 void SplatRenderer::finish_upload() {

@@ -62,8 +62,8 @@ public:
     SplatRenderer(const SplatRenderer&) = delete;
     SplatRenderer& operator=(const SplatRenderer&) = delete;
 
-    /// Begins an upload; only arrays that are other objects than those shown are sent, and of them, where the number of rows stays
-    /// and most rows do, only the rows that differ. Replaces an upload under way.
+    /// Begins an upload; only arrays that are other objects than those shown are sent, and of them, where the
+    /// number of rows stays and most rows do, only the rows that differ. Replaces an upload under way.
     void upload(const GaussianSet& set);
     /// One number per row for labels, maps and tints; null = none. Waits for an upload of that size if one is
     /// under way.
@@ -87,11 +87,11 @@ public:
     const Camera& camera() const;  // of the picture
     std::size_t size() const;      // rows of the scene shown
     std::uint64_t device_bytes() const;
-    std::uint64_t sent_bytes() const;   // of scenes and values, to the device, so far
+    std::uint64_t sent_bytes() const;  // of scenes and values, to the device, so far
     FrameStatistics statistics();
 
-    /// Newest depth that has arrived: [H,W,1] mean camera z of what is seen, weighted by alpha T; 0 where alpha is under
-    /// 0.3. Null at first.
+    /// Newest depth that has arrived: [H,W,1] mean camera z of what is seen, weighted by alpha T; 0 where
+    /// alpha is under 0.3. Null at first.
     std::shared_ptr<const Image> depth();
 
     // The following submit their own commands and wait: for tests, export and clicks.

@@ -22,8 +22,7 @@ struct Round {
     double wall = 0, cpu = 0;
 };
 
-template <class Work>
-void time_into(Round& round, const Work& work) {
+template <class Work> void time_into(Round& round, const Work& work) {
     const double wall = wall_seconds(), cpu = processor_seconds();
     work();
     round.wall += wall_seconds() - wall;
@@ -74,7 +73,8 @@ void compare_with_plain(const Case& c, Rasterizer& fast, RasterBench& result) {
                                       relative_error(found.sh, expected.sh)});
 }
 
-std::size_t drawn_rows(Rasterizer& rasterizer, const GaussianSpans& gaussians, const Camera& camera, const Image& d_colour) {
+std::size_t drawn_rows(Rasterizer& rasterizer, const GaussianSpans& gaussians, const Camera& camera,
+                       const Image& d_colour) {
     ForwardOutput image;
     Gradients gradients;
     rasterizer.forward(gaussians, camera, {}, image);
@@ -84,10 +84,12 @@ std::size_t drawn_rows(Rasterizer& rasterizer, const GaussianSpans& gaussians, c
 
 void compare_with_floor(const KernelFloor& floor, std::size_t sh_floats, RasterBench& result) {
     result.kernel_floor = floor;
-    result.floor = floor_step(floor, {result.splats, sh_floats, result.pairs_reached, result.block_pairs, result.threads});
+    result.floor = floor_step(
+        floor, {result.splats, sh_floats, result.pairs_reached, result.block_pairs, result.threads});
     const double least = result.floor.total();
     result.floor_ratio = (result.forward.wall_min_ms + result.backward.wall_min_ms) / least;
-    result.floor_ratio_cpu = (result.forward.cpu_min_ms + result.backward.cpu_min_ms) / result.threads / least;
+    result.floor_ratio_cpu =
+        (result.forward.cpu_min_ms + result.backward.cpu_min_ms) / result.threads / least;
 }
 
 }  // namespace
@@ -105,13 +107,15 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     Gradients gradients;
     std::optional<FloorBench> floor;
     if (settings.floor && rasterizer->name() != "cuda")
-        floor.emplace(choose_kernels(settings.kernels.c_str()), pool, drawn_rows(*rasterizer, gaussians, views.back(), d_colour));
+        floor.emplace(choose_kernels(settings.kernels.c_str()), pool,
+                      drawn_rows(*rasterizer, gaussians, views.back(), d_colour));
     std::vector<Round> forward, backward;
     std::size_t pairs = 0, blended = 0, reached = 0, blocks = 0;
     for (int round = -1; round < settings.repetitions; ++round) {  // round -1 warms up
         Round forward_round, backward_round;
         pairs = blended = reached = blocks = 0;
-        if (floor) {   // which empties the caches: a loop of pictures, as an edit is one, finds its own buffers in them
+        if (floor) {  // which empties the caches: a loop of pictures, as an edit is one, finds its own
+                      // buffers in them
             floor->measure();
             rasterizer->forward(gaussians, views.back(), image_settings, image);
             rasterizer->backward(d_colour, {}, 0, gradients);
@@ -144,7 +148,9 @@ RasterBench bench_raster(const GaussianSpans& gaussians, std::span<const Camera>
     result.blended_pairs = blended / views.size();
     result.pairs_reached = reached / views.size();
     result.block_pairs = blocks / views.size();
-    if (floor) compare_with_floor(floor->least(), static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3, result);
+    if (floor)
+        compare_with_floor(floor->least(),
+                           static_cast<std::size_t>(sh_coefficient_count(gaussians.sh_degree)) * 3, result);
     const double per_pair = 1e6 / std::max(1.0, static_cast<double>(result.blended_pairs));
     result.forward_ns_per_pair = result.forward.cpu_min_ms * per_pair;
     result.backward_ns_per_pair = result.backward.cpu_min_ms * per_pair;

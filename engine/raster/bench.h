@@ -27,11 +27,11 @@ struct RasterBench {
     double forward_ms = 0, backward_ms = 0;          // medians of the wall time
     double forward_min_ms = 0, backward_min_ms = 0;  // minima of the wall time
     BenchTimes forward, backward;
-    std::size_t pairs = 0;           // tile-Gaussian pairs per view (mean)
-    std::size_t blended_pairs = 0;   // pixel-Gaussian pairs blended per view (mean)
+    std::size_t pairs = 0;                           // tile-Gaussian pairs per view (mean)
+    std::size_t blended_pairs = 0;                   // pixel-Gaussian pairs blended per view (mean)
     std::size_t pairs_reached = 0, block_pairs = 0;  // ForwardOutput, per view (mean)
-    // With BenchSettings::floor: the floor in the same run (floor_bench.h), and forward plus backward over it: least wall time,
-    // and least processor time divided by the threads.
+    // With BenchSettings::floor: the floor in the same run (floor_bench.h), and forward plus backward over
+    // it: least wall time, and least processor time divided by the threads.
     KernelFloor kernel_floor;
     FloorStep floor;
     double floor_ratio = 0, floor_ratio_cpu = 0;

@@ -13,8 +13,7 @@ namespace gse::raster {
 namespace {
 
 /// Grows, never shrinks: what was allocated once stays.
-template <class Values>
-void at_least(Values& values, std::size_t count) {
+template <class Values> void at_least(Values& values, std::size_t count) {
     if (values.size() < count) values.resize(count);
 }
 
@@ -28,10 +27,8 @@ void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const 
     view_ = viewpoint_of(camera, with_depth_range(settings, gaussians, camera), gaussians.sh_degree);
     tile_columns_ = static_cast<std::size_t>((camera.width + TileSize - 1) / TileSize);
     tile_rows_ = static_cast<std::size_t>((camera.height + TileSize - 1) / TileSize);
-    source_ = {
-        gaussians.position.data(), gaussians.log_scale.data(),
-        gaussians.rotation.data(), gaussians.opacity_logit.data(),
-        gaussians.sh.data(),       sh_floats(gaussians)};
+    source_ = {gaussians.position.data(),      gaussians.log_scale.data(), gaussians.rotation.data(),
+               gaussians.opacity_logit.data(), gaussians.sh.data(),        sh_floats(gaussians)};
     values_ = values.empty() ? nullptr : values.data();
     colours_ = colours == Colours::Wanted || !has_finite_colours(gaussians);
     rows_ = gaussians.size;
@@ -57,7 +54,8 @@ void Frame::prepare(const GaussianSpans& gaussians, const Camera& camera, const 
 
 /// Looks at every coefficient at most once for as long as it is remembered.
 bool Frame::has_finite_colours(const GaussianSpans& gaussians) {
-    constexpr float largest = 1e30f;   // a colour is the sum of 16 coefficients, none counting more than 3 times
+    constexpr float largest =
+        1e30f;  // a colour is the sum of 16 coefficients, none counting more than 3 times
     constexpr std::size_t piece = std::size_t{1} << 16;
     if (gaussians.colours_known == nullptr) return false;
     ColoursKnown known = *gaussians.colours_known;
@@ -65,7 +63,8 @@ bool Frame::has_finite_colours(const GaussianSpans& gaussians) {
         std::atomic<bool> all{true};
         pool_.parallel_for(gaussians.sh.size(), piece, [&](std::size_t begin, std::size_t end, unsigned) {
             bool small = true;
-            for (std::size_t i = begin; i < end; ++i) small &= std::abs(gaussians.sh[i]) <= largest;   // no NaN is
+            for (std::size_t i = begin; i < end; ++i)
+                small &= std::abs(gaussians.sh[i]) <= largest;  // no NaN is
             if (!small) all = false;
         });
         known = all ? ColoursKnown::Finite : ColoursKnown::NotAll;
@@ -146,7 +145,8 @@ void Frame::fill_tiles() {
     at_least(tile_places_, 2 * groups_ * tile_count());
     at_least(entries_, chunk_pairs_[chunk_count()]);
     if (groups_ > 1)
-        pool_.parallel_for(groups_, 1, [this](std::size_t begin, std::size_t, unsigned) { count_group(begin); });
+        pool_.parallel_for(groups_, 1,
+                           [this](std::size_t begin, std::size_t, unsigned) { count_group(begin); });
     count_tiles();
     pool_.parallel_for(2 * groups_, 1, [this](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t part = begin; part < end; ++part)
@@ -155,10 +155,9 @@ void Frame::fill_tiles() {
     });
 }
 
-/// Calls body(record, its range, its pairs) for places of the depth order from `begin` to `end`, which may be the lower one. What a
-/// record points to is asked for some records before.
-template <class Body>
-void Frame::for_places(std::size_t begin, std::size_t end, const Body& body) const {
+/// Calls body(record, its range, its pairs) for places of the depth order from `begin` to `end`, which may be
+/// the lower one. What a record points to is asked for some records before.
+template <class Body> void Frame::for_places(std::size_t begin, std::size_t end, const Body& body) const {
     constexpr std::size_t far_ahead = 48, ahead = 20;
     const std::size_t count = begin < end ? end - begin : begin - end;
     const auto record_at = [&](std::size_t i) { return order_[begin < end ? begin + i : begin - 1 - i]; };
@@ -176,9 +175,10 @@ void Frame::for_places(std::size_t begin, std::size_t end, const Body& body) con
 void Frame::count_group(std::size_t group) {
     std::uint32_t* counts = first_places(group);
     std::fill_n(counts, tile_count(), 0u);
-    for_places(part_begin(2 * group), part_begin(2 * group + 2), [&](std::uint32_t, const PairRange& range, const TilePair* pair) {
-        for (std::uint32_t i = 0; i < range.count; ++i) ++counts[pair[i].tile];
-    });
+    for_places(part_begin(2 * group), part_begin(2 * group + 2),
+               [&](std::uint32_t, const PairRange& range, const TilePair* pair) {
+                   for (std::uint32_t i = 0; i < range.count; ++i) ++counts[pair[i].tile];
+               });
 }
 
 /// Counts -> the tiles' ranges and those of each group in them.
@@ -191,7 +191,8 @@ void Frame::count_tiles() {
             std::uint32_t count = first_places(group)[tile];
             if (groups_ == 1) {
                 count = 0;
-                for (unsigned worker = 0; worker < pool_.thread_count(); ++worker) count += tile_counts_[worker * tile_count() + tile];
+                for (unsigned worker = 0; worker < pool_.thread_count(); ++worker)
+                    count += tile_counts_[worker * tile_count() + tile];
             }
             first_places(group)[tile] = static_cast<std::uint32_t>(place);
             place += count;
@@ -203,18 +204,22 @@ void Frame::count_tiles() {
 
 void Frame::place_part(std::size_t part) {
     std::uint32_t* places = first_places(part / 2);
-    for_places(part_begin(part), part_begin(part + 1), [&](std::uint32_t record, const PairRange& range, const TilePair* pair) {
-        const std::uint32_t slot = chunk_pairs_[record / ChunkRows] + range.begin;
-        for (std::uint32_t i = 0; i < range.count; ++i) entries_[places[pair[i].tile]++] = {record, slot + i, pair[i].blocks};
-    });
+    for_places(part_begin(part), part_begin(part + 1),
+               [&](std::uint32_t record, const PairRange& range, const TilePair* pair) {
+                   const std::uint32_t slot = chunk_pairs_[record / ChunkRows] + range.begin;
+                   for (std::uint32_t i = 0; i < range.count; ++i)
+                       entries_[places[pair[i].tile]++] = {record, slot + i, pair[i].blocks};
+               });
 }
 
 void Frame::place_back_part(std::size_t part) {
     std::uint32_t* places = last_places(part / 2);
-    for_places(part_begin(part + 1), part_begin(part), [&](std::uint32_t record, const PairRange& range, const TilePair* pair) {
-        const std::uint32_t slot = chunk_pairs_[record / ChunkRows] + range.begin;
-        for (std::uint32_t i = 0; i < range.count; ++i) entries_[--places[pair[i].tile]] = {record, slot + i, pair[i].blocks};
-    });
+    for_places(part_begin(part + 1), part_begin(part),
+               [&](std::uint32_t record, const PairRange& range, const TilePair* pair) {
+                   const std::uint32_t slot = chunk_pairs_[record / ChunkRows] + range.begin;
+                   for (std::uint32_t i = 0; i < range.count; ++i)
+                       entries_[--places[pair[i].tile]] = {record, slot + i, pair[i].blocks};
+               });
 }
 
 std::size_t Frame::tile_chunk() const {
@@ -268,7 +273,8 @@ void Frame::assign_slots(std::size_t first_row) {
     first_slot_ = end;
     if (chunk < chunk_count()) {
         const auto active = active_records(chunk);
-        first_slot_ = active.empty() ? chunk_pairs_[chunk + 1] : chunk_pairs_[chunk] + ranges(active.data())->begin;
+        first_slot_ =
+            active.empty() ? chunk_pairs_[chunk + 1] : chunk_pairs_[chunk] + ranges(active.data())->begin;
     }
     at_least(slots_, std::max<std::size_t>(end - first_slot_, 1));
 }

@@ -14,7 +14,8 @@
 
 namespace gse::raster {
 
-/// More than this is not found in a cache again: it is written straight to memory, and its lines need not be fetched before.
+/// More than this is not found in a cache again: it is written straight to memory, and its lines need not be
+/// fetched before.
 inline constexpr std::size_t CachedBytes = std::size_t{32} << 20;
 
 /// Slot of partial gradients of one (tile, Gaussian).
@@ -26,11 +27,11 @@ class Frame {
 public:
     Frame(const Kernels& kernels, ThreadPool& pool);
 
-    /// Projects, sorts and bins. `values`, if not empty, replaces the colours (in the red channel). Colours that are not wanted are
-    /// left out where all are known to be finite: what is drawn is the same.
+    /// Projects, sorts and bins. `values`, if not empty, replaces the colours (in the red channel). Colours
+    /// that are not wanted are left out where all are known to be finite: what is drawn is the same.
     enum class Colours { Wanted, Unwanted };
-    void prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings, std::span<const float> values = {},
-                 Colours colours = Colours::Wanted);
+    void prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
+                 std::span<const float> values = {}, Colours colours = Colours::Wanted);
 
     /// Blends every tile into lights(); calls finish(tile, scratch) on the thread that did it.
     using TileDone = void (*)(void* context, std::size_t tile, const BlendScratch& scratch);
@@ -40,8 +41,7 @@ public:
     void assign_slots(std::size_t first_row);
 
     /// Calls body(begin, end, worker) over tiles.
-    template <class Body>
-    void for_tiles(const Body& body) {
+    template <class Body> void for_tiles(const Body& body) {
         pool_.parallel_for(tile_count(), tile_chunk(), body);
     }
 
@@ -67,15 +67,20 @@ public:
     std::uint32_t first_active() const { return first_active_; }
     PartialSlot* slots() { return slots_.data(); }
     std::uint32_t first_slot() const { return first_slot_; }
-    bool slots_past_caches() const { return (pair_count() - first_slot_) * sizeof(PartialSlot) > CachedBytes; }
+    bool slots_past_caches() const {
+        return (pair_count() - first_slot_) * sizeof(PartialSlot) > CachedBytes;
+    }
 
     /// Rows are handled in chunks; a chunk's records lie densely at its first row's place.
     static constexpr std::size_t ChunkRows = 1024;
     std::size_t chunk_count() const { return (rows_ + ChunkRows - 1) / ChunkRows; }
     /// The chunk's records from first_active() on.
     std::span<const Record> active_records(std::size_t chunk) const;
-    /// The pairs of a record; places are in its chunk's, and slot_shift(chunk) makes slots of them (modulo 2^32).
-    const PairRange* ranges(const Record* record) const { return ranges_.data() + (record - records_.data()); }
+    /// The pairs of a record; places are in its chunk's, and slot_shift(chunk) makes slots of them (modulo
+    /// 2^32).
+    const PairRange* ranges(const Record* record) const {
+        return ranges_.data() + (record - records_.data());
+    }
     std::uint32_t slot_shift(std::size_t chunk) const { return chunk_pairs_[chunk] - first_slot_; }
 
 private:
@@ -83,8 +88,7 @@ private:
     void project_chunk(std::size_t chunk);
     void bin_chunk(std::size_t chunk, unsigned worker);
     void collect_keys();
-    template <class Body>
-    void for_places(std::size_t begin, std::size_t end, const Body& body) const;
+    template <class Body> void for_places(std::size_t begin, std::size_t end, const Body& body) const;
     void count_group(std::size_t group);
     void place_part(std::size_t part);
     void place_back_part(std::size_t part);
@@ -104,19 +108,20 @@ private:
     bool colours_ = true;
     std::size_t rows_ = 0, drawn_ = 0, unusable_ = 0, tile_columns_ = 0, tile_rows_ = 0;
 
-    LineVector<Record> records_;      // [rows], with gaps
-    LineVector<std::uint32_t> keys_;  // [rows], with the same gaps
-    LineVector<PairRange> ranges_;    // [rows], with the same gaps; places in the chunk's pairs
+    LineVector<Record> records_;                // [rows], with gaps
+    LineVector<std::uint32_t> keys_;            // [rows], with the same gaps
+    LineVector<PairRange> ranges_;              // [rows], with the same gaps; places in the chunk's pairs
     std::vector<std::vector<TilePair>> pairs_;  // per chunk
     std::vector<std::uint32_t> chunk_pairs_;    // [chunks + 1]: pairs of all chunks before
     std::vector<std::size_t> chunk_drawn_, chunk_unusable_, chunk_first_;
-    std::span<const std::uint32_t> order_;      // records front to back
-    // The depth order is put into the tiles in parts, in parallel. Two of them are a group: the first fills the group's places in
-    // a tile from the front, the second from the back, so that only groups have to be counted. One group needs no counting at all.
+    std::span<const std::uint32_t> order_;  // records front to back
+    // The depth order is put into the tiles in parts, in parallel. Two of them are a group: the first fills
+    // the group's places in a tile from the front, the second from the back, so that only groups have to be
+    // counted. One group needs no counting at all.
     std::size_t groups_ = 1;
-    std::vector<std::uint32_t> tile_counts_;    // [threads][tiles], from binning
-    std::vector<std::uint32_t> tile_places_;    // [groups][2][tiles]: counts, then first places and ends
-    std::vector<std::size_t> offsets_;          // [tiles + 1] into entries_
+    std::vector<std::uint32_t> tile_counts_;  // [threads][tiles], from binning
+    std::vector<std::uint32_t> tile_places_;  // [groups][2][tiles]: counts, then first places and ends
+    std::vector<std::size_t> offsets_;        // [tiles + 1] into entries_
     LineVector<TileEntry> entries_;
     LineVector<TileLight> lights_;
     std::vector<BlendScratch> scratch_;  // per worker

@@ -96,7 +96,8 @@ public:
     }
 
     std::unique_ptr<ViewSession> view_session(std::size_t views, std::size_t budget_bytes) override {
-        return std::make_unique<FastViewSession>(FastParts{*this, kernels_, pool_, side_frame_}, views, budget_bytes);
+        return std::make_unique<FastViewSession>(FastParts{*this, kernels_, pool_, side_frame_}, views,
+                                                 budget_bytes);
     }
 
     std::string name() const override { return kernels_.name; }
@@ -107,7 +108,8 @@ private:
     }
 
     void write_tile(std::size_t tile, const BlendScratch& scratch) {
-        raster::write_tile(tile_area(frame_, tile), AllBlocks, frame_.light(tile), scratch, slope_.background, *output_);
+        raster::write_tile(tile_area(frame_, tile), AllBlocks, frame_.light(tile), scratch, slope_.background,
+                           *output_);
     }
 
     void write_values(std::size_t tile) {
@@ -117,12 +119,22 @@ private:
         });
     }
 
-    BackwardJob tile_job(Frame& frame, std::size_t tile, const std::uint32_t* ends, BackwardScratch& scratch) const {
+    BackwardJob tile_job(Frame& frame, std::size_t tile, const std::uint32_t* ends,
+                         BackwardScratch& scratch) const {
         const auto list = frame.entries(tile);
-        return {{frame.records(), nullptr, NoSplit}, list.data(),        static_cast<std::uint32_t>(list.size()),
-                frame.tile_x(tile), frame.tile_y(tile), frame.width(),
-                frame.height(),     ends,               &scratch,           frame.first_active(),
-                frame.first_slot(), frame.slots()->sums, frame.slots_past_caches()};
+        return {{frame.records(), nullptr, NoSplit},
+                list.data(),
+                static_cast<std::uint32_t>(list.size()),
+                frame.tile_x(tile),
+                frame.tile_y(tile),
+                frame.width(),
+                frame.height(),
+                ends,
+                &scratch,
+                frame.first_active(),
+                frame.first_slot(),
+                frame.slots()->sums,
+                frame.slots_past_caches()};
     }
 
     void backward_tile(std::size_t tile, BackwardScratch& scratch) {
@@ -170,9 +182,7 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool) {
-    return make_fast_rasterizer(pool, "");
-}
+std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool) { return make_fast_rasterizer(pool, ""); }
 
 std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool, const std::string& kernels) {
     return std::make_unique<FastRasterizer>(choose_kernels(kernels.c_str()), pool);

@@ -1,4 +1,5 @@
-// What the fast rasterizer and its view sessions do with the pixels of a tile and with the gradients of a chunk of rows.
+// What the fast rasterizer and its view sessions do with the pixels of a tile and with the gradients of a
+// chunk of rows.
 #pragma once
 
 #include <algorithm>
@@ -22,9 +23,9 @@ inline TileArea tile_area(const Frame& frame, std::size_t tile) {
 }
 
 /// Calls body(local, pixel) for the pixels of a tile that are inside the image; local is in block order.
-template <class Body>
-void for_pixels(const TileArea& tile, Body&& body) {
-    const int columns = std::min(TileSize, tile.width - tile.x), rows = std::min(TileSize, tile.height - tile.y);
+template <class Body> void for_pixels(const TileArea& tile, Body&& body) {
+    const int columns = std::min(TileSize, tile.width - tile.x),
+              rows = std::min(TileSize, tile.height - tile.y);
     for (int y = 0; y < rows; ++y) {
         const std::size_t line = static_cast<std::size_t>(tile.y + y) * static_cast<std::size_t>(tile.width) +
                                  static_cast<std::size_t>(tile.x);
@@ -45,17 +46,19 @@ struct PictureSlope {
 void resize_output(int width, int height, ForwardOutput& output);
 
 /// Writes the blended pixels of these blocks of a tile into the picture.
-void write_tile(const TileArea& tile, std::uint32_t blocks, const TileLight& light, const BlendScratch& scratch,
-                const std::array<float, 3>& background, ForwardOutput& output);
+void write_tile(const TileArea& tile, std::uint32_t blocks, const TileLight& light,
+                const BlendScratch& scratch, const std::array<float, 3>& background, ForwardOutput& output);
 
 /// Fills what the backward kernel reads of a tile: slopes, and the light weighted with them.
-void load_slopes(const TileArea& tile, const TileLight& light, const PictureSlope& slope, BackwardScratch& scratch);
+void load_slopes(const TileArea& tile, const TileLight& light, const PictureSlope& slope,
+                 BackwardScratch& scratch);
 
 /// Gives every array of the gradients its size; nothing is cleared.
 void resize_gradients(std::size_t rows, std::size_t sh_stride, Gradients& output);
 
-/// Gradients of the rows of one chunk from `first_row` on, whose partial sums are in the frame's slots; zeros for those that
-/// were not drawn. Index 0 of the output belongs to `first_row`.
-void write_gradients(const Kernels& kernels, Frame& frame, std::size_t chunk, std::size_t first_row, Gradients& output);
+/// Gradients of the rows of one chunk from `first_row` on, whose partial sums are in the frame's slots; zeros
+/// for those that were not drawn. Index 0 of the output belongs to `first_row`.
+void write_gradients(const Kernels& kernels, Frame& frame, std::size_t chunk, std::size_t first_row,
+                     Gradients& output);
 
 }  // namespace gse::raster

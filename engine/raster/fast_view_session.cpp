@@ -1,12 +1,12 @@
-// Continuing a prepared view. The same kernels see the same entries in the same order as when every row is prepared, less what
-// cannot matter, so every bit of the result is the same. In forward and backward, blocks of 4x4 pixels that no changing row
-// reaches are left out altogether.
+// Continuing a prepared view. The same kernels see the same entries in the same order as when every row is
+// prepared, less what cannot matter, so every bit of the result is the same. In forward and backward, blocks
+// of 4x4 pixels that no changing row reaches are left out altogether.
 //
-// Runs of fixed rows before the first and behind the last changing row of a tile are walked, not kept as composited pixels
-// (method E4). What lies behind depends on where the transmittance is cut, so it would not be exact; in the gradient, what lies
-// before would be rounded otherwise. For nothing, both would save an iteration at most 4 of
-// the 17 hundredths of the full work that it costs with 5 % of 500k rows changing at 512x512 (the exact one of them, the front
-// in forward(), at most 1), and take 7 KB a tile.
+// Runs of fixed rows before the first and behind the last changing row of a tile are walked, not kept as
+// composited pixels (method E4). What lies behind depends on where the transmittance is cut, so it would not
+// be exact; in the gradient, what lies before would be rounded otherwise. For nothing, both would save an
+// iteration at most 4 of the 17 hundredths of the full work that it costs with 5 % of 500k rows changing at
+// 512x512 (the exact one of them, the front in forward(), at most 1), and take 7 KB a tile.
 #include "engine/raster/fast_view_session.h"
 
 #include <algorithm>
@@ -17,14 +17,13 @@
 namespace gse::raster {
 namespace {
 
-// Of the rows; larger shares leave too little to save (measured at 512x512 with 500k rows: 0.58 of the full work with a quarter
-// of them, 0.90 with 0.6).
+// Of the rows; larger shares leave too little to save (measured at 512x512 with 500k rows: 0.58 of the full
+// work with a quarter of them, 0.90 with 0.6).
 constexpr double MostChanging = 0.6;
 // Views whose near plane or reach asks for more are rendered in full.
 constexpr int MostPreparations = 8;
 
-template <class T>
-void grow_to(std::vector<T>& values, std::size_t count) {
+template <class T> void grow_to(std::vector<T>& values, std::size_t count) {
     if (values.size() < count) values.resize(count);
 }
 
@@ -33,12 +32,9 @@ GaussianSpans rows_of(const GaussianSpans& all, std::size_t begin, std::size_t e
         return values.subspan(begin * stride, (end - begin) * stride);
     };
     const std::size_t sh = static_cast<std::size_t>(sh_coefficient_count(all.sh_degree)) * 3;
-    return {end - begin,
-            all.sh_degree,
-            part(all.position, 3),
-            part(all.log_scale, 3),
-            part(all.rotation, 4),
-            part(all.opacity_logit, 1),
+    return {end - begin,           all.sh_degree,
+            part(all.position, 3), part(all.log_scale, 3),
+            part(all.rotation, 4), part(all.opacity_logit, 1),
             part(all.sh, sh)};
 }
 
@@ -58,8 +54,8 @@ ViewSessionWork FastViewSession::work() const {
     return work;
 }
 
-void FastViewSession::forward(std::size_t view, const GaussianSpans& gaussians, std::size_t first_row, const Camera& camera,
-                              const Settings& settings, ForwardOutput& output) {
+void FastViewSession::forward(std::size_t view, const GaussianSpans& gaussians, std::size_t first_row,
+                              const Camera& camera, const Settings& settings, ForwardOutput& output) {
     GSE_CHECK(view < views_.size());
     GSE_CHECK(first_row <= gaussians.size);
     if (first_row != first_row_ || gaussians.sh_degree != sh_degree_) forget();
@@ -80,7 +76,8 @@ void FastViewSession::forward(std::size_t view, const GaussianSpans& gaussians, 
 }
 
 /// False when the view has to be rendered in full.
-bool FastViewSession::continue_view(View& view, const GaussianSpans& gaussians, const Camera& camera, const Settings& settings) {
+bool FastViewSession::continue_view(View& view, const GaussianSpans& gaussians, const Camera& camera,
+                                    const Settings& settings) {
     Settings settled = with_depth_range(settings, gaussians, camera);
     frame_.prepare(rows_of(gaussians, first_row_, gaussians.size), camera, settled);
     find_live_tiles();
@@ -89,20 +86,23 @@ bool FastViewSession::continue_view(View& view, const GaussianSpans& gaussians, 
     cache_ = &view.cache;
     place_records();
     resize_output(camera.width, camera.height, *output_);
-    parts_.pool.parallel_for(output_->blended.size(), 16384,
-                             [this](std::size_t begin, std::size_t end, unsigned) { copy_picture(begin, end); });
+    parts_.pool.parallel_for(
+        output_->blended.size(), 16384,
+        [this](std::size_t begin, std::size_t end, unsigned) { copy_picture(begin, end); });
     grow_to(blend_scratch_, parts_.pool.thread_count());
-    parts_.pool.parallel_for(live_.size(), frame_.tile_chunk(), [this](std::size_t begin, std::size_t end, unsigned worker) {
-        for (std::size_t i = begin; i < end; ++i) blend_tile(i, blend_scratch_[worker]);
-    });
+    parts_.pool.parallel_for(live_.size(), frame_.tile_chunk(),
+                             [this](std::size_t begin, std::size_t end, unsigned worker) {
+                                 for (std::size_t i = begin; i < end; ++i)
+                                     blend_tile(i, blend_scratch_[worker]);
+                             });
     output_->pairs = 0;
     for (const LiveTile& live : live_) output_->pairs += live.count;
     output_->dropped_rows = cache_->picture().dropped_rows + frame_.unusable_rows();
     return true;
 }
 
-bool FastViewSession::prepare_view(View& view, const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
-                                   float near_plane) {
+bool FastViewSession::prepare_view(View& view, const GaussianSpans& gaussians, const Camera& camera,
+                                   const Settings& settings, float near_plane) {
     std::size_t others = 0;
     for (const View& other : views_)
         if (&other != &view) others += other.cache.bytes();
@@ -110,11 +110,12 @@ bool FastViewSession::prepare_view(View& view, const GaussianSpans& gaussians, c
     const std::size_t budget = budget_ > others ? budget_ - others : 0;
     try {
         if (view.cache.times_prepared() < MostPreparations &&
-            view.cache.prepare({fixed, camera, settings, near_plane, live_numbers_, budget}, parts_.working_frame)) {
+            view.cache.prepare({fixed, camera, settings, near_plane, live_numbers_, budget},
+                               parts_.working_frame)) {
             ++work_.prepared;
             return true;
         }
-    } catch (const std::bad_alloc&) {   // less memory than the budget says
+    } catch (const std::bad_alloc&) {  // less memory than the budget says
     }
     view.cache.clear();
     view.full = true;
@@ -131,7 +132,8 @@ void FastViewSession::find_live_tiles() {
     }
 }
 
-/// Merges both depth orders; at equal depth the fixed rows, whose numbers are smaller, come first. Also lays out the lists.
+/// Merges both depth orders; at equal depth the fixed rows, whose numbers are smaller, come first. Also lays
+/// out the lists.
 void FastViewSession::place_records() {
     grow_to(places_, frame_.row_count());
     const std::span<const float> depths = cache_->depths();
@@ -150,7 +152,8 @@ void FastViewSession::place_records() {
     grow_to(lights_, live_.size());
 }
 
-/// The tile's list of both, front to back, without the fixed rows that share no block with a row that changes.
+/// The tile's list of both, front to back, without the fixed rows that share no block with a row that
+/// changes.
 void FastViewSession::merge(LiveTile& live) {
     const auto split = static_cast<std::uint32_t>(cache_->records().size());
     const auto changing = frame_.entries(live.tile);
@@ -188,23 +191,25 @@ void FastViewSession::blend_tile(std::size_t index, BlendScratch& scratch) {
     LiveTile& live = live_[index];
     merge(live);
     const TileArea area = tile_area(frame_, live.tile);
-    const BlendJob job = {{cache_->records().data(), frame_.records(), static_cast<std::uint32_t>(cache_->records().size())},
-                          merged_.data() + live.begin,
-                          live.count,
-                          live.blocks,
-                          area.x,
-                          area.y,
-                          area.width,
-                          area.height,
-                          &lights_[index],
-                          &scratch};
+    const BlendJob job = {
+        {cache_->records().data(), frame_.records(), static_cast<std::uint32_t>(cache_->records().size())},
+        merged_.data() + live.begin,
+        live.count,
+        live.blocks,
+        area.x,
+        area.y,
+        area.width,
+        area.height,
+        &lights_[index],
+        &scratch};
     parts_.kernels.blend(job);
     write_tile(area, live.blocks, lights_[index], scratch, slope_.background, *output_);
 }
 
 void FastViewSession::backward(const Image& d_colour, const Image& d_alpha, Gradients& output) {
     if (cache_ == nullptr) return parts_.rasterizer.backward(d_colour, d_alpha, first_row_, output);
-    const std::size_t pixels = static_cast<std::size_t>(frame_.width()) * static_cast<std::size_t>(frame_.height());
+    const std::size_t pixels =
+        static_cast<std::size_t>(frame_.width()) * static_cast<std::size_t>(frame_.height());
     GSE_CHECK_EQ(d_colour.data.size(), pixels * 3);
     GSE_CHECK(d_alpha.data.empty() || d_alpha.data.size() == pixels);
     slope_.colour = &d_colour;
@@ -213,9 +218,11 @@ void FastViewSession::backward(const Image& d_colour, const Image& d_alpha, Grad
     resize_gradients(frame_.row_count(), frame_.source().sh_stride, output);
     frame_.assign_slots(0);
     grow_to(backward_scratch_, parts_.pool.thread_count());
-    parts_.pool.parallel_for(live_.size(), frame_.tile_chunk(), [this](std::size_t begin, std::size_t end, unsigned worker) {
-        for (std::size_t i = begin; i < end; ++i) backward_tile(i, backward_scratch_[worker]);
-    });
+    parts_.pool.parallel_for(live_.size(), frame_.tile_chunk(),
+                             [this](std::size_t begin, std::size_t end, unsigned worker) {
+                                 for (std::size_t i = begin; i < end; ++i)
+                                     backward_tile(i, backward_scratch_[worker]);
+                             });
     parts_.pool.parallel_for(frame_.chunk_count(), 2, [this](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) write_gradients(parts_.kernels, frame_, i, 0, *gradients_);
     });

@@ -1,5 +1,5 @@
-// The innermost loops and memory, timed on all threads at once: threads that share a core or a memory bus slow each other down, and
-// so they do in the rasterizer.
+// The innermost loops and memory, timed on all threads at once: threads that share a core or a memory bus
+// slow each other down, and so they do in the rasterizer.
 #include "engine/raster/floor_bench.h"
 
 #include <algorithm>
@@ -15,12 +15,19 @@
 namespace gse::raster {
 namespace {
 
-constexpr double LoopSeconds = 2e-3;                      // of each loop and measurement, at least
-constexpr std::uint32_t LoopRounds = 256;                 // between two looks at the clock, which cost as much as hundreds of records
-constexpr std::size_t MemoryBytes = std::size_t{128} << 20;   // more than caches hold
-constexpr double StartSeconds = 0.05;                     // how long the threads wait for each other
+constexpr double LoopSeconds = 2e-3;  // of each loop and measurement, at least
+constexpr std::uint32_t LoopRounds =
+    256;  // between two looks at the clock, which cost as much as hundreds of records
+constexpr std::size_t MemoryBytes = std::size_t{128} << 20;  // more than caches hold
+constexpr double StartSeconds = 0.05;                        // how long the threads wait for each other
 
-enum Loop : std::size_t { Forward, Mask, Gather, SceneGather, Backward };   // one Backward for each of FloorBlocks
+enum Loop : std::size_t {
+    Forward,
+    Mask,
+    Gather,
+    SceneGather,
+    Backward
+};  // one Backward for each of FloorBlocks
 constexpr std::size_t LoopCount = Backward + FloorBlocks.size();
 
 /// Splats of some pixels within a few tiles, so faint that light is left behind all of them.
@@ -36,13 +43,14 @@ void fill_records(FloorScratch& scratch) {
         record.log2_opacity = -6.5f;
         for (float& channel : record.colour) channel = static_cast<float>(random.uniform(0, 1));
         record.depth = 1;
-        record.half_width = record.half_height = 5;   // sqrt(log2(255 o)) / l1, about
+        record.half_width = record.half_height = 5;  // sqrt(log2(255 o)) / l1, about
         record.lean = -1;
         record.row = i;
     }
     for (std::uint32_t pixel = 0; pixel < TilePixels; ++pixel) {
         scratch.backward.remaining[pixel] = static_cast<float>(random.uniform(0, 1));
-        for (auto& channel : scratch.backward.d_colour) channel[pixel] = static_cast<float>(random.uniform(-1, 1));
+        for (auto& channel : scratch.backward.d_colour)
+            channel[pixel] = static_cast<float>(random.uniform(-1, 1));
     }
 }
 
@@ -68,7 +76,7 @@ std::vector<TileEntry> any_entries(std::size_t records, std::uint64_t seed) {
 double loop_ns(const Kernels& kernels, FloorLoop loop, FloorScratch& scratch, const Record* records = nullptr,
                const TileEntry* entries = nullptr) {
     FloorJob job = {loop, LoopRounds, &scratch, records, entries, 0};
-    kernels.floor(job);   // into the cache
+    kernels.floor(job);  // into the cache
     std::size_t work = 0;
     double seconds = 0;
     for (const double start = thread_seconds(); seconds < LoopSeconds; seconds = thread_seconds() - start) {
@@ -97,7 +105,7 @@ FloorStep floor_step(const KernelFloor& kernel, const FloorWork& work) {
     if (work.pairs > 0) step.backward_blend = blocks * at_blocks(kernel, blocks / pairs) * ms;
     step.lists = 2 * pairs * (kernel.mask_ns + kernel.scene_gather_ns) * ms;
     step.lists_in_cache = 2 * pairs * (kernel.mask_ns + kernel.gather_ns) * ms;
-    constexpr std::size_t other_floats = 11;   // position, scale, rotation, opacity
+    constexpr std::size_t other_floats = 11;  // position, scale, rotation, opacity
     const auto bytes = static_cast<double>(work.splats * (other_floats + work.sh_floats) * sizeof(float));
     if (kernel.gigabytes_per_second > 0) step.parameters = bytes * 1e-6 / kernel.gigabytes_per_second;
     step.parameter_gradients = 2 * step.parameters;
@@ -105,19 +113,20 @@ FloorStep floor_step(const KernelFloor& kernel, const FloorWork& work) {
 }
 
 struct FloorBench::Data {
-    std::vector<FloorScratch> scratch;   // per item of the loops, of which each thread takes one
-    std::vector<Record> records;         // as many as the scene's
-    std::vector<std::vector<TileEntry>> entries;   // per item
+    std::vector<FloorScratch> scratch;            // per item of the loops, of which each thread takes one
+    std::vector<Record> records;                  // as many as the scene's
+    std::vector<std::vector<TileEntry>> entries;  // per item
     std::vector<std::array<double, LoopCount>> ns;
     std::vector<std::uint32_t> memory;
-    std::vector<double> rates;           // bytes per nanosecond
-    std::vector<std::uint32_t> sums;     // read, so that reading is not left out
+    std::vector<double> rates;        // bytes per nanosecond
+    std::vector<std::uint32_t> sums;  // read, so that reading is not left out
     std::atomic<unsigned> waiting{0};
 
     /// Returns when all threads are here, or have been waited for long enough.
     void start_together(unsigned threads) {
         ++waiting;
-        for (const double start = wall_seconds(); waiting < threads && wall_seconds() - start < StartSeconds;) {}
+        for (const double start = wall_seconds();
+             waiting < threads && wall_seconds() - start < StartSeconds;) {}
     }
 };
 
@@ -127,7 +136,8 @@ FloorBench::FloorBench(const Kernels& kernels, ThreadPool& pool, std::size_t rec
     data_->scratch.resize(threads);
     for (FloorScratch& scratch : data_->scratch) fill_records(scratch);
     data_->records.resize(std::max<std::size_t>(records, 1));
-    for (std::size_t i = 0; i < data_->records.size(); ++i) data_->records[i] = data_->scratch[0].records[i % FloorRecords];
+    for (std::size_t i = 0; i < data_->records.size(); ++i)
+        data_->records[i] = data_->scratch[0].records[i % FloorRecords];
     for (unsigned i = 0; i < threads; ++i) data_->entries.push_back(any_entries(data_->records.size(), i));
     data_->ns.resize(threads);
     data_->rates.resize(threads);
@@ -147,7 +157,8 @@ void FloorBench::measure_loops() {
         ns[Forward] = loop_ns(kernels_, FloorLoop::Forward, scratch);
         ns[Mask] = loop_ns(kernels_, FloorLoop::Mask, scratch);
         ns[Gather] = loop_ns(kernels_, FloorLoop::Gather, scratch);
-        ns[SceneGather] = loop_ns(kernels_, FloorLoop::SceneGather, scratch, data_->records.data(), data_->entries[item].data());
+        ns[SceneGather] = loop_ns(kernels_, FloorLoop::SceneGather, scratch, data_->records.data(),
+                                  data_->entries[item].data());
         for (std::size_t i = 0; i < FloorBlocks.size(); ++i) {
             fill_entries(scratch, FloorBlocks[i]);
             ns[Backward + i] = loop_ns(kernels_, FloorLoop::Backward, scratch);
@@ -165,7 +176,8 @@ void FloorBench::measure_bandwidth() {
         std::uint32_t sum = 0;
         for (std::size_t i = begin; i < end; ++i) sum += data_->memory[i];
         data_->sums[item] = sum;
-        data_->rates[item] = static_cast<double>((end - begin) * sizeof sum) * 1e-9 / (thread_seconds() - start);
+        data_->rates[item] =
+            static_cast<double>((end - begin) * sizeof sum) * 1e-9 / (thread_seconds() - start);
     });
 }
 

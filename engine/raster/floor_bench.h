@@ -1,6 +1,6 @@
-// The least time that forward and backward could take on this machine: the innermost loops alone with everything in the first
-// cache, the handling of lists with a record fetched per tile and Gaussian from where a scene's records lie, and memory
-// bandwidth, times the work that was counted.
+// The least time that forward and backward could take on this machine: the innermost loops alone with
+// everything in the first cache, the handling of lists with a record fetched per tile and Gaussian from where
+// a scene's records lie, and memory bandwidth, times the work that was counted.
 #pragma once
 
 #include <array>
@@ -13,33 +13,34 @@ namespace gse::raster {
 
 struct Kernels;
 
-/// Blocks per (tile, Gaussian) for which the backward loop is timed; its sums are added up once per (tile, Gaussian).
+/// Blocks per (tile, Gaussian) for which the backward loop is timed; its sums are added up once per (tile,
+/// Gaussian).
 inline constexpr std::array<int, 5> FloorBlocks{1, 2, 4, 8, 16};
 
 /// Nanoseconds of one thread while all of them run, and what they read from memory together.
 struct KernelFloor {
-    double forward_ns = 0;                                   // per 4x4 block and Gaussian
-    std::array<double, FloorBlocks.size()> backward_ns{};    // the same, by FloorBlocks
-    double mask_ns = 0;                                      // per tile and Gaussian
-    double gather_ns = 0;                                    // the same, of records in the first cache
-    double scene_gather_ns = 0;                              // the same, of as many records as the scene has, in any order
+    double forward_ns = 0;                                 // per 4x4 block and Gaussian
+    std::array<double, FloorBlocks.size()> backward_ns{};  // the same, by FloorBlocks
+    double mask_ns = 0;                                    // per tile and Gaussian
+    double gather_ns = 0;                                  // the same, of records in the first cache
+    double scene_gather_ns = 0;  // the same, of as many records as the scene has, in any order
     double gigabytes_per_second = 0;
 };
 
 /// Counted work of a picture.
 struct FloorWork {
     std::size_t splats = 0;
-    std::size_t sh_floats = 48;   // per splat
-    std::size_t pairs = 0, blocks = 0;   // ForwardOutput::pairs_reached, block_pairs
+    std::size_t sh_floats = 48;         // per splat
+    std::size_t pairs = 0, blocks = 0;  // ForwardOutput::pairs_reached, block_pairs
     unsigned threads = 1;
 };
 
 /// Milliseconds, the work shared evenly among the threads.
 struct FloorStep {
     double forward_blend = 0, backward_blend = 0;
-    double lists = 0;                                  // block masks and a scene's records, forward and backward
-    double lists_in_cache = 0;                         // the same if all records lay in the first cache; not in the total
-    double parameters = 0, parameter_gradients = 0;    // read once; read and written once
+    double lists = 0;           // block masks and a scene's records, forward and backward
+    double lists_in_cache = 0;  // the same if all records lay in the first cache; not in the total
+    double parameters = 0, parameter_gradients = 0;  // read once; read and written once
     double total() const { return forward_blend + backward_blend + lists + parameters + parameter_gradients; }
 };
 

@@ -73,7 +73,7 @@ GSE_INLINE void clear_slot(float* slot) {
 }
 
 #ifndef GSE_HAS_STREAMS
-constexpr bool HasStreams = false;   // these are never called
+constexpr bool HasStreams = false;  // these are never called
 GSE_INLINE void stream_columns(const float*, int, float* const*, int) {}
 GSE_INLINE void stream_sums(const F*, float*) {}
 GSE_INLINE void stream_zeros(float*, std::size_t) {}
@@ -102,28 +102,32 @@ GSE_INLINE void prefetch_entry(const BackwardJob& job, std::uint32_t i) {
     if (i >= job.count) return;
     const TileEntry& entry = job.entries[i];
     __builtin_prefetch(&record_at(job.records, entry.record));
-    if (entry.record >= job.first_record && !(HasStreams && job.past_caches)) __builtin_prefetch(slot_of(job, entry), 1);
+    if (entry.record >= job.first_record && !(HasStreams && job.past_caches))
+        __builtin_prefetch(slot_of(job, entry), 1);
 }
 
-GSE_INLINE void sum_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch, Sums& sums) {
+GSE_INLINE void sum_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid,
+                           BackwardScratch& scratch, Sums& sums) {
     for (F& sum : sums.s) sum = zero();
     M blended = none();
     for (std::uint32_t left = blocks; left != 0; left &= left - 1) {
         const int block = __builtin_ctz(left);
-        for (int sub = 0; sub < Subs; ++sub) backward_pixels(r, block * 16 + sub * F::W, grid, scratch, sums, blended);
+        for (int sub = 0; sub < Subs; ++sub)
+            backward_pixels(r, block * 16 + sub * F::W, grid, scratch, sums, blended);
     }
     sums.s[SumBlended] = only(blended, set(1.0f));
 }
 
-GSE_INLINE void pass_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid, BackwardScratch& scratch) {
+GSE_INLINE void pass_record(const Record& r, std::uint32_t blocks, const PixelGrid& grid,
+                            BackwardScratch& scratch) {
     for (std::uint32_t left = blocks; left != 0; left &= left - 1) {
         const int block = __builtin_ctz(left);
         for (int sub = 0; sub < Subs; ++sub) pass_pixels(r, block * 16 + sub * F::W, grid, scratch);
     }
 }
 
-/// Where each block has nothing more to say: behind its last active entry, and where its light ended. Blocks without an active
-/// entry say nothing at all.
+/// Where each block has nothing more to say: behind its last active entry, and where its light ended. Blocks
+/// without an active entry say nothing at all.
 struct Reach {
     std::uint32_t ends[16];
     std::uint32_t last_active;  // behind the last active entry of the tile
@@ -173,10 +177,8 @@ static void backward(const BackwardJob& job) {
         const TileEntry& entry = job.entries[i];
         const Record& r = record_at(job.records, entry.record);
         const std::uint32_t blocks = entry.blocks & alive;
-        if (entry.record < job.first_record)
-            pass_record(r, blocks, grid, *job.scratch);
-        else if (blocks == 0)
-            empty_slot(job, entry);
+        if (entry.record < job.first_record) pass_record(r, blocks, grid, *job.scratch);
+        else if (blocks == 0) empty_slot(job, entry);
         else {
             Sums sums;
             sum_record(r, blocks, grid, *job.scratch, sums);

@@ -1,6 +1,6 @@
 // Kernel part 3: which 16x16 tiles and which 4x4 blocks of them an ellipse touches, exactly: per band of four
-// pixel rows the ellipse's largest extent in x, on pixel centres. Most ellipses lie within 2x2 tiles: W of them are cut at once,
-// band by band. The others are cut one by one, W bands at once.
+// pixel rows the ellipse's largest extent in x, on pixel centres. Most ellipses lie within 2x2 tiles: W of
+// them are cut at once, band by band. The others are cut one by one, W bands at once.
 
 constexpr float BinMargin = 0.01f;  // pixels, so that rounding can never drop a pair
 constexpr int BandLanes = F::W < 4 ? 4 : F::W;
@@ -89,10 +89,14 @@ static bool bin_large(const Record& record, BinJob& job) {
     const Ellipse ellipse = {record.x,  record.y, -record.l2 * inverse_l1,        inverse_l1,
                              record.l3, reach,    record.half_height + BinMargin, record.lean};
     const float tall = ellipse.half_height + 0.5f, wide = record.half_width + BinMargin + 0.5f;
-    const int top = static_cast<int>(clamp_to(record.y - tall, static_cast<float>(job.height - 1))) / BlockSize;
-    const int bottom = static_cast<int>(clamp_to(record.y + tall, static_cast<float>(job.height - 1))) / BlockSize;
-    const int left = static_cast<int>(clamp_to(record.x - wide, static_cast<float>(job.width - 1))) / TileSize;
-    const int right = static_cast<int>(clamp_to(record.x + wide, static_cast<float>(job.width - 1))) / TileSize;
+    const int top =
+        static_cast<int>(clamp_to(record.y - tall, static_cast<float>(job.height - 1))) / BlockSize;
+    const int bottom =
+        static_cast<int>(clamp_to(record.y + tall, static_cast<float>(job.height - 1))) / BlockSize;
+    const int left =
+        static_cast<int>(clamp_to(record.x - wide, static_cast<float>(job.width - 1))) / TileSize;
+    const int right =
+        static_cast<int>(clamp_to(record.x + wide, static_cast<float>(job.width - 1))) / TileSize;
     const std::size_t most =
         static_cast<std::size_t>(bottom / 4 - top / 4 + 1) * static_cast<std::size_t>(right - left + 2);
     if (job.written + most > job.capacity) return false;
@@ -104,7 +108,8 @@ static bool bin_large(const Record& record, BinJob& job) {
     return true;
 }
 
-/// The blocks of W Gaussians in the 2x2 tiles from `tile` on, row by row; of those that do not fit there, `fits` says so.
+/// The blocks of W Gaussians in the 2x2 tiles from `tile` on, row by row; of those that do not fit there,
+/// `fits` says so.
 struct alignas(64) SmallFootprints {
     std::int32_t blocks[4][F::W];
     std::int32_t tile[F::W];
@@ -135,7 +140,8 @@ GSE_INLINE I band_bits(const RecordColumns& r, const SmallCut& c, F first_row) {
     return bit_range(hit, max(first, nought), min(last, set(7.0f)));
 }
 
-/// Four bands of eight columns -> the 4x4 blocks of the left tile; of the right one when they were shifted by four columns.
+/// Four bands of eight columns -> the 4x4 blocks of the left tile; of the right one when they were shifted by
+/// four columns.
 GSE_INLINE I tile_blocks(I bands) {
     I x = bands & set_int(0x0f0f0f0f);
     x = (x | shift_right<4>(x)) & set_int(0x00ff00ff);
@@ -201,11 +207,10 @@ static void bin(BinJob& job) {
         for (int lane = 0; lane < size; ++lane, ++job.begin) {
             const std::size_t before = job.written;
             if (before + 4 > job.capacity) return;
-            if (small.fits[lane] != 0)
-                emit_small(small, lane, tile_columns, job);
-            else if (!bin_large(job.records[job.begin], job))
-                return;
-            job.ranges[job.begin] = {static_cast<std::uint32_t>(before), static_cast<std::uint32_t>(job.written - before)};
+            if (small.fits[lane] != 0) emit_small(small, lane, tile_columns, job);
+            else if (!bin_large(job.records[job.begin], job)) return;
+            job.ranges[job.begin] = {static_cast<std::uint32_t>(before),
+                                     static_cast<std::uint32_t>(job.written - before)};
         }
     }
 }

@@ -54,10 +54,10 @@ GSE_INLINE Sample sample(const Record& r, F px, F py) {
     return s;
 }
 
-/// Runs a list over W pixels; returns how many of its entries it took until none of them let light through, or the length if some
-/// still do, which `alive` says.
-GSE_INLINE std::uint32_t blend_pixels(const BlendJob& job, const std::uint16_t* list, std::uint32_t length, int pixel,
-                                      const PixelGrid& grid, bool& alive) {
+/// Runs a list over W pixels; returns how many of its entries it took until none of them let light through,
+/// or the length if some still do, which `alive` says.
+GSE_INLINE std::uint32_t blend_pixels(const BlendJob& job, const std::uint16_t* list, std::uint32_t length,
+                                      int pixel, const PixelGrid& grid, bool& alive) {
     TileLight& light = *job.light;
     BlendScratch& scratch = *job.scratch;
     const F cut = set(CutTransmittance);
@@ -104,7 +104,8 @@ GSE_INLINE void gather_batch(const BlendJob& job, std::uint32_t begin, std::uint
     alignas(64) std::uint32_t blocks[BatchEntries];
     for (std::uint32_t i = 0; i < size; ++i) {
         const TileEntry& entry = job.entries[begin + i];
-        if (begin + i + 24 < job.count) __builtin_prefetch(&record_at(job.records, job.entries[begin + i + 24].record));
+        if (begin + i + 24 < job.count)
+            __builtin_prefetch(&record_at(job.records, job.entries[begin + i + 24].record));
         scratch.records[i] = record_at(job.records, entry.record);
         blocks[i] = entry.blocks;
     }
@@ -133,7 +134,8 @@ static void blend(const BlendJob& job) {
         store(scratch.depth + pixel, zero());
         for (int lane = 0; lane < F::W; ++lane) scratch.blended[pixel + lane] = 0;
     }
-    for (int block = 0; block < 16; ++block) light.ends[block] = (job.blocks >> block & 1u) != 0 ? job.count : 0u;
+    for (int block = 0; block < 16; ++block)
+        light.ends[block] = (job.blocks >> block & 1u) != 0 ? job.count : 0u;
     light.block_pairs = light.reached = 0;
     std::uint32_t alive = job.blocks;
     std::uint32_t lengths[16];
@@ -145,8 +147,8 @@ static void blend(const BlendJob& job) {
             bool any_alive = false;
             std::uint32_t taken = 0;
             for (int sub = 0; sub < Subs; ++sub) {
-                const std::uint32_t by_sub = blend_pixels(job, scratch.lists[block], lengths[block], block * 16 + sub * F::W,
-                                                          grid, any_alive);
+                const std::uint32_t by_sub = blend_pixels(job, scratch.lists[block], lengths[block],
+                                                          block * 16 + sub * F::W, grid, any_alive);
                 taken = by_sub > taken ? by_sub : taken;
             }
             light.block_pairs += taken;

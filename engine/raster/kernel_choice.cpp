@@ -37,13 +37,15 @@ const Kernels& choose_kernels(const char* name) {
         if (wanted.empty() && candidate.runs_here) return *candidate.kernels;
         if (wanted != candidate.kernels->name) continue;
         if (candidate.runs_here) return *candidate.kernels;
-        if (!named.empty()) throw Error(ErrorCode::Unsupported, "this processor does not run the kernels " + wanted);
+        if (!named.empty())
+            throw Error(ErrorCode::Unsupported, "this processor does not run the kernels " + wanted);
         throw Error(ErrorCode::Unsupported,
                     "GSE_CPU asks for " + wanted + ", which this processor does not have",
                     "unset GSE_CPU to let the program choose");
     }
     if (!named.empty())
-        throw Error(ErrorCode::InvalidArgument, "there are no kernels \"" + wanted + "\"", "use scalar, avx2 or avx512");
+        throw Error(ErrorCode::InvalidArgument, "there are no kernels \"" + wanted + "\"",
+                    "use scalar, avx2 or avx512");
     throw Error(ErrorCode::InvalidArgument, "GSE_CPU is \"" + wanted + "\"", "use scalar, avx2 or avx512");
 }
 

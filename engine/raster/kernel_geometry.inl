@@ -1,13 +1,14 @@
-// Kernel part 1: raw parameters of W Gaussians -> scale and opacity in float lanes (they are no more exact than the
-// parameters), everything from there up to the projected covariance in double lanes, and the spherical harmonics in float lanes.
-// Included inside the namespace of an instruction set.
+// Kernel part 1: raw parameters of W Gaussians -> scale and opacity in float lanes (they are no more exact
+// than the parameters), everything from there up to the projected covariance in double lanes, and the
+// spherical harmonics in float lanes. Included inside the namespace of an instruction set.
 
 constexpr double Ln2 = 0.69314718055994530942;
 constexpr double Log2E = 1.44269504088896340736;
 constexpr double Log2Of255 = 7.99435343685885793770;
 
 #ifndef GSE_SCALAR_MATH
-/// exp for |a| < 85: 2^n times a minimax polynomial on [-ln 2 / 2, ln 2 / 2] (Cephes, expf), relative error 9e-8.
+/// exp for |a| < 85: 2^n times a minimax polynomial on [-ln 2 / 2, ln 2 / 2] (Cephes, expf), relative error
+/// 9e-8.
 GSE_INLINE F exp_lanes(F a) {
     const F n = floor(fma(a, set(static_cast<float>(Log2E)), set(0.5f)));
     const F x = fnma(n, set(-2.12194440e-4f), fnma(n, set(0.693359375f), a));
@@ -20,7 +21,8 @@ GSE_INLINE F exp_lanes(F a) {
     return scale_by_power(fma(p, x * x, x) + set(1.0f), n);
 }
 
-/// log2 of a positive normal number: exponent plus the atanh series of the mantissa, absolute error 4e-7 on [1/255, 1].
+/// log2 of a positive normal number: exponent plus the atanh series of the mantissa, absolute error 4e-7 on
+/// [1/255, 1].
 GSE_INLINE F log2_lanes(F a) {
     F exponent = exponent_of(a), mantissa = mantissa_of(a);
     const M high = mantissa > set(1.41421356f);
@@ -37,8 +39,7 @@ GSE_INLINE F log2_lanes(F a) {
 #endif
 
 /// Asks for the cache lines of `count` floats, to be written if Write is 1.
-template <int Write>
-GSE_INLINE void prefetch_floats(const float* from, int count) {
+template <int Write> GSE_INLINE void prefetch_floats(const float* from, int count) {
     for (int k = 0; k < count; k += 16) __builtin_prefetch(from + k, Write);
     __builtin_prefetch(from + count - 1, Write);
 }
@@ -108,8 +109,10 @@ struct alignas(64) Shape {
 };
 
 GSE_INLINE void compute_shape(const RawBatch& raw, Shape& shape) {
-    for (int k = 0; k < 3; ++k)   // e^-80 is nothing
-        store(shape.scale[k], exp_lanes(max(min(load(raw.log_scale[k]), set(static_cast<float>(LogScaleLimit))), set(-80.0f))));
+    for (int k = 0; k < 3; ++k)  // e^-80 is nothing
+        store(
+            shape.scale[k],
+            exp_lanes(max(min(load(raw.log_scale[k]), set(static_cast<float>(LogScaleLimit))), set(-80.0f))));
     const F logit = min(max(load(raw.opacity_logit), set(-80.0f)), set(80.0f));
     const F rest = exp_lanes(zero() - logit), opacity = set(1.0f) / (set(1.0f) + rest);
     store(shape.opacity, opacity);
@@ -182,7 +185,8 @@ GSE_INLINE void flatten(const Viewpoint& view, Geometry& g) {
     g.determinant = fma(blur, g.raw_xx + g.raw_yy, fma(blur, blur, g.raw_determinant));
 }
 
-GSE_INLINE void compute_geometry(const RawBatch& raw, const Shape& shape, int at, const Viewpoint& view, Geometry& g) {
+GSE_INLINE void compute_geometry(const RawBatch& raw, const Shape& shape, int at, const Viewpoint& view,
+                                 Geometry& g) {
     place(raw, at, view, g);
     orient(raw, shape, at, g);
     flatten(view, g);

@@ -16,7 +16,8 @@ struct alignas(64) GradientBatch {
 /// Sums that are not finite (only overflow could make them so) count as nothing.
 GSE_INLINE void keep_finite_sums(GradientBatch& batch) {
     const F largest = set(3.40282346638528859812e38f);
-    for (int k = 0; k <= SumGvv; ++k) store(batch.sums[k], only(absolute(load(batch.sums[k])) <= largest, load(batch.sums[k])));
+    for (int k = 0; k <= SumGvv; ++k)
+        store(batch.sums[k], only(absolute(load(batch.sums[k])) <= largest, load(batch.sums[k])));
 }
 
 /// Into the range of float; NaN becomes 0.
@@ -37,7 +38,8 @@ GSE_INLINE CovarianceD covariance_gradient(const GradientBatch& batch, int at, c
     const D l1 = sqrt(setd(0.5 * Log2E) * g.yy / g.determinant), l2 = setd(0.0) - l1 * g.xy * per_yy;
     const D l3 = sqrt(setd(0.5 * Log2E) * per_yy);
     const D mu = widen(batch.sums[SumGu] + at), mv = widen(batch.sums[SumGv] + at);
-    const D uu = widen(batch.sums[SumGuu] + at), uv = widen(batch.sums[SumGuv] + at), vv = widen(batch.sums[SumGvv] + at);
+    const D uu = widen(batch.sums[SumGuu] + at), uv = widen(batch.sums[SumGuv] + at),
+            vv = widen(batch.sums[SumGvv] + at);
     centre[0] = setd(2 * Ln2) * l1 * mu;
     centre[1] = setd(2 * Ln2) * fma(l2, mu, l3 * mv);
     const D c = setd(2 * Ln2 * Ln2), cross = fma(l2, uu, l3 * uv);
@@ -68,8 +70,7 @@ GSE_INLINE void axes_gradient(const Geometry& g, const Vec3D* d_footprint, int a
         d_scale[1] = fma(d.y, g.rotation[r].y, d_scale[1]);
         d_scale[2] = fma(d.z, g.rotation[r].z, d_scale[2]);
     }
-    for (int k = 0; k < 3; ++k)
-        narrow(batch.log_scale[k] + at, into_float(d_scale[k] * g.scale[k]));
+    for (int k = 0; k < 3; ++k) narrow(batch.log_scale[k] + at, into_float(d_scale[k] * g.scale[k]));
 }
 
 GSE_INLINE void rotation_gradient(const Geometry& g, const Vec3D* d, int at, GradientBatch& batch) {
@@ -223,9 +224,11 @@ static void write_gradients(const GradientJob& job, GradientBatch& batch) {
         job.out.mean2d_norm[row] = batch.mean2d[lane];
         job.out.visible[row] = 1;
         sh[lane] = job.out.sh + row * job.source.sh_stride;
-        for (auto k = static_cast<std::size_t>(job.view->sh_count) * 3; k < job.source.sh_stride; ++k) sh[lane][k] = 0.0f;
+        for (auto k = static_cast<std::size_t>(job.view->sh_count) * 3; k < job.source.sh_stride; ++k)
+            sh[lane][k] = 0.0f;
     }
-    if (HasStreams && job.past_caches) return stream_columns(batch.coefficient_gradients[0], job.view->sh_count * 3, sh, batch.raw.size);
+    if (HasStreams && job.past_caches)
+        return stream_columns(batch.coefficient_gradients[0], job.view->sh_count * 3, sh, batch.raw.size);
     store_columns(batch.coefficient_gradients[0], job.view->sh_count * 3, sh, batch.raw.size);
 }
 
@@ -241,16 +244,19 @@ static void clear_rows(const GradientJob& job, std::size_t begin, std::size_t en
         job.out.mean2d_norm[row] = 0.0f;
         job.out.visible[row] = 0;
     }
-    if (HasStreams && job.past_caches) return stream_zeros(job.out.sh + (begin - job.out_row) * stride, (end - begin) * stride);
+    if (HasStreams && job.past_caches)
+        return stream_zeros(job.out.sh + (begin - job.out_row) * stride, (end - begin) * stride);
     __builtin_memset(job.out.sh + (begin - job.out_row) * stride, 0, (end - begin) * stride * sizeof(float));
 }
 
-/// Asks for the coefficients of a row, and for the places of its gradients and of those before it from `asked` on.
+/// Asks for the coefficients of a row, and for the places of its gradients and of those before it from
+/// `asked` on.
 GSE_INLINE void prefetch_gradients(const GradientJob& job, std::size_t row, std::size_t& asked) {
     const std::size_t stride = job.source.sh_stride;
     prefetch_floats<0>(job.source.sh + row * stride, job.view->sh_count * 3);
-    if (HasStreams && job.past_caches) return;   // nothing is fetched to be overwritten
-    for (; asked <= row; ++asked) prefetch_floats<1>(job.out.sh + (asked - job.out_row) * stride, static_cast<int>(stride));
+    if (HasStreams && job.past_caches) return;  // nothing is fetched to be overwritten
+    for (; asked <= row; ++asked)
+        prefetch_floats<1>(job.out.sh + (asked - job.out_row) * stride, static_cast<int>(stride));
 }
 
 static void finish_batch(const GradientJob& job, GradientBatch& batch) {
@@ -292,7 +298,8 @@ static void gradient(const GradientJob& job) {
         alignas(64) float sums[PartialStride];
         F total[PartialStride / F::W];
         for (F& part : total) part = zero();
-        const float* slot = job.partials + static_cast<std::size_t>(range->begin + job.slot_shift) * PartialStride;
+        const float* slot =
+            job.partials + static_cast<std::size_t>(range->begin + job.slot_shift) * PartialStride;
         for (std::uint32_t pair = 0; pair < range->count; ++pair, slot += PartialStride) {
             __builtin_prefetch(slot + 24 * PartialStride);
             for (int k = 0; k < PartialStride / F::W; ++k) total[k] = total[k] + load(slot + k * F::W);

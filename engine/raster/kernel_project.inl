@@ -1,4 +1,5 @@
-// Kernel part 2: rows -> records: ellipses in double lanes, then extents, and the colours of what is left, in float lanes.
+// Kernel part 2: rows -> records: ellipses in double lanes, then extents, and the colours of what is left, in
+// float lanes.
 
 /// Fields of W records, one after the other.
 struct alignas(64) RecordColumns {
@@ -16,11 +17,12 @@ struct alignas(64) RecordBatch {
     float direction[3][F::W];  // world, not normalised
     float dimming[F::W];       // of the opacity, by antialiasing
     const float* sh[F::W];
-    float* record[F::W];       // where each goes
+    float* record[F::W];  // where each goes
     int size;
 };
 
-/// Ellipse of one half batch: centre and Cholesky factor; of its extent, what finish_records needs. Returns the lanes that have one.
+/// Ellipse of one half batch: centre and Cholesky factor; of its extent, what finish_records needs. Returns
+/// the lanes that have one.
 GSE_INLINE MD project_records(const Viewpoint& view, const Geometry& g, int at, RecordBatch& out) {
     constexpr double longest = 1e36;  // px^2; squares beyond a float's range are as long as this
     if (view.antialiased) narrow(out.dimming + at, sqrt(g.raw_determinant / g.determinant));
@@ -38,7 +40,8 @@ GSE_INLINE MD project_records(const Viewpoint& view, const Geometry& g, int at, 
     narrow(out.direction[0] + at, g.offset.x);
     narrow(out.direction[1] + at, g.offset.y);
     narrow(out.direction[2] + at, g.offset.z);
-    return (g.z > setd(view.near_plane)) & (g.z < setd(view.far_plane)) & (g.determinant > setd(DeterminantCut));
+    return (g.z > setd(view.near_plane)) & (g.z < setd(view.far_plane)) &
+           (g.determinant > setd(DeterminantCut));
 }
 
 /// Opacity and extent of the batch; returns the lanes that may show in the picture.
@@ -48,7 +51,8 @@ GSE_INLINE M finish_records(const Viewpoint& view, const Shape& shape, RecordBat
     const F log2_opacity = min(log2_lanes(max(opacity, set(1e-30f))), zero());
     // alpha >= 1/255 <=> u^2 + v^2 <= log2(255 o); a little more, so that rounding can never drop a pair.
     const F reach = fma(log2_opacity + set(static_cast<float>(Log2Of255)), set(1.0f + 1e-4f), set(1e-4f));
-    const F squared = set(static_cast<float>(2 * Ln2)) * reach, x = load(out.columns.x), y = load(out.columns.y);
+    const F squared = set(static_cast<float>(2 * Ln2)) * reach, x = load(out.columns.x),
+            y = load(out.columns.y);
     const F half_width = sqrt(max(squared * load(out.columns.half_width), zero()));
     const F half_height = sqrt(max(squared * load(out.columns.half_height), zero()));
     store(out.columns.log2_opacity, log2_opacity);
@@ -56,14 +60,14 @@ GSE_INLINE M finish_records(const Viewpoint& view, const Shape& shape, RecordBat
     store(out.columns.half_width, half_width);
     store(out.columns.half_height, half_height);
     const F right = set(static_cast<float>(view.width)), bottom = set(static_cast<float>(view.height));
-    return (opacity >= set(static_cast<float>(AlphaCut))) & (x + half_width >= zero()) & (x - half_width <= right) &
-           (y + half_height >= zero()) & (y - half_height <= bottom);
+    return (opacity >= set(static_cast<float>(AlphaCut))) & (x + half_width >= zero()) &
+           (x - half_width <= right) & (y + half_height >= zero()) & (y - half_height <= bottom);
 }
 
-constexpr float UnusableMark = 1.0f;   // as log2(opacity), which is never positive
+constexpr float UnusableMark = 1.0f;  // as log2(opacity), which is never positive
 
-/// Colours of the batch, clamped at 0. Lanes without a finite one are marked and counted (so that what is drawn is the same whether
-/// colours or values are composited).
+/// Colours of the batch, clamped at 0. Lanes without a finite one are marked and counted (so that what is
+/// drawn is the same whether colours or values are composited).
 static void colour_batch(const ProjectJob& job, RecordBatch& batch) {
     const int sh_count = job.view->sh_count;
     alignas(64) float coefficients[48][F::W];
@@ -77,9 +81,11 @@ static void colour_batch(const ProjectJob& job, RecordBatch& batch) {
         for (int channel = 0; channel < 3; ++channel)
             colour[channel] = fma(basis[k], load(coefficients[k * 3 + channel]), colour[channel]);
     const F largest = set(3.40282346638528859812e38f);
-    const M finite = (absolute(colour[0]) <= largest) & (absolute(colour[1]) <= largest) & (absolute(colour[2]) <= largest);
+    const M finite = (absolute(colour[0]) <= largest) & (absolute(colour[1]) <= largest) &
+                     (absolute(colour[2]) <= largest);
     store(batch.columns.log2_opacity, select(finite, load(batch.columns.log2_opacity), set(UnusableMark)));
-    for (int channel = 0; channel < 3; ++channel) store(batch.columns.colour[channel], max(colour[channel], zero()));
+    for (int channel = 0; channel < 3; ++channel)
+        store(batch.columns.colour[channel], max(colour[channel], zero()));
 }
 
 /// The first `size` lanes, with their colours, into their records.
@@ -163,7 +169,8 @@ GSE_INLINE void keep_drawn(ProjectJob& job, unsigned drawn, RecordBatch& found, 
 /// Asks for the coefficients of the next batch, of which most are drawn.
 GSE_INLINE void prefetch_coefficients(const ProjectJob& job, std::size_t row, std::size_t count) {
     const std::size_t end = !job.colours ? row : row + count < job.end ? row + count : job.end;
-    for (; row < end; ++row) prefetch_floats<0>(job.source.sh + row * job.source.sh_stride, job.view->sh_count * 3);
+    for (; row < end; ++row)
+        prefetch_floats<0>(job.source.sh + row * job.source.sh_stride, job.view->sh_count * 3);
 }
 
 /// Columns that nothing is written to; colours are not, where they are not wanted.

@@ -95,9 +95,10 @@ struct TileEntry {
 struct alignas(64) TileLight {
     float transmittance[TilePixels];
     float colour[3][TilePixels];  // without the background
-    std::uint32_t ends[16];       // of each block: the first entry that finds no light left in it; 0 if it was not blended
-    std::uint32_t reached;        // entries in front of the last of them
-    std::uint32_t block_pairs;    // pairs of block and entry in front of them
+    std::uint32_t
+        ends[16];  // of each block: the first entry that finds no light left in it; 0 if it was not blended
+    std::uint32_t reached;      // entries in front of the last of them
+    std::uint32_t block_pairs;  // pairs of block and entry in front of them
 };
 
 struct alignas(64) BlendScratch {
@@ -147,7 +148,7 @@ struct BackwardJob {
     std::uint32_t first_record;  // records from here on get gradients
     std::uint32_t first_slot;    // the first of theirs, where `partials` begin
     float* partials;
-    bool past_caches;            // slots are written straight to memory
+    bool past_caches;  // slots are written straight to memory
 };
 
 /// Order of the sums in a slot of partial gradients. g is dL/d ln(alpha), w the weight alpha T.
@@ -166,14 +167,14 @@ struct GradientArrays {
     std::uint8_t* visible;
 };
 
-/// Sums the partial gradients of records [begin, end) and applies the chain rule; rows of [first_row, end_row) that no pixel
-/// shows get zeros.
+/// Sums the partial gradients of records [begin, end) and applies the chain rule; rows of [first_row,
+/// end_row) that no pixel shows get zeros.
 struct GradientJob {
     Source source;
     const Viewpoint* view;
     const Record* begin;
     const Record* end;
-    const PairRange* ranges;  // of begin
+    const PairRange* ranges;   // of begin
     std::uint32_t slot_shift;  // slot of place 0 of the ranges, modulo 2^32: it may lie before the first
     const float* partials;
     std::size_t first_row, end_row;
@@ -188,7 +189,7 @@ inline constexpr std::uint32_t FloorRecords = 64;
 
 struct FloorScratch {
     Record records[FloorRecords];
-    TileEntry entries[FloorRecords];   // of record i, with as many blocks as are to be timed
+    TileEntry entries[FloorRecords];  // of record i, with as many blocks as are to be timed
     TileLight light;
     BlendScratch blend;
     BackwardScratch backward;
@@ -201,9 +202,9 @@ struct FloorJob {
     FloorLoop loop;
     std::uint32_t rounds;
     FloorScratch* scratch;
-    const Record* records;       // of a whole scene, for SceneGather,
-    const TileEntry* entries;    // and rounds x FloorRecords of them in any order
-    std::size_t work;   // result: pairs of block and Gaussian, or of tile and Gaussian
+    const Record* records;     // of a whole scene, for SceneGather,
+    const TileEntry* entries;  // and rounds x FloorRecords of them in any order
+    std::size_t work;          // result: pairs of block and Gaussian, or of tile and Gaussian
 };
 
 /// The kernels of one instruction set.
@@ -224,8 +225,8 @@ extern const Kernels Avx2Kernels;
 extern const Kernels Avx512Kernels;
 #endif
 
-/// The table of that name; of an empty one that which GSE_CPU forces, else the best this processor runs. Throws Error if the
-/// one asked for is unknown or cannot run here.
+/// The table of that name; of an empty one that which GSE_CPU forces, else the best this processor runs.
+/// Throws Error if the one asked for is unknown or cannot run here.
 const Kernels& choose_kernels(const char* name);
 
 }  // namespace gse::raster

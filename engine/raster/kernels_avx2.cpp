@@ -16,7 +16,7 @@ namespace {
 }  // namespace
 }  // namespace avx2
 
-const Kernels Avx2Kernels = {"avx2",         avx2::project,    avx2::bin,     avx2::blend,
+const Kernels Avx2Kernels = {"avx2",         avx2::project,    avx2::bin,      avx2::blend,
                              avx2::backward, avx2::contribute, avx2::gradient, avx2::floor_loops};
 
 }  // namespace gse::raster

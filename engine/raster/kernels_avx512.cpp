@@ -16,7 +16,7 @@ namespace {
 }  // namespace
 }  // namespace avx512
 
-const Kernels Avx512Kernels = {"avx512",         avx512::project,    avx512::bin,     avx512::blend,
+const Kernels Avx512Kernels = {"avx512",         avx512::project,    avx512::bin,      avx512::blend,
                                avx512::backward, avx512::contribute, avx512::gradient, avx512::floor_loops};
 
 }  // namespace gse::raster

@@ -16,7 +16,7 @@ namespace {
 }  // namespace
 }  // namespace scalar
 
-const Kernels ScalarKernels = {"scalar",         scalar::project,    scalar::bin,     scalar::blend,
+const Kernels ScalarKernels = {"scalar",         scalar::project,    scalar::bin,      scalar::blend,
                                scalar::backward, scalar::contribute, scalar::gradient, scalar::floor_loops};
 
 }  // namespace gse::raster

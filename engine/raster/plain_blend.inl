@@ -25,8 +25,8 @@ struct Decision {
     double after = 0;  // transmittance behind the pair
 };
 
-/// Behind two pairs at the alpha limit T is (1 - 0.99)^2, exactly the cut: they end the pixel, as in float, whatever 1 - 0.99 is
-/// rounded to.
+/// Behind two pairs at the alpha limit T is (1 - 0.99)^2, exactly the cut: they end the pixel, as in float,
+/// whatever 1 - 0.99 is rounded to.
 constexpr double LastCut = TransmittanceCut * (1 + 1e-12);
 
 template <class Visit, class Watch>

@@ -43,7 +43,8 @@ struct ForwardOutput {
     // Work, not result; the last two by the fast version in full pictures only.
     std::size_t pairs = 0;          // tile-Gaussian pairs looked at
     std::size_t pairs_reached = 0;  // of them, those in front of where the light of their tile ends
-    std::size_t block_pairs = 0;    // pairs of 4x4 block and Gaussian blended, in front of where the light of the block ends
+    std::size_t block_pairs =
+        0;  // pairs of 4x4 block and Gaussian blended, in front of where the light of the block ends
     std::size_t dropped_rows = 0;  // not drawn because a value is NaN or infinite where that means nothing
 };
 
@@ -54,15 +55,16 @@ struct Gradients {
     LineFloats rotation;       // [M,4] through the normalisation
     LineFloats opacity_logit;  // [M]
     LineFloats sh;             // [M,K,3]
-    LineFloats mean2d_norm;    // [M] |dL/d(mean2d)| in NDC units (pixel gradient x W/2, H/2), for densification
+    LineFloats mean2d_norm;  // [M] |dL/d(mean2d)| in NDC units (pixel gradient x W/2, H/2), for densification
     std::vector<std::uint8_t> visible;  // [M] 1 where the row was blended into at least one pixel
 };
 
 class ViewSession;
 
 /// A rasterizer keeps its scratch memory between calls: one object per thread of use, no allocation once
-/// warm. Results are bit-identical for every number of threads and from call to call; those of two instruction sets differ in the
-/// last digits (`gseditpro bench stability` says by how much, tests/stress/stability holds it).
+/// warm. Results are bit-identical for every number of threads and from call to call; those of two
+/// instruction sets differ in the last digits (`gseditpro bench stability` says by how much,
+/// tests/stress/stability holds it).
 class Rasterizer {
 public:
     virtual ~Rasterizer() = default;
@@ -87,8 +89,9 @@ public:
     virtual void forward_values(const GaussianSpans& gaussians, const Camera& camera,
                                 const Settings& settings, std::span<const float> values, Image& output) = 0;
 
-    /// A session of `views` views (view_session.h) that keeps up to `budget_bytes` of what does not change in them; views beyond
-    /// that are rendered in full. The rasterizer must outlive it. backward() of the one does not follow forward() of the other.
+    /// A session of `views` views (view_session.h) that keeps up to `budget_bytes` of what does not change in
+    /// them; views beyond that are rendered in full. The rasterizer must outlive it. backward() of the one
+    /// does not follow forward() of the other.
     virtual std::unique_ptr<ViewSession> view_session(std::size_t views, std::size_t budget_bytes);
 
     /// "plain", "scalar", "avx2", "avx512" or "cuda".
@@ -101,22 +104,25 @@ std::unique_ptr<Rasterizer> make_plain_rasterizer();
 /// The fast one: tiles, SIMD chosen at run time (forced by GSE_CPU=scalar|avx2|avx512), threads from `pool`
 /// (kept by reference; must outlive the rasterizer).
 std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool);
-/// The same with the instruction set of that name. Throws Error for one that there is not, or not on this processor.
+/// The same with the instruction set of that name. Throws Error for one that there is not, or not on this
+/// processor.
 std::unique_ptr<Rasterizer> make_fast_rasterizer(ThreadPool& pool, const std::string& kernels);
 
-/// The CUDA one, on the first device of NVIDIA's driver (compute capability 6.0 or newer): the kernels of engine/raster/cuda, which
-/// every device first has to draw and differentiate a small scene with as the plain version does. Results are bit-identical from call
-/// to call. Throws Error: no kernels in this build, no driver, no device, or one that computes something else.
+/// The CUDA one, on the first device of NVIDIA's driver (compute capability 6.0 or newer): the kernels of
+/// engine/raster/cuda, which every device first has to draw and differentiate a small scene with as the plain
+/// version does. Results are bit-identical from call to call. Throws Error: no kernels in this build, no
+/// driver, no device, or one that computes something else.
 std::unique_ptr<Rasterizer> make_cuda_rasterizer();
 
 /// Whether make_cuda_rasterizer() gives one; `why` (may be null) gets the sentence where it does not.
 bool cuda_usable(std::string* why = nullptr);
 
-/// The fast one with the instruction set of that name, the best for an empty one, or the CUDA one for "cuda". Throws Error.
+/// The fast one with the instruction set of that name, the best for an empty one, or the CUDA one for "cuda".
+/// Throws Error.
 std::unique_ptr<Rasterizer> make_rasterizer_of(const std::string& kernels, ThreadPool& pool);
 
-/// By a user's choice: "cpu" is the fast one, "cuda" the CUDA one, "auto" is "cpu": no CUDA device has been measured to be worth its copies.
-/// Throws Error for other names and where that one cannot be had.
+/// By a user's choice: "cpu" is the fast one, "cuda" the CUDA one, "auto" is "cpu": no CUDA device has been
+/// measured to be worth its copies. Throws Error for other names and where that one cannot be had.
 std::unique_ptr<Rasterizer> make_rasterizer(const std::string& choice, ThreadPool& pool);
 /// Throws what that would throw.
 void require_rasterizer(const std::string& choice);

@@ -59,10 +59,8 @@ GSE_INLINE I only(M m, I a) { return {_mm256_and_si256(a.v, _mm256_castps_si256(
 GSE_INLINE I set_int(int a) { return {_mm256_set1_epi32(a)}; }
 GSE_INLINE I operator&(I a, I b) { return {_mm256_and_si256(a.v, b.v)}; }
 GSE_INLINE I operator|(I a, I b) { return {_mm256_or_si256(a.v, b.v)}; }
-template <int N>
-GSE_INLINE I shift_left(I a) { return {_mm256_slli_epi32(a.v, N)}; }
-template <int N>
-GSE_INLINE I shift_right(I a) { return {_mm256_srli_epi32(a.v, N)}; }
+template <int N> GSE_INLINE I shift_left(I a) { return {_mm256_slli_epi32(a.v, N)}; }
+template <int N> GSE_INLINE I shift_right(I a) { return {_mm256_srli_epi32(a.v, N)}; }
 /// Bits first..last in the lanes of m.
 GSE_INLINE I bit_range(M m, F first, F last) {
     const __m256i one = _mm256_set1_epi32(1), two = _mm256_set1_epi32(2);
@@ -172,7 +170,7 @@ GSE_INLINE void stream_columns(const float* from, int columns, float* const* row
         for (int i = 0; i < 8; ++i) high[i] = _mm256_load_ps(from + (base + 8 + i) * 8);
         transpose(low);
         transpose(high);
-        for (int i = 0; i < row_count; ++i) {   // the two halves of a line together
+        for (int i = 0; i < row_count; ++i) {  // the two halves of a line together
             _mm256_stream_ps(rows[i] + base, low[i]);
             _mm256_stream_ps(rows[i] + base + 8, high[i]);
         }
@@ -195,7 +193,8 @@ constexpr PlacesOfBits places_of_bits() {
             if ((set >> bit & 1) != 0) places.of[set][found++] = static_cast<std::uint8_t>(bit);
     return places;
 }
-/// The masks of 16 entries -> for each block the list of the entries that touch it. Nothing of it can be predicted, so it has no branch.
+/// The masks of 16 entries -> for each block the list of the entries that touch it. Nothing of it can be
+/// predicted, so it has no branch.
 #define GSE_HAS_LISTS 1
 GSE_INLINE void append_lists(const std::uint32_t* blocks, std::uint32_t first, std::uint16_t (*lists)[272],
                              std::uint32_t* lengths) {
@@ -203,11 +202,13 @@ GSE_INLINE void append_lists(const std::uint32_t* blocks, std::uint32_t first, s
     for (std::uint32_t half = 0; half < 16; half += 8) {
         const __m256i masks = _mm256_load_si256(reinterpret_cast<const __m256i*>(blocks + half));
         const __m128i base = _mm_set1_epi16(static_cast<short>(first + half));
-        for (int block = 15; block >= 0; --block) {   // its bit is moved to where the sign is
+        for (int block = 15; block >= 0; --block) {  // its bit is moved to where the sign is
             const __m256i at_sign = _mm256_slli_epi32(masks, 31 - block);
             const auto touched = static_cast<unsigned>(_mm256_movemask_ps(_mm256_castsi256_ps(at_sign)));
-            const __m128i found = _mm_cvtepu8_epi16(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(places.of[touched])));
-            _mm_storeu_si128(reinterpret_cast<__m128i*>(lists[block] + lengths[block]), _mm_add_epi16(found, base));
+            const __m128i found =
+                _mm_cvtepu8_epi16(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(places.of[touched])));
+            _mm_storeu_si128(reinterpret_cast<__m128i*>(lists[block] + lengths[block]),
+                             _mm_add_epi16(found, base));
             lengths[block] += static_cast<std::uint32_t>(__builtin_popcount(touched));
         }
     }
@@ -227,7 +228,8 @@ GSE_INLINE void store_sums(const F* a, float* to) {
 }
 GSE_INLINE void stream_sums(const F* a, float* to) {
     const __m256 nought = _mm256_setzero_ps();
-    const __m128 first = four_sums(a[0].v, a[1].v, a[2].v, a[3].v), second = four_sums(a[4].v, a[5].v, a[6].v, a[7].v);
+    const __m128 first = four_sums(a[0].v, a[1].v, a[2].v, a[3].v),
+                 second = four_sums(a[4].v, a[5].v, a[6].v, a[7].v);
     const __m128 third = four_sums(a[8].v, a[9].v, nought, nought);
     _mm256_stream_ps(to, _mm256_set_m128(second, first));
     _mm256_stream_ps(to + 8, _mm256_set_m128(_mm_setzero_ps(), third));

@@ -61,10 +61,8 @@ GSE_INLINE I only(M m, I a) { return {_mm512_maskz_mov_epi32(m.v, a.v)}; }
 GSE_INLINE I set_int(int a) { return {_mm512_set1_epi32(a)}; }
 GSE_INLINE I operator&(I a, I b) { return {_mm512_and_si512(a.v, b.v)}; }
 GSE_INLINE I operator|(I a, I b) { return {_mm512_or_si512(a.v, b.v)}; }
-template <int N>
-GSE_INLINE I shift_left(I a) { return {_mm512_slli_epi32(a.v, N)}; }
-template <int N>
-GSE_INLINE I shift_right(I a) { return {_mm512_srli_epi32(a.v, N)}; }
+template <int N> GSE_INLINE I shift_left(I a) { return {_mm512_slli_epi32(a.v, N)}; }
+template <int N> GSE_INLINE I shift_right(I a) { return {_mm512_srli_epi32(a.v, N)}; }
 /// Bits first..last in the lanes of m.
 GSE_INLINE I bit_range(M m, F first, F last) {
     const __m512i one = _mm512_set1_epi32(1), two = _mm512_set1_epi32(2);

@@ -68,12 +68,10 @@ GSE_INLINE I only(M m, I a) { return {m.v ? a.v : 0}; }
 GSE_INLINE I set_int(int a) { return {a}; }
 GSE_INLINE I operator&(I a, I b) { return {a.v & b.v}; }
 GSE_INLINE I operator|(I a, I b) { return {a.v | b.v}; }
-template <int N>
-GSE_INLINE I shift_left(I a) {
+template <int N> GSE_INLINE I shift_left(I a) {
     return {static_cast<std::int32_t>(static_cast<std::uint32_t>(a.v) << N)};
 }
-template <int N>
-GSE_INLINE I shift_right(I a) {
+template <int N> GSE_INLINE I shift_right(I a) {
     return {static_cast<std::int32_t>(static_cast<std::uint32_t>(a.v) >> N)};
 }
 /// Bits first..last in the lanes of m.

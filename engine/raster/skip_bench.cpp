@@ -14,8 +14,8 @@
 namespace gse::raster {
 namespace {
 
-constexpr std::size_t SkipBudget = std::size_t{4} << 30;   // every view is kept
-constexpr double StepSize = 1e-4;                          // of positions, between rounds, times the spread of the rows
+constexpr std::size_t SkipBudget = std::size_t{4} << 30;  // every view is kept
+constexpr double StepSize = 1e-4;  // of positions, between rounds, times the spread of the rows
 
 /// All rows with those nearest to the middle last; the middle is the row nearest to the mean place.
 std::vector<std::size_t> towards_middle(const GaussianSpans& g) {
@@ -31,9 +31,11 @@ std::vector<std::size_t> towards_middle(const GaussianSpans& g) {
         for (const std::size_t row : rows) distance[row] = length(place(row) - centre);
     };
     measure();
-    centre = place(static_cast<std::size_t>(std::min_element(distance.begin(), distance.end()) - distance.begin()));
+    centre = place(
+        static_cast<std::size_t>(std::min_element(distance.begin(), distance.end()) - distance.begin()));
     measure();
-    std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) { return distance[a] > distance[b]; });
+    std::stable_sort(rows.begin(), rows.end(),
+                     [&](std::size_t a, std::size_t b) { return distance[a] > distance[b]; });
     return rows;
 }
 
@@ -56,7 +58,8 @@ GaussianData in_order(const GaussianSpans& g, std::span<const std::size_t> rows)
 double largest_difference(const Image& a, const Image& b) {
     double largest = 0;
     for (std::size_t i = 0; i < a.data.size(); ++i)
-        largest = std::max(largest, std::abs(static_cast<double>(a.data[i]) - static_cast<double>(b.data[i])));
+        largest =
+            std::max(largest, std::abs(static_cast<double>(a.data[i]) - static_cast<double>(b.data[i])));
     return largest;
 }
 
@@ -87,9 +90,11 @@ public:
 
     SkipBench run() {
         Random random(11);
-        round();   // prepares the views and warms up
+        round();  // prepares the views and warms up
         result_.prepare_ms = skipping_forward_.front();
-        for (auto* times : {&full_forward_, &full_backward_, &skipping_forward_, &skipping_backward_, &ratios_}) times->clear();
+        for (auto* times :
+             {&full_forward_, &full_backward_, &skipping_forward_, &skipping_backward_, &ratios_})
+            times->clear();
         for (int i = 0; i < case_.repetitions; ++i) {
             move_labelled(case_, random);
             round();
@@ -98,13 +103,13 @@ public:
         result_.full = {median(full_forward_), median(full_backward_)};
         result_.skipping = {median(skipping_forward_), median(skipping_backward_)};
         result_.ratio = median(ratios_);
-        result_.kept_mib = static_cast<double>(session_->work().kept_bytes) / 1048576 / static_cast<double>(case_.views.size());
+        result_.kept_mib = static_cast<double>(session_->work().kept_bytes) / 1048576 /
+                           static_cast<double>(case_.views.size());
         return result_;
     }
 
 private:
-    template <class Work>
-    static double time_of(const Work& work) {
+    template <class Work> static double time_of(const Work& work) {
         const double begin = processor_seconds();
         work();
         return 1e3 * (processor_seconds() - begin);
@@ -117,8 +122,10 @@ private:
         for (std::size_t view = 0; view < case_.views.size(); ++view) {
             const auto rows = spans(case_.data);
             times[0] += time_of([&] { rasterizer_.forward(rows, case_.views[view], {}, full_); });
-            times[1] += time_of([&] { rasterizer_.backward(case_.d_colour, {}, case_.first_row, expected_); });
-            times[2] += time_of([&] { session_->forward(view, rows, case_.first_row, case_.views[view], {}, skipped_); });
+            times[1] +=
+                time_of([&] { rasterizer_.backward(case_.d_colour, {}, case_.first_row, expected_); });
+            times[2] += time_of(
+                [&] { session_->forward(view, rows, case_.first_row, case_.views[view], {}, skipped_); });
             times[3] += time_of([&] { session_->backward(case_.d_colour, {}, found_); });
             compare();
         }
@@ -137,11 +144,14 @@ private:
         result_.pairs += skipped_.pairs;
         result_.picture_difference =
             std::max({result_.picture_difference, largest_difference(full_.colour, skipped_.colour),
-                      largest_difference(full_.alpha, skipped_.alpha), largest_difference(full_.depth, skipped_.depth)});
+                      largest_difference(full_.alpha, skipped_.alpha),
+                      largest_difference(full_.depth, skipped_.depth)});
         result_.gradient_difference =
             std::max({result_.gradient_difference, relative_error(found_.position, expected_.position),
-                      relative_error(found_.log_scale, expected_.log_scale), relative_error(found_.rotation, expected_.rotation),
-                      relative_error(found_.opacity_logit, expected_.opacity_logit), relative_error(found_.sh, expected_.sh)});
+                      relative_error(found_.log_scale, expected_.log_scale),
+                      relative_error(found_.rotation, expected_.rotation),
+                      relative_error(found_.opacity_logit, expected_.opacity_logit),
+                      relative_error(found_.sh, expected_.sh)});
     }
 
     const SkipCase& case_;
@@ -164,10 +174,12 @@ std::vector<SkipBench> bench_skips(const GaussianSpans& gaussians, std::span<con
     for (const Camera& camera : cameras) views.push_back(camera.resized(settings.width, settings.height));
     const Image d_colour = noise_image(settings.width, settings.height);
     const auto order = towards_middle(gaussians);
-    const auto far = in_order(gaussians, std::span(order).first(1)), near = in_order(gaussians, std::span(order).last(1));
+    const auto far = in_order(gaussians, std::span(order).first(1)),
+               near = in_order(gaussians, std::span(order).last(1));
     double spread = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        spread = std::max(spread, std::abs(static_cast<double>(far.position[axis]) - static_cast<double>(near.position[axis])));
+        spread = std::max(spread, std::abs(static_cast<double>(far.position[axis]) -
+                                           static_cast<double>(near.position[axis])));
     std::vector<SkipBench> results;
     for (const double share : shares) {
         GaussianData data = in_order(gaussians, order);

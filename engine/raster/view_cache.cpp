@@ -13,7 +13,8 @@ namespace {
 constexpr std::uint32_t Unused = 0xffffffff;
 
 /// Marks the tiles within `margin` tiles of each of `tiles`.
-void mark_around(std::span<const std::uint32_t> tiles, int margin, int columns, int rows, std::vector<std::uint8_t>& marks) {
+void mark_around(std::span<const std::uint32_t> tiles, int margin, int columns, int rows,
+                 std::vector<std::uint8_t>& marks) {
     for (const std::uint32_t tile : tiles) {
         const int x = static_cast<int>(tile) % columns, y = static_cast<int>(tile) / columns;
         const int x0 = std::max(0, x - margin), x1 = std::min(columns, x + margin + 1);
@@ -35,8 +36,9 @@ bool ViewCache::covers(std::span<const std::uint32_t> tiles) const {
 
 std::size_t ViewCache::bytes() const {
     const auto held = [](const auto& values) { return values.capacity() * sizeof values[0]; };
-    return held(records_) + held(depths_) + held(offsets_) + held(entries_) + held(covered_) + held(picture_.colour.data) +
-           held(picture_.alpha.data) + held(picture_.depth.data) + held(picture_.blended);
+    return held(records_) + held(depths_) + held(offsets_) + held(entries_) + held(covered_) +
+           held(picture_.colour.data) + held(picture_.alpha.data) + held(picture_.depth.data) +
+           held(picture_.blended);
 }
 
 bool ViewCache::prepare(const Job& job, Frame& frame) {
@@ -57,9 +59,11 @@ bool ViewCache::prepare(const Job& job, Frame& frame) {
     for (std::size_t tile = 0; tile < frame.tile_count(); ++tile)
         if (covered_[tile] != 0) entries += frame.entries(tile).size();
     constexpr std::size_t pixel_bytes = 5 * sizeof(float) + sizeof(std::int32_t);
-    const std::size_t pixels = static_cast<std::size_t>(frame.width()) * static_cast<std::size_t>(frame.height());
+    const std::size_t pixels =
+        static_cast<std::size_t>(frame.width()) * static_cast<std::size_t>(frame.height());
     const std::size_t needed = count * (sizeof(Record) + sizeof(float)) + entries * sizeof(FixedEntry) +
-                               (frame.tile_count() + 1) * sizeof(std::uint32_t) + frame.tile_count() + pixels * pixel_bytes;
+                               (frame.tile_count() + 1) * sizeof(std::uint32_t) + frame.tile_count() +
+                               pixels * pixel_bytes;
     if (needed > job.budget || entries >= Unused) {
         clear();
         return false;
@@ -69,8 +73,8 @@ bool ViewCache::prepare(const Job& job, Frame& frame) {
     return true;
 }
 
-/// Projects with a nearer near plane where nothing lies between, so that the real one may come nearer without harm; it
-/// follows the scene, and so moves with the rows that change.
+/// Projects with a nearer near plane where nothing lies between, so that the real one may come nearer without
+/// harm; it follows the scene, and so moves with the rows that change.
 void ViewCache::project(const Job& job, Frame& frame) {
     Settings settings = job.settings;
     near_plane_ = job.near_plane;
@@ -79,7 +83,8 @@ void ViewCache::project(const Job& job, Frame& frame) {
     const auto depth = [&](std::size_t place) { return frame.records()[frame.order()[place]].depth; };
     std::size_t between = 0;
     while (between < frame.order().size() && depth(between) <= near_plane_) ++between;
-    const bool unusable = frame.unusable_rows() > 0;   // counted where they are in front: exact for one near plane only
+    const bool unusable =
+        frame.unusable_rows() > 0;  // counted where they are in front: exact for one near plane only
     if (unusable) near_low_ = near_plane_;
     else if (between > 0) near_low_ = depth(between - 1);
     if (unusable || between > 0) {
@@ -94,7 +99,8 @@ void ViewCache::project(const Job& job, Frame& frame) {
 void ViewCache::cover(const Job& job, const Frame& frame) {
     const int columns = (frame.width() + TileSize - 1) / TileSize;
     covered_.resize(frame.tile_count(), 0);
-    mark_around(job.tiles, 1 << std::min(times_prepared_, 10), columns, static_cast<int>(frame.tile_count()) / columns, covered_);
+    mark_around(job.tiles, 1 << std::min(times_prepared_, 10), columns,
+                static_cast<int>(frame.tile_count()) / columns, covered_);
 }
 
 /// Numbers the records in the lists that are kept front to back; returns how many there are.
@@ -143,8 +149,8 @@ void ViewCache::keep_picture(Frame& frame) {
     frame.blend(
         [](void* at, std::size_t tile, const BlendScratch& scratch) {
             const Context& c = *static_cast<const Context*>(at);
-            write_tile(tile_area(*c.frame, tile), AllBlocks, c.frame->light(tile), scratch, c.cache->settings_.background,
-                       c.cache->picture_);
+            write_tile(tile_area(*c.frame, tile), AllBlocks, c.frame->light(tile), scratch,
+                       c.cache->settings_.background, c.cache->picture_);
         },
         &context);
 }

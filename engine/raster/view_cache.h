@@ -1,5 +1,5 @@
-// What the rows that do not change show in one view: their records front to back, the lists of the tiles that rows which change
-// can reach, and the picture without those rows.
+// What the rows that do not change show in one view: their records front to back, the lists of the tiles that
+// rows which change can reach, and the picture without those rows.
 #pragma once
 
 #include <cstddef>
@@ -21,14 +21,15 @@ struct FixedEntry {
 
 class ViewCache {
 public:
-    /// True when everything kept is for this camera and these settings with this near plane (`near_plane` is what they come to,
-    /// see with_depth_range).
+    /// True when everything kept is for this camera and these settings with this near plane (`near_plane` is
+    /// what they come to, see with_depth_range).
     bool holds(const Camera& camera, const Settings& settings, float near_plane) const;
     /// True when the lists of all these tiles are kept.
     bool covers(std::span<const std::uint32_t> tiles) const;
 
-    /// Prepares the view: `frame` (working memory) projects, sorts and bins `fixed`; the lists of `tiles`, of those around
-    /// them and of all that were kept before stay. Returns false, and keeps nothing, when that takes more than `budget` bytes.
+    /// Prepares the view: `frame` (working memory) projects, sorts and bins `fixed`; the lists of `tiles`, of
+    /// those around them and of all that were kept before stay. Returns false, and keeps nothing, when that
+    /// takes more than `budget` bytes.
     struct Job {
         const GaussianSpans& fixed;
         const Camera& camera;
@@ -68,10 +69,10 @@ private:
     int times_prepared_ = 0;
     std::vector<Record> records_;
     std::vector<float> depths_;
-    std::vector<std::uint32_t> offsets_;   // [tiles + 1] into entries_
+    std::vector<std::uint32_t> offsets_;  // [tiles + 1] into entries_
     std::vector<FixedEntry> entries_;
-    std::vector<std::uint8_t> covered_;    // [tiles]
-    ForwardOutput picture_;                // dropped_rows: of the fixed rows
+    std::vector<std::uint8_t> covered_;  // [tiles]
+    ForwardOutput picture_;              // dropped_rows: of the fixed rows
 };
 
 }  // namespace gse::raster

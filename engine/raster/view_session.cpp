@@ -34,6 +34,8 @@ std::unique_ptr<ViewSession> make_full_view_session(Rasterizer& rasterizer) {
     return std::make_unique<FullViewSession>(rasterizer);
 }
 
-std::unique_ptr<ViewSession> Rasterizer::view_session(std::size_t, std::size_t) { return make_full_view_session(*this); }
+std::unique_ptr<ViewSession> Rasterizer::view_session(std::size_t, std::size_t) {
+    return make_full_view_session(*this);
+}
 
 }  // namespace gse::raster

@@ -10,7 +10,7 @@ enum class Easing { Linear = 0, In = 1, Out = 2, InOut = 3 };
 
 /// One camera on the artist's path.
 struct CameraKey {
-    double time = 0;             // seconds
+    double time = 0;  // seconds
     Camera camera;
     Easing easing = Easing::Linear;
 };

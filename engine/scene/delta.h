@@ -49,8 +49,7 @@ std::pair<GaussianSet, std::vector<RowId>> apply_deltas(const GaussianSet& set, 
 
 /// Calls visit(row, k) for every row whose identity is wanted[k], rows ascending. `wanted` must ascend; `ids`
 /// may be in any order (long ascending stretches are fast).
-template <class F>
-void locate_rows(std::span<const RowId> ids, std::span<const RowId> wanted, F&& visit) {
+template <class F> void locate_rows(std::span<const RowId> ids, std::span<const RowId> wanted, F&& visit) {
     std::size_t begin = 0;
     while (begin < ids.size() && !wanted.empty()) {
         std::size_t end = begin + 1;

@@ -52,7 +52,8 @@ std::pair<GaussianSet, std::vector<RowId>> apply_changes(const GaussianSet& set,
             continue;
         }
         apply_whole();
-        now = apply_delta(now.first, now.second, with_strength(now.first, now.second, *change.delta, change.strength));
+        now = apply_delta(now.first, now.second,
+                          with_strength(now.first, now.second, *change.delta, change.strength));
     }
     apply_whole();
     return now;
@@ -113,10 +114,8 @@ public:
         : before_ids_(*before.row_ids), after_ids_(*after.row_ids), from_(old_rows(before_ids_, after_ids_)) {
         std::vector<std::uint8_t> goes_on(before_ids_.size(), 0);
         for (std::size_t row = 0; row < from_.size(); ++row) {
-            if (from_[row] != NoRow)
-                goes_on[from_[row]] = 1;
-            else
-                arrived_.emplace_back(after_ids_[row], row);
+            if (from_[row] != NoRow) goes_on[from_[row]] = 1;
+            else arrived_.emplace_back(after_ids_[row], row);
         }
         for (std::size_t row = 0; row < goes_on.size(); ++row)
             if (goes_on[row] == 0) leaving_.push_back(row);
@@ -152,8 +151,7 @@ public:
     }
 
 private:
-    template <class T>
-    std::vector<T> follow(const std::vector<T>& values) const {
+    template <class T> std::vector<T> follow(const std::vector<T>& values) const {
         std::vector<T> result(from_.size(), T{0});
         for (std::size_t row = 0; row < from_.size(); ++row)
             if (from_[row] != NoRow) result[row] = values[from_[row]];

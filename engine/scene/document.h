@@ -26,10 +26,13 @@ struct AbsentRows {
 struct NamedLabel {
     std::string name;
     float threshold = 0.5f;
-    std::string found_for;            // word that a search found it for, whatever it is called now; empty = not by a search
-    double attention_threshold = -1;  // it was found with; 0 = what the model states, negative = not by a search
-    std::string left_out;             // views of that search that did not vote, as numbers: "3, 17"
-    std::string looked_from;          // azimuth of the view in which its thing was marked by hand, or looked for, degrees; empty = not known
+    std::string
+        found_for;  // word that a search found it for, whatever it is called now; empty = not by a search
+    double attention_threshold =
+        -1;                   // it was found with; 0 = what the model states, negative = not by a search
+    std::string left_out;     // views of that search that did not vote, as numbers: "3, 17"
+    std::string looked_from;  // azimuth of the view in which its thing was marked by hand, or looked for,
+                              // degrees; empty = not known
     std::shared_ptr<const std::vector<float>> weight;  // [N] in [0,1], from the views; never changed by hand
     std::shared_ptr<const std::vector<std::int8_t>>
         manual;  // [N] +1 added, -1 removed by hand, 0 = as the weight says
@@ -68,8 +71,7 @@ struct DocumentState {
 
 /// Calls visit(address, bytes) for every array the state holds; arrays shared between states have one
 /// address.
-template <class F>
-void visit_arrays(const DocumentState& state, F&& visit) {
+template <class F> void visit_arrays(const DocumentState& state, F&& visit) {
     for (const GaussianSet* set : {&state.base, &state.current}) {
         const GaussianBuffers arrays = set->buffers();
         for (const auto* array :

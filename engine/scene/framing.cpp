@@ -19,7 +19,8 @@ constexpr double LogScaleLimit = 30;        // larger ones count as this, as in 
 
 /// Reorders `values`, which must not be empty.
 double quantile(std::vector<float>& values, double fraction) {
-    const auto index = static_cast<std::ptrdiff_t>(std::lround(fraction * static_cast<double>(values.size() - 1)));
+    const auto index =
+        static_cast<std::ptrdiff_t>(std::lround(fraction * static_cast<double>(values.size() - 1)));
     std::nth_element(values.begin(), values.begin() + index, values.end());
     return static_cast<double>(values[static_cast<std::size_t>(index)]);
 }
@@ -32,11 +33,13 @@ double middle_size(std::vector<float>& log_scales) {
 
 Bounds framing_bounds(const GaussianSet& gaussians, std::span<const std::uint8_t> bits) {
     const auto usable = usable_rows(gaussians);
-    const auto position = gaussians.position(), log_scale = gaussians.log_scale(), opacity = gaussians.opacity_logit();
+    const auto position = gaussians.position(), log_scale = gaussians.log_scale(),
+               opacity = gaussians.opacity_logit();
     const auto least_logit = static_cast<float>(std::log(LeastOpacity / (1 - LeastOpacity)));
     std::vector<std::uint32_t> rows;
     std::vector<float> values;
-    for (std::size_t row = 0; row < (bits.empty() ? gaussians.size() : std::min(gaussians.size(), bits.size())); ++row) {
+    for (std::size_t row = 0;
+         row < (bits.empty() ? gaussians.size() : std::min(gaussians.size(), bits.size())); ++row) {
         if (usable[row] == 0 || opacity[row] < least_logit || (!bits.empty() && bits[row] == 0)) continue;
         rows.push_back(static_cast<std::uint32_t>(row));
         values.push_back(std::max({log_scale[row * 3], log_scale[row * 3 + 1], log_scale[row * 3 + 2]}));
@@ -45,7 +48,8 @@ Bounds framing_bounds(const GaussianSet& gaussians, std::span<const std::uint8_t
     if (rows.empty()) return bounds;
     const double margin = FramedDeviations * middle_size(values);
     for (int axis = 0; axis < 3; ++axis) {
-        for (std::size_t i = 0; i < rows.size(); ++i) values[i] = position[rows[i] * std::size_t{3} + static_cast<std::size_t>(axis)];
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            values[i] = position[rows[i] * std::size_t{3} + static_cast<std::size_t>(axis)];
         const double low = quantile(values, RobustShare), high = quantile(values, 1 - RobustShare);
         const double reach = FloaterReach * (high - low);
         bounds.low[axis] = std::max(quantile(values, OutermostShare), low - reach) - margin;

@@ -17,7 +17,8 @@ void append(std::vector<float>& to, const std::vector<float>& from, std::size_t 
     to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(stride));
 }
 
-std::vector<float> filter(std::span<const float> values, std::span<const unsigned char> keep, std::size_t stride) {
+std::vector<float> filter(std::span<const float> values, std::span<const unsigned char> keep,
+                          std::size_t stride) {
     std::vector<float> result;
     for (std::size_t row = 0; row < keep.size(); ++row)
         if (keep[row] != 0)
@@ -48,28 +49,23 @@ void GaussianData::append_row(const GaussianData& other, std::size_t row) {
 }
 
 GaussianSpans spans(const GaussianData& data) {
-    return {data.size(), data.sh_degree, data.position, data.log_scale, data.rotation, data.opacity_logit, data.sh};
+    return {data.size(),   data.sh_degree,     data.position, data.log_scale,
+            data.rotation, data.opacity_logit, data.sh};
 }
 
 GaussianSet::GaussianSet() : GaussianSet(GaussianData{}) {}
 
 GaussianSet::GaussianSet(GaussianData data)
-    : sh_degree_(data.sh_degree),
-      position_(share(std::move(data.position))),
-      log_scale_(share(std::move(data.log_scale))),
-      rotation_(share(std::move(data.rotation))),
-      opacity_logit_(share(std::move(data.opacity_logit))),
-      sh_(share(std::move(data.sh))) {
+    : sh_degree_(data.sh_degree), position_(share(std::move(data.position))),
+      log_scale_(share(std::move(data.log_scale))), rotation_(share(std::move(data.rotation))),
+      opacity_logit_(share(std::move(data.opacity_logit))), sh_(share(std::move(data.sh))) {
     check_lengths();
 }
 
 GaussianSet::GaussianSet(GaussianBuffers buffers)
-    : sh_degree_(buffers.sh_degree),
-      position_(std::move(buffers.position)),
-      log_scale_(std::move(buffers.log_scale)),
-      rotation_(std::move(buffers.rotation)),
-      opacity_logit_(std::move(buffers.opacity_logit)),
-      sh_(std::move(buffers.sh)) {
+    : sh_degree_(buffers.sh_degree), position_(std::move(buffers.position)),
+      log_scale_(std::move(buffers.log_scale)), rotation_(std::move(buffers.rotation)),
+      opacity_logit_(std::move(buffers.opacity_logit)), sh_(std::move(buffers.sh)) {
     GSE_CHECK(position_ && log_scale_ && rotation_ && opacity_logit_ && sh_);
     check_lengths();
 }
@@ -84,11 +80,13 @@ void GaussianSet::check_lengths() const {
 }
 
 GaussianSpans GaussianSet::spans() const {
-    return {size(), sh_degree_, *position_, *log_scale_, *rotation_, *opacity_logit_, *sh_, colours_known_.get()};
+    return {size(),     sh_degree_,      *position_, *log_scale_,
+            *rotation_, *opacity_logit_, *sh_,       colours_known_.get()};
 }
 
 GaussianData GaussianSet::to_data() const {
-    return {sh_degree_, copy(*position_), copy(*log_scale_), copy(*rotation_), copy(*opacity_logit_), copy(*sh_)};
+    return {sh_degree_,       copy(*position_),      copy(*log_scale_),
+            copy(*rotation_), copy(*opacity_logit_), copy(*sh_)};
 }
 
 GaussianSet GaussianSet::filtered(std::span<const unsigned char> keep) const {
@@ -104,7 +102,8 @@ GaussianSet GaussianSet::filtered(std::span<const unsigned char> keep) const {
 }
 
 std::size_t GaussianSet::byte_size() const {
-    return sizeof(float) * (position_->size() + log_scale_->size() + rotation_->size() + opacity_logit_->size() + sh_->size());
+    return sizeof(float) * (position_->size() + log_scale_->size() + rotation_->size() +
+                            opacity_logit_->size() + sh_->size());
 }
 
 }  // namespace gse

@@ -31,7 +31,8 @@ struct GaussianData {
     void append_row(const GaussianData& other, std::size_t row);
 };
 
-/// What is remembered of coefficients that never change: whether all are numbers of a size that gives every direction a finite colour.
+/// What is remembered of coefficients that never change: whether all are numbers of a size that gives every
+/// direction a finite colour.
 enum class ColoursKnown : signed char { NotYet, Finite, NotAll };
 using ColourMemo = std::atomic<ColoursKnown>;
 
@@ -40,7 +41,7 @@ struct GaussianSpans {
     std::size_t size = 0;
     int sh_degree = 0;
     std::span<const float> position, log_scale, rotation, opacity_logit, sh;
-    ColourMemo* colours_known = nullptr;   // of `sh`; null where it may change
+    ColourMemo* colours_known = nullptr;  // of `sh`; null where it may change
 };
 
 GaussianSpans spans(const GaussianData& data);

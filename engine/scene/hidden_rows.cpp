@@ -45,14 +45,16 @@ void HiddenRows::isolate(std::span<const RowId> ids, std::span<const std::uint8_
 std::vector<std::uint8_t> HiddenRows::rows(std::span<const RowId> ids) const {
     std::vector<std::uint8_t> rows(ids.size(), 0);
     if (ids_.empty()) return rows;
-    for (std::size_t row = 0; row < rows.size(); ++row) rows[row] = std::binary_search(ids_.begin(), ids_.end(), ids[row]) ? 1 : 0;
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        rows[row] = std::binary_search(ids_.begin(), ids_.end(), ids[row]) ? 1 : 0;
     return rows;
 }
 
 GaussianSet with_hidden(const GaussianSet& set, std::span<const std::uint8_t> hidden) {
     GSE_CHECK_EQ(hidden.size(), set.size());
     if (!any_hidden(hidden)) return set;
-    auto opacity = std::make_shared<std::vector<float>>(set.opacity_logit().begin(), set.opacity_logit().end());
+    auto opacity =
+        std::make_shared<std::vector<float>>(set.opacity_logit().begin(), set.opacity_logit().end());
     for (std::size_t row = 0; row < hidden.size(); ++row)
         if (hidden[row] != 0) (*opacity)[row] = -std::numeric_limits<float>::infinity();
     GaussianBuffers buffers = set.buffers();
@@ -72,7 +74,8 @@ GaussianSet without_hidden(const GaussianSet& set, std::span<const std::uint8_t>
     GSE_CHECK_EQ(hidden.size(), set.size());
     if (!any_hidden(hidden)) return set;
     std::vector<unsigned char> keep(hidden.size());
-    std::transform(hidden.begin(), hidden.end(), keep.begin(), [](auto bit) { return static_cast<unsigned char>(bit == 0 ? 1 : 0); });
+    std::transform(hidden.begin(), hidden.end(), keep.begin(),
+                   [](auto bit) { return static_cast<unsigned char>(bit == 0 ? 1 : 0); });
     return set.filtered(keep);
 }
 

@@ -23,10 +23,11 @@ public:
     std::vector<std::uint8_t> rows(std::span<const RowId> ids) const;
 
 private:
-    std::vector<RowId> ids_;   // ascending, each once
+    std::vector<RowId> ids_;  // ascending, each once
 };
 
-/// The set with these rows invisible (an opacity logit of -infinity); all other arrays are shared. `hidden` [N].
+/// The set with these rows invisible (an opacity logit of -infinity); all other arrays are shared. `hidden`
+/// [N].
 GaussianSet with_hidden(const GaussianSet& set, std::span<const std::uint8_t> hidden);
 
 /// Of values per row, those of rows that are not hidden.

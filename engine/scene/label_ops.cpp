@@ -18,10 +18,8 @@ constexpr std::size_t RowsPerChunk = 16384;
 class AreaMask {
 public:
     AreaMask(const ScreenArea& area, int width, int height) : mask_(width, height) {
-        if (!area.polygon.empty())
-            fill_polygon(area.polygon);
-        else
-            fill_stroke(area.circles, area.radius_px);
+        if (!area.polygon.empty()) fill_polygon(area.polygon);
+        else fill_stroke(area.circles, area.radius_px);
     }
     bool at(double x, double y) const {
         return x >= 0 && y >= 0 && x < mask_.width && y < mask_.height &&
@@ -234,7 +232,9 @@ void grow_once(std::span<const float> position, double radius, std::vector<std::
 
 std::vector<std::uint8_t> rows_in_area(const GaussianSet& set, const Camera& camera, const ScreenArea& area,
                                        const PickOptions& options) {
-    const auto scaled = [](double place, int size, int of) { return std::clamp(static_cast<int>(place * size / of), 0, size - 1); };
+    const auto scaled = [](double place, int size, int of) {
+        return std::clamp(static_cast<int>(place * size / of), 0, size - 1);
+    };
     std::vector<std::uint8_t> rows(set.size(), 0);
     if (set.empty() || camera.width <= 0 || camera.height <= 0) return rows;
     const AreaMask mask(area, camera.width, camera.height);
@@ -255,19 +255,20 @@ std::vector<std::uint8_t> rows_in_area(const GaussianSet& set, const Camera& cam
             if (!(p.z > near) || !(static_cast<double>(opacity[row]) >= least_logit)) continue;
             const double x = camera.fx * p.x / p.z + camera.cx, y = camera.fy * p.y / p.z + camera.cy;
             if (!mask.at(x, y)) continue;
-            if (options.mask != nullptr && options.mask->at(scaled(x, options.mask->width, camera.width), scaled(y, options.mask->height, camera.height)) == 0) continue;
+            if (options.mask != nullptr &&
+                options.mask->at(scaled(x, options.mask->width, camera.width),
+                                 scaled(y, options.mask->height, camera.height)) == 0)
+                continue;
             if (depth != nullptr) {
-                const double z = static_cast<double>(
-                    depth->at(scaled(x, depth->width, camera.width), scaled(y, depth->height, camera.height), 0));
+                const double z = static_cast<double>(depth->at(scaled(x, depth->width, camera.width),
+                                                               scaled(y, depth->height, camera.height), 0));
                 if (z > 0 && std::isfinite(z) && p.z > z * (1 + options.depth_tolerance)) continue;
             }
             rows[row] = 1;
         }
     };
-    if (options.pool != nullptr)
-        options.pool->parallel_for(set.size(), RowsPerChunk, pick);
-    else
-        pick(0, set.size(), 0);
+    if (options.pool != nullptr) options.pool->parallel_for(set.size(), RowsPerChunk, pick);
+    else pick(0, set.size(), 0);
     return rows;
 }
 
@@ -292,9 +293,7 @@ NamedLabel combine(NamedLabel label, std::span<const std::uint8_t> rows, LabelOp
             case LabelOperation::Intersect:
                 if (!inside) manual[row] = -1;
                 break;
-            case LabelOperation::Replace:
-                manual[row] = inside ? std::int8_t{1} : std::int8_t{-1};
-                break;
+            case LabelOperation::Replace: manual[row] = inside ? std::int8_t{1} : std::int8_t{-1}; break;
         }
     }
     return with_manual(std::move(label), std::move(manual));
@@ -374,10 +373,8 @@ WeightHistogram weight_histogram(const NamedLabel& label) {
         return histogram;
     }
     for (const float weight : *label.weight) {
-        if (weight > 0)
-            ++histogram.bins[static_cast<std::size_t>(std::min(weight * 256.0f, 255.0f))];
-        else if (weight == 0)
-            ++histogram.zeros;
+        if (weight > 0) ++histogram.bins[static_cast<std::size_t>(std::min(weight * 256.0f, 255.0f))];
+        else if (weight == 0) ++histogram.zeros;
     }
     histogram.highest = *std::max_element(histogram.bins.begin(), histogram.bins.end());
     return histogram;

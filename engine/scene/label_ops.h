@@ -27,9 +27,10 @@ struct PickOptions {
     /// [h,w,1] camera z per pixel, alpha-normalised (0 or not finite = nothing there), at any resolution of
     /// the same view; null = everything under the area, in front or behind.
     const Image* depth = nullptr;
-    const Mask* mask = nullptr;        // of the same view at any resolution: rows outside of it do not count; null = no more limits
-    double depth_tolerance = 0.02;     // front: z <= depth * (1 + tolerance)
-    double near = 0;                   // nearer rows are not drawn and not picked; 0 = as they are drawn (depth_range.h)
+    const Mask* mask = nullptr;  // of the same view at any resolution: rows outside of it do not count; null
+                                 // = no more limits
+    double depth_tolerance = 0.02;  // front: z <= depth * (1 + tolerance)
+    double near = 0;  // nearer rows are not drawn and not picked; 0 = as they are drawn (depth_range.h)
     double least_opacity = 1.0 / 255;  // fainter rows cannot be seen and are not picked
     ThreadPool* pool = nullptr;        // null = the calling thread only
 };
@@ -45,8 +46,8 @@ NamedLabel empty_label(std::string name, std::size_t count);
 
 /// These change `manual` and `bits` only; `weight` stays. `rows` holds a byte per row.
 NamedLabel combine(NamedLabel label, std::span<const std::uint8_t> rows, LabelOperation operation);
-/// Rows that an edit of what is labelled has added: they belong to it as those do that the views are sure of, and nobody set them by
-/// hand. A label without weights has no other way than that.
+/// Rows that an edit of what is labelled has added: they belong to it as those do that the views are sure of,
+/// and nobody set them by hand. A label without weights has no other way than that.
 NamedLabel with_added(NamedLabel label, std::span<const std::uint8_t> added);
 NamedLabel invert(NamedLabel label);
 /// Nothing is labelled any more, whatever the weights say.

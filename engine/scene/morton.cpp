@@ -37,10 +37,12 @@ std::vector<std::uint32_t> morton_order(std::span<const float> position) {
         std::uint32_t code = 0;
         bool finite = true;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double value = position[row * 3 + axis], extent = static_cast<double>(high[axis]) - low[axis];
+            const double value = position[row * 3 + axis],
+                         extent = static_cast<double>(high[axis]) - low[axis];
             finite = finite && std::isfinite(value);
             const double unit = finite && extent > 0 ? (value - low[axis]) / extent : 0;
-            code |= spread_bits(std::min(MortonCells - 1, static_cast<std::uint32_t>(unit * MortonCells))) << axis;
+            code |= spread_bits(std::min(MortonCells - 1, static_cast<std::uint32_t>(unit * MortonCells)))
+                    << axis;
         }
         codes[row] = finite ? code : 0;
     }

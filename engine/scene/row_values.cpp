@@ -23,7 +23,9 @@ std::vector<float> changed_values(const DocumentState& state) {
         for (std::size_t c = 0; c < 3; ++c) {
             change += 0.5 * std::abs(now.sh()[row * stride_now + c] - base.sh()[old * stride_base + c]);
             const double size = std::exp(std::clamp<double>(base.log_scale()[old * 3 + c], -20, 20));
-            change += 0.2 * std::min(1.0, std::abs(now.position()[row * 3 + c] - base.position()[old * 3 + c]) / (size + 1e-12));
+            change +=
+                0.2 * std::min(1.0, std::abs(now.position()[row * 3 + c] - base.position()[old * 3 + c]) /
+                                        (size + 1e-12));
             change += 0.2 * std::abs(now.log_scale()[row * 3 + c] - base.log_scale()[old * 3 + c]);
         }
         change += 0.1 * std::abs(now.opacity_logit()[row] - base.opacity_logit()[old]);
@@ -32,7 +34,8 @@ std::vector<float> changed_values(const DocumentState& state) {
     return values;
 }
 
-std::vector<float> carried(const std::vector<float>& values, const std::vector<std::int64_t>& base_to_new, std::size_t rows, float fresh) {
+std::vector<float> carried(const std::vector<float>& values, const std::vector<std::int64_t>& base_to_new,
+                           std::size_t rows, float fresh) {
     std::vector<float> result(rows, fresh);
     for (std::size_t row = 0; row < base_to_new.size() && row < values.size(); ++row)
         if (base_to_new[row] >= 0) result[static_cast<std::size_t>(base_to_new[row])] = values[row];
@@ -46,7 +49,8 @@ std::vector<std::int64_t> row_map(const std::vector<RowId>& before, const std::v
     std::vector<RowId> wanted;
     for (const auto row : order) wanted.push_back(before[row]);
     std::vector<std::int64_t> rows(before.size(), -1);
-    locate_rows(after, wanted, [&](std::size_t row, std::size_t k) { rows[order[k]] = static_cast<std::int64_t>(row); });
+    locate_rows(after, wanted,
+                [&](std::size_t row, std::size_t k) { rows[order[k]] = static_cast<std::int64_t>(row); });
     return rows;
 }
 

@@ -12,7 +12,8 @@ namespace gse {
 std::vector<float> changed_values(const DocumentState& state);
 
 /// Values of rows of a set carried to another one of `rows` rows; those that are new get `fresh`.
-std::vector<float> carried(const std::vector<float>& values, const std::vector<std::int64_t>& base_to_new, std::size_t rows, float fresh);
+std::vector<float> carried(const std::vector<float>& values, const std::vector<std::int64_t>& base_to_new,
+                           std::size_t rows, float fresh);
 
 /// Where each row of `before` is in `after`, by identity; -1 = nowhere.
 std::vector<std::int64_t> row_map(const std::vector<RowId>& before, const std::vector<RowId>& after);

@@ -22,8 +22,8 @@ struct View {
 /// Changing the threshold recomputes the bits, never the weights.
 struct Label {
     std::string name;
-    std::shared_ptr<const std::vector<float>> weight;        // [N]
-    std::shared_ptr<const std::vector<std::uint8_t>> bits;   // [N] 0 or 1
+    std::shared_ptr<const std::vector<float>> weight;       // [N]
+    std::shared_ptr<const std::vector<std::uint8_t>> bits;  // [N] 0 or 1
 };
 
 /// The named labels of a scene.
@@ -36,11 +36,11 @@ Label make_label(std::string name, std::vector<float> weight, float threshold);
 
 /// What the file (or the generator) said beside the Gaussians.
 struct SceneInfo {
-    std::string format;                  // "ply", "compressed.ply", "splat", "spz", "sog", "synthetic"
-    Vec3 up{0, -1, 0};                   // world up; 3DGS scenes follow COLMAP, -y up
-    bool up_known = false;               // true when the file stated it
-    bool antialiased = false;            // trained with opacity compensation
-    std::vector<std::string> warnings;   // what was odd but survivable, one sentence each
+    std::string format;                 // "ply", "compressed.ply", "splat", "spz", "sog", "synthetic"
+    Vec3 up{0, -1, 0};                  // world up; 3DGS scenes follow COLMAP, -y up
+    bool up_known = false;              // true when the file stated it
+    bool antialiased = false;           // trained with opacity compensation
+    std::vector<std::string> warnings;  // what was odd but survivable, one sentence each
 };
 
 struct Scene {
@@ -52,15 +52,16 @@ struct Scene {
 /// Counts of what may be wrong with a scene; printed by `info`, shown by the window.
 struct SceneStatistics {
     std::size_t count = 0;
-    std::size_t nan_rows = 0;              // any NaN in any attribute
-    std::size_t infinite_rows = 0;         // any infinity except a legal +-inf opacity logit or -inf log-scale, or a value
-                                           // that nothing can be computed with (a position of 1e30, a colour of 1e10)
+    std::size_t nan_rows = 0;  // any NaN in any attribute
+    std::size_t infinite_rows =
+        0;  // any infinity except a legal +-inf opacity logit or -inf log-scale, or a value
+            // that nothing can be computed with (a position of 1e30, a colour of 1e10)
     std::size_t giant_rows = 0;            // largest standard deviation above the robust scene radius
     std::size_t invisible_rows = 0;        // opacity below 1/255
     std::size_t visible_rows = 0;          // that can be drawn, with an opacity of 1/255 or more
     std::size_t zero_quaternion_rows = 0;  // |q| < 1e-8
-    Vec3 bounds_low{}, bounds_high{};              // over finite positions
-    Vec3 robust_low{}, robust_high{};              // 2nd to 98th percentile of visible finite rows
+    Vec3 bounds_low{}, bounds_high{};      // over finite positions
+    Vec3 robust_low{}, robust_high{};      // 2nd to 98th percentile of visible finite rows
     double mean_opacity = 0;
 };
 
@@ -72,14 +73,15 @@ OrbitParameters fit_orbit(const SceneStatistics& statistics, const Vec3& up);
 /// `count` views evenly spaced on the orbit, at two alternating elevations so that tops are seen.
 std::vector<View> orbit_views(const OrbitParameters& orbit, int count, int width, int height);
 
-/// [N] 1 for rows that can be drawn, 0 for those with a NaN, an infinity that means nothing or an absurd value.
+/// [N] 1 for rows that can be drawn, 0 for those with a NaN, an infinity that means nothing or an absurd
+/// value.
 std::vector<std::uint8_t> usable_rows(const GaussianSet& set);
 
 /// Drops rows that cannot be drawn (NaN, illegal infinities, absurd values); returns the kept rows.
 GaussianSet drop_unusable(const GaussianSet& set);
 
-/// The same rows with those that cannot be drawn made invisible and finite: what pictures, losses and figures are made from,
-/// while the scene keeps what came in. Shares all arrays where every row can be drawn.
+/// The same rows with those that cannot be drawn made invisible and finite: what pictures, losses and figures
+/// are made from, while the scene keeps what came in. Shares all arrays where every row can be drawn.
 GaussianSet drawable(const GaussianSet& set);
 
 }  // namespace gse

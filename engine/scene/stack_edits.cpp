@@ -25,9 +25,10 @@ EditNode removal_of(const DocumentState& state, std::span<const std::uint8_t> ro
     return node;
 }
 
-DocumentState with_adjustment(const DocumentState& before, std::span<const std::uint8_t> rows, const ColourAdjustment& adjustment, std::uint64_t id) {
+DocumentState with_adjustment(const DocumentState& before, std::span<const std::uint8_t> rows,
+                              const ColourAdjustment& adjustment, std::uint64_t id) {
     GSE_CHECK_EQ(rows.size(), before.current.size());
-    const GaussianSet some = before.current.filtered(rows);   // of a large scene little is adjusted
+    const GaussianSet some = before.current.filtered(rows);  // of a large scene little is adjusted
     const GaussianSet after = adjusted(some, std::vector<std::uint8_t>(some.size(), 1), adjustment);
     if (adjustment == ColourAdjustment{}) return before;
     std::vector<RowId> ids;
@@ -50,7 +51,8 @@ DocumentState with_edit(const DocumentState& before, EditNode node, const std::s
     stack.push_back(std::move(node));
     DocumentState state = with_stack(before, std::move(stack));
     std::vector<std::uint8_t> added(state.current.size(), 0);
-    for (std::size_t row = 0; row < added.size(); ++row) added[row] = ((*state.row_ids)[row] >> EditIdShift) == id ? 1 : 0;
+    for (std::size_t row = 0; row < added.size(); ++row)
+        added[row] = ((*state.row_ids)[row] >> EditIdShift) == id ? 1 : 0;
     if (std::find(added.begin(), added.end(), std::uint8_t{1}) == added.end()) return state;
     if (beside || state.active_label < 0) {
         state.labels.push_back(empty_label(target, added.size()));

@@ -12,13 +12,13 @@ namespace {
 
 constexpr double InvisibleOpacity = 1.0 / 255.0;  // the rasterizer's smallest drawn alpha
 constexpr double ZeroQuaternionNorm = 1e-8;
-constexpr float LargestValue = 1e15f;             // its square is still far from what a float holds
-constexpr float LargestColour = 1e4f;             // SH coefficient; trained ones stay below 100
+constexpr float LargestValue = 1e15f;  // its square is still far from what a float holds
+constexpr float LargestColour = 1e4f;  // SH coefficient; trained ones stay below 100
 constexpr double LowQuantile = 0.02;
 constexpr double HighQuantile = 0.98;
 constexpr double SplatReach = 3;  // standard deviations: what is seen of splats that are all in one place
 
-constexpr float HiddenLogScale = -10, HiddenLogit = -100;   // of a row that is not to be seen
+constexpr float HiddenLogScale = -10, HiddenLogit = -100;  // of a row that is not to be seen
 
 enum class Oddity { None, Nan, Infinite };
 

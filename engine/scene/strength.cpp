@@ -14,12 +14,12 @@ namespace gse {
 namespace {
 
 constexpr float MostSh = 1;            // what every format holds of a coefficient above the base colour
-constexpr double ClampedLogit = -100;    // of rows that are hardly there: finite in every format
+constexpr double ClampedLogit = -100;  // of rows that are hardly there: finite in every format
 
 double opacity_of(double logit) { return 1 / (1 + std::exp(-logit)); }
 
-/// Logit of the opacity at `share` of the way from `from` to `to`; both opacity and what shines through are mixed, so that
-/// neither vanishes in rounding.
+/// Logit of the opacity at `share` of the way from `from` to `to`; both opacity and what shines through are
+/// mixed, so that neither vanishes in rounding.
 float mixed_logit(double from, double to, double share) {
     const double opaque = (1 - share) * opacity_of(from) + share * opacity_of(to);
     const double clear = (1 - share) * opacity_of(-from) + share * opacity_of(-to);
@@ -57,7 +57,8 @@ void mix_rotation(const float* from, float* to, double share) {
     for (std::size_t i = 0; i < 4; ++i) to[i] = static_cast<float>(b[i] / std::sqrt(length));
 }
 
-/// A coefficient beyond `to`, seen from `from`, within [low,high]; one that lay beyond them already goes no further.
+/// A coefficient beyond `to`, seen from `from`, within [low,high]; one that lay beyond them already goes no
+/// further.
 float beyond(float from, float to, double strength, double low, double high) {
     if (from == to) return to;
     const double value = from + strength * (static_cast<double>(to) - from);
@@ -114,7 +115,8 @@ struct Entry {
 
 }  // namespace
 
-SceneDelta with_strength(const GaussianSet& before, std::span<const RowId> ids, const SceneDelta& delta, double strength) {
+SceneDelta with_strength(const GaussianSet& before, std::span<const RowId> ids, const SceneDelta& delta,
+                         double strength) {
     GSE_CHECK(strength >= 0 && strength <= MostStrength);
     if (strength == 1) return delta;
     SceneDelta mixed;
@@ -124,7 +126,8 @@ SceneDelta with_strength(const GaussianSet& before, std::span<const RowId> ids, 
     mixed.added_rows.sh_degree = delta.added_rows.sh_degree;
     if (strength == 0) return mixed;
     std::vector<Entry> entries;
-    for (std::size_t k = 0; k < delta.changed.size(); ++k) entries.push_back({delta.changed[k], false, k, Absent});
+    for (std::size_t k = 0; k < delta.changed.size(); ++k)
+        entries.push_back({delta.changed[k], false, k, Absent});
     locate_rows(ids, delta.changed, [&](std::size_t row, std::size_t k) { entries[k].row = row; });
     std::vector<std::size_t> back(delta.removed.size(), Absent);
     if (strength < 1) locate_rows(ids, delta.removed, [&](std::size_t row, std::size_t k) { back[k] = row; });
@@ -134,7 +137,8 @@ SceneDelta with_strength(const GaussianSet& before, std::span<const RowId> ids, 
     }
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.id < b.id; });
     for (const Entry& entry : entries) {
-        GaussianData row = entry.removed ? row_of(rows, entry.row, degree) : row_of(spans(delta.changed_rows), entry.k, degree);
+        GaussianData row = entry.removed ? row_of(rows, entry.row, degree)
+                                         : row_of(spans(delta.changed_rows), entry.k, degree);
         if (entry.removed) row.opacity_logit[0] = fainter(row.opacity_logit[0], 1 - strength);
         else if (entry.row != Absent) mix_row(rows, entry.row, row, strength);
         mixed.changed.push_back(entry.id);

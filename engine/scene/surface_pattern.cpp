@@ -17,11 +17,21 @@ struct Named {
     Kind kind;
 };
 
-constexpr std::array<Named, 16> Patterns{{{"striped", Kind::Striped},     {"spotted", Kind::Spotted},     {"dotted", Kind::Spotted},
-                                          {"checkered", Kind::Checkered}, {"checked", Kind::Checkered},   {"chequered", Kind::Checkered},
-                                          {"rainbow", Kind::Rainbow},     {"marble", Kind::Marble},       {"brick", Kind::Brick},
-                                          {"rusty", Kind::Rusty},         {"lava", Kind::Lava},           {"mossy", Kind::Mossy},
-                                          {"zebra", Kind::Zebra},         {"leopard", Kind::Leopard},     {"camouflage", Kind::Camouflage},
+constexpr std::array<Named, 16> Patterns{{{"striped", Kind::Striped},
+                                          {"spotted", Kind::Spotted},
+                                          {"dotted", Kind::Spotted},
+                                          {"checkered", Kind::Checkered},
+                                          {"checked", Kind::Checkered},
+                                          {"chequered", Kind::Checkered},
+                                          {"rainbow", Kind::Rainbow},
+                                          {"marble", Kind::Marble},
+                                          {"brick", Kind::Brick},
+                                          {"rusty", Kind::Rusty},
+                                          {"lava", Kind::Lava},
+                                          {"mossy", Kind::Mossy},
+                                          {"zebra", Kind::Zebra},
+                                          {"leopard", Kind::Leopard},
+                                          {"camouflage", Kind::Camouflage},
                                           {"rainbow-coloured", Kind::Rainbow}}};
 
 /// Light blue-white veins across white: Perlin's marble.
@@ -35,7 +45,7 @@ Vec3 marble(const Vec3& q) {
 
 /// Courses of bricks around the vertical axis, every other one moved by half a brick.
 Vec3 brick(const Vec3& p, const Vec3& q) {
-    constexpr double Height = 0.105, Around = 11, Joint = 0.16;   // bricks around; of a brick's height
+    constexpr double Height = 0.105, Around = 11, Joint = 0.16;  // bricks around; of a brick's height
     const double course = p.y / Height, row = std::floor(course);
     const double place = Around * (std::atan2(p.z, p.x) / 6.28318531 + 0.5) + 0.5 * std::fmod(row + 100, 2.0);
     const double up = course - row, along = place - std::floor(place);
@@ -51,15 +61,17 @@ bool in_spot(const Vec3& p, const Vec3& offset) {
     const Vec3 cell{std::floor(q.x), std::floor(q.y), std::floor(q.z)};
     for (int k = 0; k < 27; ++k) {
         const Vec3 near = cell + Vec3{k % 3 - 1.0, k / 3 % 3 - 1.0, k / 9 - 1.0};
-        const Vec3 middle = near + Vec3{0.5 + 0.3 * (value_noise(near * 3.7) - 0.5), 0.5 + 0.3 * (value_noise(near * 5.1) - 0.5), 0.5};
+        const Vec3 middle = near + Vec3{0.5 + 0.3 * (value_noise(near * 3.7) - 0.5),
+                                        0.5 + 0.3 * (value_noise(near * 5.1) - 0.5), 0.5};
         if (length(q - middle) < Radius * 1.25) return true;
     }
     return false;
 }
 
 Vec3 rainbow(const Vec3& p) {
-    constexpr std::array<Vec3, 6> Bands{Vec3{0.50, 0.15, 0.75}, Vec3{0.12, 0.28, 0.90}, Vec3{0.08, 0.62, 0.22},
-                                        Vec3{0.98, 0.88, 0.10}, Vec3{0.98, 0.50, 0.05}, Vec3{0.88, 0.08, 0.08}};
+    constexpr std::array<Vec3, 6> Bands{Vec3{0.50, 0.15, 0.75}, Vec3{0.12, 0.28, 0.90},
+                                        Vec3{0.08, 0.62, 0.22}, Vec3{0.98, 0.88, 0.10},
+                                        Vec3{0.98, 0.50, 0.05}, Vec3{0.88, 0.08, 0.08}};
     const double at = std::clamp(p.y / 1.02, 0.0, 0.999) * Bands.size();
     const auto i = static_cast<std::size_t>(at);
     const Vec3& next = Bands[std::min(i + 1, Bands.size() - 1)];
@@ -76,7 +88,8 @@ Vec3 rusty(const Vec3& q) {
 Vec3 lava(const Vec3& q) {
     const double crack = std::abs(layered_noise(q * 4.2) - 0.5) + 0.35 * std::abs(value_noise(q * 9.0) - 0.5);
     const Vec3 glow = mix({1.0, 0.85, 0.20}, {0.95, 0.28, 0.02}, smooth_step(0.02, 0.08, crack));
-    return mix(glow, Vec3{0.10, 0.07, 0.07} * (0.7 + 0.6 * value_noise(q * 20.0)), smooth_step(0.08, 0.13, crack));
+    return mix(glow, Vec3{0.10, 0.07, 0.07} * (0.7 + 0.6 * value_noise(q * 20.0)),
+               smooth_step(0.08, 0.13, crack));
 }
 
 Vec3 mossy(const Vec3& p, const Vec3& q) {
@@ -101,7 +114,8 @@ Vec3 leopard(const Vec3& p, const Vec3& offset) {
     double nearest = 2;
     for (int k = 0; k < 27; ++k) {
         const Vec3 near = cell + Vec3{k % 3 - 1.0, k / 3 % 3 - 1.0, k / 9 - 1.0};
-        const Vec3 middle = near + Vec3{value_noise(near * 3.7), value_noise(near * 5.1), value_noise(near * 4.3)};
+        const Vec3 middle =
+            near + Vec3{value_noise(near * 3.7), value_noise(near * 5.1), value_noise(near * 4.3)};
         nearest = std::min(nearest, length(q - middle));
     }
     const Vec3 ground{0.84, 0.62, 0.32};
@@ -118,7 +132,8 @@ Vec3 camouflage(const Vec3& q) {
 
 Vec3 squares(const SurfacePattern& pattern, const Vec3& p) {
     constexpr double Square = 0.21;
-    const auto cell = std::lround(std::floor(p.x / Square + 0.5) + std::floor(p.y / Square) + std::floor(p.z / Square + 0.5));
+    const auto cell = std::lround(std::floor(p.x / Square + 0.5) + std::floor(p.y / Square) +
+                                  std::floor(p.z / Square + 0.5));
     return (cell & 1) == 0 ? pattern.first : pattern.second;
 }
 
@@ -134,19 +149,23 @@ const std::vector<std::string>& pattern_words() {
 }
 
 std::optional<SurfacePattern> pattern_named(const std::string& word) {
-    const auto found = std::find_if(Patterns.begin(), Patterns.end(), [&](const Named& named) { return word == named.word; });
+    const auto found = std::find_if(Patterns.begin(), Patterns.end(),
+                                    [&](const Named& named) { return word == named.word; });
     if (found == Patterns.end()) return std::nullopt;
     SurfacePattern pattern;
     pattern.kind = found->kind;
     return pattern;
 }
 
-bool takes_colours(SurfacePattern::Kind kind) { return kind == Kind::Striped || kind == Kind::Spotted || kind == Kind::Checkered; }
+bool takes_colours(SurfacePattern::Kind kind) {
+    return kind == Kind::Striped || kind == Kind::Spotted || kind == Kind::Checkered;
+}
 
 Vec3 colour_at(const SurfacePattern& pattern, const Vec3& p) {
     const Vec3 q = p + pattern.offset;
     switch (pattern.kind) {
-        case Kind::Striped: return std::sin(6.28318531 * (p.y / 0.17 + 0.12 * p.x)) < 0 ? pattern.first : pattern.second;
+        case Kind::Striped:
+            return std::sin(6.28318531 * (p.y / 0.17 + 0.12 * p.x)) < 0 ? pattern.first : pattern.second;
         case Kind::Spotted: return in_spot(p, pattern.offset) ? pattern.first : pattern.second;
         case Kind::Checkered: return squares(pattern, p);
         case Kind::Rainbow: return rainbow(p);

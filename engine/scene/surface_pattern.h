@@ -9,13 +9,27 @@
 
 namespace gse {
 
-/// A pattern of two colours, or of colours of its own. Thing space: y up, the middle of its foot at the origin, about one unit high.
+/// A pattern of two colours, or of colours of its own. Thing space: y up, the middle of its foot at the
+/// origin, about one unit high.
 struct SurfacePattern {
-    enum class Kind { Striped, Spotted, Checkered, Rainbow, Marble, Brick, Rusty, Lava, Mossy, Zebra, Leopard, Camouflage };
+    enum class Kind {
+        Striped,
+        Spotted,
+        Checkered,
+        Rainbow,
+        Marble,
+        Brick,
+        Rusty,
+        Lava,
+        Mossy,
+        Zebra,
+        Leopard,
+        Camouflage
+    };
     Kind kind = Kind::Striped;
     Vec3 first{0.08, 0.08, 0.09};   // stripes, spots and squares (display values in [0,1]),
-    Vec3 second{0.95, 0.95, 0.94};   // and what is between them
-    Vec3 offset{};                   // where natural surfaces are cut out of their noise
+    Vec3 second{0.95, 0.95, 0.94};  // and what is between them
+    Vec3 offset{};                  // where natural surfaces are cut out of their noise
 };
 
 /// Words for them: "striped", "marble", ...

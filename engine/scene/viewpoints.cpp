@@ -6,7 +6,8 @@
 namespace gse {
 
 Camera fitted(const Camera& from, int width, int height) {
-    const double scale = std::min(static_cast<double>(width) / from.width, static_cast<double>(height) / from.height);
+    const double scale =
+        std::min(static_cast<double>(width) / from.width, static_cast<double>(height) / from.height);
     Camera camera = from;
     camera.width = width;
     camera.height = height;

@@ -67,12 +67,15 @@ bool chance(Random& random, double probability) { return random.uniform() < prob
 
 /// The object in one of several ways: "a wooden chair", "a chair made of wood", "the red bear".
 void object_phrase(CaptionWriter& writer, const SceneSpec& spec, bool with_material, Random& random) {
-    static const std::vector<std::string> substances{"wooden", "stone", "golden", "silver", "bronze", "marble", "brick", "lava"};
+    static const std::vector<std::string> substances{"wooden", "stone",  "golden", "silver",
+                                                     "bronze", "marble", "brick",  "lava"};
     const bool substance = contains(substances, spec.material);
     if (with_material && substance && chance(random, 0.25)) {
         noun_phrase(writer, "", spec.object, Part::Object);
         writer.say("made of");
-        const std::string name = spec.material == "wooden" ? "wood" : spec.material == "golden" ? "gold" : spec.material;
+        const std::string name = spec.material == "wooden"   ? "wood"
+                                 : spec.material == "golden" ? "gold"
+                                                             : spec.material;
         writer.name(name, Part::Object);
         return;
     }
@@ -147,15 +150,14 @@ struct EditReader {
     }
     void finish() {
         if (adjective.empty()) return;
-        if (!accessory_last)
-            spec.material = adjective;
-        else if (!accessory_colour_words(spec.accessory).empty())
-            spec.accessory_colour = adjective;
+        if (!accessory_last) spec.material = adjective;
+        else if (!accessory_colour_words(spec.accessory).empty()) spec.accessory_colour = adjective;
         adjective.clear();
     }
 
 private:
-    static bool one_of(const std::vector<std::string>& words, const std::vector<std::string>& more, const std::string& word) {
+    static bool one_of(const std::vector<std::string>& words, const std::vector<std::string>& more,
+                       const std::string& word) {
         return contains(words, word) || contains(more, word);
     }
     void noun(bool accessory) {

@@ -162,8 +162,9 @@ SynthScene generate(const SceneSpec& spec) {
         sample_surface(model.shapes, {}, share(ObjectShare), stream(SampleStream + object_index));
     auto placed = own;
     place(placed, pose);
-    const GroundSample ground = make_ground(spec.ground, share(GroundShare), placed, light,
-                                            stream(GroundStream + word_index(ground_words(), more_ground_words(), spec.ground)));
+    const GroundSample ground =
+        make_ground(spec.ground, share(GroundShare), placed, light,
+                    stream(GroundStream + word_index(ground_words(), more_ground_words(), spec.ground)));
     Writer writer(result);
     writer.add(ground.points, ground.colours, Part::Ground, stream(OpacityStream));
     writer.add(placed, colours_of(own, placed, model.shapes, material, light), Part::Object,

@@ -85,14 +85,16 @@ Vec3 ground_colour(const std::string& word, const Vec3& p, const Vec3& offset) {
         return mix(base, {0.85, 0.97, 1.0},
                    0.8 * smooth_step(0.82, 1.0, wave) * smooth_step(0.35, 0.6, value_noise(q * 2.7)));
     }
-    if (word == "leaves") {   // fallen, in autumn
+    if (word == "leaves") {  // fallen, in autumn
         const double kind = value_noise(q * 8.0), shade = value_noise(q * 15.0 + Vec3{5, 0, 9});
-        const Vec3 leaf = mix(mix({0.55, 0.16, 0.04}, {0.90, 0.48, 0.06}, smooth_step(0.25, 0.55, kind)), {0.93, 0.78, 0.18}, smooth_step(0.58, 0.75, kind));
+        const Vec3 leaf = mix(mix({0.55, 0.16, 0.04}, {0.90, 0.48, 0.06}, smooth_step(0.25, 0.55, kind)),
+                              {0.93, 0.78, 0.18}, smooth_step(0.58, 0.75, kind));
         return leaf * (0.6 + 0.55 * shade);
     }
     if (word == "mud") {
         const double wet = layered_noise(q * 2.6);
-        return mix({0.22, 0.13, 0.07}, {0.45, 0.30, 0.18}, smooth_step(0.3, 0.7, wet)) * (0.85 + 0.3 * value_noise(q * 12.0));
+        return mix({0.22, 0.13, 0.07}, {0.45, 0.30, 0.18}, smooth_step(0.3, 0.7, wet)) *
+               (0.85 + 0.3 * value_noise(q * 12.0));
     }
     if (word == "gravel") {
         const double pebble = value_noise(q * 11.0), tone = value_noise(q * 3.0);
@@ -101,7 +103,8 @@ Vec3 ground_colour(const std::string& word, const Vec3& p, const Vec3& offset) {
     }
     if (word == "ice") {
         const double crack = std::abs(layered_noise(q * 1.8) - 0.5);
-        const Vec3 sheet = mix({0.52, 0.78, 0.92}, {0.74, 0.92, 0.99}, smooth_step(0.3, 0.7, value_noise(q * 1.3)));
+        const Vec3 sheet =
+            mix({0.52, 0.78, 0.92}, {0.74, 0.92, 0.99}, smooth_step(0.3, 0.7, value_noise(q * 1.3)));
         return mix({0.97, 0.99, 1.0}, sheet, smooth_step(0.0, 0.05, crack));
     }
     constexpr double Tile = 0.5;

@@ -75,12 +75,14 @@ Vec3 metal(const Material& material, const Light& light, const SurfacePoint& poi
     const Vec3 colour = gold(material, light, point);
     if (material.texture == Material::Texture::Gold) return colour;
     const double bright = std::clamp((colour.x - 0.3) / 0.7, 0.0, 1.0);
-    if (material.texture == Material::Texture::Silver) return mix({0.12, 0.13, 0.16}, {0.97, 0.98, 1.0}, std::pow(bright, 1.35));
+    if (material.texture == Material::Texture::Silver)
+        return mix({0.12, 0.13, 0.16}, {0.97, 0.98, 1.0}, std::pow(bright, 1.35));
     return mix({0.14, 0.06, 0.03}, {0.93, 0.62, 0.40}, std::pow(bright, 1.3));
 }
 
 bool is_metal(Material::Texture texture) {
-    return texture == Material::Texture::Gold || texture == Material::Texture::Silver || texture == Material::Texture::Bronze;
+    return texture == Material::Texture::Gold || texture == Material::Texture::Silver ||
+           texture == Material::Texture::Bronze;
 }
 
 }  // namespace
@@ -131,31 +133,21 @@ Vec3 shade(const Paint& paint, const Material& material, const Light& light, con
     Vec3 colour = paint.colour;
     if (!own) {
         switch (material.texture) {
-            case Material::Texture::Plain:
-                colour = material.base;
-                break;
-            case Material::Texture::Wood:
-                colour = wood(material, point.position);
-                break;
-            case Material::Texture::Stone:
-                colour = stone(material, point.position);
-                break;
+            case Material::Texture::Plain: colour = material.base; break;
+            case Material::Texture::Wood: colour = wood(material, point.position); break;
+            case Material::Texture::Stone: colour = stone(material, point.position); break;
             case Material::Texture::Gold:
             case Material::Texture::Silver:
-            case Material::Texture::Bronze:
-                colour = metal(material, light, point);
-                break;
-            case Material::Texture::Pattern:
-                colour = colour_at(material.pattern, point.position);
-                break;
+            case Material::Texture::Bronze: colour = metal(material, light, point); break;
+            case Material::Texture::Pattern: colour = colour_at(material.pattern, point.position); break;
         }
         const double brightness = (colour.x + colour.y + colour.z) / 3;
         if (paint.slot == Slot::Pale)
             colour = brightness > 0.9 ? colour * 0.72
                                       : mix(colour, {1, 1, 1},
-                                            plain   ? 0.5
+                                            plain      ? 0.5
                                             : polished ? 0.08
-                                                    : 0.25);
+                                                       : 0.25);
         if (paint.slot == Slot::Deep)
             colour = brightness < 0.12 ? mix(colour, {1, 1, 1}, 0.25) : colour * 0.58;
     }

@@ -190,7 +190,8 @@ Model make_car(Random& random) {
         for (const double z : {cabin_front + 0.025, middle, cabin_back - 0.025})
             s.push_back(box({side * (w - 0.04), 0.5, z}, {0.022, 0.13, 0.03}, Main));
         for (const double z : {-half + 0.2, half - 0.2}) {
-            s.push_back(cone({side * (w - 0.08), 0.13, z}, {side * (w + 0.035), 0.13, z}, 0.135, 0.135, Tyre));
+            s.push_back(
+                cone({side * (w - 0.08), 0.13, z}, {side * (w + 0.035), 0.13, z}, 0.135, 0.135, Tyre));
             Shape hub = cone({side * (w + 0.02), 0.13, z}, {side * (w + 0.05), 0.13, z}, 0.07, 0.06,
                              {Slot::Fixed, {0.75, 0.76, 0.78}});
             s.push_back(dense(hub, 2));
@@ -312,14 +313,16 @@ Model make_object(const std::string& word, Random random) {
         Model (*make)(Random&);
     };
     static constexpr Maker Makers[] = {
-        {"bear", make_bear},         {"dog", make_dog},         {"cat", make_cat},         {"duck", make_duck},
-        {"statue", make_statue},     {"ball", make_ball},       {"vase", make_vase},       {"mushroom", make_mushroom},
-        {"chair", make_chair},       {"car", make_car},         {"house", make_house},     {"tree", make_tree},
-        {"rabbit", make_rabbit},     {"horse", make_horse},     {"elephant", make_elephant}, {"pig", make_pig},
-        {"lion", make_lion},         {"penguin", make_penguin}, {"owl", make_owl},         {"frog", make_frog},
-        {"turtle", make_turtle},     {"dinosaur", make_dinosaur}, {"snowman", make_snowman}, {"robot", make_robot},
-        {"pumpkin", make_pumpkin},   {"cactus", make_cactus},   {"teapot", make_teapot},   {"rocket", make_rocket},
-        {"castle", make_castle},     {"lamp", make_lamp}};
+        {"bear", make_bear},         {"dog", make_dog},           {"cat", make_cat},
+        {"duck", make_duck},         {"statue", make_statue},     {"ball", make_ball},
+        {"vase", make_vase},         {"mushroom", make_mushroom}, {"chair", make_chair},
+        {"car", make_car},           {"house", make_house},       {"tree", make_tree},
+        {"rabbit", make_rabbit},     {"horse", make_horse},       {"elephant", make_elephant},
+        {"pig", make_pig},           {"lion", make_lion},         {"penguin", make_penguin},
+        {"owl", make_owl},           {"frog", make_frog},         {"turtle", make_turtle},
+        {"dinosaur", make_dinosaur}, {"snowman", make_snowman},   {"robot", make_robot},
+        {"pumpkin", make_pumpkin},   {"cactus", make_cactus},     {"teapot", make_teapot},
+        {"rocket", make_rocket},     {"castle", make_castle},     {"lamp", make_lamp}};
     for (const auto& maker : Makers)
         if (word == maker.word) return maker.make(random);
     GSE_CHECK(false);

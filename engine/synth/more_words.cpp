@@ -18,24 +18,28 @@ const std::string& one_of(const Words& words, const Words& more, double share, R
 }  // namespace
 
 const Words& more_object_words() {
-    static const Words words{"rabbit", "horse",    "elephant", "pig",   "lion",    "penguin", "owl",    "frog",   "turtle",
-                             "dinosaur", "snowman", "robot",    "pumpkin", "cactus", "teapot",  "rocket", "castle", "lamp"};
+    static const Words words{"rabbit",  "horse",  "elephant", "pig",      "lion",    "penguin",
+                             "owl",     "frog",   "turtle",   "dinosaur", "snowman", "robot",
+                             "pumpkin", "cactus", "teapot",   "rocket",   "castle",  "lamp"};
     return words;
 }
 
 const Words& more_material_words() {
-    static const Words words{"pink",   "brown",   "gray",    "turquoise", "silver", "bronze", "marble", "brick",
-                             "striped", "spotted", "checkered", "rainbow",   "rusty",  "lava",   "mossy"};
+    static const Words words{"pink",      "brown",   "gray",  "turquoise", "silver",
+                             "bronze",    "marble",  "brick", "striped",   "spotted",
+                             "checkered", "rainbow", "rusty", "lava",      "mossy"};
     return words;
 }
 
 const Words& more_accessory_words() {
-    static const Words words{"cape", "beard", "horns", "helmet", "halo", "backpack", "headphones", "necklace"};
+    static const Words words{"cape", "beard",    "horns",      "helmet",
+                             "halo", "backpack", "headphones", "necklace"};
     return words;
 }
 
 const Words& more_accessory_colour_words(const std::string& accessory) {
-    static const Words cloth{"red", "blue", "green", "yellow", "purple", "orange", "black", "white", "pink", "brown"};
+    static const Words cloth{"red",    "blue",  "green", "yellow", "purple",
+                             "orange", "black", "white", "pink",   "brown"};
     static const Words hair{"white", "black", "brown", "red", "gray"};
     static const Words bone{"white", "black", "red", "golden", "brown"};
     static const Words shell{"silver", "golden", "red", "blue", "black", "bronze", "green"};
@@ -58,7 +62,8 @@ const Words& more_ground_words() {
 const Words& drawn_vocabulary() {
     static const Words words = [] {
         Words all = vocabulary();
-        for (const auto& list : {more_object_words(), more_material_words(), more_accessory_words(), more_ground_words(), Words{"grey"}})
+        for (const auto& list : {more_object_words(), more_material_words(), more_accessory_words(),
+                                 more_ground_words(), Words{"grey"}})
             all.insert(all.end(), list.begin(), list.end());
         return all;
     }();
@@ -66,11 +71,14 @@ const Words& drawn_vocabulary() {
 }
 
 SceneSpec training_spec_of_more(Random& random, double with_accessory, bool looks) {
-    constexpr double NewObject = 0.5, NewMaterial = 0.45, NewAccessory = 0.5, NewGround = 0.2, Natural = 0.15, MoreColour = 0.35;
-    static const Words more_colours{"pink", "brown", "gray", "turquoise", "silver", "striped", "spotted", "checkered", "rainbow"};
+    constexpr double NewObject = 0.5, NewMaterial = 0.45, NewAccessory = 0.5, NewGround = 0.2, Natural = 0.15,
+                     MoreColour = 0.35;
+    static const Words more_colours{"pink",    "brown",   "gray",      "turquoise", "silver",
+                                    "striped", "spotted", "checkered", "rainbow"};
     const auto is_more = [](const SceneSpec& spec) {
         return contains(more_object_words(), spec.object) || contains(more_material_words(), spec.material) ||
-               contains(more_accessory_words(), spec.accessory) || contains(more_colours, spec.accessory_colour) || contains(more_ground_words(), spec.ground);
+               contains(more_accessory_words(), spec.accessory) ||
+               contains(more_colours, spec.accessory_colour) || contains(more_ground_words(), spec.ground);
     };
     SceneSpec spec;
     do {

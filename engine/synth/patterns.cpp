@@ -35,11 +35,13 @@ bool make_more_material(const std::string& word, Random& random, Material& mater
         material.pattern.offset = material.offset;
         if (takes_colours(pattern->kind) && pattern->kind != SurfacePattern::Kind::Checkered) {
             material.pattern.first = Strong[random.below(Strong.size())];
-            if (pattern->kind == SurfacePattern::Kind::Spotted && random.uniform() < 0.5) std::swap(material.pattern.first, material.pattern.second);
+            if (pattern->kind == SurfacePattern::Kind::Spotted && random.uniform() < 0.5)
+                std::swap(material.pattern.first, material.pattern.second);
         }
         return true;
     }
-    const auto found = std::find_if(MoreMaterials.begin(), MoreMaterials.end(), [&](const NamedMaterial& named) { return word == named.word; });
+    const auto found = std::find_if(MoreMaterials.begin(), MoreMaterials.end(),
+                                    [&](const NamedMaterial& named) { return word == named.word; });
     if (found == MoreMaterials.end()) return false;
     material.texture = found->texture;
     material.base = found->base;

@@ -38,12 +38,9 @@ UnitPoint cube_point(double u, double v) {
     const double b = 2 * v - 1;
     const double side = face % 2 == 0 ? 1 : -1;
     switch (face / 2) {
-        case 0:
-            return {{side, a, b}, {side, 0, 0}};
-        case 1:
-            return {{a, side, b}, {0, side, 0}};
-        default:
-            return {{a, b, side}, {0, 0, side}};
+        case 0: return {{side, a, b}, {side, 0, 0}};
+        case 1: return {{a, side, b}, {0, side, 0}};
+        default: return {{a, b, side}, {0, 0, side}};
     }
 }
 
@@ -183,9 +180,15 @@ double Shape::bounding_radius() const {
     return largest;
 }
 
-Mat3 rotation_x(double a) { return Mat3::from_rows({1, 0, 0, 0, std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a)}); }
-Mat3 rotation_y(double a) { return Mat3::from_rows({std::cos(a), 0, std::sin(a), 0, 1, 0, -std::sin(a), 0, std::cos(a)}); }
-Mat3 rotation_z(double a) { return Mat3::from_rows({std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a), 0, 0, 0, 1}); }
+Mat3 rotation_x(double a) {
+    return Mat3::from_rows({1, 0, 0, 0, std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a)});
+}
+Mat3 rotation_y(double a) {
+    return Mat3::from_rows({std::cos(a), 0, std::sin(a), 0, 1, 0, -std::sin(a), 0, std::cos(a)});
+}
+Mat3 rotation_z(double a) {
+    return Mat3::from_rows({std::cos(a), -std::sin(a), 0, std::sin(a), std::cos(a), 0, 0, 0, 1});
+}
 
 Mat3 rotation_to(const Vec3& axis) {
     const Vec3 helper = std::abs(axis.x) < 0.7 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};

@@ -23,9 +23,10 @@ struct SceneSpec {
     std::string ground = "grass";    // see ground_words()
     std::uint64_t seed = 0;          // shape, pose, texture and light variation
     int gaussian_budget = 6000;      // about this many Gaussians in all
-    double heading = 0;              // radians about the vertical, beyond the seed's own pose; the ground stays
-    double size = 1;                 // factor of the object's and the accessory's size
-    std::uint64_t variant = 0;       // others: another thing of the same words in the same light on the same ground, in pose, proportions and texture
+    double heading = 0;         // radians about the vertical, beyond the seed's own pose; the ground stays
+    double size = 1;            // factor of the object's and the accessory's size
+    std::uint64_t variant = 0;  // others: another thing of the same words in the same light on the same
+                                // ground, in pose, proportions and texture
 };
 
 /// A generated scene: up is -y as in COLMAP worlds, object standing on y = 0, front towards -z, about 1 unit
@@ -42,7 +43,8 @@ const std::vector<std::string>& material_words();   // at least 8
 const std::vector<std::string>& accessory_words();  // at least 5: hat crown sunglasses scarf flames ...
 const std::vector<std::string>& ground_words();     // at least 4
 
-/// More words of each list, which generate() knows, too. What looks for things was not trained on them, only what draws
+/// More words of each list, which generate() knows, too. What looks for things was not trained on them, only
+/// what draws
 /// (`drawn_vocabulary()`): random specs and, unless they are asked for, suites keep to the lists above.
 const std::vector<std::string>& more_object_words();
 const std::vector<std::string>& more_material_words();
@@ -52,8 +54,8 @@ const std::vector<std::string>& more_ground_words();
 /// Colours an accessory is made in (random specs choose among them); empty when it has its natural look only.
 const std::vector<std::string>& accessory_colour_words(const std::string& accessory);
 
-/// Every word of any caption and every word apply_edit() understands but those of more_*_words(), without punctuation
-/// (captions use commas).
+/// Every word of any caption and every word apply_edit() understands but those of more_*_words(), without
+/// punctuation (captions use commas).
 const std::vector<std::string>& vocabulary();
 
 /// vocabulary(), then every word that only captions of more_*_words() have.
@@ -74,15 +76,18 @@ SceneSpec training_spec(Random& random, double with_accessory = 0.5);
 /// The same, always held out.
 SceneSpec held_out_spec(Random& random, double with_accessory = 0.5);
 
-/// The same with at least one of more_*_words(), never held out. `looks`: of these only materials, colours and grounds.
+/// The same with at least one of more_*_words(), never held out. `looks`: of these only materials, colours
+/// and grounds.
 SceneSpec training_spec_of_more(Random& random, double with_accessory = 0.5, bool looks = false);
 
-/// Radians by which the scene's thing is turned about the vertical: the camera at this azimuth sees its front.
+/// Radians by which the scene's thing is turned about the vertical: the camera at this azimuth sees its
+/// front.
 double turn_of(const SceneSpec& spec);
 
-/// Camera around the scene at `azimuth` (0 = front, but for turn_of()) and `elevation` radians, 45 degrees field of view over
-/// the shorter side. `zoom` 1 frames the object with ground and leaves room for an accessory on top; it
-/// depends on the angles only, so that a scene and its edited twin are seen by the same camera.
+/// Camera around the scene at `azimuth` (0 = front, but for turn_of()) and `elevation` radians, 45 degrees
+/// field of view over the shorter side. `zoom` 1 frames the object with ground and leaves room for an
+/// accessory on top; it depends on the angles only, so that a scene and its edited twin are seen by the same
+/// camera.
 Camera scene_camera(const SynthScene& scene, double azimuth, double elevation, double zoom, int width,
                     int height);
 
@@ -92,11 +97,12 @@ Camera head_camera(const SynthScene& scene, double azimuth, double elevation, do
 
 /// "front view", "side view" or "back view" of an azimuth.
 std::string view_words(double azimuth);
-/// One of eight, of 45 degrees each: "front view", "front left view", "left side view", ... "front right view"; the camera of
-/// positive azimuths is on the left.
+/// One of eight, of 45 degrees each: "front view", "front left view", "left side view", ... "front right
+/// view"; the camera of positive azimuths is on the left.
 std::string sided_view_words(double azimuth);
 
-/// An azimuth between the middles of two of the eight sides: their words, and how far it is from the first to the second, in [0,1).
+/// An azimuth between the middles of two of the eight sides: their words, and how far it is from the first to
+/// the second, in [0,1).
 struct SideBlend {
     std::string words, next_words;
     double share = 0;

@@ -38,7 +38,8 @@ Spot on_box(Random& random, const Vec3& centre, const Vec3& half) {
     const double pick = random.uniform(0, x + y + z);
     const int face = pick < x ? 0 : pick < x + y ? 1 : 2;
     const double side = random.below(2) == 0 ? -1 : 1;
-    Vec3 offset{random.uniform(-half.x, half.x), random.uniform(-half.y, half.y), random.uniform(-half.z, half.z)};
+    Vec3 offset{random.uniform(-half.x, half.x), random.uniform(-half.y, half.y),
+                random.uniform(-half.z, half.z)};
     Vec3 normal;
     normal[face] = side;
     offset[face] = side * half[face];
@@ -66,11 +67,36 @@ struct Surface {
 std::span<const Surface> surfaces() {
     constexpr double pi = std::numbers::pi;
     static const std::array list{
-        Surface{.16, 4 * pi, [](Random& r) { return on_sphere(r, {0, 1, 0}, 1); }, {.85, .25, .2}},
-        Surface{.14, 4 * pi * pi * .9 * .35, [](Random& r) { return on_torus(r, {2.3, .45, .4}, .9, .35); }, {.2, .55, .85}},
-        Surface{.14, 8 * (.6 * .7 * 2 + .36), [](Random& r) { return on_box(r, {-2.2, .7, .3}, {.6, .7, .6}); }, {.95, .75, .2}},
-        Surface{.10, pi * .7 * 1.75, [](Random& r) { return on_cone(r, {.2, 0, 2.2}, .7, 1.6); }, {.3, .75, .35}},
-        Surface{.08, pi, [](Random& r) { return on_sphere(r, {-.8, .5, -2}, .5); }, {.7, .35, .8}},
+        Surface{.16,
+                4 * pi,
+                [](Random& r) {
+                    return on_sphere(r, {0, 1, 0}, 1);
+                },
+                {.85, .25, .2}},
+        Surface{.14,
+                4 * pi * pi * .9 * .35,
+                [](Random& r) {
+                    return on_torus(r, {2.3, .45, .4}, .9, .35);
+                },
+                {.2, .55, .85}},
+        Surface{.14,
+                8 * (.6 * .7 * 2 + .36),
+                [](Random& r) {
+                    return on_box(r, {-2.2, .7, .3}, {.6, .7, .6});
+                },
+                {.95, .75, .2}},
+        Surface{.10,
+                pi * .7 * 1.75,
+                [](Random& r) {
+                    return on_cone(r, {.2, 0, 2.2}, .7, 1.6);
+                },
+                {.3, .75, .35}},
+        Surface{.08,
+                pi,
+                [](Random& r) {
+                    return on_sphere(r, {-.8, .5, -2}, .5);
+                },
+                {.7, .35, .8}},
         Surface{.30, pi * 49, [](Random& r) { return on_ground(r, 7); }, {.45, .42, .38}},
         Surface{.08, 4 * pi * 196, [](Random& r) { return on_sphere(r, {}, 14); }, {.6, .75, .95}}};
     return list;
@@ -121,7 +147,8 @@ void fill_row(Random& random, const Surface& surface, double spacing, std::size_
         data.log_scale[at] = static_cast<float>(scale[axis]);
     }
     const std::array rotation{q.w, q.x, q.y, q.z};
-    std::transform(rotation.begin(), rotation.end(), &data.rotation[row * 4], [](double v) { return static_cast<float>(v); });
+    std::transform(rotation.begin(), rotation.end(), &data.rotation[row * 4],
+                   [](double v) { return static_cast<float>(v); });
     data.opacity_logit[row] = static_cast<float>(opacity_logit(random));
     fill_sh(random, position, surface.colour, &data.sh[row * data.sh_stride()]);
 }
@@ -135,10 +162,12 @@ Scene timing_scene(std::size_t count, std::uint64_t seed) {
     const auto list = surfaces();
     std::size_t row = 0;
     for (std::size_t i = list.size(); i-- > 0;) {
-        const auto rows = i == 0 ? count - row : static_cast<std::size_t>(static_cast<double>(count) * list[i].share);
+        const auto rows =
+            i == 0 ? count - row : static_cast<std::size_t>(static_cast<double>(count) * list[i].share);
         Random random = Random::stream(seed, i);
         const double spacing = std::sqrt(list[i].area / static_cast<double>(std::max<std::size_t>(rows, 1)));
-        for (const std::size_t end = row + rows; row < end; ++row) fill_row(random, list[i], spacing, row, data);
+        for (const std::size_t end = row + rows; row < end; ++row)
+            fill_row(random, list[i], spacing, row, data);
     }
     Scene scene;
     scene.gaussians = GaussianSet(std::move(data));

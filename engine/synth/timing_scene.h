@@ -1,5 +1,5 @@
-// A scene for timing: splats as trained scenes have them (flat, anisotropic, of very different sizes, half of them nearly
-// transparent), at any count.
+// A scene for timing: splats as trained scenes have them (flat, anisotropic, of very different sizes, half of
+// them nearly transparent), at any count.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace gse::synth {
 
-/// Sphere, torus, box, cone and a small sphere on a ground disc of radius 7 under a dome of radius 14; SH degree 3, up is +y.
-/// The same count and seed give the same scene.
+/// Sphere, torus, box, cone and a small sphere on a ground disc of radius 7 under a dome of radius 14; SH
+/// degree 3, up is +y. The same count and seed give the same scene.
 Scene timing_scene(std::size_t count, std::uint64_t seed);
 
 /// Cameras on one circle around it, 60 degrees wide.

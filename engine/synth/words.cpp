@@ -30,8 +30,9 @@ constexpr double SectorWidth = std::numbers::pi / 4;
 
 /// Words for one of the eight sides, counted from the front to the left.
 const std::string& sector(long index) {
-    static const std::array<std::string, 8> sectors{"front view", "front left view",  "left side view",  "back left view",
-                                                    "back view",  "back right view", "right side view", "front right view"};
+    static const std::array<std::string, 8> sectors{"front view",      "front left view", "left side view",
+                                                    "back left view",  "back view",       "back right view",
+                                                    "right side view", "front right view"};
     return sectors[static_cast<std::size_t>((index % 8 + 8) % 8)];
 }
 
@@ -92,10 +93,10 @@ const std::vector<Synonym>& synonyms() {
 
 const Words& vocabulary() {
     static const Words words = [] {
-        Words all{"a",    "an",       "the",   "of",      "on",     "in",      "with", "and",  "wearing",
-                  "made", "standing", "photo", "picture", "front",  "side",    "back", "view", "turn",
-                  "make", "into",     "it",    "add",     "remove", "without", "no",   "floor",
-                  "left", "right"};
+        Words all{"a",    "an",      "the",     "of",       "on",    "in",      "with",
+                  "and",  "wearing", "made",    "standing", "photo", "picture", "front",
+                  "side", "back",    "view",    "turn",     "make",  "into",    "it",
+                  "add",  "remove",  "without", "no",       "floor", "left",    "right"};
         for (const auto& list : {object_words(), material_words(), accessory_words(), ground_words()})
             all.insert(all.end(), list.begin(), list.end());
         for (const auto& synonym : synonyms()) all.emplace_back(synonym.typed);
@@ -108,8 +109,10 @@ void require_known_words(const SceneSpec& spec) {
     require_known(object_words(), more_object_words(), spec.object, "object");
     require_known(material_words(), more_material_words(), spec.material, "material");
     require_known(ground_words(), more_ground_words(), spec.ground, "ground");
-    if (!spec.accessory.empty()) require_known(accessory_words(), more_accessory_words(), spec.accessory, "accessory");
-    if (!spec.accessory_colour.empty()) require_known(material_words(), more_material_words(), spec.accessory_colour, "colour");
+    if (!spec.accessory.empty())
+        require_known(accessory_words(), more_accessory_words(), spec.accessory, "accessory");
+    if (!spec.accessory_colour.empty())
+        require_known(material_words(), more_material_words(), spec.accessory_colour, "colour");
 }
 
 std::uint64_t word_index(const Words& words, const Words& more, const std::string& word) {
@@ -122,9 +125,10 @@ std::uint64_t word_index(const Words& words, const Words& more, const std::strin
 
 std::string accessory_material(const SceneSpec& spec) {
     if (!spec.accessory_colour.empty()) return spec.accessory_colour;
-    static const std::map<std::string, std::string> natural{{"crown", "golden"}, {"scarf", "red"},    {"wings", "white"},    {"cape", "red"},
-                                                            {"beard", "white"},  {"horns", "white"},  {"helmet", "silver"},  {"halo", "golden"},
-                                                            {"backpack", "brown"}, {"necklace", "golden"}};
+    static const std::map<std::string, std::string> natural{
+        {"crown", "golden"},   {"scarf", "red"},      {"wings", "white"},   {"cape", "red"},
+        {"beard", "white"},    {"horns", "white"},    {"helmet", "silver"}, {"halo", "golden"},
+        {"backpack", "brown"}, {"necklace", "golden"}};
     const auto found = natural.find(spec.accessory);
     return found == natural.end() ? "black" : found->second;
 }

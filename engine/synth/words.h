@@ -14,7 +14,8 @@ void require_known_words(const SceneSpec& spec);
 bool contains(const std::vector<std::string>& words, const std::string& word);
 
 /// Position of a word in `words`, else behind them in `more`; the word is known.
-std::uint64_t word_index(const std::vector<std::string>& words, const std::vector<std::string>& more, const std::string& word);
+std::uint64_t word_index(const std::vector<std::string>& words, const std::vector<std::string>& more,
+                         const std::string& word);
 
 /// Colours of a word of more_accessory_words().
 const std::vector<std::string>& more_accessory_colour_words(const std::string& accessory);

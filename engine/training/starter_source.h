@@ -11,15 +11,15 @@
 
 namespace gse::training {
 
-inline constexpr int LatentCell = 4;   // pixels per latent cell
+inline constexpr int LatentCell = 4;  // pixels per latent cell
 
 /// Pictures 2k and 2k+1 share a scene: where it has an accessory, 2k+1 is the same view without it.
 std::unique_ptr<neural::StarterSource> make_starter_source(std::uint64_t seed);
 /// What the scenes of make_shape_source() are.
 struct ShapeMix {
-    double restyled = 0;        // share of them with StarterSource::restyled()
-    double more = 0;            // share of them with synth::more_object_words() and so on
-    bool more_looks = false;    // of these only materials, colours and grounds
+    double restyled = 0;      // share of them with StarterSource::restyled()
+    double more = 0;          // share of them with synth::more_object_words() and so on
+    bool more_looks = false;  // of these only materials, colours and grounds
 };
 
 /// Pictures to learn drawing from: accessories are always shown, and every caption says exactly from where.

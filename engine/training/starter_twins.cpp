@@ -22,9 +22,9 @@ using synth::SceneSpec;
 
 constexpr int GroupSize = 4;
 constexpr double TwinAccessoryShare = 0.65;  // groups whose first picture has an accessory
-constexpr double HeadShare = 0.15;       // groups seen from near the head
-constexpr double ViewShare = 0.3;        // full sentences that end with view words
-constexpr double PlainShare = 0.35;      // full sentences that do not tell the accessory's colour
+constexpr double HeadShare = 0.15;           // groups seen from near the head
+constexpr double ViewShare = 0.3;            // full sentences that end with view words
+constexpr double PlainShare = 0.35;          // full sentences that do not tell the accessory's colour
 
 /// What a sentence may state, numbered.
 class FactTable {
@@ -74,12 +74,8 @@ std::uint64_t claimed_by(const synth::Caption& caption) {
     for (const auto& grounding : caption.groundings) {
         const std::string word = synth::canonical_word(grounding.word);
         switch (grounding.part) {
-            case synth::Part::Ground:
-                facts |= table.bit("ground", word);
-                break;
-            case synth::Part::Object:
-                facts |= table.bit("object", word) | table.bit("material", word);
-                break;
+            case synth::Part::Ground: facts |= table.bit("ground", word); break;
+            case synth::Part::Object: facts |= table.bit("object", word) | table.bit("material", word); break;
             case synth::Part::Accessory:
                 facts |= table.bit("accessory", word) | table.bit("accessory colour", word);
                 break;
@@ -125,10 +121,8 @@ void change_one_thing(SceneSpec& spec, Random& random) {
 void change_member(int member, SceneSpec& spec, Random& random) {
     if (member == 1) spec.material = other(synth::material_words(), spec.material, random);
     if (member == 2) {
-        if (spec.accessory.empty() || random.uniform() < 0.1)
-            change_accessory(spec, random);
-        else
-            spec.accessory = spec.accessory_colour = "";
+        if (spec.accessory.empty() || random.uniform() < 0.1) change_accessory(spec, random);
+        else spec.accessory = spec.accessory_colour = "";
     }
     if (member == 3) change_one_thing(spec, random);
 }
@@ -220,7 +214,7 @@ public:
         Random random = Random::stream(seed, index);
         std::vector<std::string> texts;
         const auto take = [&](const SceneSpec& spec, double azimuth) {
-            if (synth::held_out(spec)) return;   // never said to be false: it is to be known
+            if (synth::held_out(spec)) return;  // never said to be false: it is to be known
             auto claim = claim_of(spec, azimuth, seed, full);
             if ((claim.facts & ~truth) != 0 && claim.text != own) texts.push_back(std::move(claim.text));
         };
@@ -230,7 +224,8 @@ public:
         spec = shot.spec;
         change_accessory(spec, random);
         take(spec, shot.azimuth);
-        take(shot.spec, shot.azimuth + std::numbers::pi * random.uniform(0.4, 1.6));   // seen from another side
+        take(shot.spec,
+             shot.azimuth + std::numbers::pi * random.uniform(0.4, 1.6));  // seen from another side
         return texts;
     }
 

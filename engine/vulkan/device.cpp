@@ -15,16 +15,11 @@ constexpr std::uint32_t SetsPerPool = 256;
 
 int rank(vk::PhysicalDeviceType type) {
     switch (type) {
-        case vk::PhysicalDeviceType::eDiscreteGpu:
-            return 0;
-        case vk::PhysicalDeviceType::eIntegratedGpu:
-            return 1;
-        case vk::PhysicalDeviceType::eVirtualGpu:
-            return 2;
-        case vk::PhysicalDeviceType::eCpu:
-            return 4;
-        default:
-            return 3;
+        case vk::PhysicalDeviceType::eDiscreteGpu: return 0;
+        case vk::PhysicalDeviceType::eIntegratedGpu: return 1;
+        case vk::PhysicalDeviceType::eVirtualGpu: return 2;
+        case vk::PhysicalDeviceType::eCpu: return 4;
+        default: return 3;
     }
 }
 
@@ -187,8 +182,7 @@ void Device::wait(std::uint64_t serial) {
     guarded("working", [&] {
         const vk::Semaphore semaphore = **timeline_;
         const vk::SemaphoreWaitInfo info({}, semaphore, serial);
-        while (device_->waitSemaphores(info, 5'000'000'000ull) == vk::Result::eTimeout) {
-        }
+        while (device_->waitSemaphores(info, 5'000'000'000ull) == vk::Result::eTimeout) {}
         completed_ = std::max(completed_, serial);
     });
     collect();
@@ -224,10 +218,8 @@ void Device::collect() {
         std::size_t kept = 0;
         std::vector<Retired> dying;  // destructors may retire more
         for (auto& entry : retired_) {
-            if (finished(entry.last_use))
-                dying.push_back(std::move(entry));
-            else
-                retired_[kept++] = std::move(entry);
+            if (finished(entry.last_use)) dying.push_back(std::move(entry));
+            else retired_[kept++] = std::move(entry);
         }
         retired_.resize(kept);
         if (dying.empty()) return;

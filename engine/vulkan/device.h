@@ -107,12 +107,10 @@ public:
     void recycle(vk::raii::CommandBuffer commands, std::uint64_t serial);
     void discard(vk::raii::CommandBuffer commands);
     /// Records body(commands), submits it and waits.
-    template <class Body>
-    void run(Body&& body);
+    template <class Body> void run(Body&& body);
 
     /// Destroys `object` once everything submitted, and what is being recorded now, has been executed.
-    template <class Object>
-    void retire(Object object);
+    template <class Object> void retire(Object object);
     /// Destroys what is no longer used; called by submit().
     void collect();
 
@@ -124,8 +122,7 @@ public:
 
     /// The one T of this device (pipelines that several users share), made when first asked for; lives as
     /// long as the device.
-    template <class T>
-    T& shared() {
+    template <class T> T& shared() {
         auto& slot = shared_[std::type_index(typeid(T))];
         if (!slot) slot = std::make_shared<T>(*this);
         return *static_cast<T*>(slot.get());
@@ -167,8 +164,7 @@ private:
     std::vector<Retired> retired_;  // dies first of all
 };
 
-template <class Body>
-void Device::run(Body&& body) {
+template <class Body> void Device::run(Body&& body) {
     guarded("running commands", [&] {
         vk::raii::CommandBuffer commands = begin_commands();
         std::uint64_t serial = 0;
@@ -185,8 +181,7 @@ void Device::run(Body&& body) {
     });
 }
 
-template <class Object>
-void Device::retire(Object object) {
+template <class Object> void Device::retire(Object object) {
     retired_.push_back({ticket(), std::make_shared<Object>(std::move(object))});
 }
 

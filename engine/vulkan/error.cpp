@@ -15,9 +15,7 @@ DeviceLost::DeviceLost(const std::string& during)
 void rethrow_as_error(const char* doing) {
     try {
         throw;
-    } catch (const Error&) {
-        throw;
-    } catch (const vk::DeviceLostError&) {
+    } catch (const Error&) { throw; } catch (const vk::DeviceLostError&) {
         throw DeviceLost(doing);
     } catch (const vk::OutOfDeviceMemoryError&) {
         throw Error(ErrorCode::Foreign, fmt::format("the graphics device has no memory left while {}", doing),

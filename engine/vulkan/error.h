@@ -18,13 +18,10 @@ public:
 [[noreturn]] void rethrow_as_error(const char* doing);
 
 /// Calls body(), translating what it throws.
-template <class Body>
-decltype(auto) guarded(const char* doing, Body&& body) {
+template <class Body> decltype(auto) guarded(const char* doing, Body&& body) {
     try {
         return std::forward<Body>(body)();
-    } catch (...) {
-        rethrow_as_error(doing);
-    }
+    } catch (...) { rethrow_as_error(doing); }
 }
 
 }  // namespace gse::vulkan

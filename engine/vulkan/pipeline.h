@@ -22,8 +22,7 @@ public:
 
     vk::PipelineLayout layout() const { return *layout_; }
     void bind(vk::CommandBuffer commands, std::span<const vk::DescriptorSet> sets) const;
-    template <class T>
-    void push(vk::CommandBuffer commands, const T& values) const {
+    template <class T> void push(vk::CommandBuffer commands, const T& values) const {
         commands.pushConstants(*layout_, vk::ShaderStageFlagBits::eCompute, 0, sizeof(T), &values);
     }
 

@@ -11,12 +11,9 @@ using Memory = vk::MemoryPropertyFlagBits;
 
 vk::MemoryPropertyFlags wanted_memory(BufferHome home) {
     switch (home) {
-        case BufferHome::Device:
-            return Memory::eDeviceLocal;
-        case BufferHome::Upload:
-            return {};
-        case BufferHome::Readback:
-            return Memory::eHostCached;
+        case BufferHome::Device: return Memory::eDeviceLocal;
+        case BufferHome::Upload: return {};
+        case BufferHome::Readback: return Memory::eHostCached;
     }
     return {};
 }
@@ -88,9 +85,7 @@ struct Texture::State {
 };
 
 Texture::Texture(Device& device, const ImageDescription& description)
-    : device_(&device),
-      width_(description.width),
-      height_(description.height),
+    : device_(&device), width_(description.width), height_(description.height),
       state_(std::make_shared<State>()) {
     guarded("making an image", [&] {
         State& state = *state_;

@@ -40,8 +40,7 @@ public:
     std::uint64_t size() const;
     /// The memory as the CPU sees it; null where it does not.
     std::byte* mapped() const;
-    template <class T>
-    std::span<T> as() const {
+    template <class T> std::span<T> as() const {
         return {reinterpret_cast<T*>(mapped()), size() / sizeof(T)};
     }
 

@@ -7,11 +7,11 @@ namespace gse::window {
 namespace {
 
 constexpr int Release = 0, Press = 1;
-constexpr int FirstPrintable = 32, LastPrintable = 162;   // keys that write something
-constexpr int Tab = 258, F6 = 295;                        // keys that move the focus to another field
+constexpr int FirstPrintable = 32, LastPrintable = 162;  // keys that write something
+constexpr int Tab = 258, F6 = 295;                       // keys that move the focus to another field
 constexpr int FirstModifier = 340, LastModifier = 347;
-constexpr int Commanding = 2 | 4 | 8;                     // Control, Alt, Super: with them a letter writes nothing
-constexpr std::uint64_t FocusFrames = 3;                  // until the field that Tab moves to takes characters
+constexpr int Commanding = 2 | 4 | 8;     // Control, Alt, Super: with them a letter writes nothing
+constexpr std::uint64_t FocusFrames = 3;  // until the field that Tab moves to takes characters
 
 bool is_modifier(int key) { return key >= FirstModifier && key <= LastModifier; }
 
@@ -26,9 +26,9 @@ bool acts(const InputQueue::Event& event) {
 
 bool InputQueue::fits(const Event& event) const {
     if (event.character) return !pressed_ && frame_ >= free_from_;
-    if (event.action != Press && event.action != Release) return true;   // a repetition; ImGui makes its own
+    if (event.action != Press && event.action != Release) return true;  // a repetition; ImGui makes its own
     if (std::find(changed_.begin(), changed_.end(), event.key) != changed_.end()) return false;
-    if (is_modifier(event.key)) return !other_pressed_;   // or the key would be seen with another modifier
+    if (is_modifier(event.key)) return !other_pressed_;  // or the key would be seen with another modifier
     if (!acts(event)) return true;
     return !pressed_ && !typed_ && frame_ >= free_from_;
 }

@@ -8,16 +8,17 @@
 
 namespace gse::window {
 
-/// ImGui 1.86 sees which keys are down and which characters came since the last frame, not in which order. On a machine whose
-/// frames are slow a key may go down and up between two of them, and characters typed after Tab would go to the field that was
-/// left. This queue hands on what one frame can tell apart; the rest waits for the next.
+/// ImGui 1.86 sees which keys are down and which characters came since the last frame, not in which order. On
+/// a machine whose frames are slow a key may go down and up between two of them, and characters typed after
+/// Tab would go to the field that was left. This queue hands on what one frame can tell apart; the rest waits
+/// for the next.
 class InputQueue {
 public:
     /// Numbers are GLFW's.
     struct Event {
         bool character = false;
-        int key = 0, code = 0, action = 0, modifiers = 0;   // of a key
-        unsigned codepoint = 0;                             // of a character
+        int key = 0, code = 0, action = 0, modifiers = 0;  // of a key
+        unsigned codepoint = 0;                            // of a character
     };
 
     void push(const Event& event) { waiting_.push_back(event); }
@@ -30,10 +31,12 @@ private:
     void note(const Event& event);
 
     std::deque<Event> waiting_;
-    std::uint64_t frame_ = 0, free_from_ = 0;   // presses and characters wait for that frame: the focus is still moving
-    std::vector<int> changed_;                  // keys that went down or up in this frame
-    bool pressed_ = false, other_pressed_ = false, typed_ = false;   // in this frame: a key that does something, any but a
-                                                                     // modifier, a character
+    std::uint64_t frame_ = 0,
+                  free_from_ = 0;  // presses and characters wait for that frame: the focus is still moving
+    std::vector<int> changed_;     // keys that went down or up in this frame
+    bool pressed_ = false, other_pressed_ = false,
+         typed_ = false;  // in this frame: a key that does something, any but a
+                          // modifier, a character
 };
 
 }  // namespace gse::window

@@ -6,14 +6,15 @@
 namespace gse::window {
 namespace {
 
-constexpr std::string_view Marks = "',-./;=[\\]`";   // codes of their keys, as of letters and digits, are their ASCII
+constexpr std::string_view Marks =
+    "',-./;=[\\]`";  // codes of their keys, as of letters and digits, are their ASCII
 
 }  // namespace
 
 int written_key(int key, const char* name) {
     if (name == nullptr) return key;
     const std::string_view text = name;
-    if (text.size() != 1) return key;   // no ASCII
+    if (text.size() != 1) return key;  // no ASCII
     const char letter = text[0];
     if (letter >= 'a' && letter <= 'z') return letter - 'a' + 'A';
     const bool mark = Marks.find(letter) != std::string_view::npos;

@@ -15,10 +15,10 @@
 #include "engine/base/log.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/resources.h"
+#include "engine/window/input_queue.h"
 #include "engine/window/key_names.h"
 #include "engine/window/window_fonts.h"
 #include "engine/window/window_imgui.h"
-#include "engine/window/input_queue.h"
 #include "engine/window/window_swapchain.h"
 
 namespace gse::window {
@@ -87,7 +87,7 @@ struct Window::State {
     Glfw glfw;
     void hand_on_input();
     InputQueue input;
-    bool came_in = false;   // since it was last asked for
+    bool came_in = false;  // since it was last asked for
     GLFWwindow* window = nullptr;
     std::optional<vulkan::Instance> instance;
     std::optional<vk::raii::SurfaceKHR> surface;
@@ -99,7 +99,7 @@ struct Window::State {
     std::vector<DeviceClient*> clients;
     std::uint64_t frame = 0;
     bool frame_open = false, fonts_stale = true, undressed = false;
-    const char* (*read_clipboard)(void*) = nullptr;   // ImGui's own
+    const char* (*read_clipboard)(void*) = nullptr;  // ImGui's own
     void (*write_clipboard)(void*, const char*) = nullptr;
     void* clipboard_data = nullptr;
     std::string clipboard;
@@ -122,8 +122,10 @@ Window::State::State(const WindowOptions& wanted) : options(wanted), wanted_scal
     io.IniFilename = options.layout_file.empty() ? nullptr : options.layout_file.c_str();
     ImGui_ImplGlfw_InitForVulkan(window, true);
     glfwSetKeyCallback(window, [](GLFWwindow* target, int key, int code, int action, int modifiers) {
-        const bool named = key >= GLFW_KEY_SPACE && key < GLFW_KEY_ESCAPE;   // the others say nothing that could move
-        of(target).push({false, named ? written_key(key, glfwGetKeyName(key, code)) : key, code, action, modifiers, 0});
+        const bool named =
+            key >= GLFW_KEY_SPACE && key < GLFW_KEY_ESCAPE;  // the others say nothing that could move
+        of(target).push(
+            {false, named ? written_key(key, glfwGetKeyName(key, code)) : key, code, action, modifiers, 0});
     });
     glfwSetCharCallback(window, [](GLFWwindow* target, unsigned character) {
         of(target).push({true, 0, 0, 0, 0, character});
@@ -156,11 +158,11 @@ void Window::State::translate_texts() {
 void Window::State::hand_on_input() {
     for (const auto& event : input.next_frame()) {
         if (event.character)
-            ImGui_ImplGlfw_CharCallback(window, options.take_character ? options.take_character(event.codepoint) : event.codepoint);
-        else
-            ImGui_ImplGlfw_KeyCallback(window, event.key, event.code, event.action, event.modifiers);
+            ImGui_ImplGlfw_CharCallback(
+                window, options.take_character ? options.take_character(event.codepoint) : event.codepoint);
+        else ImGui_ImplGlfw_KeyCallback(window, event.key, event.code, event.action, event.modifiers);
     }
-    if (input.waiting()) Window::wake();   // the next frame is wanted at once
+    if (input.waiting()) Window::wake();  // the next frame is wanted at once
 }
 
 Window::State::~State() {
@@ -203,14 +205,16 @@ void Window::State::note_events() {
     glfwSetWindowCloseCallback(window, [](GLFWwindow* target) { of(target).came_in = true; });
     glfwSetWindowFocusCallback(window, [](GLFWwindow* target, int) { of(target).came_in = true; });
     glfwSetWindowIconifyCallback(window, [](GLFWwindow* target, int) { of(target).came_in = true; });
-    glfwSetWindowContentScaleCallback(window, [](GLFWwindow* target, float, float) { of(target).came_in = true; });
+    glfwSetWindowContentScaleCallback(window,
+                                      [](GLFWwindow* target, float, float) { of(target).came_in = true; });
     glfwSetCursorEnterCallback(window, [](GLFWwindow* target, int) { of(target).came_in = true; });
     glfwSetCursorPosCallback(window, [](GLFWwindow* target, double, double) { of(target).came_in = true; });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* target, int, int, int) { of(target).came_in = true; });
     glfwSetScrollCallback(window, [](GLFWwindow* target, double, double) { of(target).came_in = true; });
 }
 
-/// What the options leave open: the usual size, but with its frame inside what panels and docks leave of the screen.
+/// What the options leave open: the usual size, but with its frame inside what panels and docks leave of the
+/// screen.
 void Window::State::fit_screen() {
     GLFWmonitor* monitor = glfwGetPrimaryMonitor();
     if (monitor == nullptr) return;
@@ -288,10 +292,8 @@ void Window::State::update_scale() {
         scale = now;
         undressed = false;
         io.Fonts->Clear();
-        if (options.dress)
-            options.dress(*io.Fonts, style, scale);
-        else
-            dress_plainly(*io.Fonts, style, scale);
+        if (options.dress) options.dress(*io.Fonts, style, scale);
+        else dress_plainly(*io.Fonts, style, scale);
         if (!io.Fonts->IsBuilt()) io.Fonts->Build();
     }
     renderer->upload_fonts(**commands);
@@ -460,7 +462,9 @@ int Window::framebuffer_height() const {
 std::uint64_t Window::add_texture(VkImageView view, bool smooth) {
     return state_->renderer->add_texture(view, smooth);
 }
-void Window::replace_texture(std::uint64_t id, VkImageView view) { state_->renderer->replace_texture(id, view); }
+void Window::replace_texture(std::uint64_t id, VkImageView view) {
+    state_->renderer->replace_texture(id, view);
+}
 void Window::remove_texture(std::uint64_t id) {
     if (state_->renderer) state_->renderer->remove_texture(id);
 }

@@ -37,16 +37,17 @@ namespace gse::window {
 
 struct WindowOptions {
     std::string title = "GSEditPro";
-    int width = 0, height = 0;       // screen coordinates; 0 = usual, or less where the screen is smaller
-    float ui_scale = 0;              // 0 = as the desktop says
-    std::string layout_file;         // where ImGui keeps the panels' places; empty = nowhere
-    std::string device;              // index or part of the name of the graphics device; empty = the best
-    bool validation = false;         // validation layers
+    int width = 0, height = 0;  // screen coordinates; 0 = usual, or less where the screen is smaller
+    float ui_scale = 0;         // 0 = as the desktop says
+    std::string layout_file;    // where ImGui keeps the panels' places; empty = nowhere
+    std::string device;         // index or part of the name of the graphics device; empty = the best
+    bool validation = false;    // validation layers
     bool visible = true;
     /// Adds the fonts and sets colours and sizes for a scale; plain ones when empty.
     std::function<void(ImFontAtlas&, ImGuiStyle&, float scale)> dress;
     std::function<void(const std::vector<std::filesystem::path>&)> on_drop;
-    /// Typed and pasted characters on their way to ImGui, and text on its way to the clipboard; as they are when empty.
+    /// Typed and pasted characters on their way to ImGui, and text on its way to the clipboard; as they are
+    /// when empty.
     std::function<unsigned(unsigned)> take_character;
     std::function<std::string(const std::string&)> take_text, give_text;
 };
@@ -67,7 +68,8 @@ public:
     Window& operator=(const Window&) = delete;
 
     // Events
-    bool poll();                // true when something came in since the last poll() or wait(): input, wake(), a change of the window
+    bool poll();  // true when something came in since the last poll() or wait(): input, wake(), a change of
+                  // the window
     bool wait(double seconds);  // the same; returns earlier then
     static void wake();         // from any thread
     bool should_close() const;  // the user asked for it
@@ -84,7 +86,7 @@ public:
     void set_title(const std::string& title);
     void set_ui_scale(float scale);  // 0 = as the desktop says; takes effect with the next frame
     float ui_scale() const;
-    void renew_fonts();              // dress again with the next frame
+    void renew_fonts();  // dress again with the next frame
     void set_fullscreen(bool fullscreen);
     bool fullscreen() const;
     int framebuffer_width() const;  // pixels
@@ -92,8 +94,9 @@ public:
 
     // Pictures: an image view in layout eShaderReadOnlyOptimal -> handle for ImGui::Image (ImTextureID).
     std::uint64_t add_texture(VkImageView view, bool smooth = true);
-    void replace_texture(std::uint64_t id, VkImageView view);  // the handle stays; also in the middle of a frame
-    void remove_texture(std::uint64_t id);  // may still be used by the frame being recorded
+    void replace_texture(std::uint64_t id,
+                         VkImageView view);  // the handle stays; also in the middle of a frame
+    void remove_texture(std::uint64_t id);   // may still be used by the frame being recorded
 
     // Device
     vulkan::Device& device();

@@ -126,7 +126,7 @@ std::uint64_t ImGuiRenderer::add_texture(vk::ImageView view, bool smooth) {
 
 void ImGuiRenderer::replace_texture(std::uint64_t id, vk::ImageView view) {
     Texture& texture = textures_.at(id);
-    auto set = make_texture_set(view, texture.smooth);   // frames in flight still read the old one
+    auto set = make_texture_set(view, texture.smooth);  // frames in flight still read the old one
     device_.retire(std::exchange(texture.set, std::move(set)));
 }
 

@@ -124,9 +124,7 @@ bool Swapchain::present(std::uint32_t image) {
         try {
             const auto result = device_.queue().presentKHR({ready, swapchain, image});
             if (result == vk::Result::eSuboptimalKHR) stale_ = true;
-        } catch (const vk::OutOfDateKHRError&) {
-            stale_ = true;
-        }
+        } catch (const vk::OutOfDateKHRError&) { stale_ = true; }
         return !stale_;
     });
 }

@@ -1,6 +1,6 @@
 // Preloaded into the program by tests: calls that write, sync or rename files fail, or kill the program.
-// GSE_FAULT="CALL:NUMBER:WHAT": CALL is write, fsync or rename; from call NUMBER on (1 = the first) WHAT happens: an errno, or
-// "kill". Only files count, not pipes or terminals.
+// GSE_FAULT="CALL:NUMBER:WHAT": CALL is write, fsync or rename; from call NUMBER on (1 = the first) WHAT
+// happens: an errno, or "kill". Only files count, not pipes or terminals.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -26,7 +26,8 @@ struct Fault {
 const Fault& wanted() {
     static const Fault fault = [] {
         Fault read;
-        if (const char* text = std::getenv("GSE_FAULT")) std::sscanf(text, "%15[^:]:%ld:%15s", read.call, &read.number, read.what);
+        if (const char* text = std::getenv("GSE_FAULT"))
+            std::sscanf(text, "%15[^:]:%ld:%15s", read.call, &read.number, read.what);
         return read;
     }();
     return fault;
@@ -48,8 +49,7 @@ bool is_file(int descriptor) {
     return fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode);
 }
 
-template <class Function>
-Function next(const char* name) {
+template <class Function> Function next(const char* name) {
     return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
 }
 

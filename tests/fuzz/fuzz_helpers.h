@@ -15,7 +15,7 @@
 
 namespace gse::fuzz {
 
-inline constexpr std::size_t MostRowsWritten = 2000;  // larger scenes are only counted, to keep runs quick
+inline constexpr std::size_t MostRowsWritten = 2000;   // larger scenes are only counted, to keep runs quick
 inline constexpr std::size_t MostRowsInTextures = 16;  // pictures take longer than bytes
 
 inline std::span<const std::byte> as_bytes(const std::uint8_t* data, std::size_t size) {
@@ -49,18 +49,16 @@ inline void exercise_scene(const Scene& scene) {
     io::write_splat(scene);
     io::write_spz(scene);
     io::write_spz(scene, 4);
-    if (scene.gaussians.size() <= MostRowsInTextures && !drop_unusable(scene.gaussians).empty()) io::write_sog(scene);
+    if (scene.gaussians.size() <= MostRowsInTextures && !drop_unusable(scene.gaussians).empty())
+        io::write_sog(scene);
 }
 
 /// Calls `read`; Error with a message is a fine answer, any other exception is not.
-template <class F>
-int exercise(F&& read) {
+template <class F> int exercise(F&& read) {
     quiet();
     try {
         read();
-    } catch (const Error& error) {
-        GSE_CHECK(!error.message().empty());
-    }
+    } catch (const Error& error) { GSE_CHECK(!error.message().empty()); }
     return 0;
 }
 

@@ -1,4 +1,5 @@
-// Fuzz target: the readers of ply files; the one that reads pieces must say what the one that has all of it says.
+// Fuzz target: the readers of ply files; the one that reads pieces must say what the one that has all of it
+// says.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -27,14 +28,11 @@ struct Answer {
     std::string refusal;
 };
 
-template <class F>
-Answer answer_of(F&& read) {
+template <class F> Answer answer_of(F&& read) {
     Answer answer;
     try {
         answer.scene = read();
-    } catch (const Error& error) {
-        answer.refusal = error.message();
-    }
+    } catch (const Error& error) { answer.refusal = error.message(); }
     return answer;
 }
 
@@ -46,8 +44,9 @@ void compare_readers(std::span<const std::byte> bytes) {
     if (!pieces.scene) return;
     GSE_CHECK(pieces.scene->info.warnings == whole.scene->info.warnings);
     const auto &a = pieces.scene->gaussians, &b = whole.scene->gaussians;
-    GSE_CHECK(same_bits(a.position(), b.position()) && same_bits(a.log_scale(), b.log_scale()) && same_bits(a.rotation(), b.rotation()) &&
-              same_bits(a.opacity_logit(), b.opacity_logit()) && same_bits(a.sh(), b.sh()));
+    GSE_CHECK(same_bits(a.position(), b.position()) && same_bits(a.log_scale(), b.log_scale()) &&
+              same_bits(a.rotation(), b.rotation()) && same_bits(a.opacity_logit(), b.opacity_logit()) &&
+              same_bits(a.sh(), b.sh()));
 }
 
 }  // namespace

@@ -31,7 +31,8 @@ void exercise_delta(std::span<const std::byte> bytes) {
 void exercise_description(std::string_view text) {
     const io::ProjectDescription description = io::parse_description(text);
     for (const View& view : description.views)
-        GSE_CHECK(view.camera.width > 0 && view.camera.height > 0 && view.camera.fx > 0 && view.camera.fy > 0);
+        GSE_CHECK(view.camera.width > 0 && view.camera.height > 0 && view.camera.fx > 0 &&
+                  view.camera.fy > 0);
     const std::string once = io::write_description(description);
     const std::string twice = io::write_description(io::parse_description(once));
     GSE_CHECK(once == twice);
@@ -54,18 +55,12 @@ void exercise_any(std::span<const std::byte> bytes) {
     const auto rest = bytes.empty() ? bytes : bytes.subspan(1);
     io::UnpackBudget budget(rest.size());
     switch (bytes.empty() ? 0 : std::to_integer<int>(bytes[0])) {
-        case 'D':
-            return exercise_delta(rest);
-        case 'S':
-            return static_cast<void>(GaussianSet(io::decode_set(rest, "the scene")));
-        case 'A':
-            return static_cast<void>(io::decode_absent(rest, "the label"));
-        case 'M':
-            return static_cast<void>(io::unpack_member(rest, io::AnySize, budget, "the part"));
-        case 'J':
-            return exercise_description({reinterpret_cast<const char*>(rest.data()), rest.size()});
-        default:
-            return exercise_file(bytes);
+        case 'D': return exercise_delta(rest);
+        case 'S': return static_cast<void>(GaussianSet(io::decode_set(rest, "the scene")));
+        case 'A': return static_cast<void>(io::decode_absent(rest, "the label"));
+        case 'M': return static_cast<void>(io::unpack_member(rest, io::AnySize, budget, "the part"));
+        case 'J': return exercise_description({reinterpret_cast<const char*>(rest.data()), rest.size()});
+        default: return exercise_file(bytes);
     }
 }
 

@@ -31,25 +31,15 @@ std::string mutate(std::string bytes, const std::string& other, gse::Random& ran
         const std::size_t at = random.below(bytes.size());
         const std::size_t size = std::min<std::size_t>(1 + random.below(16), bytes.size() - at);
         switch (random.below(7)) {
-            case 0:
-                bytes[at] = static_cast<char>(random.next());
-                break;
-            case 1:
-                bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.below(8)));
-                break;
+            case 0: bytes[at] = static_cast<char>(random.next()); break;
+            case 1: bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.below(8))); break;
             case 2:
                 bytes.replace(at, std::min<std::size_t>(4, bytes.size() - at),
                               random.below(2) == 0 ? "\xff\xff\xff\xff" : std::string(4, '\0'));
                 break;
-            case 3:
-                bytes.resize(at);
-                break;
-            case 4:
-                bytes.insert(at, bytes.substr(at, size));
-                break;
-            case 5:
-                bytes.erase(at, size);
-                break;
+            case 3: bytes.resize(at); break;
+            case 4: bytes.insert(at, bytes.substr(at, size)); break;
+            case 5: bytes.erase(at, size); break;
             default:
                 if (!other.empty()) bytes.insert(at, other.substr(random.below(other.size()), size));
         }

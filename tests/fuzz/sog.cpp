@@ -44,9 +44,7 @@ private:
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const io::Bytes bytes = fuzz::as_bytes(data, size);
     return fuzz::exercise([&] {
-        if (io::detect_sog(bytes, ""))
-            fuzz::exercise_scene(io::parse_sog(bytes));
-        else
-            fuzz::exercise_scene(io::read_sog(PlainParts(bytes), "meta.json"));
+        if (io::detect_sog(bytes, "")) fuzz::exercise_scene(io::parse_sog(bytes));
+        else fuzz::exercise_scene(io::read_sog(PlainParts(bytes), "meta.json"));
     });
 }

@@ -22,13 +22,14 @@ std::string branch_words(const AttentionView& view) {
     if (left_out(view)) return "You left this view out: it does not vote.";
     if (view.failed) {
         const std::string step = edit::step_text(view.step), remedy = edit::step_remedy(view.step);
-        return fmt::format("This view does not vote{}{}{}{}.", step.empty() ? "" : ": ", step, remedy.empty() ? "" : "; ",
-                           remedy);
+        return fmt::format("This view does not vote{}{}{}{}.", step.empty() ? "" : ": ", step,
+                           remedy.empty() ? "" : "; ", remedy);
     }
     if (view.branch == "text") return "The mask was found from the word itself.";
     if (view.branch == "points") return "The mask was cut out from clicks placed on the attention.";
     if (view.branch == "attention") return "The mask is the attention above the threshold.";
-    if (view.branch == "drawn") return "The model drew it into this view; the mask is where all views say it goes.";
+    if (view.branch == "drawn")
+        return "The model drew it into this view; the mask is where all views say it goes.";
     if (view.branch == "anchor") return "The mask is the place where the new thing goes.";
     if (view.branch == "label") return "The mask is your label, seen from here.";
     if (view.branch == "none") return "There is no mask.";
@@ -38,7 +39,8 @@ std::string branch_words(const AttentionView& view) {
 /// Of a mask that was cut out of the attention of its own view.
 std::string captured_words(const AttentionView& view) {
     const bool of_all_views = view.branch == "drawn" || view.branch == "anchor" || view.branch == "label";
-    return of_all_views ? std::string() : fmt::format("The mask holds {} of the attention.", percent_text(view.captured));
+    return of_all_views ? std::string()
+                        : fmt::format("The mask holds {} of the attention.", percent_text(view.captured));
 }
 
 ImU32 state_colour(const AttentionView& view) {
@@ -59,10 +61,11 @@ void cross_out(Context& context, ImVec2 low, ImVec2 high) {
 std::string thumbnail_help(const Context& context, const AttentionView& view) {
     if (view.render == nullptr) return "This view has not been looked from yet.";
     const auto captured = captured_words(view);
-    return fmt::format("{}\n{}\n{}{}{}Click: look through it, with its map over the picture. Ctrl + click: {}.", view.name, branch_words(view),
-                       captured, captured.empty() ? "" : "\n",
-                       context.model.attention_corrected ? "It voted before your corrections.\n" : "",
-                       left_out(view) ? "let it vote again" : "leave it out, where its mask is wrong");
+    return fmt::format(
+        "{}\n{}\n{}{}{}Click: look through it, with its map over the picture. Ctrl + click: {}.", view.name,
+        branch_words(view), captured, captured.empty() ? "" : "\n",
+        context.model.attention_corrected ? "It voted before your corrections.\n" : "",
+        left_out(view) ? "let it vote again" : "leave it out, where its mask is wrong");
 }
 
 /// One thumbnail: the map over the render, a dot for the vote, a frame when chosen.
@@ -77,7 +80,9 @@ void draw_thumbnail(Context& context, int index, float side) {
     const ImVec2 high(low.x + side, low.y + side);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const bool mask = state.over == Over::Mask && view.mask_picture != nullptr;
-    const auto& picture = mask ? view.mask_picture : view.map_coloured != nullptr ? view.map_coloured : view.render;
+    const auto& picture = mask                           ? view.mask_picture
+                          : view.map_coloured != nullptr ? view.map_coloured
+                                                         : view.render;
     const float round = context.em * 0.2f;
     list->AddRectFilled(low, high, palette::Sunken, round);
     if (ImGui::IsItemVisible() && picture != nullptr)
@@ -103,8 +108,8 @@ void draw_strip(Context& context, ImVec2 size, bool upright) {
             ? std::max(1, static_cast<int>((size.x - ImGui::GetStyle().ScrollbarSize + gap) / (side + gap)))
             : 1 << 20;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(gap, gap));
-    const auto flags =
-        ImGuiWindowFlags_NavFlattened | (upright ? ImGuiWindowFlags_None : ImGuiWindowFlags_HorizontalScrollbar);
+    const auto flags = ImGuiWindowFlags_NavFlattened |
+                       (upright ? ImGuiWindowFlags_None : ImGuiWindowFlags_HorizontalScrollbar);
     if (ImGui::BeginChild("strip", size, false, flags))
         for (int index = 0; index < static_cast<int>(context.model.attention.size()); ++index) {
             if (index % columns != 0) ImGui::SameLine();
@@ -201,7 +206,9 @@ void draw_controls(Context& context, const AttentionView& view) {
     flow(button_width("Look through"));
     if (button(context, {.name = "attention.look",
                          .text = "Look through",
-                         .tooltip = with_key(context, "Puts the camera where this view is, with its map over the picture", Command::Evidence)}))
+                         .tooltip = with_key(
+                             context, "Puts the camera where this view is, with its map over the picture",
+                             Command::Evidence)}))
         look_through_attention(context, state.chosen);
 }
 
@@ -220,10 +227,11 @@ void draw_problem(Context& context) {
     if (search.problem != edit::SearchProblem::Unsure) return;
     constexpr const char* anyway = "Label this all the same";
     flow(button_width(anyway));
-    if (button(context, {.name = "attention.anyway",
-                         .text = anyway,
-                         .why_off = why,
-                         .tooltip = "The pictures show what was found. If it is what you mean, it can be labelled."}))
+    if (button(context,
+               {.name = "attention.anyway",
+                .text = anyway,
+                .why_off = why,
+                .tooltip = "The pictures show what was found. If it is what you mean, it can be labelled."}))
         context.actions.label_anyway();
 }
 
@@ -236,10 +244,11 @@ void draw_confidence(Context& context) {
     flow(ImGui::CalcTextSize(text.c_str()).x + context.em);
     badge(context, text, unsure ? palette::Warning : palette::Good);
     note(context, "attention.confidence");
-    std::string parts = fmt::format("How sure the search is.\nThe views agree to {}.\n{} of the attention is inside the masks.\n{} "
-                                    "of what the views see is labelled.",
-                                    percent_text(search.confidence.agreement), percent_text(search.confidence.attention),
-                                    percent_text(search.confidence.share));
+    std::string parts = fmt::format(
+        "How sure the search is.\nThe views agree to {}.\n{} of the attention is inside the masks.\n{} "
+        "of what the views see is labelled.",
+        percent_text(search.confidence.agreement), percent_text(search.confidence.attention),
+        percent_text(search.confidence.share));
     if (search.confidence.recognition >= 0)
         parts += fmt::format("\nThe pictures fit the word better than {} of the others the model knows.",
                              percent_text(search.confidence.recognition));
@@ -254,9 +263,12 @@ void draw_front(Context& context) {
     flow(ImGui::CalcTextSize(text.c_str()).x + context.em);
     badge(context, text, palette::TextDim);
     note(context, "attention.front");
-    tooltip("The side from which the scene shows its front, as the pictures have it or, where the model is not sure of it, the side that you "
-            "had turned to: the model is told which view is a front, side or back view.\nWhere that is wrong, turn the scene to its front "
-            "before Locate, or set Front in Settings, in degrees, or none.");
+    tooltip(
+        "The side from which the scene shows its front, as the pictures have it or, where the model is not "
+        "sure of it, the side that you "
+        "had turned to: the model is told which view is a front, side or back view.\nWhere that is wrong, "
+        "turn the scene to its front "
+        "before Locate, or set Front in Settings, in degrees, or none.");
 }
 
 /// What the pictures below show that is no part of the scene.
@@ -266,14 +278,17 @@ void draw_ground(Context& context) {
     flow(ImGui::CalcTextSize(text).x + context.em);
     badge(context, text, palette::TextDim);
     note(context, "attention.ground");
-    tooltip("The scene was cut out of its surroundings. The model knows things on a ground: it was shown one below this scene, and a sky behind it.\n"
-            "None of that becomes part of the scene.");
+    tooltip(
+        "The scene was cut out of its surroundings. The model knows things on a ground: it was shown one "
+        "below this scene, and a sky behind it.\n"
+        "None of that becomes part of the scene.");
 }
 
 /// How far the search is that the views come from.
 void draw_arriving(Context& context) {
     const auto& views = context.model.attention;
-    const auto here = std::count_if(views.begin(), views.end(), [](const AttentionView& view) { return view.render != nullptr; });
+    const auto here = std::count_if(views.begin(), views.end(),
+                                    [](const AttentionView& view) { return view.render != nullptr; });
     badge(context, "looking", palette::Accent);
     ImGui::SameLine();
     const std::string text = fmt::format("{} of {} views so far", here, views.size());
@@ -377,10 +392,8 @@ void draw_attention_panel(Context& context) {
     const auto& view = views[static_cast<std::size_t>(state.chosen)];
     update_picture(context, view);
     const ImVec2 space = ImGui::GetContentRegionAvail();
-    if (space.x > context.em * 42)
-        draw_wide(context, view);
-    else
-        draw_narrow(context, view);
+    if (space.x > context.em * 42) draw_wide(context, view);
+    else draw_narrow(context, view);
 }
 
 }  // namespace gse::ui

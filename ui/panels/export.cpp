@@ -26,7 +26,8 @@ constexpr std::array<Size, 5> Sizes{
 constexpr double LargestPixels = 16384.0 * 8192.0;
 
 /// One of the paths to be written, with a button that asks for it.
-void path_row(Context& context, const char* name, std::string ExportSettings::*member, std::vector<std::string> endings) {
+void path_row(Context& context, const char* name, std::string ExportSettings::*member,
+              std::vector<std::string> endings) {
     std::string& path = context.exports.*member;
     const float icon = context.em * 1.75f;
     ImGui::SetNextItemWidth(
@@ -224,12 +225,15 @@ void draw_scene_file(Context& context) {
     if (checkbox(context, "export.with_labels", "With the label as a column", context.exports.with_labels,
                  "A float per splat; plain PLY only"))
         context.exports_changed = true;
-    if (has_extension(context.exports.scene_path, std::vector<std::string>{".spz"})) draw_spz_version(context);
+    if (has_extension(context.exports.scene_path, std::vector<std::string>{".spz"}))
+        draw_spz_version(context);
     const std::string why = why_not_write(context, context.exports.scene_path, writable_extensions());
     std::string what = context.model.result_waiting ? "Writes the scene" : "Writes the edited scene";
     if (context.scene_open())
-        what += fmt::format("{}, {} splats", context.model.result_waiting ? " with the result that waits" : "",
-                            count_text(context.model.result_waiting ? context.model.result_splats : context.document().current.size()));
+        what +=
+            fmt::format("{}, {} splats", context.model.result_waiting ? " with the result that waits" : "",
+                        count_text(context.model.result_waiting ? context.model.result_splats
+                                                                : context.document().current.size()));
     if (!ply) what += ". This format rounds values; PLY keeps every bit";
     if (context.exports.with_labels && !ply) what += "; labels are left out";
     say(why, what + ".");
@@ -246,9 +250,12 @@ void draw_viewpoints(Context& context) {
     const std::size_t count = context.scene_open() ? context.document().views.size() : 0;
     if (why.empty() && count == 0) why = "The scene has no viewpoints: add some in the Views panel";
     const bool nerfstudio = names_transforms(path_of(context.exports.viewpoints_path));
-    say(why, fmt::format("Writes {} viewpoint{} as {}.", count, count == 1 ? "" : "s",
-                         nerfstudio ? "nerfstudio's transforms.json"
-                                    : "the cameras.json of 3DGS; a name that begins with transforms gives nerfstudio's form"));
+    say(why,
+        fmt::format(
+            "Writes {} viewpoint{} as {}.", count, count == 1 ? "" : "s",
+            nerfstudio
+                ? "nerfstudio's transforms.json"
+                : "the cameras.json of 3DGS; a name that begins with transforms gives nerfstudio's form"));
     if (button(context, {.name = "export.viewpoints", .text = "Save viewpoints", .why_off = why}))
         context.actions.export_viewpoints();
 }
@@ -257,8 +264,10 @@ void draw_viewpoints(Context& context) {
 
 void draw_export_panel(Context& context) {
     if (context.model.hidden > 0 &&
-        checkbox(context, "export.visible_only", fmt::format("Leave out the {} hidden splats", count_text(context.model.hidden)),
-                 context.exports.visible_only, "Of everything that is written from here. Unticked, what is hidden is written too."))
+        checkbox(context, "export.visible_only",
+                 fmt::format("Leave out the {} hidden splats", count_text(context.model.hidden)),
+                 context.exports.visible_only,
+                 "Of everything that is written from here. Unticked, what is hidden is written too."))
         context.exports_changed = true;
     draw_picture(context);
     draw_turntable(context);

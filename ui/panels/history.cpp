@@ -62,8 +62,8 @@ void draw_strength(Context& context, const EditNode& edit) {
     constexpr double least = 0;
     double strength = edit.strength;
     ImGui::SetNextItemWidth(std::min(ImGui::GetContentRegionAvail().x, context.em * 12));
-    const bool changed =
-        ImGui::SliderScalar("##strength", ImGuiDataType_Double, &strength, &least, &MostStrength, "Strength %.2f");
+    const bool changed = ImGui::SliderScalar("##strength", ImGuiDataType_Double, &strength, &least,
+                                             &MostStrength, "Strength %.2f");
     note(context, fmt::format("history.strength.{}", edit.id));
     tooltip("1 is the edit as it was applied. Less: between before and after. More: colours go beyond it.");
     const bool ends = ImGui::IsItemDeactivatedAfterEdit();
@@ -110,12 +110,16 @@ void draw_edit(Context& context, std::size_t place, std::size_t count) {
 void draw_compare(Context& context, std::size_t at, float side) {
     const bool compared = context.model.document->revision_at(at) == context.model.compared_revision;
     ImGui::SameLine();
-    if (icon_button(context, {.name = fmt::format("history.compare.{}", at),
-                              .icon = Icon::Wipe,
-                              .tooltip = compared ? "Compare with the original again" : with_key(context, "Compare with this: wipe between this step and now", Command::Wipe),
-                              .active = compared,
-                              .why_off = !compared && at == context.model.document->position() ? "This is what is shown" : "",
-                              .size_em = side / context.em}))
+    if (icon_button(
+            context,
+            {.name = fmt::format("history.compare.{}", at),
+             .icon = Icon::Wipe,
+             .tooltip = compared ? "Compare with the original again"
+                                 : with_key(context, "Compare with this: wipe between this step and now",
+                                            Command::Wipe),
+             .active = compared,
+             .why_off = !compared && at == context.model.document->position() ? "This is what is shown" : "",
+             .size_em = side / context.em}))
         context.actions.compare_with(at);
 }
 
@@ -140,9 +144,12 @@ void draw_steps(Context& context) {
         ImGui::PushID(static_cast<int>(at));
         const bool later = at > document.position();
         if (later) ImGui::PushStyleColor(ImGuiCol_Text, palette::TextDim);
-        const float side = context.em * 1.5f, width = ImGui::GetContentRegionAvail().x - side - ImGui::GetStyle().ItemSpacing.x;
+        const float side = context.em * 1.5f,
+                    width = ImGui::GetContentRegionAvail().x - side - ImGui::GetStyle().ItemSpacing.x;
         const std::string text = shortened(names[at].empty() ? "Opened" : names[at], width);
-        if (ImGui::Selectable(text.c_str(), at == document.position(), ImGuiSelectableFlags_None, {width, side}) && at != document.position())
+        if (ImGui::Selectable(text.c_str(), at == document.position(), ImGuiSelectableFlags_None,
+                              {width, side}) &&
+            at != document.position())
             context.actions.go_to(at);
         if (later) ImGui::PopStyleColor();
         note(context, fmt::format("history.step.{}", at));

@@ -109,7 +109,8 @@ void draw_tools(Context& context, const std::string& why) {
     auto& viewport = context.state.viewport;
     constexpr std::array<Icon, 4> Icons{Icon::Brush, Icon::Rectangle, Icon::Lasso, Icon::CutOut};
     constexpr std::array<Tool, 4> Tools{Tool::Brush, Tool::Rectangle, Tool::Lasso, Tool::CutOut};
-    constexpr std::array<Command, 4> Keys{Command::Brush, Command::Rectangle, Command::Lasso, Command::CutOut};
+    constexpr std::array<Command, 4> Keys{Command::Brush, Command::Rectangle, Command::Lasso,
+                                          Command::CutOut};
     for (std::size_t at = 0; at < Tools.size(); ++at) {
         if (at > 0) ImGui::SameLine();
         if (icon_button(context, {.name = fmt::format("labels.tool.{}", ToolNames[at]),
@@ -123,7 +124,10 @@ void draw_tools(Context& context, const std::string& why) {
     if (icon_button(context,
                     {.name = "labels.front",
                      .icon = context.view.front_only ? Icon::FrontOnly : Icon::Through,
-                     .tooltip = with_key(context, context.view.front_only ? "Front only: what is behind is not touched" : "All the way through", Command::FrontOnly),
+                     .tooltip = with_key(context,
+                                         context.view.front_only ? "Front only: what is behind is not touched"
+                                                                 : "All the way through",
+                                         Command::FrontOnly),
                      .active = context.view.front_only})) {
         context.view.front_only = !context.view.front_only;
         context.view_changed = true;
@@ -158,20 +162,29 @@ void draw_operations(Context& context, const std::string& why) {
         context.actions.clear_label();
     const std::string why_hide = why_not_hide(context);
     flow(button_width("Hide"));
-    if (button(context, {.name = "labels.hide", .text = "Hide", .why_off = why_hide, .tooltip = with_key(context, "Not seen and not picked until it is shown again; the scene keeps it", Command::Hide)}))
+    if (button(context, {.name = "labels.hide",
+                         .text = "Hide",
+                         .why_off = why_hide,
+                         .tooltip = with_key(
+                             context, "Not seen and not picked until it is shown again; the scene keeps it",
+                             Command::Hide)}))
         hide_label(context);
     flow(button_width("Isolate"));
-    if (button(context, {.name = "labels.isolate", .text = "Isolate", .why_off = why_hide, .tooltip = with_key(context, "Hides all else", Command::Isolate)}))
+    if (button(context, {.name = "labels.isolate",
+                         .text = "Isolate",
+                         .why_off = why_hide,
+                         .tooltip = with_key(context, "Hides all else", Command::Isolate)}))
         isolate_label(context);
     flow(button_width("Delete splats"));
     std::string why_delete = why;
     if (why_delete.empty() && label_count(context) == 0) why_delete = "Nothing is labelled";
-    if (button(context,
-               {.name = "labels.delete_splats",
-                .text = "Delete splats",
-                .why_off = why_delete,
-                .tooltip = with_key(context, "Removes the labelled splats from the scene; undo brings them back", Command::Delete),
-                .look = Look::Danger}))
+    if (button(context, {.name = "labels.delete_splats",
+                         .text = "Delete splats",
+                         .why_off = why_delete,
+                         .tooltip = with_key(
+                             context, "Removes the labelled splats from the scene; undo brings them back",
+                             Command::Delete),
+                         .look = Look::Danger}))
         context.actions.delete_labelled_splats();
 }
 

@@ -60,13 +60,14 @@ void draw_card(Context& context, const ModelView& model, int index) {
 
 void ask_lora(Context& context) {
     auto& actions = context.actions;
-    context.state.files.ask({.title = "A LoRA: .safetensors of kohya, LyCORIS, PEFT or diffusers",
-                             .confirm = "Add",
-                             .extensions = {".safetensors"},
-                             .saves = false,
-                             .folder_allowed = false,
-                             .start = context.state.lora_text,
-                             .answer = [&actions](const std::filesystem::path& path) { actions.add_lora(utf8_of(path)); }});
+    context.state.files.ask(
+        {.title = "A LoRA: .safetensors of kohya, LyCORIS, PEFT or diffusers",
+         .confirm = "Add",
+         .extensions = {".safetensors"},
+         .saves = false,
+         .folder_allowed = false,
+         .start = context.state.lora_text,
+         .answer = [&actions](const std::filesystem::path& path) { actions.add_lora(utf8_of(path)); }});
 }
 
 void draw_lora(Context& context, const LoraView& lora, std::size_t index) {
@@ -75,15 +76,19 @@ void draw_lora(Context& context, const LoraView& lora, std::size_t index) {
     ImGui::SetNextItemWidth(std::max(context.em * 3, ImGui::GetContentRegionAvail().x - button_space));
     double strength = lora.strength;
     const auto name = fmt::format("models.lora.strength.{}", index);
-    if (ImGui::InputScalar(fmt::format("##{}", name).c_str(), ImGuiDataType_Double, &strength, nullptr, nullptr, "%.2f",
-                           ImGuiInputTextFlags_EnterReturnsTrue) &&
+    if (ImGui::InputScalar(fmt::format("##{}", name).c_str(), ImGuiDataType_Double, &strength, nullptr,
+                           nullptr, "%.2f", ImGuiInputTextFlags_EnterReturnsTrue) &&
         std::isfinite(strength) && strength != lora.strength)
         context.actions.set_lora_strength(index, strength);
     note(context, name);
-    tooltip("How strongly it counts: 1 = as it was trained, 0 = not at all, below 0 = the opposite. Enter applies it.");
+    tooltip(
+        "How strongly it counts: 1 = as it was trained, 0 = not at all, below 0 = the opposite. Enter "
+        "applies it.");
     takes_letters(context);
     ImGui::SameLine();
-    if (icon_button(context, {.name = fmt::format("models.lora.remove.{}", index), .icon = Icon::Trash, .tooltip = "Take it off"}))
+    if (icon_button(context, {.name = fmt::format("models.lora.remove.{}", index),
+                              .icon = Icon::Trash,
+                              .tooltip = "Take it off"}))
         context.actions.remove_lora(index);
 }
 
@@ -91,13 +96,18 @@ void draw_lora(Context& context, const LoraView& lora, std::size_t index) {
 void draw_loras(Context& context) {
     heading(context, "LoRAs");
     const auto& loras = context.model.loras;
-    if (loras.empty()) dim_text("None. A LoRA changes what the model draws, or lets it draw in few steps (LCM, TCD).");
+    if (loras.empty())
+        dim_text("None. A LoRA changes what the model draws, or lets it draw in few steps (LCM, TCD).");
     for (std::size_t index = 0; index < loras.size(); ++index) draw_lora(context, loras[index], index);
-    if (context.model.loras_checking) dim_text("The model is being loaded with them, to see whether they fit.");
+    if (context.model.loras_checking)
+        dim_text("The model is being loaded with them, to see whether they fit.");
     auto& text = context.state.lora_text;
     const bool entered =
-        text_input(context, "models.lora.path", text, "file.safetensors, or file.safetensors:0.8", ImGuiInputTextFlags_EnterReturnsTrue);
-    if (button(context, {.name = "models.lora.add", .text = "Add", .why_off = text.empty() ? "Type a path first" : ""}) ||
+        text_input(context, "models.lora.path", text, "file.safetensors, or file.safetensors:0.8",
+                   ImGuiInputTextFlags_EnterReturnsTrue);
+    if (button(
+            context,
+            {.name = "models.lora.add", .text = "Add", .why_off = text.empty() ? "Type a path first" : ""}) ||
         (entered && !text.empty())) {
         context.actions.add_lora(text);
         text.clear();
@@ -109,32 +119,34 @@ void draw_loras(Context& context) {
 /// What the panel says of a segmenter.
 struct SegmenterTexts {
     SegmenterRole role;
-    const char* name;      // of its widgets
-    const char* none;      // where there is none
-    const char* used;      // before the path
-    const char* back;      // button that does without
+    const char* name;  // of its widgets
+    const char* none;  // where there is none
+    const char* used;  // before the path
+    const char* back;  // button that does without
     const char* hint;
     const char* question;
-    std::vector<std::string> extensions;   // none = a folder
+    std::vector<std::string> extensions;  // none = a folder
 };
 
 const SegmenterTexts& segmenter_texts(SegmenterRole role) {
     static const SegmenterTexts clicks{SegmenterRole::Clicks,
                                        "models.segmenter",
-                                       "GrabCut cuts out what the attention finds. SAM or MobileSAM does it instead where you have the weights.",
+                                       "GrabCut cuts out what the attention finds. SAM or MobileSAM does it "
+                                       "instead where you have the weights.",
                                        "Cut out by",
                                        "Back to GrabCut",
                                        "sam_vit_b.pth, mobile_sam.pt, ...",
                                        "Weights of SAM or MobileSAM",
                                        {".safetensors", ".pth", ".pt"}};
-    static const SegmenterTexts words{SegmenterRole::Words,
-                                      "models.words_segmenter",
-                                      "The attention alone says where a word is. CLIPSeg is asked too where you have its folder.",
-                                      "Words are looked for by",
-                                      "Without it",
-                                      "folder of CLIPSeg",
-                                      "A folder of CLIPSeg: config.json, merges.txt and weights",
-                                      {}};
+    static const SegmenterTexts words{
+        SegmenterRole::Words,
+        "models.words_segmenter",
+        "The attention alone says where a word is. CLIPSeg is asked too where you have its folder.",
+        "Words are looked for by",
+        "Without it",
+        "folder of CLIPSeg",
+        "A folder of CLIPSeg: config.json, merges.txt and weights",
+        {}};
     return role == SegmenterRole::Clicks ? clicks : words;
 }
 
@@ -146,7 +158,9 @@ void ask_segmenter(Context& context, const SegmenterTexts& texts) {
                              .saves = false,
                              .folder_allowed = true,
                              .start = context.state.segmenter_paths[static_cast<std::size_t>(texts.role)],
-                             .answer = [&actions, role = texts.role](const std::filesystem::path& path) { actions.choose_segmenter(role, utf8_of(path)); }});
+                             .answer = [&actions, role = texts.role](const std::filesystem::path& path) {
+                                 actions.choose_segmenter(role, utf8_of(path));
+                             }});
 }
 
 void draw_segmenter(Context& context, const SegmenterTexts& texts) {
@@ -158,12 +172,16 @@ void draw_segmenter(Context& context, const SegmenterTexts& texts) {
         dim_text(texts.used);
         ImGui::TextUnformatted(shortened(segmenter.path, ImGui::GetContentRegionAvail().x).c_str());
         tooltip(segmenter.path);
-        if (button(context, {.name = name + ".none", .text = texts.back})) context.actions.choose_segmenter(texts.role, {});
+        if (button(context, {.name = name + ".none", .text = texts.back}))
+            context.actions.choose_segmenter(texts.role, {});
     }
     if (segmenter.checking) dim_text("The weights are being loaded, to see whether they can be used.");
     auto& text = context.state.segmenter_paths[static_cast<std::size_t>(texts.role)];
-    const bool entered = text_input(context, name + ".path", text, texts.hint, ImGuiInputTextFlags_EnterReturnsTrue);
-    if (button(context, {.name = name + ".use", .text = "Use", .why_off = text.empty() ? "Type a path first" : ""}) || (entered && !text.empty())) {
+    const bool entered =
+        text_input(context, name + ".path", text, texts.hint, ImGuiInputTextFlags_EnterReturnsTrue);
+    if (button(context,
+               {.name = name + ".use", .text = "Use", .why_off = text.empty() ? "Type a path first" : ""}) ||
+        (entered && !text.empty())) {
         context.actions.choose_segmenter(texts.role, text);
         text.clear();
     }
@@ -210,7 +228,8 @@ void draw_models_panel(Context& context) {
         context.actions.choose_model(context.state.model_path);
     flow(button_width("Locate..."));
     if (button(context, {.name = "models.browse", .text = "Browse..."})) ask_model(context);
-    dim_text("Pickled .ckpt and .pt models are refused: they can run programs. Convert them to .safetensors.");
+    dim_text(
+        "Pickled .ckpt and .pt models are refused: they can run programs. Convert them to .safetensors.");
 }
 
 }  // namespace gse::ui

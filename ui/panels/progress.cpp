@@ -50,14 +50,16 @@ void draw_gate(Context& context) {
     dim_text("What the model makes of it");
     tooltip("Pictures painted by the model alone: when they do not show the edit, it can hardly succeed.");
     const float gap = ImGui::GetStyle().ItemSpacing.x, count = static_cast<float>(gate.pictures.size());
-    const float side = std::min(context.em * 5, (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count);
+    const float side =
+        std::min(context.em * 5, (ImGui::GetContentRegionAvail().x - gap * (count - 1)) / count);
     for (std::size_t i = 0; i < gate.pictures.size(); ++i) {
         if (i > 0) ImGui::SameLine();
         ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])), {side, side});
         note(context, fmt::format("progress.gate.{}", i));
         if (!ImGui::IsItemHovered()) continue;
         ImGui::BeginTooltip();
-        ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])), {context.em * 14, context.em * 14});
+        ImGui::Image(imgui_texture(context.textures.texture(gate.pictures[i])),
+                     {context.em * 14, context.em * 14});
         ImGui::EndTooltip();
     }
     if (!gate.verdict.empty()) coloured_text(gate.warns ? palette::Warning : palette::TextDim, gate.verdict);
@@ -67,19 +69,23 @@ void draw_gate(Context& context) {
 void draw_cost(Context& context) {
     const auto& cost = context.model.cost;
     if (cost.unet > 0) {
-        property(context, "Networks", fmt::format("{} UNet, {} encoder, {} decoder passes", count_text(cost.unet), count_text(cost.encoder),
-                                                  count_text(cost.decoder)));
+        property(context, "Networks",
+                 fmt::format("{} UNet, {} encoder, {} decoder passes", count_text(cost.unet),
+                             count_text(cost.encoder), count_text(cost.decoder)));
         note(context, "progress.networks");
         property(context, "Arithmetic", tflop_text(cost.tflop));
     }
     if (context.model.target_rounds.empty()) return;
-    if (button(context, {.name = "progress.targets", .text = "Redrawn views", .tooltip = "What the scene is fitted to, view by view"}))
+    if (button(context, {.name = "progress.targets",
+                         .text = "Redrawn views",
+                         .tooltip = "What the scene is fitted to, view by view"}))
         show_panel(context.state, PanelId::Targets);
 }
 
 std::string why_not_branch(const Context& context, int iteration) {
     if (const int steps = edit::planned_steps(as_planned(context)); steps <= iteration)
-        return fmt::format("The edit has {} iterations: set more than {} to go on from here", steps, iteration);
+        return fmt::format("The edit has {} iterations: set more than {} to go on from here", steps,
+                           iteration);
     return {};
 }
 
@@ -91,10 +97,11 @@ void ask_branch(Context& context, int iteration) {
     if (!running && !context.model.result_waiting) return branch();
     auto& question = context.state.question;
     question.title = running ? "Stop the edit and branch?" : "Give up the result and branch?";
-    question.text = fmt::format("{} What came after iteration {} is given up; from there the edit goes on to iteration {} "
-                                "with the settings as they are now.",
-                                running ? "The running edit is stopped." : "The finished edit has not been applied.",
-                                iteration, edit::planned_steps(as_planned(context)));
+    question.text = fmt::format(
+        "{} What came after iteration {} is given up; from there the edit goes on to iteration {} "
+        "with the settings as they are now.",
+        running ? "The running edit is stopped." : "The finished edit has not been applied.", iteration,
+        edit::planned_steps(as_planned(context)));
     question.answers = {{running ? "Stop and branch" : "Branch", true, branch},
                         {running ? "Let it work" : "Keep the result", false, {}}};
     question.pending = true;
@@ -103,35 +110,43 @@ void ask_branch(Context& context, int iteration) {
 void draw_snapshots(Context& context) {
     const auto& snapshots = context.model.snapshots;
     if (snapshots.empty()) return;
-    const bool waits = context.model.result_waiting;   // the result lies behind the last snapshot
+    const bool waits = context.model.result_waiting;  // the result lies behind the last snapshot
     const int count = static_cast<int>(snapshots.size()), last = waits ? count : count - 1;
-    int shown = context.model.shown_snapshot < 0 || context.model.shown_snapshot > last ? last : context.model.shown_snapshot;
+    int shown = context.model.shown_snapshot < 0 || context.model.shown_snapshot > last
+                    ? last
+                    : context.model.shown_snapshot;
     const bool newest = shown == last, result = waits && newest;
     const auto& snapshot = snapshots[static_cast<std::size_t>(std::min(shown, count - 1))];
     dim_text(result ? fmt::format("The result, {} splats", count_text(context.model.result_splats))
-                    : fmt::format("Snapshot of iteration {}, {} splats{}", snapshot.iteration, count_text(snapshot.splats),
-                                  newest ? " (newest)" : ""));
+                    : fmt::format("Snapshot of iteration {}, {} splats{}", snapshot.iteration,
+                                  count_text(snapshot.splats), newest ? " (newest)" : ""));
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
-    if (ImGui::SliderInt("##progress.snapshot", &shown, 0, std::max(0, last), "", ImGuiSliderFlags_AlwaysClamp))
+    if (ImGui::SliderInt("##progress.snapshot", &shown, 0, std::max(0, last), "",
+                         ImGuiSliderFlags_AlwaysClamp))
         context.actions.show_snapshot(shown == last ? -1 : shown);
     note(context, "progress.snapshot");
-    tooltip(waits ? "Drag back to look at an earlier state." : "Drag back to look at an earlier state; the edit goes on meanwhile.");
+    tooltip(waits ? "Drag back to look at an earlier state."
+                  : "Drag back to look at an earlier state; the edit goes on meanwhile.");
     if (button(context, {.name = "progress.newest",
                          .text = waits ? "Result" : "Newest",
-                         .why_off = result ? "The result is shown" : newest ? "The newest is shown" : ""}))
+                         .why_off = result   ? "The result is shown"
+                                    : newest ? "The newest is shown"
+                                             : ""}))
         context.actions.show_snapshot(-1);
     flow(button_width("Take this state"));
     if (button(context, {.name = "progress.take",
                          .text = "Take this state",
-                         .why_off = !waits ? "No finished edit waits" : result ? "It is the result: apply it, or drag back to an earlier state" : "",
+                         .why_off = !waits   ? "No finished edit waits"
+                                    : result ? "It is the result: apply it, or drag back to an earlier state"
+                                             : "",
                          .tooltip = "It is the result then, to be applied or discarded."}))
         context.actions.take_snapshot(snapshot.iteration);
     flow(button_width("Branch from here"));
     const std::string why = why_not_branch(context, snapshot.iteration);
-    const std::string help =
-        fmt::format("Goes on from iteration {} to {} with the settings as they are now.", snapshot.iteration,
-                    edit::planned_steps(as_planned(context)));
-    if (button(context, {.name = "progress.branch", .text = "Branch from here", .why_off = why, .tooltip = help}))
+    const std::string help = fmt::format("Goes on from iteration {} to {} with the settings as they are now.",
+                                         snapshot.iteration, edit::planned_steps(as_planned(context)));
+    if (button(context,
+               {.name = "progress.branch", .text = "Branch from here", .why_off = why, .tooltip = help}))
         ask_branch(context, snapshot.iteration);
 }
 
@@ -202,7 +217,8 @@ void draw_progress_panel(Context& context) {
     if (beside) {
         ImGui::EndChild();
         ImGui::SameLine();
-        if (ImGui::BeginChild("curves", {0, height}, false, ImGuiWindowFlags_NavFlattened)) draw_curves(context, height);
+        if (ImGui::BeginChild("curves", {0, height}, false, ImGuiWindowFlags_NavFlattened))
+            draw_curves(context, height);
         ImGui::EndChild();
     } else {
         draw_curves(context, context.em * 16);

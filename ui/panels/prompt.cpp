@@ -40,10 +40,11 @@ constexpr std::array<Group, 8> Groups{{{"views", "Views"},
 constexpr double LeastStrength = 0;
 constexpr std::array<const char*, 4> Modes{"auto", "modify", "replace", "add"};
 constexpr std::array<const char*, 3> Methods{"auto", "views", "sds"};
-constexpr std::array<const char*, 4> ModeHelp{"As the sentence says: what describes the source modifies it, what stands in its place replaces it.",
-                                              "Change what is there: colours and material of the source.",
-                                              "Put something else in the source's place: a cat for the bear.",
-                                              "Put something new there, such as a hat on the bear."};
+constexpr std::array<const char*, 4> ModeHelp{
+    "As the sentence says: what describes the source modifies it, what stands in its place replaces it.",
+    "Change what is there: colours and material of the source.",
+    "Put something else in the source's place: a cat for the bear.",
+    "Put something new there, such as a hat on the bear."};
 
 /// What can be done about a source that the model does not know.
 void draw_unknown_source(Context& context) {
@@ -53,14 +54,16 @@ void draw_unknown_source(Context& context) {
         dim_text(fmt::format("The model cannot find \"{}\": the label says where it is.", word));
         return;
     }
-    coloured_text(palette::Warning, edit::knows(context.model.drawn_words, word) && !context.model.drawn_words.empty()
-                                        ? fmt::format("The model can draw \"{}\" but not find it.", word)
-                                        : fmt::format("The model does not know \"{}\" and cannot find it.", word));
+    coloured_text(palette::Warning,
+                  edit::knows(context.model.drawn_words, word) && !context.model.drawn_words.empty()
+                      ? fmt::format("The model can draw \"{}\" but not find it.", word)
+                      : fmt::format("The model does not know \"{}\" and cannot find it.", word));
     for (std::size_t i = 0; i < prompt.source_suggestions.size(); ++i) {
         const auto& suggestion = prompt.source_suggestions[i];
         const std::string text = fmt::format("Use \"{}\"", suggestion);
         if (i > 0) flow(button_width(text));
-        if (button(context, {.name = i == 0 ? "prompt.source.suggestion" : fmt::format("prompt.source.suggestion.{}", i),
+        if (button(context, {.name = i == 0 ? "prompt.source.suggestion"
+                                            : fmt::format("prompt.source.suggestion.{}", i),
                              .text = text})) {
             context.request.source = suggestion;
             context.request_changed = true;
@@ -68,10 +71,12 @@ void draw_unknown_source(Context& context) {
     }
     constexpr const char* by_hand = "Label it by hand instead";
     if (!prompt.source_suggestions.empty()) flow(button_width(by_hand));
-    if (button(context, {.name = "prompt.source.by_hand",
-                         .text = by_hand,
-                         .why_off = context.scene_open() ? "" : "Open a scene first",
-                         .tooltip = "Makes a label and gives you Cut out: drag a box around the thing that may change"}))
+    if (button(
+            context,
+            {.name = "prompt.source.by_hand",
+             .text = by_hand,
+             .why_off = context.scene_open() ? "" : "Open a scene first",
+             .tooltip = "Makes a label and gives you Cut out: drag a box around the thing that may change"}))
         label_by_hand(context, context.request.source);
     if (prompt.source_suggestions.empty()) dim_text(fmt::format("Or use {}.", prompt.source_help));
 }
@@ -80,7 +85,8 @@ void draw_source(Context& context) {
     auto& prompt = context.state.prompt;
     dim_text("What in the scene is it about?");
     tooltip("A thing by its name, of one word or several. Empty: the target itself is looked for.");
-    context.request_changed |= text_input(context, "prompt.source", context.request.source, "for example: bear");
+    context.request_changed |=
+        text_input(context, "prompt.source", context.request.source, "for example: bear");
     if (!prompt.source_known) draw_unknown_source(context);
 }
 
@@ -89,7 +95,8 @@ void draw_sentence(Context& context) {
     dim_text("The scene after the edit");
     tooltip("One sentence. Shift + Enter or Ctrl + Enter starts the edit.");
     const std::string before = context.request.prompt;
-    if (text_input(context, "prompt.sentence", context.request.prompt, "for example: a bear wearing a red hat")) {
+    if (text_input(context, "prompt.sentence", context.request.prompt,
+                   "for example: a bear wearing a red hat")) {
         context.request_changed = true;
         // What was clicked belongs to the sentence it was clicked in.
         if (edit::words_of(before) != edit::words_of(context.request.prompt)) context.request.target.clear();
@@ -115,8 +122,9 @@ void draw_sentence(Context& context) {
         context.request_changed = true;
     }
     if (!prompt.cut_at.empty())
-        coloured_text(palette::Warning, fmt::format("The model reads {} words of a sentence: from \"{}\" on nothing counts.",
-                                                    context.model.words_read, prompt.cut_at));
+        coloured_text(palette::Warning,
+                      fmt::format("The model reads {} words of a sentence: from \"{}\" on nothing counts.",
+                                  context.model.words_read, prompt.cut_at));
     const bool unknown =
         std::any_of(prompt.chips.begin(), prompt.chips.end(), [](const Chip& chip) { return !chip.known; });
     if (unknown) coloured_text(palette::Warning, "Words the model does not know have no effect.");
@@ -129,8 +137,11 @@ void draw_sentence(Context& context) {
 void draw_instruction(Context& context) {
     if (!context.model.edits_by_instruction) return;
     dim_text("What is to be done");
-    tooltip("The model in use (InstructPix2Pix) is told an order. Empty: what the field shows, made of the words above.");
-    const std::string usual = context.request.prompt.empty() ? "for example: make the bear golden" : edit::instruction_of(context.request);
+    tooltip(
+        "The model in use (InstructPix2Pix) is told an order. Empty: what the field shows, made of the words "
+        "above.");
+    const std::string usual = context.request.prompt.empty() ? "for example: make the bear golden"
+                                                             : edit::instruction_of(context.request);
     context.request_changed |= text_input(context, "prompt.instruction", context.request.instruction, usual);
 }
 
@@ -147,9 +158,11 @@ void draw_mode(Context& context) {
 
 void draw_method(Context& context) {
     constexpr const char* help =
-        "auto: views, which come closer in less time.\nviews: the model redraws some views, the scene is fitted to "
+        "auto: views, which come closer in less time.\nviews: the model redraws some views, the scene is "
+        "fitted to "
         "them.\nsds: the model pulls at every step, the paper's way.";
-    int method = static_cast<int>(std::find(Methods.begin(), Methods.end(), context.request.method) - Methods.begin());
+    int method =
+        static_cast<int>(std::find(Methods.begin(), Methods.end(), context.request.method) - Methods.begin());
     row_label(context, "Method", help);
     if (segmented(context, "prompt.method", Methods, method)) {
         context.request.method = Methods[static_cast<std::size_t>(method)];
@@ -160,8 +173,9 @@ void draw_method(Context& context) {
 
 /// "draft: half of the views ... About 5 s.", a line per quality.
 std::string quality_help(const Estimate& estimate) {
-    constexpr std::array<const char*, edit::Qualities.size()> what{"half of the views, three quarters of their steps: to see where it goes",
-                                                                   "what the settings say", "twice the views, half again as many steps"};
+    constexpr std::array<const char*, edit::Qualities.size()> what{
+        "half of the views, three quarters of their steps: to see where it goes", "what the settings say",
+        "twice the views, half again as many steps"};
     std::string help;
     for (std::size_t i = 0; i < what.size(); ++i) {
         help += fmt::format("{}{}: {}.", i == 0 ? "" : "\n", edit::Qualities[i], what[i]);
@@ -175,7 +189,8 @@ void draw_quality(Context& context) {
     if (!edit::edits_by_views(context.request)) return;
     const auto& names = edit::Qualities;
     const std::string help = quality_help(context.model.estimate);
-    int quality = static_cast<int>(std::find(names.begin(), names.end(), context.request.quality) - names.begin());
+    int quality =
+        static_cast<int>(std::find(names.begin(), names.end(), context.request.quality) - names.begin());
     row_label(context, "Quality", help);
     if (segmented(context, "prompt.quality", names, quality)) {
         context.request.quality = names[static_cast<std::size_t>(quality)];
@@ -190,16 +205,20 @@ void draw_iterations(Context& context) {
     const auto mode = edit::planned_mode(as_planned(context));
     const bool by_views = edit::edits_by_views(request);
     const auto plan = edit::round_plan(request, mode);
-    const std::string help =
-        by_views ? fmt::format("Steps of fitting to the redrawn views: {} round{} of {}. Rounds and views are under \"All settings\".",
-                               plan.rounds, plan.rounds == 1 ? "" : "s", plan.fit_steps)
-                 : "Optimisation steps. More = closer to the sentence, and longer.";
+    const std::string help = by_views ? fmt::format(
+                                            "Steps of fitting to the redrawn views: {} round{} of {}. Rounds "
+                                            "and views are under \"All settings\".",
+                                            plan.rounds, plan.rounds == 1 ? "" : "s", plan.fit_steps)
+                                      : "Optimisation steps. More = closer to the sentence, and longer.";
     row_label(context, "Iterations", help);
     const int least = 1;
-    const int polish = by_views ? request.polish_steps : 0;   // set under "All settings"
+    const int polish = by_views ? request.polish_steps : 0;  // set under "All settings"
     int steps = edit::loop_steps(request, mode) - polish;
-    if (ImGui::DragInt("##prompt.iterations", &steps, by_views ? 1.0f : 5.0f, least, 100000, "%d", ImGuiSliderFlags_AlwaysClamp)) {
-        if (by_views) (plan.anew ? request.shape_fit_steps : request.fit_steps) = std::max(1, (steps + plan.rounds - 1) / plan.rounds);
+    if (ImGui::DragInt("##prompt.iterations", &steps, by_views ? 1.0f : 5.0f, least, 100000, "%d",
+                       ImGuiSliderFlags_AlwaysClamp)) {
+        if (by_views)
+            (plan.anew ? request.shape_fit_steps : request.fit_steps) =
+                std::max(1, (steps + plan.rounds - 1) / plan.rounds);
         else request.iterations = steps;
         context.request_changed = true;
     }
@@ -209,12 +228,14 @@ void draw_iterations(Context& context) {
 
 void draw_strength(Context& context) {
     row_label(context, "Strength",
-              "How much of the edit is kept. 1: what the model made of it. Less: between before and after. More: colours go "
+              "How much of the edit is kept. 1: what the model made of it. Less: between before and after. "
+              "More: colours go "
               "beyond it. Of an applied edit it can be changed under History.");
     const double before = context.request.strength;
-    context.request_changed |= ImGui::SliderScalar("##prompt.strength", ImGuiDataType_Double, &context.request.strength,
-                                                   &LeastStrength, &MostStrength, "%.2f");
-    if (!std::isfinite(context.request.strength)) context.request.strength = before;   // "1e999" was typed
+    context.request_changed |=
+        ImGui::SliderScalar("##prompt.strength", ImGuiDataType_Double, &context.request.strength,
+                            &LeastStrength, &MostStrength, "%.2f");
+    if (!std::isfinite(context.request.strength)) context.request.strength = before;  // "1e999" was typed
     context.request.strength = std::clamp(context.request.strength, LeastStrength, MostStrength);
     note(context, "prompt.strength");
     draw_iterations(context);
@@ -242,19 +263,22 @@ void draw_seed(Context& context) {
 
 /// What the model does before the loop; more of it is under "All settings".
 void draw_model_settings(Context& context) {
-    context.model_settings_changed |= checkbox(
-        context, "prompt.learn", "Learn the scene first", context.model_settings.learn_scene,
-        "DreamBooth: the model looks at renders of this scene before it edits. Takes about a minute; helps with scenes "
-        "that look like nothing it knows.");
+    context.model_settings_changed |=
+        checkbox(context, "prompt.learn", "Learn the scene first", context.model_settings.learn_scene,
+                 "DreamBooth: the model looks at renders of this scene before it edits. Takes about a "
+                 "minute; helps with scenes "
+                 "that look like nothing it knows.");
 }
 
 std::string estimate_text(const Estimate& estimate) {
     if (estimate.seconds < 0 && estimate.memory_mb < 0) return {};
-    std::string text = estimate.seconds >= 0 ? fmt::format("Estimate: about {}", duration_text(estimate.seconds))
-                                             : "Time: measured with the first search";
+    std::string text = estimate.seconds >= 0
+                           ? fmt::format("Estimate: about {}", duration_text(estimate.seconds))
+                           : "Time: measured with the first search";
     const auto& [draft, normal, fine] = estimate.quality_seconds;
     if (estimate.seconds >= 0 && draft >= 0 && fine > draft)
-        text += fmt::format(" (draft {}, normal {}, fine {})", duration_text(draft), duration_text(normal), duration_text(fine));
+        text += fmt::format(" (draft {}, normal {}, fine {})", duration_text(draft), duration_text(normal),
+                            duration_text(fine));
     if (estimate.tflop >= 0) text += fmt::format(", {}", tflop_text(estimate.tflop));
     if (estimate.memory_mb < 0) return text;
     text += ", " + bytes_text(estimate.memory_mb * 1e6);
@@ -291,31 +315,39 @@ std::string reach_text(const Context& context) {
     if (!context.scene_open() || word.empty() || context.model.job.running) return {};
     if (!reach.by_label && !context.state.prompt.source_known) return {};
     if (edit::planned_mode(planned) == edit::EditMode::Add)
-        return fmt::format("Adds \"{}\" where a search places it.{}", edit::as_told(planned.target),
-                           reach.corrected ? " What was set by hand in the label does not count for that." : "");
-    if (reach.by_label) return fmt::format("May change: label \"{}\", {} splats.", reach.label, count_text(reach.splats));
+        return fmt::format(
+            "Adds \"{}\" where a search places it.{}", edit::as_told(planned.target),
+            reach.corrected ? " What was set by hand in the label does not count for that." : "");
+    if (reach.by_label)
+        return fmt::format("May change: label \"{}\", {} splats.", reach.label, count_text(reach.splats));
     return fmt::format("Will search for \"{}\" first.", word);
 }
 
 /// The other way; empty = there is none.
 std::string other_reach(const Context& context) {
     const auto& reach = context.model.reach;
-    if (reach_text(context).empty() || edit::planned_mode(as_planned(context)) == edit::EditMode::Add) return {};
-    if (!reach.by_label) return reach.label.empty() ? std::string() : fmt::format("Use label \"{}\"", shortened(reach.label, context.em * 7));
+    if (reach_text(context).empty() || edit::planned_mode(as_planned(context)) == edit::EditMode::Add)
+        return {};
+    if (!reach.by_label)
+        return reach.label.empty() ? std::string()
+                                   : fmt::format("Use label \"{}\"", shortened(reach.label, context.em * 7));
     return context.state.prompt.source_known ? "Search" : "";
 }
 
 /// Whether text and button have room beside each other.
 bool reach_in_line(const std::string& text, const std::string& other) {
-    return ImGui::CalcTextSize(text.c_str()).x + ImGui::GetStyle().ItemSpacing.x + button_width(other) <= ImGui::GetContentRegionAvail().x;
+    return ImGui::CalcTextSize(text.c_str()).x + ImGui::GetStyle().ItemSpacing.x + button_width(other) <=
+           ImGui::GetContentRegionAvail().x;
 }
 
 float reach_height(const Context& context) {
     const std::string text = reach_text(context), other = other_reach(context);
     if (text.empty()) return 0;
-    const float gap = ImGui::GetStyle().ItemSpacing.y, button_row = other.empty() ? 0 : ImGui::GetFrameHeight() + gap;
+    const float gap = ImGui::GetStyle().ItemSpacing.y,
+                button_row = other.empty() ? 0 : ImGui::GetFrameHeight() + gap;
     if (!other.empty() && reach_in_line(text, other)) return button_row;
-    return ImGui::CalcTextSize(text.c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y + gap + button_row;
+    return ImGui::CalcTextSize(text.c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y + gap +
+           button_row;
 }
 
 void draw_reach(Context& context) {
@@ -328,10 +360,11 @@ void draw_reach(Context& context) {
     if (other.empty()) return;
     if (in_line) ImGui::SameLine();
     const bool by_label = context.model.reach.by_label;
-    if (button(context, {.name = "prompt.reach.other",
-                         .text = other,
-                         .tooltip = by_label ? "The words say what may change: they are looked for in all views"
-                                             : "What this label marks may change, whatever the words find"}))
+    if (button(context,
+               {.name = "prompt.reach.other",
+                .text = other,
+                .tooltip = by_label ? "The words say what may change: they are looked for in all views"
+                                    : "What this label marks may change, whatever the words find"}))
         context.actions.set_reach(!by_label);
 }
 
@@ -340,11 +373,12 @@ void draw_run(Context& context) {
     const float spacing = ImGui::GetStyle().ItemSpacing.x;
     const float width = (ImGui::GetContentRegionAvail().x - spacing) * 0.5f;
     const bool stacked = width < button_width("Locate") || width < button_width("Cancel");
-    if (button(context, {.name = "prompt.locate",
-                         .text = "Locate",
-                         .why_off = why_locate,
-                         .tooltip = with_key(context, "Find the source in the scene and label it", Command::Locate),
-                         .width = stacked ? -1 : width}))
+    if (button(context,
+               {.name = "prompt.locate",
+                .text = "Locate",
+                .why_off = why_locate,
+                .tooltip = with_key(context, "Find the source in the scene and label it", Command::Locate),
+                .width = stacked ? -1 : width}))
         run_locate(context);
     if (!stacked) ImGui::SameLine();
     if (context.model.job.running) {
@@ -368,7 +402,8 @@ void draw_run(Context& context) {
 
 void back_to_defaults(Context& context) {
     edit::EditRequest fresh = context.model.request_defaults;
-    fresh.source = context.request.source, fresh.prompt = context.request.prompt, fresh.target = context.request.target;
+    fresh.source = context.request.source, fresh.prompt = context.request.prompt,
+    fresh.target = context.request.target;
     fresh.mode = context.request.mode, fresh.seed = context.request.seed;
     context.request = fresh;
     context.request_changed = true;
@@ -380,9 +415,8 @@ void nothing_before(const char*, bool&) {}
 
 /// Which settings count for nothing with the method that the edit is led by.
 UnusedField unused_by_method(const Context& context) {
-    return [by_views = edit::edits_by_views(context.request), polishes = context.request.polish_steps > 0](const char* name) {
-        return edit::why_unused(name, by_views, polishes);
-    };
+    return [by_views = edit::edits_by_views(context.request), polishes = context.request.polish_steps > 0](
+               const char* name) { return edit::why_unused(name, by_views, polishes); };
 }
 
 /// Fields of the request under the headers of their groups.
@@ -399,8 +433,8 @@ void draw_request_groups(Context& context) {
         shown = in_groups && tree_open;
     };
     const auto all = [](const char*, const char*) { return true; };
-    context.request_changed |=
-        field_rows(context, "request", context.request, all, before, context.model.request_defaults, unused_by_method(context));
+    context.request_changed |= field_rows(context, "request", context.request, all, before,
+                                          context.model.request_defaults, unused_by_method(context));
     if (tree_open) ImGui::TreePop();
 }
 
@@ -411,8 +445,7 @@ void model_rows(Context& context, const char* prefix, P& part, const P& standard
         field_rows(context, prefix, part, wanted, nothing_before, standard, unused_by_method(context));
 }
 
-template <class Wanted>
-void draw_model_groups(Context& context, bool grouped, Wanted&& wanted) {
+template <class Wanted> void draw_model_groups(Context& context, bool grouped, Wanted&& wanted) {
     auto& settings = context.model_settings;
     const auto& standard = context.model.model_settings_defaults;
     const auto group = [&](const char* title, auto&& rows) {
@@ -425,8 +458,10 @@ void draw_model_groups(Context& context, bool grouped, Wanted&& wanted) {
     };
     group("Model", [&] { model_rows(context, "model_settings", settings, standard, wanted); });
     group("Guidance", [&] { model_rows(context, "guidance", settings.guidance, standard.guidance, wanted); });
-    group("Attention", [&] { model_rows(context, "attention", settings.attention, standard.attention, wanted); });
-    group("Learning the scene", [&] { model_rows(context, "learning", settings.learning, standard.learning, wanted); });
+    group("Attention",
+          [&] { model_rows(context, "attention", settings.attention, standard.attention, wanted); });
+    group("Learning the scene",
+          [&] { model_rows(context, "learning", settings.learning, standard.learning, wanted); });
 }
 
 bool contains_text(std::string_view text, const std::string& wanted) {
@@ -460,8 +495,9 @@ void draw_advanced(Context& context) {
                          .text = "Back to the defaults",
                          .tooltip = "All settings below; words and seed stay"}))
         back_to_defaults(context);
-    dim_text(fmt::format("In brackets: no effect while the edit is led by {}.",
-                         edit::edits_by_views(context.request) ? "redrawn views" : "the model's pull (method sds)"));
+    dim_text(fmt::format(
+        "In brackets: no effect while the edit is led by {}.",
+        edit::edits_by_views(context.request) ? "redrawn views" : "the model's pull (method sds)"));
     if (!wanted.empty()) return draw_found_settings(context, wanted);
     draw_request_groups(context);
     draw_model_groups(context, true, [](const char*, const char*) { return true; });

@@ -66,7 +66,8 @@ void draw_up(Context& context) {
         coloured_text(palette::Warning,
                       "The file does not say; this is a guess. If the scene lies on its side, choose:");
     const auto at = std::find(UpNames.begin(), UpNames.end(), up_text(info.up));
-    int chosen = info.up_known && at != UpNames.end() ? static_cast<int>(at - UpNames.begin()) : -1;   // a guess can be confirmed
+    int chosen = info.up_known && at != UpNames.end() ? static_cast<int>(at - UpNames.begin())
+                                                      : -1;  // a guess can be confirmed
     if (segmented(context, "scene.up", UpNames, chosen))
         context.actions.set_up_axis(UpNames[static_cast<std::size_t>(chosen)]);
 }

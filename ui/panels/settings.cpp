@@ -72,13 +72,15 @@ struct CacheSize {
     int megabytes;
     const char* name;
 };
-constexpr std::array CacheSizes{CacheSize{0, "Off"}, CacheSize{128, "128 MB"}, CacheSize{512, "512 MB"}, CacheSize{2048, "2 GB"},
-                                CacheSize{8192, "8 GB"}};
+constexpr std::array CacheSizes{CacheSize{0, "Off"}, CacheSize{128, "128 MB"}, CacheSize{512, "512 MB"},
+                                CacheSize{2048, "2 GB"}, CacheSize{8192, "8 GB"}};
 
 void draw_cache(Context& context) {
     heading(context, "Answers kept on the disk");
-    dim_text("What the networks answered about a scene (attention maps, pictures of the class, what they learned) is not asked again, "
-             "also after a restart.");
+    dim_text(
+        "What the networks answered about a scene (attention maps, pictures of the class, what they learned) "
+        "is not asked again, "
+        "also after a restart.");
     std::array<const char*, CacheSizes.size()> names{};
     int chosen = -1;
     for (std::size_t at = 0; at < CacheSizes.size(); ++at) {
@@ -94,7 +96,9 @@ void draw_cache(Context& context) {
     row_label(context, "In use");
     plain_text(held > 0 ? bytes_text(held) : "nothing");
     ImGui::SameLine();
-    if (button(context, {.name = "settings.clear_cache", .text = "Clear", .why_off = held > 0 ? "" : "There is nothing to clear.",
+    if (button(context, {.name = "settings.clear_cache",
+                         .text = "Clear",
+                         .why_off = held > 0 ? "" : "There is nothing to clear.",
                          .tooltip = "Removes all of it; the next search asks the networks again"}))
         context.actions.clear_cache();
 }
@@ -102,7 +106,10 @@ void draw_cache(Context& context) {
 void draw_keys(Context& context) {
     heading(context, "Keys");
     draw_key_preset(context, "settings.preset");
-    if (button(context, {.name = "settings.keys", .text = "Choose keys...", .tooltip = "All keys, each to be chosen (F1)"})) context.state.help_open = true;
+    if (button(context, {.name = "settings.keys",
+                         .text = "Choose keys...",
+                         .tooltip = "All keys, each to be chosen (F1)"}))
+        context.state.help_open = true;
 }
 
 }  // namespace

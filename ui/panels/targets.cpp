@@ -1,4 +1,5 @@
-// Targets: the views that the model has redrawn, as a contact sheet: what the scene is fitted to, and what the artist says of it.
+// Targets: the views that the model has redrawn, as a contact sheet: what the scene is fitted to, and what
+// the artist says of it.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,13 +18,15 @@ using edit::TargetChoice;
 const TargetRound& shown_round(Context& context) {
     const auto& rounds = context.model.target_rounds;
     auto& chosen = context.state.targets.chosen;
-    const auto found = std::find_if(rounds.begin(), rounds.end(), [&](const TargetRound& round) { return round.round == chosen; });
+    const auto found = std::find_if(rounds.begin(), rounds.end(),
+                                    [&](const TargetRound& round) { return round.round == chosen; });
     if (found == rounds.end()) chosen = -1;
     return found == rounds.end() ? rounds.back() : *found;
 }
 
 std::string why_not_change(const Context& context, const TargetRound& round) {
-    if (!context.model.edit_running) return "The edit is over: branch from a snapshot to go on with other views";
+    if (!context.model.edit_running)
+        return "The edit is over: branch from a snapshot to go on with other views";
     if (round.round != context.model.target_rounds.back().round) return "This round is over";
     return {};
 }
@@ -51,8 +54,8 @@ void draw_pair(Context& context, const TargetView& target, const std::string& na
     note(context, name);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     if (target.ordered || target.dropped)
-        ImGui::GetWindowDrawList()->AddRect(low, high, target.ordered ? palette::Accent : palette::Warning, context.em * 0.2f, 0,
-                                            std::max(1.0f, context.em * 0.1f));
+        ImGui::GetWindowDrawList()->AddRect(low, high, target.ordered ? palette::Accent : palette::Warning,
+                                            context.em * 0.2f, 0, std::max(1.0f, context.em * 0.1f));
     if (!ImGui::IsItemHovered() || target.after == nullptr || target.before == nullptr) return;
     if (ImGui::IsMouseDoubleClicked(0)) return context.actions.set_camera(target.camera);
     if (ImGui::IsAnyMouseDown()) return;
@@ -74,16 +77,27 @@ std::string state_text(const TargetView& target) {
 }
 
 /// What can be said about a view; off where `why` says so.
-void draw_choices(Context& context, const TargetRound& round, const TargetView& target, const std::string& name, const std::string& why) {
-    const auto order = [&](TargetChoice choice) { context.actions.order_target({round.round, target.view, choice}); };
-    const auto used = std::count_if(round.targets.begin(), round.targets.end(), [](const TargetView& other) { return !other.dropped; });
-    const std::string why_not_now = !why.empty() ? why : target.ordered ? "What was said before is being done" : "";
+void draw_choices(Context& context, const TargetRound& round, const TargetView& target,
+                  const std::string& name, const std::string& why) {
+    const auto order = [&](TargetChoice choice) {
+        context.actions.order_target({round.round, target.view, choice});
+    };
+    const auto used = std::count_if(round.targets.begin(), round.targets.end(),
+                                    [](const TargetView& other) { return !other.dropped; });
+    const std::string why_not_now = !why.empty()     ? why
+                                    : target.ordered ? "What was said before is being done"
+                                                     : "";
     if (target.dropped) {
-        if (button(context, {.name = name + ".accept", .text = "Accept", .why_off = why_not_now, .tooltip = "The fit uses it again"}))
+        if (button(context, {.name = name + ".accept",
+                             .text = "Accept",
+                             .why_off = why_not_now,
+                             .tooltip = "The fit uses it again"}))
             order(TargetChoice::Accept);
     } else if (button(context, {.name = name + ".drop",
                                 .text = "Drop",
-                                .why_off = why_not_now.empty() && used <= 1 ? std::string_view("The fit needs one view at least") : why_not_now,
+                                .why_off = why_not_now.empty() && used <= 1
+                                               ? std::string_view("The fit needs one view at least")
+                                               : why_not_now,
                                 .tooltip = "The fit does not use it any more"})) {
         order(TargetChoice::Drop);
     }
@@ -95,7 +109,8 @@ void draw_choices(Context& context, const TargetRound& round, const TargetView& 
         order(TargetChoice::Redo);
 }
 
-void draw_target(Context& context, const TargetRound& round, std::size_t index, float side, const std::string& why) {
+void draw_target(Context& context, const TargetRound& round, std::size_t index, float side,
+                 const std::string& why) {
     const auto& target = round.targets[index];
     const std::string name = fmt::format("targets.{}", index);
     ImGui::PushID(static_cast<int>(index));
@@ -110,11 +125,14 @@ void draw_target(Context& context, const TargetRound& round, std::size_t index, 
 
 /// As many pairs beside each other as fit.
 void draw_sheet(Context& context, const TargetRound& round) {
-    const float gap = context.em * 0.6f, least = std::max(context.em * 4.2f, button_width("Accept") * 0.5f + button_width("Redo") * 0.5f + context.em * 0.5f);
+    const float gap = context.em * 0.6f,
+                least = std::max(context.em * 4.2f, button_width("Accept") * 0.5f +
+                                                        button_width("Redo") * 0.5f + context.em * 0.5f);
     if (ImGui::BeginChild("sheet", {0, 0}, false, ImGuiWindowFlags_NavFlattened)) {
         const float width = ImGui::GetContentRegionAvail().x;
         const int columns = std::max(1, static_cast<int>((width + gap) / (2 * least + gap)));
-        const float side = std::floor(std::min(context.em * 8, ((width + gap) / static_cast<float>(columns) - gap) * 0.5f - 1));
+        const float side = std::floor(
+            std::min(context.em * 8, ((width + gap) / static_cast<float>(columns) - gap) * 0.5f - 1));
         const std::string why = why_not_change(context, round);
         for (std::size_t index = 0; index < round.targets.size(); ++index) {
             if (static_cast<int>(index) % columns != 0) ImGui::SameLine(0, gap);
@@ -143,7 +161,8 @@ void draw_wait(Context& context) {
     if (!context.model.targets_wait) return;
     begin_notice(context, "targets.wait", palette::Accent);
     wrapped_text("The edit waits for you: drop what is wrong, or have it redrawn.");
-    if (button(context, {.name = "targets.fit", .text = "Fit the scene to these", .look = Look::Primary})) context.actions.fit_to_targets();
+    if (button(context, {.name = "targets.fit", .text = "Fit the scene to these", .look = Look::Primary}))
+        context.actions.fit_to_targets();
     end_notice();
 }
 
@@ -157,11 +176,14 @@ void draw_warnings(Context& context) {
 }
 
 std::string summary(const TargetRound& round) {
-    const auto dropped = std::count_if(round.targets.begin(), round.targets.end(), [](const TargetView& target) { return target.dropped; });
-    std::string text = fmt::format("Round {} of {}: {} views redrawn", round.round + 1, round.rounds, round.targets.size());
+    const auto dropped = std::count_if(round.targets.begin(), round.targets.end(),
+                                       [](const TargetView& target) { return target.dropped; });
+    std::string text =
+        fmt::format("Round {} of {}: {} views redrawn", round.round + 1, round.rounds, round.targets.size());
     if (dropped > 0) text += fmt::format(", {} dropped", dropped);
     text += ". Left the scene, right what it is fitted to.";
-    if (!round.sentence.empty()) text += fmt::format(" Your sentence names no colour: drawn as \"{}\".", round.sentence);
+    if (!round.sentence.empty())
+        text += fmt::format(" Your sentence names no colour: drawn as \"{}\".", round.sentence);
     return text;
 }
 
@@ -169,16 +191,21 @@ std::string summary(const TargetRound& round) {
 
 void draw_targets_panel(Context& context) {
     const auto review = [&] {
-        context.model_settings_changed |= checkbox(context, "targets.review", "Wait for me before each fit", context.model_settings.review,
-                                                   "The edit waits when views were redrawn, until you have looked at them.");
+        context.model_settings_changed |=
+            checkbox(context, "targets.review", "Wait for me before each fit", context.model_settings.review,
+                     "The edit waits when views were redrawn, until you have looked at them.");
     };
     if (context.model.target_rounds.empty()) {
-        dim_text("An edit with method views or auto redraws views here: look at them, drop those that are wrong, have others redrawn.");
+        dim_text(
+            "An edit with method views or auto redraws views here: look at them, drop those that are wrong, "
+            "have others redrawn.");
         return review();
     }
     const ImVec2 space = ImGui::GetContentRegionAvail();
-    const bool beside = space.x > context.em * 36;   // else the sheet is below
-    if (beside) ImGui::BeginChild("about", {std::clamp(space.x * 0.27f, context.em * 13, context.em * 20), space.y}, false, ImGuiWindowFlags_NavFlattened);
+    const bool beside = space.x > context.em * 36;  // else the sheet is below
+    if (beside)
+        ImGui::BeginChild("about", {std::clamp(space.x * 0.27f, context.em * 13, context.em * 20), space.y},
+                          false, ImGuiWindowFlags_NavFlattened);
     draw_wait(context);
     draw_rounds(context);
     dim_text(summary(shown_round(context)));

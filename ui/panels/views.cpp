@@ -57,10 +57,13 @@ void draw_views_panel(Context& context) {
         context.view_changed = true;
     const auto& views = context.document().views;
     if (views.empty())
-        return dim_text(fmt::format("The scene came without cameras. An edit looks from {} around it.", views_text(context)));
+        return dim_text(fmt::format("The scene came without cameras. An edit looks from {} around it.",
+                                    views_text(context)));
     if (views.size() < LeastViewpoints)
-        dim_text(fmt::format("Bookmarks so far: an edit looks from {} around the scene. From {} stored views on, it looks from those instead.",
-                             views_text(context), LeastViewpoints));
+        dim_text(
+            fmt::format("Bookmarks so far: an edit looks from {} around the scene. From {} stored views on, "
+                        "it looks from those instead.",
+                        views_text(context), LeastViewpoints));
     else if (static_cast<int>(views.size()) > context.request.views)
         dim_text(fmt::format("An edit looks from {}, spread over all of them.", views_text(context)));
     ImGuiListClipper clipper;

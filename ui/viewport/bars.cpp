@@ -1,4 +1,5 @@
-// What floats at the picture's foot and top: the result that waits, and what is hidden, looked through or can be had back.
+// What floats at the picture's foot and top: the result that waits, and what is hidden, looked through or can
+// be had back.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,9 +13,10 @@
 namespace gse::ui {
 namespace {
 
-constexpr float PictureEm = 7.5f;   // width of a thumbnail
+constexpr float PictureEm = 7.5f;  // width of a thumbnail
 
-/// A small window over the picture that sizes itself; `below`: its lower edge is at that place, not its upper one.
+/// A small window over the picture that sizes itself; `below`: its lower edge is at that place, not its upper
+/// one.
 void begin_floating(const char* name, ImVec2 at, bool below = false) {
     ImGui::SetNextWindowPos(at, ImGuiCond_Always, {0.5f, below ? 1.0f : 0.0f});
     ImGui::SetNextWindowBgAlpha(0.96f);
@@ -38,13 +40,14 @@ void end_foot(Context& context) {
     ImGui::End();
 }
 
-constexpr float ResultEm = 3.4f;   // width of one of several results
+constexpr float ResultEm = 3.4f;  // width of one of several results
 
 /// All that can be applied, small, above its bar: a click shows one.
 void draw_results(Context& context) {
     const auto& results = context.model.results;
     const auto& state = context.state.viewport;
-    begin_floating("results", {(state.low.x + state.high.x) * 0.5f, state.foot_low.y - context.em * 0.4f}, true);
+    begin_floating("results", {(state.low.x + state.high.x) * 0.5f, state.foot_low.y - context.em * 0.4f},
+                   true);
     const float room = (state.high.x - state.low.x) / static_cast<float>(results.size()) - context.em;
     const float side = std::clamp(room, context.em, context.em * ResultEm);
     for (std::size_t i = 0; i < results.size(); ++i) {
@@ -57,10 +60,12 @@ void draw_results(Context& context) {
         ImDrawList* list = ImGui::GetWindowDrawList();
         list->AddRectFilled(low, high, palette::Sunken, context.em * 0.2f);
         if (results[i].thumbnail != nullptr)
-            list->AddImageRounded(imgui_texture(context.textures.texture(results[i].thumbnail)), low, high, {0, 0}, {1, 1}, IM_COL32_WHITE, context.em * 0.2f);
+            list->AddImageRounded(imgui_texture(context.textures.texture(results[i].thumbnail)), low, high,
+                                  {0, 0}, {1, 1}, IM_COL32_WHITE, context.em * 0.2f);
         const bool shown = i == context.model.shown_result;
         if (shown || ImGui::IsItemHovered() || ImGui::IsItemFocused())
-            list->AddRect(low, high, shown ? palette::Accent : palette::TextDim, context.em * 0.2f, 0, std::max(2.0f, context.em * 0.14f));
+            list->AddRect(low, high, shown ? palette::Accent : palette::TextDim, context.em * 0.2f, 0,
+                          std::max(2.0f, context.em * 0.14f));
         ImGui::PopID();
     }
     end_foot(context);
@@ -69,15 +74,20 @@ void draw_results(Context& context) {
 /// At the foot: what is worn is at the top.
 void draw_result_bar(Context& context) {
     const auto& state = context.state.viewport;
-    begin_floating("result bar", {(state.low.x + state.high.x) * 0.5f, state.high.y - context.em * 0.4f}, true);
+    begin_floating("result bar", {(state.low.x + state.high.x) * 0.5f, state.high.y - context.em * 0.4f},
+                   true);
     const auto& model = context.model;
     const std::size_t changed = model.result_changed_outside;
     const auto time = fmt::format("Edit done in {}", duration_text(model.result_seconds));
-    const auto proof = fmt::format("{} splat{} outside the label changed", count_text(changed), changed == 1 ? "" : "s");
+    const auto proof =
+        fmt::format("{} splat{} outside the label changed", count_text(changed), changed == 1 ? "" : "s");
     const bool wipes = context.model.comparison == Comparison::Wipe;
-    const float words = ImGui::CalcTextSize(time.c_str()).x + ImGui::CalcTextSize(proof.c_str()).x + context.em * 3;
-    const float buttons = button_width("Stop comparing") + button_width("Apply") + button_width("Discard") + button_width("Another") + context.em * 2.5f;
-    const bool one_line = words + buttons < context.state.viewport.high.x - context.state.viewport.low.x - context.em * 2;
+    const float words =
+        ImGui::CalcTextSize(time.c_str()).x + ImGui::CalcTextSize(proof.c_str()).x + context.em * 3;
+    const float buttons = button_width("Stop comparing") + button_width("Apply") + button_width("Discard") +
+                          button_width("Another") + context.em * 2.5f;
+    const bool one_line =
+        words + buttons < context.state.viewport.high.x - context.state.viewport.low.x - context.em * 2;
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(time.c_str());
     note(context, "result.time");
@@ -93,7 +103,9 @@ void draw_result_bar(Context& context) {
                          .tooltip = with_key(context, "Wipe between before and after", Command::Wipe)}))
         toggle_wipe(context);
     ImGui::SameLine();
-    if (button(context, {.name = "result.another", .text = "Another", .tooltip = "The same once more with another seed; this result is kept beside it"}))
+    if (button(context, {.name = "result.another",
+                         .text = "Another",
+                         .tooltip = "The same once more with another seed; this result is kept beside it"}))
         context.actions.another_result();
     ImGui::SameLine();
     if (button(context, {.name = "result.apply",
@@ -115,11 +127,16 @@ void draw_hidden_bar(Context& context, ImVec2 at) {
     ImGui::AlignTextToFramePadding();
     bullet_dot(palette::Warning);
     const std::size_t hidden = context.model.hidden;
-    ImGui::TextUnformatted(fmt::format("{} splat{} hidden", count_text(hidden), hidden == 1 ? " is" : "s are").c_str());
+    ImGui::TextUnformatted(
+        fmt::format("{} splat{} hidden", count_text(hidden), hidden == 1 ? " is" : "s are").c_str());
     note(context, "hidden.note");
-    tooltip("They are still part of the scene: edits, saving and exports go on with them. Export has a choice to leave them out.");
+    tooltip(
+        "They are still part of the scene: edits, saving and exports go on with them. Export has a choice to "
+        "leave them out.");
     ImGui::SameLine();
-    if (button(context, {.name = "hidden.show", .text = "Show all", .tooltip = keys_of(context, Command::ShowHidden)})) context.actions.show_hidden();
+    if (button(context,
+               {.name = "hidden.show", .text = "Show all", .tooltip = keys_of(context, Command::ShowHidden)}))
+        context.actions.show_hidden();
     end_floating(context);
 }
 
@@ -134,21 +151,25 @@ void draw_evidence_bar(Context& context, ImVec2 at, const AttentionView& view) {
     constexpr std::array<const char*, 2> Kinds{"Attention", "Mask"};
     int kind = state.over == Over::Mask ? 1 : 0;
     ImGui::BeginGroup();
-    if (segmented(context, "evidence.kind", Kinds, kind)) state.over = kind == 1 ? Over::Mask : Over::Attention;
+    if (segmented(context, "evidence.kind", Kinds, kind))
+        state.over = kind == 1 ? Over::Mask : Over::Attention;
     ImGui::EndGroup();
     tooltip(with_key(context, "What of this view lies over the picture", Command::Evidence));
     ImGui::SameLine();
     draw_vote(context, "evidence.votes", state.chosen);
     ImGui::SameLine();
-    if (icon_button(context, {.name = "evidence.close", .icon = Icon::Close, .tooltip = "Takes it off the picture (Esc)", .size_em = 1.6f}))
+    if (icon_button(context, {.name = "evidence.close",
+                              .icon = Icon::Close,
+                              .tooltip = "Takes it off the picture (Esc)",
+                              .size_em = 1.6f}))
         state.over = Over::Nothing;
     end_floating(context);
 }
 
 void draw_thumbnail(Context& context, const Image& picture, TextureId texture) {
     const float width = context.em * PictureEm;
-    const float height = std::min(width, width * static_cast<float>(picture.height) /
-                                             static_cast<float>(std::max(1, picture.width)));
+    const float height = std::min(
+        width, width * static_cast<float>(picture.height) / static_cast<float>(std::max(1, picture.width)));
     ImGui::Image(imgui_texture(texture), {width, height});
 }
 
@@ -172,13 +193,15 @@ void draw_recovery(Context& context, const char* prefix, std::size_t index, bool
     if (button(context, {.name = named("recover"), .text = "Recover", .look = Look::Primary}))
         recover(context, file);
     flow(button_width("Discard"));
-    if (button(context, {.name = named("discard"), .text = "Discard", .tooltip = "The unsaved work is deleted"}))
+    if (button(context,
+               {.name = named("discard"), .text = "Discard", .tooltip = "The unsaved work is deleted"}))
         discard_recovery(context, found);
     if (can_wait) {
         flow(button_width("Later"));
-        if (button(context, {.name = named("later"),
-                             .text = "Later",
-                             .tooltip = "It is offered again when the scene is opened or the program starts"}))
+        if (button(context,
+                   {.name = named("later"),
+                    .text = "Later",
+                    .tooltip = "It is offered again when the scene is opened or the program starts"}))
             context.actions.postpone_recovery(file);
     }
     ImGui::EndGroup();
@@ -192,10 +215,11 @@ void draw_bars(Context& context) {
     if (!context.scene_open()) return;
     if (context.model.result_waiting) draw_result_bar(context);
     if (context.model.hidden > 0) draw_hidden_bar(context, {middle, std::max(top, state.bars_bottom)});
-    if (const auto* view = view_looked_through(context)) draw_evidence_bar(context, {middle, std::max(top, state.bars_bottom)}, *view);
+    if (const auto* view = view_looked_through(context))
+        draw_evidence_bar(context, {middle, std::max(top, state.bars_bottom)}, *view);
     const auto& found = context.model.recoverable;
     const auto offer = std::find_if(found.begin(), found.end(), [](const auto& one) { return one.offered; });
-    if (offer == found.end()) return;   // one at a time: the next comes when this one is answered
+    if (offer == found.end()) return;  // one at a time: the next comes when this one is answered
     const float width = std::min(context.em * 30, state.high.x - state.low.x - context.em * 2);
     ImGui::SetNextWindowContentSize({width, 0});
     begin_floating("recovery", {middle, std::max(top, state.bars_bottom)});

@@ -71,7 +71,7 @@ void CameraControl::adopt(const Camera& camera) {
     at_home_ = same_view(camera, home);
     if (at_home_) target_ = home_pose();
     arrive();
-    moved_ = at_home_;   // the picture may have another shape than the camera that came
+    moved_ = at_home_;  // the picture may have another shape than the camera that came
 }
 
 void CameraControl::rotate(const Mat3& world_rotation) {
@@ -135,7 +135,8 @@ void CameraControl::fly(const Vec3& direction, double seconds, double speed) {
 void CameraControl::frame(const Bounds& bounds) {
     CameraPose next = target_;
     next.pivot = bounds.centre();
-    next.distance = std::max(fitting_distance(bounds, next.rotation, fov_x_, width_, height_), home_.radius * NearestShare);
+    next.distance = std::max(fitting_distance(bounds, next.rotation, fov_x_, width_, height_),
+                             home_.radius * NearestShare);
     go(next);
 }
 
@@ -176,7 +177,8 @@ bool CameraControl::update(double seconds) {
     const double share = 1 - std::exp(-GlideRate * std::clamp(seconds, 0.0, LongestStep));
     now_.pivot = now_.pivot + (target_.pivot - now_.pivot) * share;
     now_.distance += (target_.distance - now_.distance) * share;
-    now_.rotation = rotation_matrix(glm::slerp(quaternion(now_.rotation), quaternion(target_.rotation), share));
+    now_.rotation =
+        rotation_matrix(glm::slerp(quaternion(now_.rotation), quaternion(target_.rotation), share));
     const double tolerance = ArrivedShare * target_.distance;
     if (length(now_.pivot - target_.pivot) < tolerance &&
         std::abs(now_.distance - target_.distance) < tolerance &&

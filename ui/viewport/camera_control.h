@@ -20,8 +20,8 @@ struct CameraPose {
 /// Pixels are those of the picture given by set_size(). Drags act at once; wheel, frame and home glide.
 class CameraControl {
 public:
-    /// The fitted orbit and what is to be seen from home; also the world's up, and the size of things. Does not move the
-    /// camera.
+    /// The fitted orbit and what is to be seen from home; also the world's up, and the size of things. Does
+    /// not move the camera.
     void set_home(const OrbitParameters& orbit, const Bounds& bounds);
     /// A camera that has not moved since it was sent home sees all of the scene at the new size, too.
     void set_size(int width, int height);

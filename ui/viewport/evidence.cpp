@@ -12,8 +12,8 @@
 namespace gse::ui {
 namespace {
 
-constexpr double SameTurn = 1e-4;    // of an axis, 0.006 degrees: a camera that is sent glides no nearer
-constexpr double SamePlace = 1e-4;   // of the home radius
+constexpr double SameTurn = 1e-4;   // of an axis, 0.006 degrees: a camera that is sent glides no nearer
+constexpr double SamePlace = 1e-4;  // of the home radius
 
 /// Whether the picture is seen from there, whatever its size.
 bool stands_at(const Context& context, const Camera& camera) {
@@ -48,13 +48,16 @@ Image mask_layer(const Mask& mask) {
 }
 
 void make_layer(AttentionState& state, const AttentionView& view) {
-    const std::shared_ptr<const void> of = state.over == Over::Mask ? std::shared_ptr<const void>(view.mask) : view.map;
+    const std::shared_ptr<const void> of =
+        state.over == Over::Mask ? std::shared_ptr<const void>(view.mask) : view.map;
     if (state.layer_of == of) return;
     state.layer_of = of;
     state.layer = nullptr;
     if (of == nullptr) return;
     const bool made = state.over != Over::Mask || !view.mask->data.empty();
-    if (made) state.layer = std::make_shared<const Image>(state.over == Over::Mask ? mask_layer(*view.mask) : attention_layer(*view.map));
+    if (made)
+        state.layer = std::make_shared<const Image>(state.over == Over::Mask ? mask_layer(*view.mask)
+                                                                             : attention_layer(*view.map));
 }
 
 }  // namespace
@@ -62,7 +65,8 @@ void make_layer(AttentionState& state, const AttentionView& view) {
 const AttentionView* view_looked_through(const Context& context) {
     const auto& state = context.state.attention;
     const auto& views = context.model.attention;
-    if (state.over == Over::Nothing || context.model.comparison != Comparison::None || !context.scene_open()) return nullptr;
+    if (state.over == Over::Nothing || context.model.comparison != Comparison::None || !context.scene_open())
+        return nullptr;
     if (state.chosen < 0 || state.chosen >= static_cast<int>(views.size())) return nullptr;
     const auto& view = views[static_cast<std::size_t>(state.chosen)];
     return stands_at(context, view.camera) ? &view : nullptr;
@@ -76,7 +80,7 @@ void look_through_attention(Context& context, int index) {
     if (state.over == Over::Nothing) state.over = Over::Attention;
     const Camera& camera = views[static_cast<std::size_t>(index)].camera;
     const Camera& shown = context.model.camera;
-    if (camera.width <= 0 || shown.width <= 0) return;   // it has not come yet
+    if (camera.width <= 0 || shown.width <= 0) return;  // it has not come yet
     context.actions.set_camera(fitted(camera, shown.width, shown.height));
 }
 
@@ -90,7 +94,8 @@ void draw_vote(Context& context, const char* name, int index) {
     if (checkbox(context, name, "Votes", votes)) toggle_vote(context, index);
     ImGui::EndDisabled();
     tooltip(!why.empty() ? why
-                         : "Whether this view has a say in what is labelled. Untick it where its mask is wrong (Ctrl + click on its thumbnail); "
+                         : "Whether this view has a say in what is labelled. Untick it where its mask is "
+                           "wrong (Ctrl + click on its thumbnail); "
                            "undo brings it back.");
 }
 
@@ -101,10 +106,12 @@ void draw_evidence(Context& context, ImDrawList* list) {
     make_layer(state, *view);
     const Camera &from = view->camera, &shown = context.model.camera;
     const auto at = [&](double x, double y) {
-        return to_screen(context, (x - from.cx) / from.fx * shown.fx + shown.cx, (y - from.cy) / from.fy * shown.fy + shown.cy);
+        return to_screen(context, (x - from.cx) / from.fx * shown.fx + shown.cx,
+                         (y - from.cy) / from.fy * shown.fy + shown.cy);
     };
     const ImVec2 low = at(0, 0), high = at(from.width, from.height);
-    if (state.layer != nullptr) list->AddImage(imgui_texture(context.textures.texture(state.layer)), low, high);
+    if (state.layer != nullptr)
+        list->AddImage(imgui_texture(context.textures.texture(state.layer)), low, high);
     list->AddRect(low, high, with_alpha(palette::Text, 0.35f));
     note_rect(context, "viewport.evidence", low, high);
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr float ClickTravelEm = 0.3f;  // a press that moves less is a click
 constexpr float AxisBallEm = 0.55f;
 constexpr double FlyFast = 4, FlySlow = 0.2;
-constexpr float ZoomDragEm = 2;   // of a drag that zooms, per notch of a wheel
+constexpr float ZoomDragEm = 2;  // of a drag that zooms, per notch of a wheel
 
 struct Pixels {
     int width, height;
@@ -27,15 +27,19 @@ Pixels framebuffer_size(const ViewportState& state) {
             std::max(1, static_cast<int>(std::lround((state.high.y - state.low.y) * scale.y)))};
 }
 
-/// The stored view that this camera looks through, -1 = none. A view that is looked through is fitted into the picture.
+/// The stored view that this camera looks through, -1 = none. A view that is looked through is fitted into
+/// the picture.
 int view_of(const Context& context, const Camera& shown) {
     const auto& views = context.document().views;
     const auto sees = [&](std::size_t index) {
         const Camera& stored = views[index].camera;
-        return stored.width > 0 && stored.height > 0 && same_view(fitted(stored, shown.width, shown.height), shown);
+        return stored.width > 0 && stored.height > 0 &&
+               same_view(fitted(stored, shown.width, shown.height), shown);
     };
-    const int chosen = context.state.viewport.selected_view;   // of several at one place, it is the one that was asked for
-    if (chosen >= 0 && chosen < static_cast<int>(views.size()) && sees(static_cast<std::size_t>(chosen))) return chosen;
+    const int chosen =
+        context.state.viewport.selected_view;  // of several at one place, it is the one that was asked for
+    if (chosen >= 0 && chosen < static_cast<int>(views.size()) && sees(static_cast<std::size_t>(chosen)))
+        return chosen;
     for (std::size_t index = 0; index < views.size(); ++index)
         if (sees(index)) return static_cast<int>(index);
     return -1;
@@ -111,7 +115,8 @@ void drag(Context& context) {
     if (delta.x == 0 && delta.y == 0) return;
     const bool alt = io.KeyAlt && context.state.keymap.alt_navigates();
     const bool zooms = alt && state.drag_button == ImGuiMouseButton_Right;
-    const bool pans = state.drag_button == ImGuiMouseButton_Right || (state.drag_button == ImGuiMouseButton_Middle && (io.KeyShift || alt));
+    const bool pans = state.drag_button == ImGuiMouseButton_Right ||
+                      (state.drag_button == ImGuiMouseButton_Middle && (io.KeyShift || alt));
     if (zooms) {
         const ImVec2 middle((state.high.x - state.low.x) / 2, (state.high.y - state.low.y) / 2);
         state.camera.zoom((delta.x - delta.y) / (context.em * ZoomDragEm), middle.x, middle.y, 0);
@@ -194,10 +199,8 @@ void navigate(Context& context, bool hovered) {
     const auto& io = ImGui::GetIO();
     const bool left_is_tool = use_tool(context, hovered);
     if (state.drag_button >= 0) {
-        if (ImGui::IsMouseDown(state.drag_button))
-            drag(context);
-        else
-            release(context, io.MousePos);
+        if (ImGui::IsMouseDown(state.drag_button)) drag(context);
+        else release(context, io.MousePos);
     }
     if (!hovered) return;
     if (io.MouseWheel != 0) turn_wheel(context, io.MouseWheel);

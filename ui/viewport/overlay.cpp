@@ -131,8 +131,10 @@ void shaded_text(Context& context, ImDrawList* list, ImVec2 at, const std::strin
 /// Splats of what the viewport shows.
 std::size_t shown_splats(const Context& context) {
     const auto& model = context.model;
-    const bool listed = model.shown_snapshot >= 0 && model.shown_snapshot < static_cast<int>(model.snapshots.size());
-    if (listed && (model.result_waiting || model.edit_running)) return model.snapshots[static_cast<std::size_t>(model.shown_snapshot)].splats;
+    const bool listed =
+        model.shown_snapshot >= 0 && model.shown_snapshot < static_cast<int>(model.snapshots.size());
+    if (listed && (model.result_waiting || model.edit_running))
+        return model.snapshots[static_cast<std::size_t>(model.shown_snapshot)].splats;
     if (model.result_waiting) return model.result_splats;
     if (model.edit_running && !model.snapshots.empty()) return model.snapshots.back().splats;
     return context.document().current.size();
@@ -145,7 +147,8 @@ void draw_hud(Context& context, ImDrawList* list) {
     const bool moving = ImGui::GetTime() - state.moved_at < RateSeconds;
     const std::array<std::string, 5> parts{
         fmt::format("{} splats", count_text(shown_splats(context))),
-        model.labelled > 0 && !model.result_waiting ? fmt::format("{} labelled", count_text(model.labelled)) : std::string(),
+        model.labelled > 0 && !model.result_waiting ? fmt::format("{} labelled", count_text(model.labelled))
+                                                    : std::string(),
         fmt::format("{:.1f} ms", model.render_ms),
         moving ? fmt::format("{:.0f} fps", model.frames_per_second) : std::string(), model.renderer};
     const float room = state.high.x - state.low.x - context.em * 2;
@@ -169,10 +172,11 @@ void draw_wipe(Context& context, ImDrawList* list) {
         list->AddTriangleFilled({x + side * r * 0.65f, middle}, {x + side * r * 0.2f, middle - r * 0.35f},
                                 {x + side * r * 0.2f, middle + r * 0.35f}, palette::Text);
     const float y = std::min(state.high.y, state.foot_low.y) - context.em * 2.2f;
-    const bool chosen = context.model.compared_revision != 0;   // another step than usual
+    const bool chosen = context.model.compared_revision != 0;  // another step than usual
     const std::string left = chosen ? shortened(context.model.compared_name, context.em * 14) : "before";
     const float before = ImGui::CalcTextSize(left.c_str()).x + context.em * 1.2f;
-    shaded_text(context, list, {x - before - context.em * 0.3f, y}, left, chosen ? palette::Warning : palette::Text);
+    shaded_text(context, list, {x - before - context.em * 0.3f, y}, left,
+                chosen ? palette::Warning : palette::Text);
     shaded_text(context, list, {x + context.em * 0.6f, y}, chosen ? "now" : "after");
     note_rect(context, "viewport.wipe", {x - r, middle - r}, {x + r, middle + r});
 }
@@ -183,7 +187,8 @@ void draw_hint(Context& context, ImDrawList* list) {
     if (state.tool == Tool::Orbit) return;
     const float below = context.view.show_hud ? 2.3f : 0.5f;
     const ImVec2 corner{state.low.x + context.em * 0.5f, state.low.y + context.em * below};
-    if (state.tool == Tool::PickColour) return shaded_text(context, list, corner, "Click a colour   Esc leaves");
+    if (state.tool == Tool::PickColour)
+        return shaded_text(context, list, corner, "Click a colour   Esc leaves");
     std::string text = state.tool == Tool::Brush       ? "Brush: drag to paint"
                        : state.tool == Tool::Rectangle ? "Rectangle: drag a box"
                        : state.tool == Tool::CutOut    ? "Cut out: drag a box around a thing"
@@ -191,9 +196,9 @@ void draw_hint(Context& context, ImDrawList* list) {
     const float room = state.high.x - state.low.x - context.em * 2;
     for (const char* part :
          {"Shift add", "Ctrl remove", "Alt intersect",
-          state.tool == Tool::CutOut     ? "labels all its sides; you see its front"
-          : context.view.front_only ? "N: front only"
-                                    : "N: all the way through",
+          state.tool == Tool::CutOut ? "labels all its sides; you see its front"
+          : context.view.front_only  ? "N: front only"
+                                     : "N: all the way through",
           state.tool == Tool::Brush ? "[ ] size" : "", "middle drag orbits", "Esc leaves"}) {
         const std::string longer = fmt::format("{}   {}", text, part);
         if (*part != 0 && ImGui::CalcTextSize(longer.c_str()).x < room) text = longer;
@@ -244,7 +249,9 @@ void draw_overlays(Context& context, ImDrawList* list) {
     }
     if (context.model.comparison == Comparison::Wipe) draw_wipe(context, list);
     if (context.model.comparison == Comparison::Original) {
-        const std::string text = context.model.compared_revision != 0 ? shortened(context.model.compared_name, context.em * 14) : "original";
+        const std::string text = context.model.compared_revision != 0
+                                     ? shortened(context.model.compared_name, context.em * 14)
+                                     : "original";
         shaded_text(
             context, list,
             {(state.low.x + state.high.x) * 0.5f - context.em * 2.2f, state.low.y + context.em * 0.5f}, text,

@@ -43,7 +43,8 @@ void draw_recent(Context& context) {
         const auto& recent = context.model.recent[index];
         const auto path = path_of(recent);
         ImGui::PushID(static_cast<int>(index));
-        if (ImGui::Selectable(std::string(Shown(utf8_of(path.filename())).text()).c_str())) open_path(context, recent);
+        if (ImGui::Selectable(std::string(Shown(utf8_of(path.filename())).text()).c_str()))
+            open_path(context, recent);
         note(context, fmt::format("start.recent.{}", index));
         tooltip(recent);
         ImGui::SameLine(context.em * 13);
@@ -60,9 +61,10 @@ void draw_examples(Context& context) {
     heading(context, "Try it on the sample");
     std::size_t index = 0;
     for (const auto& example : Examples) {
-        if (button(context, {.name = fmt::format("start.try.{}", index++),
-                             .text = fmt::format("\"{}\"", example.sentence),
-                             .tooltip = "Opens the sample with this sentence; then press Locate, and Edit"})) {
+        if (button(context,
+                   {.name = fmt::format("start.try.{}", index++),
+                    .text = fmt::format("\"{}\"", example.sentence),
+                    .tooltip = "Opens the sample with this sentence; then press Locate, and Edit"})) {
             context.request.source = SampleSource;
             context.request.prompt = example.sentence;
             context.request.target.clear();
@@ -106,8 +108,10 @@ void draw_start_page(Context& context) {
         "PLY, compressed PLY, SPZ, SOG or splat files; a folder with a scene and its cameras; a project "
         "(.gsep); or a screenshot that this program saved.");
     ImGui::Spacing();
-    if (button(context,
-               {.name = "start.open", .text = "Open...", .tooltip = keys_of(context, Command::Open), .look = Look::Primary}))
+    if (button(context, {.name = "start.open",
+                         .text = "Open...",
+                         .tooltip = keys_of(context, Command::Open),
+                         .look = Look::Primary}))
         ask_open(context);
     flow(button_width("Open sample"));
     if (button(context, {.name = "start.sample",

@@ -1,4 +1,5 @@
-// Short messages at the lower right of the picture, placed so that nothing that can be pressed lies below them.
+// Short messages at the lower right of the picture, placed so that nothing that can be pressed lies below
+// them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace gse::ui {
 namespace {
 
 constexpr float WidestEm = 26, NarrowestEm = 9;
-constexpr float AxesCornerEm = 6;   // the corner of the axes, which turn the view when they are pressed
+constexpr float AxesCornerEm = 6;  // the corner of the axes, which turn the view when they are pressed
 
 /// Where toasts may lie.
 struct Space {
@@ -29,7 +30,7 @@ Space space_of(const Context& context, float top) {
         if (beside_axes >= NarrowestEm * 2 * em) space.left = space.right - beside_axes;
         else space.bottom = std::min(space.bottom, state.foot_low.y) - AxesCornerEm * em;
     }
-    if (context.model.comparison == Comparison::Wipe) {   // its handle stays free
+    if (context.model.comparison == Comparison::Wipe) {  // its handle stays free
         const float handle = state.low.x + context.view.wipe * (state.high.x - state.low.x);
         if (handle > space.right - WidestEm * em - em)
             space.top = std::max(space.top, (state.low.y + state.high.y) * 0.5f + em);
@@ -41,7 +42,7 @@ Space space_of(const Context& context, float top) {
 struct ToastPlan {
     std::string text;
     ImVec2 text_size;
-    float buttons = 0;   // width of them
+    float buttons = 0;  // width of them
     bool one_line = false;
     ImVec2 size;
 };
@@ -52,10 +53,11 @@ ToastPlan plan_of(const Context& context, const Toast& toast, float width, float
     ToastPlan plan{toast.text, ImGui::CalcTextSize(toast.text.c_str(), nullptr, false, inner), 0, false, {}};
     plan.buttons = button_width("Close");
     if (!toast.button.empty()) plan.buttons += button_width(toast.button) + style.ItemSpacing.x;
-    plan.size = {std::min(inner, std::max(plan.text_size.x + 1, plan.buttons)) + style.WindowPadding.x * 2,
-                 plan.text_size.y + style.ItemSpacing.y + ImGui::GetFrameHeight() + style.WindowPadding.y * 2};
+    plan.size = {
+        std::min(inner, std::max(plan.text_size.x + 1, plan.buttons)) + style.WindowPadding.x * 2,
+        plan.text_size.y + style.ItemSpacing.y + ImGui::GetFrameHeight() + style.WindowPadding.y * 2};
     if (plan.size.y <= height) return plan;
-    plan.one_line = true;   // what is left out stands in the log
+    plan.one_line = true;  // what is left out stands in the log
     plan.text = shortened(toast.text, inner - plan.buttons - style.ItemSpacing.x);
     plan.size = {width, ImGui::GetFrameHeight() + style.WindowPadding.y * 2};
     return plan;
@@ -97,7 +99,7 @@ float draw_toasts(Context& context, float top) {
     float bottom = space.bottom;
     for (std::size_t index = context.model.toasts.size(); index-- > 0;) {
         const ToastPlan plan = plan_of(context, context.model.toasts[index], width, bottom - space.top);
-        if (bottom - plan.size.y < space.top) break;   // older ones wait for room
+        if (bottom - plan.size.y < space.top) break;  // older ones wait for room
         draw_toast(context, index, plan, {space.right - plan.size.x, bottom - plan.size.y});
         bottom -= plan.size.y + context.em * 0.4f;
     }

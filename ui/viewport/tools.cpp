@@ -1,4 +1,5 @@
-// Brush, rectangle, lasso and box in the viewport, the wipe's handle, and the cursor that shows what they will do.
+// Brush, rectangle, lasso and box in the viewport, the wipe's handle, and the cursor that shows what they
+// will do.
 #include <algorithm>
 #include <cmath>
 
@@ -88,11 +89,12 @@ void end_stroke(Context& context, ImVec2 mouse) {
     context.actions.select(region, state.stroke_operation, true);
 }
 
-/// The base colour of what is seen there, for "Select by property"; the nearest that there is a few pixels around.
+/// The base colour of what is seen there, for "Select by property"; the nearest that there is a few pixels
+/// around.
 void pick_colour(Context& context, ImVec2 mouse) {
     constexpr float first_px = 2, most_px = 60;
     const auto& set = context.document().current;
-    const auto depth = context.model.viewport_depth;   // stays alive for the call
+    const auto depth = context.model.viewport_depth;  // stays alive for the call
     PickOptions options;
     options.depth = depth.get();
     ScreenArea area;
@@ -140,9 +142,7 @@ void draw_badge(ImDrawList* list, ImVec2 at, float em, SetOperation operation) {
             across(0);
             list->AddLine({at.x, at.y - r * 0.7f}, {at.x, at.y + r * 0.7f}, colour, w);
             break;
-        case SetOperation::Remove:
-            across(0);
-            break;
+        case SetOperation::Remove: across(0); break;
         case SetOperation::Replace:
             across(-r * 0.3f);
             across(r * 0.3f);
@@ -179,7 +179,8 @@ void draw_stroke(Context& context, ImDrawList* list, ImVec2 mouse) {
 
 SetOperation operation_now(const Context& context) {
     const auto& io = ImGui::GetIO();
-    if ((io.KeyAlt && !context.state.keymap.alt_navigates()) || (io.KeyShift && io.KeyCtrl)) return SetOperation::Intersect;
+    if ((io.KeyAlt && !context.state.keymap.alt_navigates()) || (io.KeyShift && io.KeyCtrl))
+        return SetOperation::Intersect;
     if (io.KeyShift) return SetOperation::Add;
     if (io.KeyCtrl) return SetOperation::Remove;
     return context.state.viewport.operation;
@@ -189,7 +190,9 @@ bool use_tool(Context& context, bool hovered) {
     auto& state = context.state.viewport;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     if (drag_wipe(context, hovered)) return true;
-    if (state.tool == Tool::Orbit || (!state.stroke && ImGui::GetIO().KeyAlt && context.state.keymap.alt_navigates())) return false;
+    if (state.tool == Tool::Orbit ||
+        (!state.stroke && ImGui::GetIO().KeyAlt && context.state.keymap.alt_navigates()))
+        return false;
     if (state.tool == Tool::PickColour) {
         if (!hovered || !ImGui::IsMouseClicked(0)) return true;
         pick_colour(context, mouse);
@@ -216,7 +219,8 @@ void draw_tool_cursor(Context& context, ImDrawList* list, bool hovered) {
     if (state.stroke) draw_stroke(context, list, mouse);
     if (!hovered) return;
     if (state.tool == Tool::PickColour) {
-        for (const auto& [radius, colour] : {std::pair{0.55f, IM_COL32(0, 0, 0, 160)}, std::pair{0.45f, IM_COL32(255, 255, 255, 220)}})
+        for (const auto& [radius, colour] :
+             {std::pair{0.55f, IM_COL32(0, 0, 0, 160)}, std::pair{0.45f, IM_COL32(255, 255, 255, 220)}})
             list->AddCircle(mouse, context.em * radius, colour, 0, std::max(1.0f, context.em * 0.1f));
         return;
     }

@@ -34,16 +34,19 @@ void draw_view_list(Context& context) {
                                  ? views[static_cast<std::size_t>(selected)].name
                                  : views_text(context);
     ImGui::SetNextItemWidth(context.em * ViewListEm);
-    const bool open = ImGui::BeginCombo("##viewport.views", shortened(text, context.em * (ViewListEm - 2)).c_str(),
-                                        ImGuiComboFlags_HeightLarge);
+    const bool open =
+        ImGui::BeginCombo("##viewport.views", shortened(text, context.em * (ViewListEm - 2)).c_str(),
+                          ImGuiComboFlags_HeightLarge);
     note(context, "viewport.views");
     if (!open)
-        return tooltip(views.empty() ? "The scene came without cameras: an edit looks from views of its own around it"
-                                     : "Look through a camera of the scene (Left, Right)");
+        return tooltip(views.empty()
+                           ? "The scene came without cameras: an edit looks from views of its own around it"
+                           : "Look through a camera of the scene (Left, Right)");
     if (views.empty()) dim_text("The scene came without cameras. \"Add this view\" in Views makes one.");
     for (std::size_t index = 0; index < views.size(); ++index) {
         ImGui::PushID(static_cast<int>(index));
-        if (ImGui::Selectable(std::string(Shown(views[index].name).text()).c_str(), static_cast<int>(index) == selected)) {
+        if (ImGui::Selectable(std::string(Shown(views[index].name).text()).c_str(),
+                              static_cast<int>(index) == selected)) {
             context.state.viewport.selected_view = static_cast<int>(index);
             context.actions.look_through(index);
         }
@@ -78,7 +81,8 @@ void draw_header(Context& context) {
                               .active = original,
                               .why_off = why}))
         context.actions.set_comparison(original ? Comparison::None : Comparison::Original);
-    toggle(context, "viewport.tint", Icon::Tag, context.view.tint_labels, with_key(context, "Tint what is labelled", Command::Tint));
+    toggle(context, "viewport.tint", Icon::Tag, context.view.tint_labels,
+           with_key(context, "Tint what is labelled", Command::Tint));
     toggle(context, "viewport.axes", Icon::Axes, context.view.show_axes, "World axes");
     toggle(context, "viewport.bounds", Icon::Box, context.view.show_bounds, "Box around the scene");
     toggle(context, "viewport.cameras", Icon::Camera, context.view.show_views, "Cameras of the views");

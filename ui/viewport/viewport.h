@@ -22,7 +22,8 @@ bool use_tool(Context& context, bool hovered);
 /// Operation of the keys held now, else the chosen one.
 SetOperation operation_now(const Context& context);
 
-/// The chosen view of the last search, where the picture is seen from there and something of it lies over it; else null.
+/// The chosen view of the last search, where the picture is seen from there and something of it lies over it;
+/// else null.
 const AttentionView* view_looked_through(const Context& context);
 /// Chooses it, turns the camera there and shows its attention or mask over the picture.
 void look_through_attention(Context& context, int index);
@@ -33,13 +34,14 @@ void draw_evidence(Context& context, ImDrawList* list);
 void draw_overlays(Context& context, ImDrawList* list);
 void draw_tool_cursor(Context& context, ImDrawList* list, bool hovered);
 void draw_start_page(Context& context);
-/// Messages at the lower right, clear of whatever can be pressed; none above `top` (screen). How high they are
-/// with their margin, 0 = none. Part of the current ImGui window, so that dialogs and menus lie above.
+/// Messages at the lower right, clear of whatever can be pressed; none above `top` (screen). How high they
+/// are with their margin, 0 = none. Part of the current ImGui window, so that dialogs and menus lie above.
 float draw_toasts(Context& context, float top);
 /// Floats at the top of the picture: apply, discard and compare while a result waits, and work of another
 /// session that can be had back.
 void draw_bars(Context& context);
-/// What a session left: picture, scene, time, what ran; with its buttons, named PREFIX.recover.INDEX and so on.
+/// What a session left: picture, scene, time, what ran; with its buttons, named PREFIX.recover.INDEX and so
+/// on.
 void draw_recovery(Context& context, const char* prefix, std::size_t index, bool can_wait);
 
 /// Depth along the view under a point of the window; not positive = nothing there or unknown.

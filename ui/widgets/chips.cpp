@@ -49,7 +49,11 @@ void draw_chip(Context& context, const Chip& chip, ImVec2 low, ImVec2 high) {
     if (!chip.known) list->AddRect(low, high, palette::Warning, round, 0, 1);
     const ImVec2 at(low.x + context.em * 0.45f, low.y + context.em * 0.2f);
     const Shown shown(chip.text);
-    list->AddText(at, !chip.read ? palette::TextDim : chip.known ? palette::Text : palette::Warning, shown.begin(), shown.end());
+    list->AddText(at,
+                  !chip.read   ? palette::TextDim
+                  : chip.known ? palette::Text
+                               : palette::Warning,
+                  shown.begin(), shown.end());
     const float width = ImGui::CalcTextSize(shown.begin(), shown.end()).x;
     const float middle = std::round((low.y + high.y) * 0.5f);
     if (!chip.read) list->AddLine({at.x, middle}, {at.x + width, middle}, palette::TextDim, 1);

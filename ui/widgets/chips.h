@@ -21,9 +21,9 @@ struct Chip {
 };
 
 struct ChipClick {
-    int chosen = -1;    // left click: the word becomes the target
-    bool extends = false;   // with Shift: the target reaches to the word
-    int replaced = -1;  // its suggestion was taken
+    int chosen = -1;       // left click: the word becomes the target
+    bool extends = false;  // with Shift: the target reaches to the word
+    int replaced = -1;     // its suggestion was taken
 };
 
 ChipClick chips(Context& context, std::string_view name, std::span<const Chip> words);

@@ -100,7 +100,8 @@ bool button(Context& context, const ButtonOptions& options) {
 float button_width(std::string_view text) { return text_size(text).x + ImGui::GetStyle().FramePadding.x * 2; }
 
 void flow(float width, float row_width) {
-    const float room = row_width > 0 ? ImGui::GetWindowContentRegionMin().x + row_width : ImGui::GetWindowContentRegionMax().x;
+    const float room = row_width > 0 ? ImGui::GetWindowContentRegionMin().x + row_width
+                                     : ImGui::GetWindowContentRegionMax().x;
     const float right = ImGui::GetWindowPos().x + room;
     const float next = ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + width;
     if (next <= right) ImGui::SameLine();
@@ -136,7 +137,7 @@ void heading(Context& context, std::string_view text) {
 
 std::string broken_at_spaces(std::string_view text, float width) {
     std::string lines;
-    std::size_t begin = 0, at = 0;   // of the line, of the word
+    std::size_t begin = 0, at = 0;  // of the line, of the word
     while (at < text.size()) {
         const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
         const bool breaks = at > begin && text_size(text.substr(begin, end - begin)).x > width;
@@ -153,7 +154,7 @@ void wrapped_text(std::string_view text) {
     ImGui::PushTextWrapPos(0);
     const float width = ImGui::GetContentRegionAvail().x;
     if (text_size(text).x <= width) put_text(text);
-    else put_text(broken_at_spaces(text, width));   // ImGui breaks lines behind the point of a number, too
+    else put_text(broken_at_spaces(text, width));  // ImGui breaks lines behind the point of a number, too
     ImGui::PopTextWrapPos();
 }
 
@@ -208,7 +209,8 @@ bool checkbox(Context& context, std::string_view name, std::string_view label, b
 
 namespace {
 
-/// Padding with which all choices fit into one row; the usual one where they do anyway, or would become too narrow.
+/// Padding with which all choices fit into one row; the usual one where they do anyway, or would become too
+/// narrow.
 ImVec2 segment_padding(const Context& context, std::span<const char* const> choices) {
     const ImVec2 usual = ImGui::GetStyle().FramePadding;
     float room = ImGui::GetContentRegionAvail().x - static_cast<float>(choices.size());
@@ -222,7 +224,7 @@ ImVec2 segment_padding(const Context& context, std::span<const char* const> choi
 bool segmented(Context& context, std::string_view name, std::span<const char* const> choices, int& chosen) {
     bool changed = false;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, segment_padding(context, choices));
-    const float left = ImGui::GetCursorScreenPos().x;   // also of a second row, where the first has no room
+    const float left = ImGui::GetCursorScreenPos().x;  // also of a second row, where the first has no room
     ImGui::PushID(name.data(), name.data() + name.size());
     for (int index = 0; index < static_cast<int>(choices.size()); ++index) {
         const char* text = choices[static_cast<std::size_t>(index)];

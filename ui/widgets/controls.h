@@ -24,8 +24,8 @@ struct ButtonOptions {
 
 bool button(Context& context, const ButtonOptions& options);
 
-/// Keeps the next item on this line when `width` pixels are left of it, else starts a new one. `row_width`: pixels of a whole
-/// line where the window's own width follows from what is in it; 0 = what the window has.
+/// Keeps the next item on this line when `width` pixels are left of it, else starts a new one. `row_width`:
+/// pixels of a whole line where the window's own width follows from what is in it; 0 = what the window has.
 void flow(float width, float row_width = 0);
 /// Width a button with this text takes.
 float button_width(std::string_view text);
@@ -38,7 +38,7 @@ void dim_text(std::string_view text);  // wrapped, grey
 void wrapped_text(std::string_view text);
 /// The text with a line break for the space before every word that would reach beyond `width` pixels.
 std::string broken_at_spaces(std::string_view text, float width);
-void plain_text(std::string_view text);  // as ImGui::TextUnformatted
+void plain_text(std::string_view text);                   // as ImGui::TextUnformatted
 void coloured_text(ImU32 colour, std::string_view text);  // wrapped
 void badge(Context& context, std::string_view text, ImU32 colour);
 void bullet_dot(ImU32 colour);  // a status dot before a line, then stays on the line
@@ -74,7 +74,7 @@ void end_notice();
 std::string count_text(std::size_t count);                     // "1 234 567"
 std::string duration_text(double seconds);                     // "7 min 05 s"
 std::string bytes_text(double bytes);                          // "1.7 GB"
-std::string tflop_text(double tflop);                        // "0.17 TFLOP", "240 TFLOP"
+std::string tflop_text(double tflop);                          // "0.17 TFLOP", "240 TFLOP"
 std::string percent_text(double share);                        // "43 %"
 std::string shortened(std::string_view text, float width_px);  // middle replaced by ... to fit
 

@@ -17,25 +17,23 @@ constexpr double SliderSpan = 4.0;  // ranges up to this wide get a slider, wide
 
 std::string identity(const FieldRow& row) { return fmt::format("##{}.{}", row.prefix, row.name); }
 
-template <class T>
-std::string default_text(const FieldRow& row, const T& standard) {
+template <class T> std::string default_text(const FieldRow& row, const T& standard) {
     const char* whose = row.stated ? "Default of the model" : "Default";
     if constexpr (std::is_same_v<T, bool>)
         return fmt::format("{}\n{}: {}.", row.help, whose, standard ? "on" : "off");
     if constexpr (std::is_same_v<T, std::string>)
-        return standard.empty() ? std::string(row.help) : fmt::format("{}\n{}: {}.", row.help, whose, standard);
+        return standard.empty() ? std::string(row.help)
+                                : fmt::format("{}\n{}: {}.", row.help, whose, standard);
     return fmt::format("{}\n{}: {}. Right click: back to it.", row.help, whose, standard);
 }
 
-template <class T>
-std::string help_text(const FieldRow& row, const T& standard) {
+template <class T> std::string help_text(const FieldRow& row, const T& standard) {
     const std::string text = default_text(row, standard);
     return row.unused.empty() ? text : fmt::format("{}\n{}", row.unused, text);
 }
 
 /// Label, and the reset by right click on the control that was drawn last.
-template <class T>
-bool finish(Context& context, const FieldRow& row, T& value, const T& standard) {
+template <class T> bool finish(Context& context, const FieldRow& row, T& value, const T& standard) {
     note(context, fmt::format("{}.{}", row.prefix, row.name));
     tooltip(help_text(row, standard));
     if (!(value != standard) || !ImGui::IsItemClicked(ImGuiMouseButton_Right)) return false;
@@ -43,8 +41,7 @@ bool finish(Context& context, const FieldRow& row, T& value, const T& standard) 
     return true;
 }
 
-template <class T>
-void label_of(Context& context, const FieldRow& row, const T& value, const T& standard) {
+template <class T> void label_of(Context& context, const FieldRow& row, const T& value, const T& standard) {
     const bool changed = value != standard;
     const std::string label = fmt::format("{}{}", changed ? "* " : "", field_label(row.name));
     row_label(context, row.unused.empty() ? label : fmt::format("({})", label), help_text(row, standard));
@@ -55,8 +52,7 @@ const char* number_format(double size) {
     return size < 1 ? "%.4g" : "%.6g";
 }
 
-template <class T>
-bool real_row(Context& context, const FieldRow& row, T& value, const T& standard) {
+template <class T> bool real_row(Context& context, const FieldRow& row, T& value, const T& standard) {
     label_of(context, row, value, standard);
     const T before = value;
     constexpr ImGuiDataType Type = std::is_same_v<T, float> ? ImGuiDataType_Float : ImGuiDataType_Double;
@@ -77,7 +73,7 @@ bool real_row(Context& context, const FieldRow& row, T& value, const T& standard
         changed = ImGui::DragScalar(identity(row).c_str(), Type, &value, speed, row.range ? &low : nullptr,
                                     row.range ? &high : nullptr, format, ImGuiSliderFlags_AlwaysClamp);
     }
-    if (!std::isfinite(value)) value = before;   // "1e999" was typed
+    if (!std::isfinite(value)) value = before;  // "1e999" was typed
     if (changed && row.range) value = std::clamp(value, low, high);
     return finish(context, row, value, standard) || changed;
 }

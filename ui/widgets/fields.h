@@ -18,8 +18,8 @@ struct FieldRow {
     const char* name;
     const char* help;
     std::optional<Range> range;
-    bool stated = false;   // the default is what the model states, another than the program's
-    std::string_view unused = {};   // why it has no effect now; empty = it has
+    bool stated = false;           // the default is what the model states, another than the program's
+    std::string_view unused = {};  // why it has no effect now; empty = it has
 };
 
 /// Why the field of that name has no effect now; empty = it has.
@@ -37,15 +37,13 @@ bool field_row(Context& context, const FieldRow& row, std::string& value, const 
 std::string field_label(const char* name);
 
 /// What the program takes where nobody says anything.
-template <class P>
-const P& program_defaults() {
+template <class P> const P& program_defaults() {
     static const P defaults{};
     return defaults;
 }
 
 /// The value of the same name and type in another struct of the kind; Value{} when there is none.
-template <class Value, class P>
-Value value_named(const P& parameters, const char* name) {
+template <class Value, class P> Value value_named(const P& parameters, const char* name) {
     Value found{};
     P::visit_fields(parameters, [&](const char* other, const auto& value, const char*, auto...) {
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, Value>)

@@ -252,8 +252,8 @@ void FileBrowser::draw_entries(Context& context) {
 
 void FileBrowser::draw_footer(Context& context) {
     if (question_.saves) {
-        const bool entered =
-            text_input(context, "files.name", name_, "name of the file", ImGuiInputTextFlags_EnterReturnsTrue);
+        const bool entered = text_input(context, "files.name", name_, "name of the file",
+                                        ImGuiInputTextFlags_EnterReturnsTrue);
         if (ImGui::IsItemEdited()) overwrite_asked_ = false;
         if (entered && why_not().empty()) finish(chosen());
     } else if (!question_.extensions.empty()) {
@@ -278,10 +278,8 @@ void FileBrowser::draw_footer(Context& context) {
                          .why_off = why,
                          .look = overwrite_asked_ ? Look::Danger : Look::Primary})) {
         const auto path = chosen();
-        if (!question_.saves && selected_ >= 0 && is_folder(path) && !question_.folder_allowed)
-            enter(path);
-        else
-            finish(path);
+        if (!question_.saves && selected_ >= 0 && is_folder(path) && !question_.folder_allowed) enter(path);
+        else finish(path);
     }
 }
 
@@ -306,7 +304,8 @@ void FileBrowser::draw(Context& context) {
     draw_path(context);
     const float height = ImGui::GetContentRegionAvail().y - footer_height(context, question_.saves);
     const float places = std::min(context.em * 10, ImGui::GetContentRegionAvail().x * 0.3f);
-    if (ImGui::BeginChild("places", {places, height}, true, ImGuiWindowFlags_NavFlattened)) draw_places(context);
+    if (ImGui::BeginChild("places", {places, height}, true, ImGuiWindowFlags_NavFlattened))
+        draw_places(context);
     ImGui::EndChild();
     ImGui::SameLine();
     entry_focused_ = false;

@@ -23,7 +23,8 @@ struct Frame {
 };
 
 /// One bar per few pixels; heights are logarithmic, because most splats weigh next to nothing.
-void draw_bars(Context& context, const WeightHistogram& data, const Frame& frame, float threshold, bool below) {
+void draw_bars(Context& context, const WeightHistogram& data, const Frame& frame, float threshold,
+               bool below) {
     const float bar_px = std::max(2.0f, std::round(context.em * 0.18f));
     const int bars = std::max(1, static_cast<int>(frame.width() / bar_px));
     std::vector<double> heights(static_cast<std::size_t>(bars), 0.0);
@@ -47,7 +48,8 @@ void draw_handle(Context& context, const Frame& frame, float threshold, bool hot
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float x = std::round(frame.low.x + threshold * frame.width());
     const ImU32 colour = hot ? palette::OnAccent : palette::Text;
-    list->AddRectFilled({below ? x : frame.low.x, frame.low.y}, {below ? frame.high.x : x, frame.high.y}, IM_COL32(0, 0, 0, 60));
+    list->AddRectFilled({below ? x : frame.low.x, frame.low.y}, {below ? frame.high.x : x, frame.high.y},
+                        IM_COL32(0, 0, 0, 60));
     list->AddLine({x, frame.low.y}, {x, frame.high.y}, colour, std::max(1.0f, context.em * 0.1f));
     const float r = context.em * 0.35f;
     list->AddTriangleFilled({x - r, frame.low.y}, {x + r, frame.low.y}, {x, frame.low.y + r * 1.3f}, colour);

@@ -16,10 +16,7 @@ namespace {
 class Pen {
 public:
     Pen(ImDrawList* list, ImVec2 centre, float size, ImU32 colour)
-        : list_(list),
-          centre_(centre),
-          half_(size * 0.5f),
-          colour_(colour),
+        : list_(list), centre_(centre), half_(size * 0.5f), colour_(colour),
           width_(std::max(1.0f, size / 11)) {}
 
     ImVec2 at(float x, float y) const { return {centre_.x + x * half_, centre_.y + y * half_}; }
@@ -92,8 +89,7 @@ void draw_place(const Pen& pen, Icon icon) {
                      true);
             pen.circle(0, 0.1f, 0.3f);
             break;
-        default:
-            break;
+        default: break;
     }
 }
 
@@ -124,14 +120,13 @@ void draw_tool(const Pen& pen, Icon icon) {
             pen.circle(-0.45f, 0.3f, 0.17f);
             pen.path({{-0.45f, 0.47f}, {-0.35f, 0.7f}, {-0.6f, 0.9f}});
             break;
-        case Icon::CutOut:   // a thing between the corners of a box
+        case Icon::CutOut:  // a thing between the corners of a box
             for (const float x : {-0.8f, 0.8f})
                 for (const float y : {-0.8f, 0.8f}) pen.path({{x, y * 0.5f}, {x, y}, {x * 0.5f, y}});
             pen.dot(0, -0.2f, 0.24f);
             pen.ellipse(0, 0.3f, 0.42f, 0.26f);
             break;
-        default:
-            draw_place(pen, icon);
+        default: draw_place(pen, icon);
     }
 }
 
@@ -166,8 +161,7 @@ void draw_view(const Pen& pen, Icon icon) {
             pen.path({{-0.8f, -0.3f}, {-0.3f, -0.75f}, {0.75f, -0.75f}, {0.75f, 0.3f}, {0.2f, 0.75f}});
             pen.path({{0.2f, -0.3f}, {0.75f, -0.75f}});
             break;
-        default:
-            draw_tool(pen, icon);
+        default: draw_tool(pen, icon);
     }
 }
 
@@ -191,12 +185,8 @@ void draw_action(const Pen& pen, Icon icon) {
             pen.arc(0, 0, 0.65f, 0.3f, 0.42f);
             pen.fill({{-1.0f, -0.05f}, {-0.3f, -0.05f}, {-0.65f, 0.45f}});
             break;
-        case Icon::Up:
-            pen.path({{-0.55f, 0.25f}, {0, -0.35f}, {0.55f, 0.25f}});
-            break;
-        case Icon::Down:
-            pen.path({{-0.55f, -0.25f}, {0, 0.35f}, {0.55f, -0.25f}});
-            break;
+        case Icon::Up: pen.path({{-0.55f, 0.25f}, {0, -0.35f}, {0.55f, 0.25f}}); break;
+        case Icon::Down: pen.path({{-0.55f, -0.25f}, {0, 0.35f}, {0.55f, -0.25f}}); break;
         case Icon::Plus:
             pen.path({{-0.65f, 0}, {0.65f, 0}});
             pen.path({{0, -0.65f}, {0, 0.65f}});
@@ -205,21 +195,16 @@ void draw_action(const Pen& pen, Icon icon) {
             pen.path({{-0.5f, -0.5f}, {0.5f, 0.5f}});
             pen.path({{-0.5f, 0.5f}, {0.5f, -0.5f}});
             break;
-        case Icon::Check:
-            pen.path({{-0.6f, 0.05f}, {-0.15f, 0.5f}, {0.65f, -0.5f}});
-            break;
+        case Icon::Check: pen.path({{-0.6f, 0.05f}, {-0.15f, 0.5f}, {0.65f, -0.5f}}); break;
         case Icon::Pause:
             pen.fill({{-0.55f, -0.65f}, {-0.15f, -0.65f}, {-0.15f, 0.65f}, {-0.55f, 0.65f}});
             pen.fill({{0.15f, -0.65f}, {0.55f, -0.65f}, {0.55f, 0.65f}, {0.15f, 0.65f}});
             break;
-        case Icon::Play:
-            pen.fill({{-0.45f, -0.7f}, {0.7f, 0}, {-0.45f, 0.7f}});
-            break;
+        case Icon::Play: pen.fill({{-0.45f, -0.7f}, {0.7f, 0}, {-0.45f, 0.7f}}); break;
         case Icon::Stop:
             pen.fill({{-0.55f, -0.55f}, {0.55f, -0.55f}, {0.55f, 0.55f}, {-0.55f, 0.55f}});
             break;
-        default:
-            draw_view(pen, icon);
+        default: draw_view(pen, icon);
     }
 }
 
@@ -255,8 +240,7 @@ void draw_icon(ImDrawList* list, Icon icon, ImVec2 centre, float size, ImU32 col
             pen.path({{0, -0.25f}, {0, 0.25f}});
             pen.dot(0, 0.47f, 0.1f);
             break;
-        default:
-            draw_action(pen, icon);
+        default: draw_action(pen, icon);
     }
 }
 

@@ -1,5 +1,5 @@
-// Image files by OpenCV's readers; MP4 and WebM by its FFmpeg: H.264 where the system can encode it, MPEG-4 elsewhere; VP9 or VP8 for
-// WebM.
+// Image files by OpenCV's readers; MP4 and WebM by its FFmpeg: H.264 where the system can encode it, MPEG-4
+// elsewhere; VP9 or VP8 for WebM.
 #include <fmt/format.h>
 
 #include <array>
@@ -16,8 +16,7 @@ namespace gse::io {
 namespace {
 
 /// OpenCV's blue-green-red rows to red-green-blue floats.
-template <class T>
-void copy_pixels(const cv::Mat& from, double scale, Image& to) {
+template <class T> void copy_pixels(const cv::Mat& from, double scale, Image& to) {
     const int channels = to.channels;
     float* out = to.data.data();
     for (int y = 0; y < to.height; ++y) {
@@ -50,10 +49,10 @@ public:
         static constexpr std::array<const char*, 2> mp4{"avc1", "mp4v"}, webm{"VP90", "VP80"};
         for (const char* name : file.extension() == ".webm" ? webm : mp4) {
             try {
-                opened = writer_.open(file.string(), cv::CAP_FFMPEG, cv::VideoWriter::fourcc(name[0], name[1], name[2], name[3]), rate, size_, true);
-            } catch (const cv::Exception&) {
-                opened = false;
-            }
+                opened = writer_.open(file.string(), cv::CAP_FFMPEG,
+                                      cv::VideoWriter::fourcc(name[0], name[1], name[2], name[3]), rate,
+                                      size_, true);
+            } catch (const cv::Exception&) { opened = false; }
             codec_ = name;
             if (opened) break;
         }
@@ -61,7 +60,8 @@ public:
         return opened;
     }
     void write(std::span<const std::uint8_t> frame) override {
-        GSE_CHECK_EQ(frame.size(), static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(size_.height) * 3);
+        GSE_CHECK_EQ(frame.size(),
+                     static_cast<std::size_t>(size_.width) * static_cast<std::size_t>(size_.height) * 3);
         writer_.write(cv::Mat(size_, CV_8UC3, const_cast<std::uint8_t*>(frame.data())));
     }
     const std::string& codec() const override { return codec_; }
@@ -78,7 +78,9 @@ public:
         const cv::Mat pixels = decoded(file);
         if (pixels.empty()) throw Error(ErrorCode::Malformed, "the file is no image that can be read");
         const int channels = pixels.channels();
-        if (channels == 2 || channels > 4) throw Error(ErrorCode::Unsupported, fmt::format("an image of {} channels is not handled", channels));
+        if (channels == 2 || channels > 4)
+            throw Error(ErrorCode::Unsupported,
+                        fmt::format("an image of {} channels is not handled", channels));
         Image image(pixels.cols, pixels.rows, channels);
         switch (pixels.depth()) {
             case CV_8U: copy_pixels<std::uint8_t>(pixels, 1.0 / 255, image); break;
@@ -88,7 +90,8 @@ public:
         }
         return image;
     }
-    std::unique_ptr<FilmEncoder> open_film(const std::filesystem::path& file, FilmSize size, double frames_per_second) override {
+    std::unique_ptr<FilmEncoder> open_film(const std::filesystem::path& file, FilmSize size,
+                                           double frames_per_second) override {
         auto film = std::make_unique<OpenCvFilm>();
         if (!film->open(file, frames_per_second, size)) return nullptr;
         return film;

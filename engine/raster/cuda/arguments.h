@@ -1,6 +1,6 @@
-// What the kernels of the CUDA rasterizer are called with, read by the compiler of the device and by that of the processor:
-// plain structs of addresses in the device's memory and numbers. Rows are those of the scene, ranks their places in the order of
-// depth, pairs are numbered rank by rank, slots row by row.
+// What the kernels of the CUDA rasterizer are called with, read by the compiler of the device and by that of
+// the processor: plain structs of addresses in the device's memory and numbers. Rows are those of the scene,
+// ranks their places in the order of depth, pairs are numbered rank by rank, slots row by row.
 #pragma once
 
 #include "engine/raster/kernels.h"
@@ -8,16 +8,17 @@
 namespace gse::raster::cuda {
 
 inline constexpr std::uint32_t BlockThreads = 256;  // of every kernel
-inline constexpr std::uint32_t ScanItems = 8;     // per thread
-inline constexpr std::uint32_t RadixItems = 8;    // per thread
+inline constexpr std::uint32_t ScanItems = 8;       // per thread
+inline constexpr std::uint32_t RadixItems = 8;      // per thread
 inline constexpr std::uint32_t RadixBits = 4;
 inline constexpr std::uint32_t RadixDigits = 1u << RadixBits;
-inline constexpr std::uint32_t NotDrawn = 0xffffffff;  // a key behind every depth
-inline constexpr std::uint32_t Saturated = 0xffffffff; // sums of counts stop here
-inline constexpr std::uint32_t SlotFloats = 10;        // PartialSum
-inline constexpr std::uint32_t WeightFloats = 2;       // ContributionSum
+inline constexpr std::uint32_t NotDrawn = 0xffffffff;   // a key behind every depth
+inline constexpr std::uint32_t Saturated = 0xffffffff;  // sums of counts stop here
+inline constexpr std::uint32_t SlotFloats = 10;         // PartialSum
+inline constexpr std::uint32_t WeightFloats = 2;        // ContributionSum
 
-/// out[i] = sum of in[0..i), which may be the same array; totals[b] = sum of block b's BlockThreads * ScanItems.
+/// out[i] = sum of in[0..i), which may be the same array; totals[b] = sum of block b's BlockThreads *
+/// ScanItems.
 struct ScanArguments {
     const std::uint32_t* in;
     std::uint32_t* out;
@@ -32,7 +33,8 @@ struct AddArguments {
     std::uint32_t count;
 };
 
-/// One digit of a stable radix sort. counts: [RadixDigits, blocks] how often each block has each digit, then their exclusive sums.
+/// One digit of a stable radix sort. counts: [RadixDigits, blocks] how often each block has each digit, then
+/// their exclusive sums.
 struct RadixArguments {
     const std::uint32_t* keys;
     const std::uint32_t* values;  // none: 0, 1, 2 ...
@@ -88,10 +90,10 @@ struct RangeArguments {
 
 /// The lists of all tiles, front to back.
 struct TileLists {
-    const Record* records;            // [rows]
-    const TileRange* ranges;          // [tiles]
-    const std::uint32_t* entries;     // [pairs] sorted by tile and depth -> pair
-    const std::uint32_t* pair_rows;   // [pairs]
+    const Record* records;           // [rows]
+    const TileRange* ranges;         // [tiles]
+    const std::uint32_t* entries;    // [pairs] sorted by tile and depth -> pair
+    const std::uint32_t* pair_rows;  // [pairs]
     std::uint32_t tile_columns;
     int width, height;
 };
@@ -99,14 +101,15 @@ struct TileLists {
 struct BlendArguments {
     TileLists lists;
     float background[3];
-    int channels;          // 3, or 1: the first alone
-    float* colour;         // [H,W,channels] with the background
-    float* transmittance;  // [H,W]
-    float* depth;          // [H,W]
-    std::int32_t* blended; // [H,W]
+    int channels;           // 3, or 1: the first alone
+    float* colour;          // [H,W,channels] with the background
+    float* transmittance;   // [H,W]
+    float* depth;           // [H,W]
+    std::int32_t* blended;  // [H,W]
 };
 
-/// Where each (tile, Gaussian) leaves its sums: slot slot_begins[row - first_row] + pair - pair_begins[row], for rows >= first_row.
+/// Where each (tile, Gaussian) leaves its sums: slot slot_begins[row - first_row] + pair - pair_begins[row],
+/// for rows >= first_row.
 struct SlotTable {
     const std::uint32_t* pair_begins;  // [rows]
     const std::uint32_t* slot_begins;  // [rows - first_row]
@@ -117,7 +120,7 @@ struct SlotTable {
 struct BackwardArguments {
     TileLists lists;
     SlotTable table;
-    const float* colour;         // of the blending
+    const float* colour;  // of the blending
     const float* transmittance;
     const float* d_colour;  // [H,W,3]
     const float* d_alpha;   // [H,W] or none
@@ -151,8 +154,11 @@ struct WeightArguments {
 };
 
 // Both compilers must lay them out alike.
-static_assert(sizeof(Source) == 48 && sizeof(Viewpoint) == 232 && sizeof(TileLists) == 48 && sizeof(SlotTable) == 32);
-static_assert(sizeof(ProjectArguments) == 328 && sizeof(BlendArguments) == 96 && sizeof(BackwardArguments) == 112);
-static_assert(sizeof(GradientArguments) == 376 && sizeof(RadixArguments) == 56 && sizeof(EmitArguments) == 72);
+static_assert(sizeof(Source) == 48 && sizeof(Viewpoint) == 232 && sizeof(TileLists) == 48 &&
+              sizeof(SlotTable) == 32);
+static_assert(sizeof(ProjectArguments) == 328 && sizeof(BlendArguments) == 96 &&
+              sizeof(BackwardArguments) == 112);
+static_assert(sizeof(GradientArguments) == 376 && sizeof(RadixArguments) == 56 &&
+              sizeof(EmitArguments) == 72);
 
 }  // namespace gse::raster::cuda

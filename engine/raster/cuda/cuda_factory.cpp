@@ -22,7 +22,9 @@ std::unique_ptr<Rasterizer> make_checked_rasterizer(std::unique_ptr<Device> devi
 
 }  // namespace cuda
 
-std::unique_ptr<Rasterizer> make_cuda_rasterizer() { return cuda::make_checked_rasterizer(cuda::open_cuda_device()); }
+std::unique_ptr<Rasterizer> make_cuda_rasterizer() {
+    return cuda::make_checked_rasterizer(cuda::open_cuda_device());
+}
 
 bool cuda_usable(std::string* why) {
     try {
@@ -41,7 +43,8 @@ std::unique_ptr<Rasterizer> make_rasterizer_of(const std::string& kernels, Threa
 std::unique_ptr<Rasterizer> make_rasterizer(const std::string& choice, ThreadPool& pool) {
     if (choice == "cuda") return make_cuda_rasterizer();
     if (choice == "auto" || choice == "cpu") return make_fast_rasterizer(pool);
-    throw Error(ErrorCode::InvalidArgument, fmt::format("there is no rasterizer \"{}\"", printable(choice)), "choose auto, cpu or cuda");
+    throw Error(ErrorCode::InvalidArgument, fmt::format("there is no rasterizer \"{}\"", printable(choice)),
+                "choose auto, cpu or cuda");
 }
 
 void require_rasterizer(const std::string& choice) {

@@ -1,5 +1,6 @@
-// A machine that runs the kernels: memory of its own, copies, fills and launches. One is behind the CUDA driver, one is the
-// processor that stands in for it in tests; what is launched in which order is the same code for both.
+// A machine that runs the kernels: memory of its own, copies, fills and launches. One is behind the CUDA
+// driver, one is the processor that stands in for it in tests; what is launched in which order is the same
+// code for both.
 #pragma once
 
 #include <cstddef>
@@ -13,10 +14,7 @@
 namespace gse::raster::cuda {
 
 /// One entry of kernel_list.inl.
-template <class Arguments>
-struct Kernel {
-    int index;
-};
+template <class Arguments> struct Kernel { int index; };
 
 namespace kernel_index {
 enum : int {
@@ -40,8 +38,8 @@ inline constexpr const char* KernelNames[] = {
 #undef GSE_KERNEL
 };
 
-/// Calls are carried out in order; download() waits for all before it. Everything throws Error (Unsupported where memory runs out,
-/// Foreign else), also for what an earlier launch did wrong.
+/// Calls are carried out in order; download() waits for all before it. Everything throws Error (Unsupported
+/// where memory runs out, Foreign else), also for what an earlier launch did wrong.
 class Device {
 public:
     virtual ~Device() = default;
@@ -65,11 +63,12 @@ protected:
 };
 
 /// Blocks that give each of `count` items a thread.
-inline std::size_t blocks_for(std::size_t count, std::size_t per_block = BlockThreads) { return (count + per_block - 1) / per_block; }
+inline std::size_t blocks_for(std::size_t count, std::size_t per_block = BlockThreads) {
+    return (count + per_block - 1) / per_block;
+}
 
 /// An array in a device's memory. Grows, never shrinks: what was allocated once stays.
-template <class T>
-class DeviceArray {
+template <class T> class DeviceArray {
 public:
     explicit DeviceArray(Device& device) : device_(device) {}
     ~DeviceArray() {
@@ -84,7 +83,7 @@ public:
         if (data_ != nullptr) device_.release(data_);
         data_ = nullptr;
         capacity_ = 0;
-        const std::size_t wanted = count + count / 4 + 1;   // a scene grows little by little
+        const std::size_t wanted = count + count / 4 + 1;  // a scene grows little by little
         data_ = static_cast<T*>(device_.allocate(wanted * sizeof(T)));
         capacity_ = wanted;
         return data_;

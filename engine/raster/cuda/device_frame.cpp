@@ -11,17 +11,21 @@
 namespace gse::raster::cuda {
 
 DeviceFrame::DeviceFrame(Device& device)
-    : device_(device), scan_(device), depth_sort_(device), tile_sort_(device), position_(device), log_scale_(device), rotation_(device),
-      opacity_logit_(device), sh_(device), values_(device), records_(device), keys_(device), pair_counts_(device),
-      unusable_count_(device), begins_(device), pair_tiles_(device), pair_rows_(device), pair_begins_(device), slot_begins_(device),
-      ranges_(device), colour_(device), transmittance_(device), depth_(device), blended_(device), slots_(device) {}
+    : device_(device), scan_(device), depth_sort_(device), tile_sort_(device), position_(device),
+      log_scale_(device), rotation_(device), opacity_logit_(device), sh_(device), values_(device),
+      records_(device), keys_(device), pair_counts_(device), unusable_count_(device), begins_(device),
+      pair_tiles_(device), pair_rows_(device), pair_begins_(device), slot_begins_(device), ranges_(device),
+      colour_(device), transmittance_(device), depth_(device), blended_(device), slots_(device) {}
 
-void DeviceFrame::prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings, std::span<const float> values) {
+void DeviceFrame::prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
+                          std::span<const float> values) {
     check_inputs(gaussians, camera);
     if (gaussians.size > MostPairs)
-        throw Error(ErrorCode::Unsupported, "the scene has too many splats for the CUDA rasterizer", "prune it");
+        throw Error(ErrorCode::Unsupported, "the scene has too many splats for the CUDA rasterizer",
+                    "prune it");
     view_ = viewpoint_of(camera, with_depth_range(settings, gaussians, camera), gaussians.sh_degree);
-    tile_count_ = blocks_for(static_cast<std::size_t>(camera.width), TileSize) * blocks_for(static_cast<std::size_t>(camera.height), TileSize);
+    tile_count_ = blocks_for(static_cast<std::size_t>(camera.width), TileSize) *
+                  blocks_for(static_cast<std::size_t>(camera.height), TileSize);
     rows_ = gaussians.size;
     pairs_ = unusable_ = 0;
     upload(gaussians);
@@ -31,8 +35,12 @@ void DeviceFrame::prepare(const GaussianSpans& gaussians, const Camera& camera, 
 }
 
 void DeviceFrame::upload(const GaussianSpans& gaussians) {
-    source_ = {position_.upload(gaussians.position), log_scale_.upload(gaussians.log_scale), rotation_.upload(gaussians.rotation),
-               opacity_logit_.upload(gaussians.opacity_logit), sh_.upload(gaussians.sh), sh_floats(gaussians)};
+    source_ = {position_.upload(gaussians.position),
+               log_scale_.upload(gaussians.log_scale),
+               rotation_.upload(gaussians.rotation),
+               opacity_logit_.upload(gaussians.opacity_logit),
+               sh_.upload(gaussians.sh),
+               sh_floats(gaussians)};
 }
 
 void DeviceFrame::project(const float* values) {
@@ -58,7 +66,8 @@ void DeviceFrame::bin() {
     const std::uint32_t* order = nullptr;
     if (rows_ > 0) {
         order = depth_sort_.sort(keys_.data(), rows_, std::numeric_limits<std::uint32_t>::digits).places;
-        device_.launch(kernels::gather, blocks_for(rows_), {pair_counts_.data(), order, begins_.data(), rows});
+        device_.launch(kernels::gather, blocks_for(rows_),
+                       {pair_counts_.data(), order, begins_.data(), rows});
         pairs_ = scan_.total(begins_.data(), begins_.data(), rows_);
     }
     if (pairs_ > MostPairs)
@@ -85,11 +94,13 @@ void DeviceFrame::sort_pairs() {
     const auto bits = static_cast<std::uint32_t>(std::bit_width(tile_count_ - 1));
     const DeviceSort::Sorted sorted = tile_sort_.sort(pair_tiles_.data(), pairs_, bits);
     entries_ = sorted.places;
-    device_.launch(kernels::ranges, blocks_for(pairs_), {sorted.keys, static_cast<std::uint32_t>(pairs_), ranges});
+    device_.launch(kernels::ranges, blocks_for(pairs_),
+                   {sorted.keys, static_cast<std::uint32_t>(pairs_), ranges});
 }
 
 TileLists DeviceFrame::lists() const {
-    const auto columns = static_cast<std::uint32_t>(blocks_for(static_cast<std::size_t>(view_.width), TileSize));
+    const auto columns =
+        static_cast<std::uint32_t>(blocks_for(static_cast<std::size_t>(view_.width), TileSize));
     return {records_.data(), ranges_.data(), entries_, pair_rows_.data(), columns, view_.width, view_.height};
 }
 

@@ -1,4 +1,5 @@
-// One view prepared for blending in a device's memory: projected records, pairs sorted by tile, depth and row, the tiles' lists.
+// One view prepared for blending in a device's memory: projected records, pairs sorted by tile, depth and
+// row, the tiles' lists.
 #pragma once
 
 #include <array>
@@ -13,8 +14,10 @@ class DeviceFrame {
 public:
     explicit DeviceFrame(Device& device);
 
-    /// Uploads, projects, bins and sorts. `values`, if not empty, replaces the colours (in the red channel). Throws Error.
-    void prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings, std::span<const float> values);
+    /// Uploads, projects, bins and sorts. `values`, if not empty, replaces the colours (in the red channel).
+    /// Throws Error.
+    void prepare(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
+                 std::span<const float> values);
 
     /// Gives every pair of rows >= first_row its slot of `floats` zeros.
     SlotTable assign_slots(std::size_t first_row, std::uint32_t floats);
@@ -26,7 +29,9 @@ public:
     std::size_t pair_count() const { return pairs_; }
     std::size_t unusable_rows() const { return unusable_; }
     std::size_t tile_count() const { return tile_count_; }
-    std::size_t pixel_count() const { return static_cast<std::size_t>(view_.width) * static_cast<std::size_t>(view_.height); }
+    std::size_t pixel_count() const {
+        return static_cast<std::size_t>(view_.width) * static_cast<std::size_t>(view_.height);
+    }
     const Viewpoint& view() const { return view_; }
     const Source& source() const { return source_; }
     TileLists lists() const;
@@ -51,7 +56,8 @@ private:
     DeviceSort depth_sort_, tile_sort_;
     DeviceArray<float> position_, log_scale_, rotation_, opacity_logit_, sh_, values_;
     DeviceArray<Record> records_;
-    DeviceArray<std::uint32_t> keys_, pair_counts_, unusable_count_, begins_, pair_tiles_, pair_rows_, pair_begins_, slot_begins_;
+    DeviceArray<std::uint32_t> keys_, pair_counts_, unusable_count_, begins_, pair_tiles_, pair_rows_,
+        pair_begins_, slot_begins_;
     DeviceArray<TileRange> ranges_;
     const std::uint32_t* entries_ = nullptr;
     DeviceArray<float> colour_, transmittance_, depth_;

@@ -1,4 +1,5 @@
-// Forward, backward, contributions and composited values by a device: what goes up, what is launched, what comes down.
+// Forward, backward, contributions and composited values by a device: what goes up, what is launched, what
+// comes down.
 #include "engine/raster/cuda/device_rasterizer.h"
 
 #include <algorithm>
@@ -12,11 +13,13 @@ namespace {
 /// The gradients' arrays in a device's memory.
 struct DeviceGradients {
     explicit DeviceGradients(Device& device)
-        : position(device), log_scale(device), rotation(device), opacity_logit(device), sh(device), mean2d_norm(device), visible(device) {}
+        : position(device), log_scale(device), rotation(device), opacity_logit(device), sh(device),
+          mean2d_norm(device), visible(device) {}
 
     GradientArrays at_least(std::size_t rows, std::size_t sh_stride) {
-        return {position.at_least(rows * 3),  log_scale.at_least(rows * 3), rotation.at_least(rows * 4), opacity_logit.at_least(rows),
-                sh.at_least(rows * sh_stride), mean2d_norm.at_least(rows),   visible.at_least(rows)};
+        return {position.at_least(rows * 3),  log_scale.at_least(rows * 3),  rotation.at_least(rows * 4),
+                opacity_logit.at_least(rows), sh.at_least(rows * sh_stride), mean2d_norm.at_least(rows),
+                visible.at_least(rows)};
     }
 
     void download(std::size_t rows, std::size_t sh_stride, Gradients& to) const {
@@ -40,10 +43,12 @@ struct DeviceGradients {
 class DeviceRasterizer final : public Rasterizer {
 public:
     DeviceRasterizer(std::unique_ptr<Device> device, std::string name)
-        : device_(std::move(device)), name_(std::move(name)), frame_(*device_), side_frame_(*device_), d_colour_(*device_),
-          d_alpha_(*device_), mask_(*device_), gradients_(*device_), weights_(*device_) {}
+        : device_(std::move(device)), name_(std::move(name)), frame_(*device_), side_frame_(*device_),
+          d_colour_(*device_), d_alpha_(*device_), mask_(*device_), gradients_(*device_), weights_(*device_) {
+    }
 
-    void forward(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings, ForwardOutput& output) override {
+    void forward(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
+                 ForwardOutput& output) override {
         frame_.prepare(gaussians, camera, settings, {});
         frame_.blend(settings.background, 3);
         output.colour.resize(camera.width, camera.height, 3);
@@ -60,7 +65,8 @@ public:
         output.dropped_rows = frame_.unusable_rows();
     }
 
-    void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row, Gradients& output) override {
+    void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row,
+                  Gradients& output) override {
         GSE_CHECK(first_row <= frame_.row_count());
         GSE_CHECK_EQ(d_colour.data.size(), frame_.pixel_count() * 3);
         GSE_CHECK(d_alpha.data.empty() || d_alpha.data.size() == frame_.pixel_count());
@@ -87,8 +93,8 @@ public:
         gradients_.download(rows, stride, output);
     }
 
-    void contributions(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings, const Image& mask,
-                       std::span<double> masked, std::span<double> total) override {
+    void contributions(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
+                       const Image& mask, std::span<double> masked, std::span<double> total) override {
         GSE_CHECK_EQ(masked.size(), gaussians.size);
         GSE_CHECK_EQ(total.size(), gaussians.size);
         GSE_CHECK(mask.width == camera.width && mask.height == camera.height && mask.channels == 1);
@@ -101,7 +107,8 @@ public:
         const std::size_t rows = gaussians.size;
         double* sums = weights_.at_least(2 * rows);
         device_->launch(kernels::weigh, blocks_for(rows),
-                        {side_frame_.pair_counts(), args.table.slot_begins, args.table.slots, static_cast<std::uint32_t>(rows), sums, sums + rows});
+                        {side_frame_.pair_counts(), args.table.slot_begins, args.table.slots,
+                         static_cast<std::uint32_t>(rows), sums, sums + rows});
         sums_.resize(2 * rows);
         weights_.download(sums_);
         for (std::size_t row = 0; row < rows; ++row) {
@@ -110,8 +117,8 @@ public:
         }
     }
 
-    void forward_values(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings, std::span<const float> values,
-                        Image& output) override {
+    void forward_values(const GaussianSpans& gaussians, const Camera& camera, const Settings& settings,
+                        std::span<const float> values, Image& output) override {
         GSE_CHECK_EQ(values.size(), gaussians.size);
         side_frame_.prepare(gaussians, camera, settings, values);
         side_frame_.blend({0, 0, 0}, 1);

@@ -3,7 +3,8 @@
 
 namespace gse::raster::cuda {
 
-const std::uint32_t* DeviceScan::scan_level(const std::uint32_t* in, std::uint32_t* out, std::size_t count, std::size_t level) {
+const std::uint32_t* DeviceScan::scan_level(const std::uint32_t* in, std::uint32_t* out, std::size_t count,
+                                            std::size_t level) {
     const std::size_t blocks = blocks_for(count, BlockThreads * ScanItems);
     if (totals_.size() <= level) totals_.emplace_back(device_);
     std::uint32_t* totals = totals_[level].at_least(blocks);

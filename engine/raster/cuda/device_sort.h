@@ -13,13 +13,16 @@ public:
     explicit DeviceScan(Device& device) : device_(device) {}
 
     /// out[i] = sum of in[0..i), saturated; `out` may be `in`.
-    void run(const std::uint32_t* in, std::uint32_t* out, std::size_t count) { scan_level(in, out, count, 0); }
+    void run(const std::uint32_t* in, std::uint32_t* out, std::size_t count) {
+        scan_level(in, out, count, 0);
+    }
     /// The same; returns the sum of all, for which it waits.
     std::uint32_t total(const std::uint32_t* in, std::uint32_t* out, std::size_t count);
 
 private:
     /// Returns where the sum of all is.
-    const std::uint32_t* scan_level(const std::uint32_t* in, std::uint32_t* out, std::size_t count, std::size_t level);
+    const std::uint32_t* scan_level(const std::uint32_t* in, std::uint32_t* out, std::size_t count,
+                                    std::size_t level);
 
     Device& device_;
     std::deque<DeviceArray<std::uint32_t>> totals_;  // of each level's blocks
@@ -29,7 +32,8 @@ private:
 class DeviceSort {
 public:
     explicit DeviceSort(Device& device)
-        : device_(device), scan_(device), keys_{DeviceArray<std::uint32_t>(device), DeviceArray<std::uint32_t>(device)},
+        : device_(device),
+          scan_(device), keys_{DeviceArray<std::uint32_t>(device), DeviceArray<std::uint32_t>(device)},
           values_{DeviceArray<std::uint32_t>(device), DeviceArray<std::uint32_t>(device)}, counts_(device) {}
 
     struct Sorted {

@@ -25,7 +25,8 @@ class Driver {
 public:
     explicit Driver(const std::string& library) : handle_(dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL)) {
         if (handle_ == nullptr)
-            throw Error(ErrorCode::NotFound, fmt::format("there is no CUDA driver ({}) on this machine", library),
+            throw Error(ErrorCode::NotFound,
+                        fmt::format("there is no CUDA driver ({}) on this machine", library),
                         fmt::format("install NVIDIA's driver, or {}", UseCpu));
         try {
 #define GSE_LOAD(member, name, parameters) find(name, member);
@@ -50,15 +51,15 @@ public:
         const char *name = nullptr, *text = nullptr;
         error_name(result, &name);
         error_text(result, &text);
-        throw Error(ErrorCode::Foreign,
-                    fmt::format("the CUDA driver cannot {}: {} ({})", what, text != nullptr ? text : "unknown error",
-                                name != nullptr ? name : std::to_string(result)),
-                    UseCpu);
+        throw Error(
+            ErrorCode::Foreign,
+            fmt::format("the CUDA driver cannot {}: {} ({})", what, text != nullptr ? text : "unknown error",
+                        name != nullptr ? name : std::to_string(result)),
+            UseCpu);
     }
 
 private:
-    template <class Function>
-    void find(const char* name, Function& to) {
+    template <class Function> void find(const char* name, Function& to) {
         void* symbol = dlsym(handle_, name);
         if (symbol == nullptr)
             throw Error(ErrorCode::Unsupported, fmt::format("the CUDA driver is too old: it has no {}", name),
@@ -77,17 +78,20 @@ public:
         int count = 0;
         if (started == DriverSuccess) driver.check(driver.device_count(&count), "count devices");
         else if (started != DriverNoDevice) driver.check(started, "start");
-        if (count == 0) throw Error(ErrorCode::NotFound, "the CUDA driver finds no device on this machine", UseCpu);
+        if (count == 0)
+            throw Error(ErrorCode::NotFound, "the CUDA driver finds no device on this machine", UseCpu);
         driver.check(driver.device(&device_, 0), "open its first device");
         std::array<char, 256> text{};
-        driver.check(driver.device_name(text.data(), static_cast<int>(text.size()) - 1, device_), "name its first device");
+        driver.check(driver.device_name(text.data(), static_cast<int>(text.size()) - 1, device_),
+                     "name its first device");
         name = printable(text.data());
         int major = 0, minor = 0;
         driver.check(driver.attribute(&major, DriverCapabilityMajor, device_), "describe its first device");
         driver.check(driver.attribute(&minor, DriverCapabilityMinor, device_), "describe its first device");
         if (major < LeastCapability)
             throw Error(ErrorCode::Unsupported,
-                        fmt::format("{} has compute capability {}.{}, but the kernels need {}.0", name, major, minor, LeastCapability),
+                        fmt::format("{} has compute capability {}.{}, but the kernels need {}.0", name, major,
+                                    minor, LeastCapability),
                         UseCpu);
         driver.check(driver.retain(&context_, device_), "open a context on " + name);
     }
@@ -126,14 +130,17 @@ private:
 
 class DriverBackedDevice final : public Device {
 public:
-    explicit DriverBackedDevice(const std::string& library) : context_(library) { context_.load(kernel_text()); }
+    explicit DriverBackedDevice(const std::string& library) : context_(library) {
+        context_.load(kernel_text());
+    }
 
     void* allocate(std::size_t bytes) override {
         context_.enter();
         DriverAddress address = 0;
         const DriverResult result = driver().allocate(&address, bytes);
         if (result == DriverOutOfMemory)
-            throw Error(ErrorCode::Unsupported, fmt::format("{} has no {} MiB of memory left", context_.name, (bytes >> 20) + 1),
+            throw Error(ErrorCode::Unsupported,
+                        fmt::format("{} has no {} MiB of memory left", context_.name, (bytes >> 20) + 1),
                         "render smaller pictures, prune the scene, or use the rasterizer \"cpu\"");
         driver().check(result, "allocate memory");
         return reinterpret_cast<void*>(static_cast<std::uintptr_t>(address));
@@ -164,8 +171,8 @@ protected:
     void run(int kernel, std::uint32_t blocks, const void* arguments, std::size_t) override {
         context_.enter();
         void* parameters[] = {const_cast<void*>(arguments)};  // it is only read
-        driver().check(driver().launch(context_.functions[static_cast<std::size_t>(kernel)], blocks, 1, 1, BlockThreads, 1, 1, 0, nullptr,
-                                       parameters, nullptr),
+        driver().check(driver().launch(context_.functions[static_cast<std::size_t>(kernel)], blocks, 1, 1,
+                                       BlockThreads, 1, 1, 0, nullptr, parameters, nullptr),
                        std::string("launch ") + KernelNames[kernel]);
     }
 

@@ -1,4 +1,5 @@
-// CUDA devices through the driver alone (libcuda, opened when it is asked for): no toolkit is needed to build or to run.
+// CUDA devices through the driver alone (libcuda, opened when it is asked for): no toolkit is needed to build
+// or to run.
 #pragma once
 
 #include <memory>
@@ -13,8 +14,9 @@ inline constexpr const char* DriverLibrary = "libcuda.so.1";
 /// The kernels as PTX text for compute capability 6.0 and newer; empty where the build had no clang.
 const std::string& kernel_text();
 
-/// The first device, with the kernels loaded. `library`: the driver's, a name or a path. Throws Error, one sentence each: Unsupported
-/// (no kernels in this build, a device too old), NotFound (no driver, no device), Foreign (the driver refuses).
+/// The first device, with the kernels loaded. `library`: the driver's, a name or a path. Throws Error, one
+/// sentence each: Unsupported (no kernels in this build, a device too old), NotFound (no driver, no device),
+/// Foreign (the driver refuses).
 std::unique_ptr<Device> open_cuda_device(const std::string& library = DriverLibrary);
 
 }  // namespace gse::raster::cuda

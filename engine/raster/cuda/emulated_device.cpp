@@ -24,8 +24,10 @@ struct Entry {
 };
 
 constexpr Entry Entries[] = {
-#define GSE_KERNEL(name, Arguments, body) \
-    {sizeof(Arguments), [](const Grid& grid, const void* arguments) { body(grid, *static_cast<const Arguments*>(arguments)); }},
+#define GSE_KERNEL(name, Arguments, body)                             \
+    {sizeof(Arguments), [](const Grid& grid, const void* arguments) { \
+         body(grid, *static_cast<const Arguments*>(arguments));       \
+     }},
 #include "engine/raster/cuda/kernel_list.inl"
 #undef GSE_KERNEL
 };
@@ -37,7 +39,8 @@ struct alignas(64) Line {
 };
 using SharedMemory = std::vector<Line>;
 
-void run_blocks(int kernel, std::uint32_t blocks, const void* arguments, bool reversed, SharedMemory& shared) {
+void run_blocks(int kernel, std::uint32_t blocks, const void* arguments, bool reversed,
+                SharedMemory& shared) {
     shared.resize(SharedBytes / sizeof(Line));
     for (std::uint32_t i = 0; i < blocks; ++i) {
         std::memset(static_cast<void*>(shared.data()), Unknown, SharedBytes);
@@ -50,7 +53,8 @@ public:
     explicit EmulatedDevice(EmulationOrder order) : reversed_(order == EmulationOrder::Reversed) {}
 
     void* allocate(std::size_t bytes) override {
-        void* memory = std::aligned_alloc(sizeof(Line), (bytes + sizeof(Line) - 1) / sizeof(Line) * sizeof(Line));
+        void* memory =
+            std::aligned_alloc(sizeof(Line), (bytes + sizeof(Line) - 1) / sizeof(Line) * sizeof(Line));
         if (memory == nullptr) throw std::bad_alloc();
         return std::memset(memory, Unknown, bytes);
     }
@@ -76,7 +80,9 @@ private:
 }  // namespace
 }  // namespace emulated
 
-std::unique_ptr<Device> make_emulated_device(EmulationOrder order) { return std::make_unique<emulated::EmulatedDevice>(order); }
+std::unique_ptr<Device> make_emulated_device(EmulationOrder order) {
+    return std::make_unique<emulated::EmulatedDevice>(order);
+}
 
 void run_emulated(int kernel, std::uint32_t blocks, const void* arguments) {
     emulated::SharedMemory shared;

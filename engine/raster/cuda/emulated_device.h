@@ -1,6 +1,6 @@
-// The processor in the place of a CUDA device, for tests: the kernels' own source, block by block and thread by thread. It shows that
-// the kernels and their launches compute the right thing; it says nothing about their speed, nor about what only a device can do
-// wrong.
+// The processor in the place of a CUDA device, for tests: the kernels' own source, block by block and thread
+// by thread. It shows that the kernels and their launches compute the right thing; it says nothing about
+// their speed, nor about what only a device can do wrong.
 #pragma once
 
 #include <memory>

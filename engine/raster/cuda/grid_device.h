@@ -18,25 +18,26 @@ GSE_DEVICE void end_phase() { __nvvm_bar_sync(0); }
 GSE_DEVICE void end_warp_phase() { __nvvm_bar_warp_sync(WholeWarp); }
 
 /// A register of each thread of the block.
-template <class T>
-struct PerThread {
+template <class T> struct PerThread {
     T own;
     __attribute__((device)) T& operator[](std::uint32_t) { return own; }
     __attribute__((device)) const T& operator[](std::uint32_t) const { return own; }
 };
-template <class T>
-using PerLane = PerThread<T>;
+template <class T> using PerLane = PerThread<T>;
 
 #define GSE_THREADS(grid, t) \
     for (std::uint32_t t = own_thread(), t##_left = 1; t##_left != 0; t##_left = 0, end_phase())
 #define GSE_WARPS(grid, w) \
     for (std::uint32_t w = own_thread() / WarpLanes, w##_left = 1; w##_left != 0; w##_left = 0, end_phase())
-#define GSE_LANES(grid, lane) \
-    for (std::uint32_t lane = own_thread() % WarpLanes, lane##_left = 1; lane##_left != 0; lane##_left = 0, end_warp_phase())
+#define GSE_LANES(grid, lane)                                                              \
+    for (std::uint32_t lane = own_thread() % WarpLanes, lane##_left = 1; lane##_left != 0; \
+         lane##_left = 0, end_warp_phase())
 #define GSE_SHARED(grid, Type, name) static __attribute__((shared)) Type name
 
 /// Whether any thread of the block says so. For the whole block.
-GSE_DEVICE bool any_thread(const Grid&, const PerThread<bool>& says) { return __nvvm_bar0_or(says.own ? 1 : 0) != 0; }
+GSE_DEVICE bool any_thread(const Grid&, const PerThread<bool>& says) {
+    return __nvvm_bar0_or(says.own ? 1 : 0) != 0;
+}
 /// The same of a warp, for the whole warp.
 GSE_DEVICE bool any_lane(const PerLane<bool>& says) { return __nvvm_vote_any_sync(WholeWarp, says.own); }
 
@@ -48,7 +49,9 @@ GSE_DEVICE void sum_lanes(PerLane<float>& value) {
 }
 
 /// Counts; sums of whole numbers are the same in any order.
-GSE_DEVICE void add_atomically(std::uint32_t* to, std::uint32_t value) { __atomic_fetch_add(to, value, __ATOMIC_RELAXED); }
+GSE_DEVICE void add_atomically(std::uint32_t* to, std::uint32_t value) {
+    __atomic_fetch_add(to, value, __ATOMIC_RELAXED);
+}
 
 /// a b + c, rounded once.
 GSE_DEVICE float fused(float a, float b, float c) { return __builtin_fmaf(a, b, c); }

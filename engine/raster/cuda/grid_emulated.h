@@ -1,5 +1,5 @@
-// The grid on the processor: the threads of a phase one after the other, in an order that tests may turn round. It shows what the
-// kernels compute, not how fast.
+// The grid on the processor: the threads of a phase one after the other, in an order that tests may turn
+// round. It shows what the kernels compute, not how fast.
 #pragma once
 
 #define GSE_DEVICE static inline
@@ -10,22 +10,23 @@ namespace gse::raster::cuda {
 /// The block that runs.
 struct Grid {
     std::uint32_t block;
-    void* shared;         // SharedBytes, of unknown content
-    bool reversed;        // the last thread first
-    std::uint32_t at(std::uint32_t index, std::uint32_t count) const { return reversed ? count - 1 - index : index; }
+    void* shared;   // SharedBytes, of unknown content
+    bool reversed;  // the last thread first
+    std::uint32_t at(std::uint32_t index, std::uint32_t count) const {
+        return reversed ? count - 1 - index : index;
+    }
 };
 
-inline constexpr std::size_t SharedBytes = 48 * 1024;  // what every CUDA device has without being asked for more
+inline constexpr std::size_t SharedBytes =
+    48 * 1024;  // what every CUDA device has without being asked for more
 
 /// One value of each thread of the block.
-template <class T>
-struct PerThread {
+template <class T> struct PerThread {
     T all[BlockThreads];
     T& operator[](std::uint32_t t) { return all[t]; }
     const T& operator[](std::uint32_t t) const { return all[t]; }
 };
-template <class T>
-struct PerLane {
+template <class T> struct PerLane {
     T all[WarpLanes];
     T& operator[](std::uint32_t lane) { return all[lane]; }
     const T& operator[](std::uint32_t lane) const { return all[lane]; }
@@ -37,8 +38,8 @@ struct PerLane {
 #define GSE_THREADS(grid, t) GSE_EACH(grid, t, BlockThreads)
 #define GSE_WARPS(grid, w) GSE_EACH(grid, w, BlockWarps)
 #define GSE_LANES(grid, lane) GSE_EACH(grid, lane, WarpLanes)
-#define GSE_SHARED(grid, Type, name)                     \
-    static_assert(sizeof(Type) <= SharedBytes);          \
+#define GSE_SHARED(grid, Type, name)            \
+    static_assert(sizeof(Type) <= SharedBytes); \
     Type& name = *static_cast<Type*>((grid).shared)
 
 /// Whether any thread of the block says so.
@@ -58,7 +59,8 @@ GSE_DEVICE bool any_lane(const PerLane<bool>& says) {
 GSE_DEVICE void sum_lanes(PerLane<float>& value) {
     for (std::uint32_t distance = WarpLanes / 2; distance > 0; distance /= 2) {
         PerLane<float> next;
-        for (std::uint32_t lane = 0; lane < WarpLanes; ++lane) next.all[lane] = value.all[lane] + value.all[lane ^ distance];
+        for (std::uint32_t lane = 0; lane < WarpLanes; ++lane)
+            next.all[lane] = value.all[lane] + value.all[lane ^ distance];
         value = next;
     }
 }

@@ -1,5 +1,5 @@
-// Kernels 4: the slots of a row, in order, -> gradients of its raw parameters (kernel_gradient.inl, in double), or its weights.
-// One thread per row.
+// Kernels 4: the slots of a row, in order, -> gradients of its raw parameters (kernel_gradient.inl, in
+// double), or its weights. One thread per row.
 
 struct RowSums {
     float sums[SlotFloats];
@@ -27,8 +27,8 @@ GSE_DEVICE void clear_row(const GradientArguments& args, std::size_t index) {
     args.out.visible[index] = 0;
 }
 
-/// colour_gradient of kernel_gradient.inl for a number of coefficients the compiler knows: those of `sh`, and of the position
-/// through the direction.
+/// colour_gradient of kernel_gradient.inl for a number of coefficients the compiler knows: those of `sh`, and
+/// of the position through the direction.
 template <int Count>
 GSE_DEVICE void colour_chain(const Viewpoint& view, const float* sh, float* d_sh, GradientBatch& batch) {
     F d_colour[3];
@@ -45,8 +45,10 @@ GSE_DEVICE void colour_chain(const Viewpoint& view, const float* sh, float* d_sh
     basis_lanes(x, y, z, Count, basis);
 #pragma GCC unroll 16
     for (int k = 0; k < Count; ++k) {
-        for (int channel = 0; channel < 3; ++channel) store(d_sh + k * 3 + channel, basis[k] * d_colour[channel]);
-        h[k] = fma(load(sh + k * 3 + 2), d_colour[2], fma(load(sh + k * 3 + 1), d_colour[1], load(sh + k * 3) * d_colour[0]));
+        for (int channel = 0; channel < 3; ++channel)
+            store(d_sh + k * 3 + channel, basis[k] * d_colour[channel]);
+        h[k] = fma(load(sh + k * 3 + 2), d_colour[2],
+                   fma(load(sh + k * 3 + 1), d_colour[1], load(sh + k * 3) * d_colour[0]));
     }
     F d[3] = {zero(), zero(), zero()};
     if (Count >= 4) {
@@ -63,14 +65,10 @@ GSE_DEVICE void colour_chain_of(const GradientArguments& args, std::uint32_t row
     const std::size_t stride = args.source.sh_stride;
     const float* sh = args.source.sh + row * stride;
     float* d_sh = args.out.sh + (row - args.first_row) * stride;
-    if (args.view.sh_count >= 16)
-        colour_chain<16>(args.view, sh, d_sh, batch);
-    else if (args.view.sh_count >= 9)
-        colour_chain<9>(args.view, sh, d_sh, batch);
-    else if (args.view.sh_count >= 4)
-        colour_chain<4>(args.view, sh, d_sh, batch);
-    else
-        colour_chain<1>(args.view, sh, d_sh, batch);
+    if (args.view.sh_count >= 16) colour_chain<16>(args.view, sh, d_sh, batch);
+    else if (args.view.sh_count >= 9) colour_chain<9>(args.view, sh, d_sh, batch);
+    else if (args.view.sh_count >= 4) colour_chain<4>(args.view, sh, d_sh, batch);
+    else colour_chain<1>(args.view, sh, d_sh, batch);
     const auto used = static_cast<std::size_t>(args.view.sh_count) * 3;
     clear_floats(d_sh + used, stride - used);
 }
@@ -88,7 +86,8 @@ GSE_DEVICE void gradient_row(const Grid& grid, const GradientArguments& args) {
         GradientBatch batch;
         load_row(args.source, row, 0, batch.raw);
         for (int k = 0; k < 9; ++k) batch.sums[k][0] = found.sums[k];
-        for (int channel = 0; channel < 3; ++channel) batch.positive[channel][0] = args.records[row].colour[channel];
+        for (int channel = 0; channel < 3; ++channel)
+            batch.positive[channel][0] = args.records[row].colour[channel];
         compute_shape(batch.raw, batch.shape);
         keep_finite_sums(batch);
         Geometry g;

@@ -1,4 +1,5 @@
-// One lane per thread: the register types and the image formation are those of the vector kernels, with W = 1.
+// One lane per thread: the register types and the image formation are those of the vector kernels, with W
+// = 1.
 
 /// For exp_lanes and log2_lanes of kernel_geometry.inl: no library is there for a device.
 #define GSE_ONE_LANE_MATH 1
@@ -9,7 +10,9 @@ GSE_INLINE F scale_by_power(F a, F power) {
     const std::int32_t field = static_cast<std::int32_t>(power.v) * (1 << 23);
     return {__builtin_bit_cast(float, __builtin_bit_cast(std::int32_t, a.v) + field)};
 }
-GSE_INLINE F exponent_of(F a) { return {static_cast<float>((__builtin_bit_cast(std::int32_t, a.v) >> 23) - 127)}; }
+GSE_INLINE F exponent_of(F a) {
+    return {static_cast<float>((__builtin_bit_cast(std::int32_t, a.v) >> 23) - 127)};
+}
 GSE_INLINE F mantissa_of(F a) {
     return {__builtin_bit_cast(float, (__builtin_bit_cast(std::int32_t, a.v) & 0x007fffff) | 0x3f800000)};
 }

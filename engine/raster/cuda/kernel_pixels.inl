@@ -1,7 +1,7 @@
-// Kernels 3: one block per tile of 16x16 pixels, one thread per pixel, the Gaussians in batches through shared memory. Forward:
-// sums in registers. Backward and contributions: the same walk front to back with the same decisions; the sums over a tile's
-// pixels are added in one order, warp by warp, and left in the slot of the (tile, Gaussian), so that no result depends on
-// which block came first.
+// Kernels 3: one block per tile of 16x16 pixels, one thread per pixel, the Gaussians in batches through
+// shared memory. Forward: sums in registers. Backward and contributions: the same walk front to back with the
+// same decisions; the sums over a tile's pixels are added in one order, warp by warp, and left in the slot of
+// the (tile, Gaussian), so that no result depends on which block came first.
 
 constexpr std::uint32_t BlendBatch = BlockThreads;  // records
 constexpr std::uint32_t SumBatch = 32;              // one bit each
@@ -19,12 +19,15 @@ GSE_DEVICE TilePixel tile_pixel(const TileLists& lists, std::uint32_t tile, std:
     const std::uint32_t warp = t / WarpLanes, lane = t % WarpLanes;
     const std::uint32_t x = tile % lists.tile_columns * TileSize + warp % 2 * 8 + lane % 8;
     const std::uint32_t y = tile / lists.tile_columns * TileSize + warp / 2 * 4 + lane / 8;
-    const auto width = static_cast<std::uint32_t>(lists.width), height = static_cast<std::uint32_t>(lists.height);
-    return {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, y * width + x, x < width && y < height};
+    const auto width = static_cast<std::uint32_t>(lists.width),
+               height = static_cast<std::uint32_t>(lists.height);
+    return {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f, y * width + x,
+            x < width && y < height};
 }
 
 /// Records of the rows, word by word, so that neighbouring threads read neighbouring words.
-GSE_DEVICE void copy_records(const Record* from, const std::uint32_t* rows, std::uint32_t count, std::uint32_t t, Record* to) {
+GSE_DEVICE void copy_records(const Record* from, const std::uint32_t* rows, std::uint32_t count,
+                             std::uint32_t t, Record* to) {
     for (std::uint32_t word = t; word < count * RecordWords; word += BlockThreads) {
         const std::uint32_t record = word / RecordWords, offset = word % RecordWords * sizeof(std::uint32_t);
         __builtin_memcpy(reinterpret_cast<char*>(to + record) + offset,
@@ -44,7 +47,8 @@ struct PixelLight {
 };
 
 /// The batch over one pixel, until no light is left.
-GSE_DEVICE void blend_pixel(const Record* records, std::uint32_t count, const TilePixel& pixel, PixelLight& light) {
+GSE_DEVICE void blend_pixel(const Record* records, std::uint32_t count, const TilePixel& pixel,
+                            PixelLight& light) {
     for (std::uint32_t i = 0; i < count && light.running > CutTransmittance; ++i) {
         const Record& r = records[i];
         const Sample s = sample(r, set(pixel.x), set(pixel.y));
@@ -104,8 +108,8 @@ GSE_DEVICE void blend_tile(const Grid& grid, const BlendArguments& args) {
     }
 }
 
-/// Remaining-light form of the derivative, as backward_pixels has it: dL/dalpha = T (c.v) - R / (1 - alpha) with R the
-/// gradient-weighted light behind the pair.
+/// Remaining-light form of the derivative, as backward_pixels has it: dL/dalpha = T (c.v) - R / (1 - alpha)
+/// with R the gradient-weighted light behind the pair.
 struct SlopePixel {
     using Arguments = BackwardArguments;
     static constexpr std::uint32_t Floats = SlotFloats;
@@ -132,7 +136,8 @@ struct SlopePixel {
         transmittance = fused(-alpha, before, before);
         if (!(transmittance > CutTransmittance)) return false;
         const float weight = alpha * before;
-        const float light = fused(r.colour[2], d[2], fused(r.colour[1], d[1], r.colour[0] * d[0])), lit = weight * light;
+        const float light = fused(r.colour[2], d[2], fused(r.colour[1], d[1], r.colour[0] * d[0])),
+                    lit = weight * light;
         remaining -= lit;
         if (!active) return true;
         const float g = any(s.free) ? fused(-(alpha * remaining), 1.0f / (1.0f - alpha), lit) : 0.0f;
@@ -174,8 +179,7 @@ struct WeightPixel {
     }
 };
 
-template <std::uint32_t Floats>
-struct SumShared {
+template <std::uint32_t Floats> struct SumShared {
     Record records[SumBatch];
     std::uint32_t rows[SumBatch], slots[SumBatch];
     std::uint32_t touched[BlockWarps];  // bit i: the warp has sums of record i
@@ -184,7 +188,8 @@ struct SumShared {
 };
 
 /// Behind the last entry of the tile that wants sums; 0 where none does.
-GSE_DEVICE std::uint32_t last_active(const Grid& grid, const TileLists& lists, std::uint32_t first_row, std::uint32_t* last) {
+GSE_DEVICE std::uint32_t last_active(const Grid& grid, const TileLists& lists, std::uint32_t first_row,
+                                     std::uint32_t* last) {
     const TileRange range = lists.ranges[grid.block];
     if (first_row == 0) return range.end;
     GSE_THREADS(grid, t) {
@@ -192,23 +197,25 @@ GSE_DEVICE std::uint32_t last_active(const Grid& grid, const TileLists& lists, s
         for (std::uint32_t i = range.begin + t; i < range.end; i += BlockThreads)
             if (lists.pair_rows[lists.entries[i]] >= first_row) last[t] = i + 1;
     }
-    for (std::uint32_t half = BlockThreads / 2; half > 0; half /= 2)
-        GSE_THREADS(grid, t) {
+    for (std::uint32_t half = BlockThreads / 2; half > 0; half /= 2) GSE_THREADS(grid, t) {
             if (t < half && last[t + half] > last[t]) last[t] = last[t + half];
         }
     return last[0];  // which nobody writes again
 }
 
 /// Rows and slots of the entries from `begin` on.
-GSE_DEVICE void load_entry(const TileLists& lists, const SlotTable& table, std::uint32_t entry, std::uint32_t& row, std::uint32_t& slot) {
+GSE_DEVICE void load_entry(const TileLists& lists, const SlotTable& table, std::uint32_t entry,
+                           std::uint32_t& row, std::uint32_t& slot) {
     const std::uint32_t pair = lists.entries[entry];
     row = lists.pair_rows[pair];
-    slot = row < table.first_row ? NoSlot : table.slot_begins[row - table.first_row] + (pair - table.pair_begins[row]);
+    slot = row < table.first_row ? NoSlot
+                                 : table.slot_begins[row - table.first_row] + (pair - table.pair_begins[row]);
 }
 
 /// One warp's pixels through the batch: sums of each record over its lanes.
 template <class Pixel>
-GSE_DEVICE void sum_warp(const Grid& grid, std::uint32_t warp, std::uint32_t size, PerThread<Pixel>& pixels, SumShared<Pixel::Floats>& shared) {
+GSE_DEVICE void sum_warp(const Grid& grid, std::uint32_t warp, std::uint32_t size, PerThread<Pixel>& pixels,
+                         SumShared<Pixel::Floats>& shared) {
     std::uint32_t touched = 0;
     for (std::uint32_t i = 0; i < size; ++i) {
         const bool active = shared.slots[i] != NoSlot;
@@ -234,7 +241,8 @@ GSE_DEVICE void sum_warp(const Grid& grid, std::uint32_t warp, std::uint32_t siz
 
 /// The warps' sums, in order, into the slots; slots that no pixel reached stay as they are.
 template <std::uint32_t Floats>
-GSE_DEVICE void write_slots(const SumShared<Floats>& shared, std::uint32_t size, std::uint32_t t, float* slots) {
+GSE_DEVICE void write_slots(const SumShared<Floats>& shared, std::uint32_t size, std::uint32_t t,
+                            float* slots) {
     for (std::uint32_t item = t; item < size * Floats; item += BlockThreads) {
         const std::uint32_t i = item / Floats, k = item % Floats;
         bool any_warp = false;
@@ -248,8 +256,7 @@ GSE_DEVICE void write_slots(const SumShared<Floats>& shared, std::uint32_t size,
     }
 }
 
-template <class Pixel>
-GSE_DEVICE void sum_tile(const Grid& grid, const typename Pixel::Arguments& args) {
+template <class Pixel> GSE_DEVICE void sum_tile(const Grid& grid, const typename Pixel::Arguments& args) {
     GSE_SHARED(grid, SumShared<Pixel::Floats>, shared);
     const std::uint32_t end = last_active(grid, args.lists, args.table.first_row, shared.last);
     PerThread<Pixel> pixels;
@@ -270,5 +277,9 @@ GSE_DEVICE void sum_tile(const Grid& grid, const typename Pixel::Arguments& args
     }
 }
 
-GSE_DEVICE void backward_tile(const Grid& grid, const BackwardArguments& args) { sum_tile<SlopePixel>(grid, args); }
-GSE_DEVICE void contribute_tile(const Grid& grid, const ContributeArguments& args) { sum_tile<WeightPixel>(grid, args); }
+GSE_DEVICE void backward_tile(const Grid& grid, const BackwardArguments& args) {
+    sum_tile<SlopePixel>(grid, args);
+}
+GSE_DEVICE void contribute_tile(const Grid& grid, const ContributeArguments& args) {
+    sum_tile<WeightPixel>(grid, args);
+}

@@ -1,13 +1,13 @@
-// Kernels 2: rows -> records (Kerbl et al. 2023, EWA as kernel_geometry.inl has it, in double), the tiles their ellipses touch,
-// and the tiles' parts of the sorted pairs. One thread per row.
+// Kernels 2: rows -> records (Kerbl et al. 2023, EWA as kernel_geometry.inl has it, in double), the tiles
+// their ellipses touch, and the tiles' parts of the sorted pairs. One thread per row.
 
 constexpr float TileMargin = 0.01f;  // pixels, so that rounding can never drop a pair
 
 GSE_DEVICE std::uint32_t row_of(const Grid& grid, std::uint32_t t) { return grid.block * BlockThreads + t; }
 
-/// Colour before the clamp, of the first Count coefficients: a number the compiler knows, so that no array lies in memory.
-template <int Count>
-GSE_DEVICE void colour_of(F x, F y, F z, const float* sh, float* colour) {
+/// Colour before the clamp, of the first Count coefficients: a number the compiler knows, so that no array
+/// lies in memory.
+template <int Count> GSE_DEVICE void colour_of(F x, F y, F z, const float* sh, float* colour) {
     F basis[16];
     basis_lanes(x, y, z, Count, basis);
     F sums[3] = {set(0.5f), set(0.5f), set(0.5f)};
@@ -27,14 +27,10 @@ GSE_DEVICE bool colour_record(const ProjectArguments& args, const RecordBatch& f
     const F x = dx * scale, y = dy * scale, z = dz * scale;
     const float* sh = args.source.sh + record.row * args.source.sh_stride;
     float colour[3];
-    if (args.view.sh_count >= 16)
-        colour_of<16>(x, y, z, sh, colour);
-    else if (args.view.sh_count >= 9)
-        colour_of<9>(x, y, z, sh, colour);
-    else if (args.view.sh_count >= 4)
-        colour_of<4>(x, y, z, sh, colour);
-    else
-        colour_of<1>(x, y, z, sh, colour);
+    if (args.view.sh_count >= 16) colour_of<16>(x, y, z, sh, colour);
+    else if (args.view.sh_count >= 9) colour_of<9>(x, y, z, sh, colour);
+    else if (args.view.sh_count >= 4) colour_of<4>(x, y, z, sh, colour);
+    else colour_of<1>(x, y, z, sh, colour);
     constexpr float largest = 3.40282346638528859812e38f;
     bool finite = true;
     for (int channel = 0; channel < 3; ++channel) {
@@ -111,7 +107,8 @@ GSE_DEVICE TileEllipse tile_ellipse(const Record& r, int width, int height) {
 
 /// Columns [first, end) of the tiles of one row that the ellipse touches at pixel centres.
 GSE_DEVICE void tile_span(const TileEllipse& e, std::int32_t row, std::int32_t& first, std::int32_t& end) {
-    const F low = set(static_cast<float>(row * TileSize) + 0.5f - e.y), high = low + set(static_cast<float>(TileSize - 1));
+    const F low = set(static_cast<float>(row * TileSize) + 0.5f - e.y),
+            high = low + set(static_cast<float>(TileSize - 1));
     const F from = max(low, set(-e.half_height)), to = min(high, set(e.half_height));
     // The right edge is a concave function of dy with its top at `lean`; the left edge is its mirror image.
     const F right = min(max(set(e.lean), from), to), left = min(max(set(-e.lean), from), to);
@@ -144,7 +141,8 @@ GSE_DEVICE void project_rows(const Grid& grid, const ProjectArguments& args) {
         if (row >= args.rows) continue;
         Record record = {};
         const RowFate fate = record_of(args, row, record);
-        const std::uint32_t count = fate == RowFate::Drawn ? count_tiles(record, args.view.width, args.view.height) : 0u;
+        const std::uint32_t count =
+            fate == RowFate::Drawn ? count_tiles(record, args.view.width, args.view.height) : 0u;
         if (count > 0) args.records[row] = record;
         args.keys[row] = count > 0 ? __builtin_bit_cast(std::uint32_t, record.depth) : NotDrawn;
         args.pair_counts[row] = count;

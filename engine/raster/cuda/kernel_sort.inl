@@ -1,7 +1,9 @@
-// Kernels 1: sums of counts, and one digit of a stable radix sort (least digit first). Each thread has neighbouring items, so that
-// order within a block is the order of the threads.
+// Kernels 1: sums of counts, and one digit of a stable radix sort (least digit first). Each thread has
+// neighbouring items, so that order within a block is the order of the threads.
 
-GSE_DEVICE std::uint32_t add_saturated(std::uint32_t a, std::uint32_t b) { return a + b < a ? Saturated : a + b; }
+GSE_DEVICE std::uint32_t add_saturated(std::uint32_t a, std::uint32_t b) {
+    return a + b < a ? Saturated : a + b;
+}
 
 struct ScanShared {
     std::uint32_t sums[BlockThreads];
@@ -21,7 +23,8 @@ GSE_DEVICE void scan(const Grid& grid, const ScanArguments& args) {
     GSE_THREADS(grid, t) {
         const std::uint32_t first = (grid.block * BlockThreads + t) * ScanItems;
         std::uint32_t sum = 0;
-        for (std::uint32_t i = first; i < first + ScanItems && i < args.count; ++i) sum = add_saturated(sum, args.in[i]);
+        for (std::uint32_t i = first; i < first + ScanItems && i < args.count; ++i)
+            sum = add_saturated(sum, args.in[i]);
         shared.sums[t] = sum;
     }
     scan_threads(grid, shared.sums);
@@ -55,19 +58,23 @@ GSE_DEVICE std::uint32_t digit_of(const RadixArguments& args, std::uint32_t i) {
     return args.keys[i] >> args.shift & (RadixDigits - 1);
 }
 
-GSE_DEVICE std::uint32_t first_item(const Grid& grid, std::uint32_t t) { return (grid.block * BlockThreads + t) * RadixItems; }
+GSE_DEVICE std::uint32_t first_item(const Grid& grid, std::uint32_t t) {
+    return (grid.block * BlockThreads + t) * RadixItems;
+}
 
 /// Ends with the counts of each thread's digits.
 GSE_DEVICE void count_digits(const Grid& grid, const RadixArguments& args, RadixShared& shared) {
     GSE_THREADS(grid, t) {
-        for (std::uint32_t digit = 0; digit < RadixDigits; ++digit) shared.counts[digit * BlockThreads + t] = 0;
+        for (std::uint32_t digit = 0; digit < RadixDigits; ++digit)
+            shared.counts[digit * BlockThreads + t] = 0;
         const std::uint32_t first = first_item(grid, t);
         for (std::uint32_t i = first; i < first + RadixItems && i < args.count; ++i)
             ++shared.counts[digit_of(args, i) * BlockThreads + t];
     }
 }
 
-/// sums[t] = counts [t, t + 1) * RadixDigits of the flat list; a digit has as many of these as there are digits.
+/// sums[t] = counts [t, t + 1) * RadixDigits of the flat list; a digit has as many of these as there are
+/// digits.
 GSE_DEVICE void sum_digits(const Grid& grid, RadixShared& shared) {
     GSE_THREADS(grid, t) {
         std::uint32_t sum = 0;
@@ -104,7 +111,8 @@ GSE_DEVICE void radix_scatter(const Grid& grid, const RadixArguments& args) {
     }
     // Where the block's first of each digit goes, less what the block has in front of it.
     GSE_THREADS(grid, t) {
-        if (t < RadixDigits) shared.sums[t] = args.counts[t * args.blocks + grid.block] - shared.counts[t * BlockThreads];
+        if (t < RadixDigits)
+            shared.sums[t] = args.counts[t * args.blocks + grid.block] - shared.counts[t * BlockThreads];
     }
     GSE_THREADS(grid, t) {
         const std::uint32_t first = first_item(grid, t);

@@ -1,4 +1,5 @@
-// The kernels for a CUDA device: compiled by clang without a toolkit to PTX text, which the driver translates for the device it finds.
+// The kernels for a CUDA device: compiled by clang without a toolkit to PTX text, which the driver translates
+// for the device it finds.
 #include "engine/raster/conventions.h"
 #include "engine/raster/cuda/arguments.h"
 #include "engine/raster/cuda/grid.h"
@@ -15,9 +16,9 @@ namespace {
 
 }  // namespace
 
-#define GSE_KERNEL(name, Arguments, body)                                                                              \
-    extern "C" __attribute__((global, launch_bounds(256))) void gse_##name(const Arguments arguments) {                 \
-        body(Grid{static_cast<std::uint32_t>(__nvvm_read_ptx_sreg_ctaid_x())}, arguments);                              \
+#define GSE_KERNEL(name, Arguments, body)                                                               \
+    extern "C" __attribute__((global, launch_bounds(256))) void gse_##name(const Arguments arguments) { \
+        body(Grid{static_cast<std::uint32_t>(__nvvm_read_ptx_sreg_ctaid_x())}, arguments);              \
     }
 #include "engine/raster/cuda/kernel_list.inl"
 static_assert(BlockThreads == 256);

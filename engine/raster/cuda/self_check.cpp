@@ -15,16 +15,18 @@
 namespace gse::raster {
 namespace {
 
-// Float sums of up to a few hundred terms below 1, as tests/agree/raster holds the fast version to; 2^x of a CUDA device is good to
-// 2^-22 only, which is why these are a little wider.
+// Float sums of up to a few hundred terms below 1, as tests/agree/raster holds the fast version to; 2^x of a
+// CUDA device is good to 2^-22 only, which is why these are a little wider.
 constexpr double ImageLimit = 2e-5;
 constexpr double DepthLimit = 2e-4;
 constexpr double GradientLimit = 2e-4;
-constexpr double ContributionLimit = 1e-3;  // ambiguous pixels are not left out here, and each may move one weight of 1/255
+constexpr double ContributionLimit =
+    1e-3;  // ambiguous pixels are not left out here, and each may move one weight of 1/255
 
 constexpr int CheckWidth = 75, CheckHeight = 53;  // whole and cut tiles
 
-/// Several batches of Gaussians per tile, some opaque, some needles, one row that means nothing, two at the same depth.
+/// Several batches of Gaussians per tile, some opaque, some needles, one row that means nothing, two at the
+/// same depth.
 GaussianData check_scene() {
     constexpr std::size_t rows = 600;
     GaussianData data;
@@ -56,10 +58,13 @@ Settings check_settings() {
     return settings;
 }
 
-std::vector<std::uint8_t> doubtful_pixels(const GaussianData& data, const Camera& camera, const Settings& settings) {
-    const auto widen = [](const std::vector<float>& values) { return std::vector<double>(values.begin(), values.end()); };
-    const auto position = widen(data.position), scale = widen(data.log_scale), rotation = widen(data.rotation),
-               logit = widen(data.opacity_logit), sh = widen(data.sh);
+std::vector<std::uint8_t> doubtful_pixels(const GaussianData& data, const Camera& camera,
+                                          const Settings& settings) {
+    const auto widen = [](const std::vector<float>& values) {
+        return std::vector<double>(values.begin(), values.end());
+    };
+    const auto position = widen(data.position), scale = widen(data.log_scale),
+               rotation = widen(data.rotation), logit = widen(data.opacity_logit), sh = widen(data.sh);
     const plain::Inputs inputs{data.size(), data.sh_degree, position, scale, rotation, logit, sh};
     const Settings settled = with_depth_range(settings, spans(data), camera);
     const plain::View view{camera, settled};
@@ -103,7 +108,8 @@ Shown show(Rasterizer& rasterizer, const GaussianData& data, const std::vector<s
 }
 
 /// Largest difference outside the doubtful pixels; infinite where there is a NaN or another size.
-double worst(const std::vector<float>& found, const std::vector<float>& expected, const std::vector<std::uint8_t>& doubtful) {
+double worst(const std::vector<float>& found, const std::vector<float>& expected,
+             const std::vector<std::uint8_t>& doubtful) {
     if (found.size() != expected.size()) return INFINITY;
     const std::size_t channels = expected.size() / doubtful.size();
     double result = 0;
@@ -115,8 +121,7 @@ double worst(const std::vector<float>& found, const std::vector<float>& expected
     return result;
 }
 
-template <class Values>
-double distance(const Values& found, const Values& expected) {
+template <class Values> double distance(const Values& found, const Values& expected) {
     double difference = 0, size = 0;
     if (found.size() != expected.size()) return INFINITY;
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -130,30 +135,34 @@ double distance(const Values& found, const Values& expected) {
 
 double gradient_distance(const Gradients& found, const Gradients& expected) {
     if (found.visible != expected.visible) return INFINITY;
-    return std::max({distance(found.position, expected.position), distance(found.log_scale, expected.log_scale),
-                     distance(found.rotation, expected.rotation), distance(found.opacity_logit, expected.opacity_logit),
-                     distance(found.sh, expected.sh), distance(found.mean2d_norm, expected.mean2d_norm)});
+    return std::max(
+        {distance(found.position, expected.position), distance(found.log_scale, expected.log_scale),
+         distance(found.rotation, expected.rotation), distance(found.opacity_logit, expected.opacity_logit),
+         distance(found.sh, expected.sh), distance(found.mean2d_norm, expected.mean2d_norm)});
 }
 
 bool same_bits(const Shown& a, const Shown& b) {
     const Gradients &g = a.gradients, &h = b.gradients;
-    return a.image.colour.data == b.image.colour.data && a.image.blended == b.image.blended && a.values.data == b.values.data &&
-           a.masked == b.masked && g.position == h.position && g.log_scale == h.log_scale && g.rotation == h.rotation &&
-           g.opacity_logit == h.opacity_logit && g.sh == h.sh && g.mean2d_norm == h.mean2d_norm && g.visible == h.visible;
+    return a.image.colour.data == b.image.colour.data && a.image.blended == b.image.blended &&
+           a.values.data == b.values.data && a.masked == b.masked && g.position == h.position &&
+           g.log_scale == h.log_scale && g.rotation == h.rotation && g.opacity_logit == h.opacity_logit &&
+           g.sh == h.sh && g.mean2d_norm == h.mean2d_norm && g.visible == h.visible;
 }
 
 }  // namespace
 
 bool SelfCheck::passed() const {
-    return image <= ImageLimit && depth <= DepthLimit && counts == 0 && gradient <= GradientLimit && contributions <= ContributionLimit &&
-           repeats;
+    return image <= ImageLimit && depth <= DepthLimit && counts == 0 && gradient <= GradientLimit &&
+           contributions <= ContributionLimit && repeats;
 }
 
 std::string SelfCheck::figures() const {
-    return fmt::format("picture {:.1e} (limit {:.0e}), depth {:.1e} ({:.0e}), other counts in {} pixels (0), gradients {:.1e} ({:.0e}), "
-                       "contributions {:.1e} ({:.0e}), {}",
-                       image, ImageLimit, depth, DepthLimit, counts, gradient, GradientLimit, contributions, ContributionLimit,
-                       repeats ? "repeatable" : "not repeatable");
+    return fmt::format(
+        "picture {:.1e} (limit {:.0e}), depth {:.1e} ({:.0e}), other counts in {} pixels (0), gradients "
+        "{:.1e} ({:.0e}), "
+        "contributions {:.1e} ({:.0e}), {}",
+        image, ImageLimit, depth, DepthLimit, counts, gradient, GradientLimit, contributions,
+        ContributionLimit, repeats ? "repeatable" : "not repeatable");
 }
 
 SelfCheck check_against_plain(Rasterizer& rasterizer) {
@@ -167,10 +176,12 @@ SelfCheck check_against_plain(Rasterizer& rasterizer) {
                             worst(found.values.data, expected.values.data, doubtful)});
     check.depth = worst(found.image.depth.data, expected.image.depth.data, doubtful);
     for (std::size_t pixel = 0; pixel < doubtful.size(); ++pixel)
-        if (doubtful[pixel] == 0 && found.image.blended[pixel] != expected.image.blended[pixel]) ++check.counts;
+        if (doubtful[pixel] == 0 && found.image.blended[pixel] != expected.image.blended[pixel])
+            ++check.counts;
     if (found.image.dropped_rows != expected.image.dropped_rows) check.counts = doubtful.size();
     check.gradient = gradient_distance(found.gradients, expected.gradients);
-    check.contributions = std::max(distance(found.masked, expected.masked), distance(found.total, expected.total));
+    check.contributions =
+        std::max(distance(found.masked, expected.masked), distance(found.total, expected.total));
     check.repeats = same_bits(found, show(rasterizer, data, doubtful));
     return check;
 }
@@ -178,9 +189,10 @@ SelfCheck check_against_plain(Rasterizer& rasterizer) {
 void require_agreement(Rasterizer& rasterizer, const std::string& what) {
     const SelfCheck check = check_against_plain(rasterizer);
     if (!check.passed())
-        throw Error(ErrorCode::Unsupported,
-                    fmt::format("{} draws a test scene otherwise than the processor does: {}", what, check.figures()),
-                    "use the rasterizer \"cpu\", and report these figures");
+        throw Error(
+            ErrorCode::Unsupported,
+            fmt::format("{} draws a test scene otherwise than the processor does: {}", what, check.figures()),
+            "use the rasterizer \"cpu\", and report these figures");
 }
 
 }  // namespace gse::raster

@@ -1,5 +1,6 @@
-// Whether a rasterizer draws and differentiates a small built-in scene as the plain version does: asked of every CUDA device before
-// it is used, so that one that computes something else is refused rather than believed.
+// Whether a rasterizer draws and differentiates a small built-in scene as the plain version does: asked of
+// every CUDA device before it is used, so that one that computes something else is refused rather than
+// believed.
 #pragma once
 
 #include <string>
@@ -8,7 +9,8 @@
 
 namespace gse::raster {
 
-/// Differences to the plain version on the built-in scene. Pixels where rounding may decide a cut otherwise are left out.
+/// Differences to the plain version on the built-in scene. Pixels where rounding may decide a cut otherwise
+/// are left out.
 struct SelfCheck {
     double image = 0;          // largest over colour, alpha and composited values
     double depth = 0;          // largest, world units

@@ -1,4 +1,5 @@
-// The CUDA rasterizer on a device, where there is one: a program of its own, so that what was left out is seen.
+// The CUDA rasterizer on a device, where there is one: a program of its own, so that what was left out is
+// seen.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -13,7 +14,8 @@ using namespace gse::raster;
 
 namespace {
 
-// 2^x of a device is good to 2^-22, and sums of tiles are added in another order: twice what the vector kernels are held to.
+// 2^x of a device is good to 2^-22, and sums of tiles are added in another order: twice what the vector
+// kernels are held to.
 constexpr double DeviceTolerance = 2;
 
 }  // namespace

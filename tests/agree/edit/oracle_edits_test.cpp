@@ -1,5 +1,5 @@
-// The whole loop against a known answer: with a guidance that knows the target, edits must arrive there, on views the
-// loop never saw, and leave the rest alone.
+// The whole loop against a known answer: with a guidance that knows the target, edits must arrive there, on
+// views the loop never saw, and leave the rest alone.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -19,15 +19,15 @@ namespace {
 
 using namespace gse;
 
-constexpr double LeastInsideDb = 28;    // the project's acceptance figures for oracle edits
+constexpr double LeastInsideDb = 28;  // the project's acceptance figures for oracle edits
 constexpr double LeastOutsideDb = 40;
 constexpr int Side = 96;
 
 struct OracleCase {
     synth::SynthScene scene;
     GaussianSet target;
-    std::vector<std::uint8_t> label;     // of the base scene
-    std::vector<std::uint8_t> changed;   // rows of the target that differ (for the region of new things)
+    std::vector<std::uint8_t> label;    // of the base scene
+    std::vector<std::uint8_t> changed;  // rows of the target that differ (for the region of new things)
     GaussianData seeds;
 };
 
@@ -54,7 +54,8 @@ Mask region(const OracleCase& oracle, const Camera& camera, raster::Rasterizer& 
     return localize::dilate(mask, radius);
 }
 
-edit::EditResult edit_of(const OracleCase& oracle, const edit::EditRequest& request, raster::Rasterizer& rasterizer) {
+edit::EditResult edit_of(const OracleCase& oracle, const edit::EditRequest& request,
+                         raster::Rasterizer& rasterizer) {
     edit::EditPlan plan;
     plan.views = ring(oracle.scene, 16, 0);
     plan.label = oracle.label;
@@ -121,7 +122,8 @@ OracleCase remove_hat() {
     return oracle;
 }
 
-/// A green ball of 300 splats beside the bear's head; the seeds are a coarse grey cloud at about the right place.
+/// A green ball of 300 splats beside the bear's head; the seeds are a coarse grey cloud at about the right
+/// place.
 OracleCase add_sphere() {
     synth::SceneSpec spec;
     spec.seed = 5;
@@ -165,8 +167,10 @@ DOCTEST_TEST_CASE("an oracle recolouring arrives, with and without common colour
     for (const double coupling : {0.9, 0.0}) {
         request.colour_coupling = coupling;
         const auto outcome = run(recolour(), request);
-        DOCTEST_INFO("coupling " << coupling << ": inside " << outcome.inside_db << " dB, outside " << outcome.outside_db);
-        std::printf("recolour coupling %.1f: inside %.2f dB outside %.2f dB\n", coupling, outcome.inside_db, outcome.outside_db);
+        DOCTEST_INFO("coupling " << coupling << ": inside " << outcome.inside_db << " dB, outside "
+                                 << outcome.outside_db);
+        std::printf("recolour coupling %.1f: inside %.2f dB outside %.2f dB\n", coupling, outcome.inside_db,
+                    outcome.outside_db);
         DOCTEST_CHECK(outcome.inside_db >= LeastInsideDb);
         DOCTEST_CHECK(outcome.outside_db >= LeastOutsideDb);
     }
@@ -176,10 +180,11 @@ DOCTEST_TEST_CASE("an oracle removal arrives") {
     edit::EditRequest request;
     request.iterations = 300;
     request.geometry_share = 1;
-    request.anchor_opacity = 0;   // what goes away must be free to fade
+    request.anchor_opacity = 0;  // what goes away must be free to fade
     const auto outcome = run(remove_hat(), request);
     DOCTEST_INFO("inside " << outcome.inside_db << " dB, outside " << outcome.outside_db);
-    std::printf("remove: inside %.2f dB outside %.2f dB pruned %zu\n", outcome.inside_db, outcome.outside_db, outcome.result.pruned);
+    std::printf("remove: inside %.2f dB outside %.2f dB pruned %zu\n", outcome.inside_db, outcome.outside_db,
+                outcome.result.pruned);
     DOCTEST_CHECK(outcome.inside_db >= LeastInsideDb);
     DOCTEST_CHECK(outcome.outside_db >= LeastOutsideDb);
     DOCTEST_CHECK(outcome.result.pruned > 0);
@@ -208,7 +213,8 @@ Vec3 mean_colour(const OracleCase& oracle, const GaussianSet& set, raster::Raste
         const Mask mask = region(oracle, view.camera, rasterizer, 0);
         for (std::size_t i = 0; i < mask.data.size(); ++i) {
             if (mask.data[i] == 0) continue;
-            sum = sum + Vec3{output.colour.data[3 * i], output.colour.data[3 * i + 1], output.colour.data[3 * i + 2]};
+            sum = sum + Vec3{output.colour.data[3 * i], output.colour.data[3 * i + 1],
+                             output.colour.data[3 * i + 2]};
             ++count;
         }
     }
@@ -224,8 +230,10 @@ bool same_sets(const GaussianSet& a, const GaussianSet& b) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("every position of the strength gives more of the edit than the one before, and nothing outside the label") {
-    constexpr double LeastStep = 0.05;   // of the full change: what an eye tells apart in a strong one
+DOCTEST_TEST_CASE(
+    "every position of the strength gives more of the edit than the one before, and nothing outside the "
+    "label") {
+    constexpr double LeastStep = 0.05;  // of the full change: what an eye tells apart in a strong one
     const auto oracle = recolour();
     const GaussianSet& base = oracle.scene.scene.gaussians;
     ThreadPool pool(2);
@@ -233,7 +241,8 @@ DOCTEST_TEST_CASE("every position of the strength gives more of the edit than th
     edit::EditRequest request;
     request.iterations = 60;
     const auto full = edit_of(oracle, request, *rasterizer);
-    const Vec3 before = mean_colour(oracle, base, *rasterizer), way = mean_colour(oracle, full.set, *rasterizer) - before;
+    const Vec3 before = mean_colour(oracle, base, *rasterizer),
+               way = mean_colour(oracle, full.set, *rasterizer) - before;
     double last = 0;
     for (const double strength : {0.25, 0.5, 0.75, 1.0, 1.5, 2.0}) {
         DOCTEST_INFO("strength " << strength);
@@ -247,7 +256,8 @@ DOCTEST_TEST_CASE("every position of the strength gives more of the edit than th
         DOCTEST_REQUIRE(result.generation.size() == result.set.size());
         for (std::size_t row = 0; row < base.size(); ++row)
             if (oracle.label[row] == 0)
-                DOCTEST_CHECK(same_row(base.spans(), row, result.set.spans(), static_cast<std::size_t>(result.base_to_new[row])));
+                DOCTEST_CHECK(same_row(base.spans(), row, result.set.spans(),
+                                       static_cast<std::size_t>(result.base_to_new[row])));
     }
     request.strength = 0;
     DOCTEST_CHECK(same_sets(edit_of(oracle, request, *rasterizer).set, base));

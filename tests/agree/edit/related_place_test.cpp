@@ -17,10 +17,10 @@ namespace {
 using namespace gse;
 
 constexpr int Side = 64, Views = 12;
-/// Share of the source's size by which a region's centre may pass its bounds: a thing touches what it stands beside, and
-/// what lies at its foot lies on the ground's uneven surface.
+/// Share of the source's size by which a region's centre may pass its bounds: a thing touches what it stands
+/// beside, and what lies at its foot lies on the ground's uneven surface.
 constexpr double Touching = 0.08;
-constexpr double Near = 0.15;   // of the source's height, between where all views look and where the region is
+constexpr double Near = 0.15;  // of the source's height, between where all views look and where the region is
 
 /// The bear of the synthetic world (up -y, front -z, feet at y = 0), its views and its bounds.
 struct World {
@@ -33,8 +33,8 @@ struct World {
 
     World() {
         for (int i = 0; i < Views; ++i)
-            views.push_back({"view", synth::scene_camera(scene, 2 * std::numbers::pi * i / Views, i % 2 == 0 ? 0.25 : 0.5, 0.6,
-                                                         Side, Side)});
+            views.push_back({"view", synth::scene_camera(scene, 2 * std::numbers::pi * i / Views,
+                                                         i % 2 == 0 ? 0.25 : 0.5, 0.6, Side, Side)});
         const auto position = scene.scene.gaussians.position();
         for (std::size_t row = 0; row < scene.parts.size(); ++row) {
             bear.push_back(scene.parts[row] == synth::Part::Object ? 1 : 0);
@@ -74,7 +74,9 @@ private:
         for (int y = 0; y < Side; ++y)
             for (int x = 0; x < Side; ++x)
                 map.at(x, y, 0) = std::hypot(x + 0.5 - (camera.fx * p.x / p.z + camera.cx),
-                                             y + 0.5 - (camera.fy * p.y / p.z + camera.cy)) < radius ? 1.0f : 0.0f;
+                                             y + 0.5 - (camera.fy * p.y / p.z + camera.cy)) < radius
+                                      ? 1.0f
+                                      : 0.0f;
     }
     const World& world_;
     const Vec3* place_;
@@ -89,8 +91,9 @@ edit::LocateResult locate(const World& world, const std::string& sentence, const
     request = edit::validated(request);
     KnowingAttention attention(world, place);
     const std::vector<std::string> no_words;
-    return edit::locate({world.scene.scene.gaussians, world.views, no_words, request, {}, {0, -1, 0}, {0, 0, -1}},
-                        {*world.rasterizer, attention, nullptr, nullptr, {}});
+    return edit::locate(
+        {world.scene.scene.gaussians, world.views, no_words, request, {}, {0, -1, 0}, {0, 0, -1}},
+        {*world.rasterizer, attention, nullptr, nullptr, {}});
 }
 
 Vec3 centre_of(const edit::AddRegion& region) {
@@ -107,17 +110,16 @@ struct Direction {
 };
 
 // Up is -y and the front -z: who looks at the front from there has +x at the right.
-const std::vector<Direction> Directions{{"a bear beside a ball", 0, 0},
-                                           {"a bear with a ball beside it", 0, 0},
-                                           {"a ball left of the bear", 0, -1},
-                                           {"a ball right of the bear", 0, 1},
-                                           {"a ball behind the bear", 2, 1},
-                                           {"a ball in front of the bear", 2, -1},
-                                           {"a ball under the bear", 1, 1}};
+const std::vector<Direction> Directions{
+    {"a bear beside a ball", 0, 0},     {"a bear with a ball beside it", 0, 0},
+    {"a ball left of the bear", 0, -1}, {"a ball right of the bear", 0, 1},
+    {"a ball behind the bear", 2, 1},   {"a ball in front of the bear", 2, -1},
+    {"a ball under the bear", 1, 1}};
 
 /// How far the point lies beyond the bear's bounds in that direction; negative = within.
 double beyond(const World& world, const Vec3& p, const Direction& direction) {
-    const double above = p[direction.axis] - world.high[direction.axis], below = world.low[direction.axis] - p[direction.axis];
+    const double above = p[direction.axis] - world.high[direction.axis],
+                 below = world.low[direction.axis] - p[direction.axis];
     return direction.sign > 0 ? above : direction.sign < 0 ? below : std::max(above, below);
 }
 
@@ -138,7 +140,8 @@ DOCTEST_TEST_CASE("where nothing tells, a new thing goes where the preposition s
         if (direction.axis == 1) continue;
         // It rests on the ground that the bear stands on.
         double lowest = -1e9;
-        for (const auto& cell : found.region.centres) lowest = std::max(lowest, cell.y + 0.5 * found.region.side);
+        for (const auto& cell : found.region.centres)
+            lowest = std::max(lowest, cell.y + 0.5 * found.region.side);
         DOCTEST_CHECK(std::abs(lowest - world.high.y) < Touching * height);
     }
     const auto on_screen = [&](const char* sentence) {
@@ -158,7 +161,7 @@ DOCTEST_TEST_CASE("attention is followed on the right side of the source, and no
     const Vec3 middle = (world.low + world.high) * 0.5;
     const double height = world.size().y;
     for (const auto& direction : Directions) {
-        if (direction.axis == 1) continue;   // the ground leaves no room to look into
+        if (direction.axis == 1) continue;  // the ground leaves no room to look into
         DOCTEST_INFO(direction.sentence);
         Vec3 place = middle;
         const double sign = direction.sign == 0 ? -1 : direction.sign;
@@ -170,7 +173,8 @@ DOCTEST_TEST_CASE("attention is followed on the right side of the source, and no
         DOCTEST_CHECK(length(centre_of(found.region) - place) < Near * height);
         // Attention on its head says nothing of what stands beside it.
         const Vec3 head{middle.x, world.low.y - 0.1 * height, middle.z};
-        DOCTEST_CHECK(beyond(world, centre_of(locate(world, direction.sentence, &head).region), direction) > -Touching * height);
+        DOCTEST_CHECK(beyond(world, centre_of(locate(world, direction.sentence, &head).region), direction) >
+                      -Touching * height);
     }
     log::set_level(log::Level::Info);
 }

@@ -1,4 +1,5 @@
-// A thing becomes another, and is added, by redrawn views that are true: what the three-dimensional part alone loses.
+// A thing becomes another, and is added, by redrawn views that are true: what the three-dimensional part
+// alone loses.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -25,7 +26,8 @@ using namespace gse;
 
 constexpr int Side = 96;
 
-synth::SynthScene scene_of(const std::string& object, const std::string& material, const std::string& accessory = {}) {
+synth::SynthScene scene_of(const std::string& object, const std::string& material,
+                           const std::string& accessory = {}) {
     synth::SceneSpec spec;
     spec.object = object;
     spec.material = material;
@@ -43,12 +45,17 @@ std::vector<std::uint8_t> rows_of(const synth::SynthScene& scene, synth::Part pa
 std::vector<View> ring(const synth::SynthScene& scene, int count, double offset) {
     std::vector<View> views;
     for (int i = 0; i < count; ++i)
-        views.push_back({fmt::format("ring_{}", i), synth::scene_camera(scene, 2 * 3.14159265358979 * (i + offset) / count,
-                                                                        offset > 0 ? 0.35 : i % 2 == 0 ? 0.2 : 0.55, 1, Side, Side)});
+        views.push_back({fmt::format("ring_{}", i),
+                         synth::scene_camera(scene, 2 * 3.14159265358979 * (i + offset) / count,
+                                             offset > 0   ? 0.35
+                                             : i % 2 == 0 ? 0.2
+                                                          : 0.55,
+                                             1, Side, Side)});
     return views;
 }
 
-Mask mask_of(raster::Rasterizer& rasterizer, const GaussianSet& set, const std::vector<std::uint8_t>& bits, const Camera& camera) {
+Mask mask_of(raster::Rasterizer& rasterizer, const GaussianSet& set, const std::vector<std::uint8_t>& bits,
+             const Camera& camera) {
     const std::vector<float> values(bits.begin(), bits.end());
     Image seen;
     rasterizer.forward_values(set.spans(), camera, {}, values, seen);
@@ -64,8 +71,10 @@ Image picture(raster::Rasterizer& rasterizer, const GaussianSet& set, const Came
 
 /// Draws the true scene, and knows where the new thing is in it; some outlines may be wrong.
 struct TrueViews : edit::ViewGuidance, edit::AttentionSource {
-    TrueViews(const synth::SynthScene& scene, synth::Part what, raster::Rasterizer& r) : truth(scene), part(what), rasterizer(r) {}
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl&) override {
+    TrueViews(const synth::SynthScene& scene, synth::Part what, raster::Rasterizer& r)
+        : truth(scene), part(what), rasterizer(r) {}
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
+                            const JobControl&) override {
         inputs.push_back(input);
         counts.push_back(views.size());
         cameras.clear();
@@ -79,22 +88,26 @@ struct TrueViews : edit::ViewGuidance, edit::AttentionSource {
     }
     std::vector<Image> locate(const edit::AttentionQuery& query) override {
         words.push_back(query.words.front());
-        const Mask mask = mask_of(rasterizer, shown().scene.gaussians, rows_of(shown(), part), cameras.at(asked++));
+        const Mask mask =
+            mask_of(rasterizer, shown().scene.gaussians, rows_of(shown(), part), cameras.at(asked++));
         Image map(mask.width, mask.height, 1);
         std::copy(mask.data.begin(), mask.data.end(), map.data.begin());
-        if (blind_views > 0 && asked <= static_cast<std::size_t>(blind_views)) map = Image(mask.width, mask.height, 1);
+        if (blind_views > 0 && asked <= static_cast<std::size_t>(blind_views))
+            map = Image(mask.width, mask.height, 1);
         return {map};
     }
     int image_size() const override { return Side; }
 
-    const synth::SynthScene& shown() const { return inputs.size() == 1 && at_first != nullptr ? *at_first : truth; }
+    const synth::SynthScene& shown() const {
+        return inputs.size() == 1 && at_first != nullptr ? *at_first : truth;
+    }
 
     const synth::SynthScene& truth;
-    const synth::SynthScene* at_first = nullptr;   // what the first round shows instead
+    const synth::SynthScene* at_first = nullptr;  // what the first round shows instead
     synth::Part part;
     raster::Rasterizer& rasterizer;
     std::vector<edit::RoundInput> inputs;
-    std::vector<std::size_t> counts;   // of views, per input
+    std::vector<std::size_t> counts;  // of views, per input
     std::vector<Camera> cameras;
     std::vector<std::string> words;
     std::size_t asked = 0;
@@ -102,7 +115,9 @@ struct TrueViews : edit::ViewGuidance, edit::AttentionSource {
 };
 
 struct NoGuidance : edit::Guidance {
-    edit::GuidanceOutput evaluate(const edit::GuidanceInput&) override { throw Error(ErrorCode::Model, "asked"); }
+    edit::GuidanceOutput evaluate(const edit::GuidanceInput&) override {
+        throw Error(ErrorCode::Model, "asked");
+    }
 };
 
 /// How near the truth an edited scene is, from views between those of the edit.
@@ -112,12 +127,13 @@ struct Figures {
 
 struct ShapeEdit {
     ShapeEdit(const synth::SynthScene& before, const synth::SynthScene& after, edit::EditMode edit_mode)
-        : source(before), target(after), mode(edit_mode), part(edit_mode == edit::EditMode::Add ? synth::Part::Accessory : synth::Part::Object) {
+        : source(before), target(after), mode(edit_mode),
+          part(edit_mode == edit::EditMode::Add ? synth::Part::Accessory : synth::Part::Object) {
         request.prompt = "a blue cat";
         request.source = "bear";
         request.target = "cat";
         request.method = "views";
-        request.shape_rounds = 2;   // what a later round does is seen, too
+        request.shape_rounds = 2;  // what a later round does is seen, too
         request = edit::validated(request);
         plan.views = ring(source, 24, 0);
         edit::LocateResult located;
@@ -133,7 +149,8 @@ struct ShapeEdit {
         }
         for (const auto& view : plan.views) {
             Mask mask = mask_of(*rasterizer, target.scene.gaussians, rows_of(target, part), view.camera);
-            if (mode == edit::EditMode::Replace) mask = mask_of(*rasterizer, source.scene.gaussians, plan.label, view.camera);
+            if (mode == edit::EditMode::Replace)
+                mask = mask_of(*rasterizer, source.scene.gaussians, plan.label, view.camera);
             located.views.push_back({});
             located.views.back().mask = mask;
         }
@@ -142,7 +159,8 @@ struct ShapeEdit {
         located.label.bits = std::make_shared<const std::vector<std::uint8_t>>(plan.label);
         located.seeds = plan.seeds;
         const auto cameras = plan.views;
-        plan = edit::make_plan({source.scene.gaussians, cameras, no_words, request, {}}, located, *rasterizer);
+        plan =
+            edit::make_plan({source.scene.gaussians, cameras, no_words, request, {}}, located, *rasterizer);
     }
 
     edit::EditResult run() {
@@ -159,9 +177,11 @@ struct ShapeEdit {
         auto thing = result.label;
         for (std::size_t row = 0; row < thing.size(); ++row) thing[row] &= result.hidden[row] == 0 ? 1 : 0;
         for (const auto& view : ring(source, 12, 0.5)) {
-            const Mask wanted = mask_of(*rasterizer, target.scene.gaussians, rows_of(target, part), view.camera);
+            const Mask wanted =
+                mask_of(*rasterizer, target.scene.gaussians, rows_of(target, part), view.camera);
             const Mask shown = mask_of(*rasterizer, result.set, thing, view.camera);
-            const Mask old = mask_of(*rasterizer, source.scene.gaussians, rows_of(source, synth::Part::Object), view.camera);
+            const Mask old = mask_of(*rasterizer, source.scene.gaussians,
+                                     rows_of(source, synth::Part::Object), view.camera);
             Mask inside = wanted;
             for (std::size_t p = 0; p < inside.data.size(); ++p) {
                 both += wanted.data[p] & shown.data[p];
@@ -169,7 +189,8 @@ struct ShapeEdit {
                 if (mode == edit::EditMode::Replace) inside.data[p] |= old.data[p];
             }
             inside = localize::dilate(inside, 3);
-            const Image was = picture(*rasterizer, source.scene.gaussians, view.camera), is = picture(*rasterizer, result.set, view.camera),
+            const Image was = picture(*rasterizer, source.scene.gaussians, view.camera),
+                        is = picture(*rasterizer, result.set, view.camera),
                         should = picture(*rasterizer, target.scene.gaussians, view.camera);
             const auto area = static_cast<double>(inside.count());
             before += area * evaluate::mean_absolute_error(was, should, {&inside, true});
@@ -196,14 +217,15 @@ struct ShapeEdit {
 };
 
 void tell(const char* what, const Figures& figures) {
-    DOCTEST_MESSAGE(fmt::format("{}: outline IoU {:.3f}, error removed {:.3f}, {:.1f} dB outside", what, figures.outline_iou,
-                                figures.error_removed, figures.psnr_outside_db));
+    DOCTEST_MESSAGE(fmt::format("{}: outline IoU {:.3f}, error removed {:.3f}, {:.1f} dB outside", what,
+                                figures.outline_iou, figures.error_removed, figures.psnr_outside_db));
 }
 
 }  // namespace
 
 DOCTEST_TEST_CASE("a thing becomes another: the outline, the colours, and nothing else") {
-    for (const auto& [from, to] : std::vector<std::array<const char*, 2>>{{"bear", "cat"}, {"mushroom", "tree"}, {"cat", "house"}, {"statue", "chair"}}) {
+    for (const auto& [from, to] : std::vector<std::array<const char*, 2>>{
+             {"bear", "cat"}, {"mushroom", "tree"}, {"cat", "house"}, {"statue", "chair"}}) {
         ShapeEdit run(scene_of(from, "red"), scene_of(to, "blue"), edit::EditMode::Replace);
         const auto result = run.run();
         const auto figures = run.figures(result);
@@ -213,7 +235,8 @@ DOCTEST_TEST_CASE("a thing becomes another: the outline, the colours, and nothin
         DOCTEST_CHECK(figures.outline_iou > 0.85);
         DOCTEST_CHECK(figures.error_removed > 0.7);
         DOCTEST_CHECK(figures.psnr_outside_db > 35);
-        DOCTEST_CHECK(std::count(result.hidden.begin(), result.hidden.end(), std::uint8_t{1}) == 0);   // all of the ground is there
+        DOCTEST_CHECK(std::count(result.hidden.begin(), result.hidden.end(), std::uint8_t{1}) ==
+                      0);  // all of the ground is there
         DOCTEST_CHECK(result.changed_outside_label == 0);
         DOCTEST_CHECK(result.nonfinite == 0);
         DOCTEST_REQUIRE(run.views.inputs.size() == static_cast<std::size_t>(run.request.shape_rounds));
@@ -226,9 +249,10 @@ DOCTEST_TEST_CASE("a thing becomes another: the outline, the colours, and nothin
 DOCTEST_TEST_CASE("the ground that went with the old thing is put back, flat and as it was around it") {
     ShapeEdit run(scene_of("bear", "red"), scene_of("mushroom", "blue"), edit::EditMode::Replace);
     const auto& scene = run.source.scene.gaussians;
-    Vec3 middle;   // of the ground around the thing
+    Vec3 middle;  // of the ground around the thing
     for (std::size_t row = 0; row < scene.size(); ++row)
-        if (run.source.parts[row] == synth::Part::Ground && std::hypot(scene.position()[row * 3], scene.position()[row * 3 + 2]) < 0.4f)
+        if (run.source.parts[row] == synth::Part::Ground &&
+            std::hypot(scene.position()[row * 3], scene.position()[row * 3 + 2]) < 0.4f)
             run.plan.label[row] = 1, middle.y = scene.position()[row * 3 + 1];
     const auto result = run.run();
     const auto figures = run.figures(result);
@@ -285,11 +309,14 @@ DOCTEST_TEST_CASE("the same request gives the same bytes; a snapshot goes on fro
     ShapeEdit run(scene_of("bear", "red"), scene_of("cat", "blue"), edit::EditMode::Replace);
     run.request.shape_fit_steps = 20;
     const auto first = run.run(), second = run.run();
-    DOCTEST_CHECK(std::equal(first.set.sh().begin(), first.set.sh().end(), second.set.sh().begin(), second.set.sh().end()));
-    DOCTEST_CHECK(std::equal(first.set.position().begin(), first.set.position().end(), second.set.position().begin(), second.set.position().end()));
+    DOCTEST_CHECK(std::equal(first.set.sh().begin(), first.set.sh().end(), second.set.sh().begin(),
+                             second.set.sh().end()));
+    DOCTEST_CHECK(std::equal(first.set.position().begin(), first.set.position().end(),
+                             second.set.position().begin(), second.set.position().end()));
 }
 
-DOCTEST_TEST_CASE("a colour that the sentence leaves open is the one that the first view shows, for all views and rounds") {
+DOCTEST_TEST_CASE(
+    "a colour that the sentence leaves open is the one that the first view shows, for all views and rounds") {
     ShapeEdit run(scene_of("bear", "red"), scene_of("cat", "orange"), edit::EditMode::Replace);
     run.request.prompt = "a cat on the grass";
     run.request.shape_fit_steps = 10;
@@ -298,10 +325,11 @@ DOCTEST_TEST_CASE("a colour that the sentence leaves open is the one that the fi
         tools.targets = [&](const edit::ViewTargets& sheet) { shown = sheet; };
     };
     const auto result = run.run();
-    DOCTEST_CHECK(result.redrawn_views == std::accumulate(run.views.counts.begin(), run.views.counts.end(), std::size_t{0}));
+    DOCTEST_CHECK(result.redrawn_views ==
+                  std::accumulate(run.views.counts.begin(), run.views.counts.end(), std::size_t{0}));
     const auto& inputs = run.views.inputs;
     DOCTEST_REQUIRE(inputs.size() == static_cast<std::size_t>(run.request.shape_rounds) + 1);
-    DOCTEST_CHECK(inputs[0].sentence.empty());   // one view, as the artist says it
+    DOCTEST_CHECK(inputs[0].sentence.empty());  // one view, as the artist says it
     DOCTEST_CHECK(run.views.counts[0] == 1);
     for (std::size_t i = 1; i < inputs.size(); ++i) {
         DOCTEST_CHECK(inputs[i].sentence == "an orange cat on the grass");
@@ -310,13 +338,15 @@ DOCTEST_TEST_CASE("a colour that the sentence leaves open is the one that the fi
     DOCTEST_CHECK(shown.sentence == "an orange cat on the grass");
     run.views.inputs.clear();
     run.views.counts.clear();
-    run.plan.drawn_colour = "blue";   // the search has drawn it: no view is drawn first
+    run.plan.drawn_colour = "blue";  // the search has drawn it: no view is drawn first
     run.run();
     DOCTEST_REQUIRE(run.views.inputs.size() == static_cast<std::size_t>(run.request.shape_rounds));
     for (const auto& input : run.views.inputs) DOCTEST_CHECK(input.sentence == "a blue cat on the grass");
     run.plan.drawn_colour.clear();
     run.views.inputs.clear();
-    run.tools_changed = [](edit::EditTools& tools) { tools.known = {"a", "cat", "on", "the", "grass"}; };   // no colours
+    run.tools_changed = [](edit::EditTools& tools) {
+        tools.known = {"a", "cat", "on", "the", "grass"};
+    };  // no colours
     run.run();
     for (const auto& input : run.views.inputs) DOCTEST_CHECK(input.sentence.empty());
 }

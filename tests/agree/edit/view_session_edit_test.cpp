@@ -1,4 +1,5 @@
-// Whole edits with and without the memory for what does not change: the same bytes, whatever happens to the rows meanwhile.
+// Whole edits with and without the memory for what does not change: the same bytes, whatever happens to the
+// rows meanwhile.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -37,7 +38,8 @@ Case hat_case() {
     spec.accessory_colour = "red";
     c.target = synth::generate(spec).scene.gaussians;
     for (const auto part : c.scene.parts) c.hat.push_back(part == synth::Part::Accessory ? 1 : 0);
-    GaussianData faint = c.scene.scene.gaussians.to_data();   // every seventh row of the hat goes at the first occasion
+    GaussianData faint =
+        c.scene.scene.gaussians.to_data();  // every seventh row of the hat goes at the first occasion
     for (std::size_t row = 0; row < c.hat.size(); ++row)
         if (c.hat[row] != 0 && row % 7 == 0) faint.opacity_logit[row] = -8;
     c.scene.scene.gaussians = GaussianSet(std::move(faint));
@@ -55,7 +57,8 @@ Case hat_case() {
     return c;
 }
 
-edit::EditResult run(const Case& c, const std::string& kernels, unsigned threads, std::size_t budget, bool relabels) {
+edit::EditResult run(const Case& c, const std::string& kernels, unsigned threads, std::size_t budget,
+                     bool relabels) {
     ThreadPool pool(threads);
     const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
     edit::OracleGuidance guidance(c.target, c.plan.views, c.plan.settings, *rasterizer);
@@ -68,7 +71,8 @@ edit::EditResult run(const Case& c, const std::string& kernels, unsigned threads
             if (asked != 12 && asked != 24) return std::nullopt;
             auto label = c.hat;
             for (std::size_t row = 0, seen = 0; row < label.size(); ++row)
-                if (label[row] != 0 && seen++ % 2 == (asked == 12 ? 0u : 1u)) label[row] = 0;   // as many rows, but others
+                if (label[row] != 0 && seen++ % 2 == (asked == 12 ? 0u : 1u))
+                    label[row] = 0;  // as many rows, but others
             return label;
         };
     return edit::run_edit(c.scene.scene.gaussians, c.plan, c.request, tools);
@@ -79,7 +83,8 @@ bool same_result(const edit::EditResult& a, const edit::EditResult& b) {
     for (std::size_t row = 0; row < a.set.size(); ++row)
         if (!same_row(a.set.spans(), row, b.set.spans(), row)) return false;
     for (std::size_t i = 0; i < a.history.size(); ++i)
-        if (a.history[i].preservation != b.history[i].preservation || a.history[i].anchor != b.history[i].anchor ||
+        if (a.history[i].preservation != b.history[i].preservation ||
+            a.history[i].anchor != b.history[i].anchor ||
             a.history[i].guidance_norm != b.history[i].guidance_norm)
             return false;
     return a.label == b.label && a.generation == b.generation;

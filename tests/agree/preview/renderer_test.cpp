@@ -108,7 +108,9 @@ DOCTEST_TEST_CASE("an upload goes slice by slice and the old scene stays until i
     DOCTEST_CHECK(shared->instance->message_count() == 0);
 }
 
-DOCTEST_TEST_CASE("of a scene whose rows have changed in part only those are sent, and the picture is that of a fresh upload") {
+DOCTEST_TEST_CASE(
+    "of a scene whose rows have changed in part only those are sent, and the picture is that of a fresh "
+    "upload") {
     auto* shared = test::test_device();
     if (shared == nullptr) return;
     auto& device = *shared->device;
@@ -122,7 +124,8 @@ DOCTEST_TEST_CASE("of a scene whose rows have changed in part only those are sen
         GaussianSet shown = first;
         for (const int part : {0, 1, 2, 3, 4, 5}) {
             GaussianData data = shown.to_data();
-            for (std::size_t row = static_cast<std::size_t>(part); row < data.size(); row += part == 5 ? 1 : 97) {   // scattered; then all
+            for (std::size_t row = static_cast<std::size_t>(part); row < data.size();
+                 row += part == 5 ? 1 : 97) {  // scattered; then all
                 if (part == 0 || part == 5) data.position[row * 3 + 1] += 0.05f;
                 if (part == 1) data.log_scale[row * 3] += 0.2f;
                 if (part == 2) data.rotation[row * 4 + 2] += 0.3f;
@@ -132,7 +135,7 @@ DOCTEST_TEST_CASE("of a scene whose rows have changed in part only those are sen
             const std::uint64_t before = renderer.sent_bytes();
             shown = GaussianSet{data};
             renderer.upload(shown);
-            render(device, renderer, request, 0);   // begun, and replaced by the same
+            render(device, renderer, request, 0);  // begun, and replaced by the same
             renderer.upload(shown);
             const Image picture = renderer.draw(request);
             const std::uint64_t sent = renderer.sent_bytes() - before;
@@ -144,7 +147,7 @@ DOCTEST_TEST_CASE("of a scene whose rows have changed in part only those are sen
             DOCTEST_CHECK(largest_difference(picture, fresh.draw(request)) == 0);
         }
         const std::uint64_t before = renderer.sent_bytes();
-        renderer.upload(GaussianSet{shown.to_data()});   // other arrays, the same values
+        renderer.upload(GaussianSet{shown.to_data()});  // other arrays, the same values
         renderer.draw(request);
         DOCTEST_CHECK(renderer.sent_bytes() == before);
     }
@@ -215,26 +218,15 @@ DOCTEST_TEST_CASE("hostile values give finite pictures") {
     for (std::size_t row = 0; row < data.size(); ++row) {
         const float value = hostile[row % 8];
         switch (row / 8) {
-            case 0:
-                data.position[row * 3] = value;
-                break;
-            case 1:
-                data.log_scale[row * 3 + 1] = value;
-                break;
-            case 2:
-                data.rotation[row * 4] = value;
-                break;
-            case 3:
-                data.opacity_logit[row] = value;
-                break;
-            case 4:
-                data.sh[row * data.sh_stride() + 5] = value;
-                break;
+            case 0: data.position[row * 3] = value; break;
+            case 1: data.log_scale[row * 3 + 1] = value; break;
+            case 2: data.rotation[row * 4] = value; break;
+            case 3: data.opacity_logit[row] = value; break;
+            case 4: data.sh[row * data.sh_stride() + 5] = value; break;
             case 5:
                 for (int k = 0; k < 3; ++k) data.log_scale[row * 3 + static_cast<std::size_t>(k)] = value;
                 break;
-            default:
-                break;
+            default: break;
         }
     }
     for (const auto mode :

@@ -57,8 +57,7 @@ inline void compare(const Case& c, raster::Rasterizer& fast, double slack = 1) {
     DOCTEST_CHECK(clear_error(image.depth.data, truth.depth.data, ambiguous) < 10 * slack * ImageTolerance);
     DOCTEST_CHECK(clear_error(image.blended, truth.blended, ambiguous) == 0);
 
-    Image d_colour = noise_image(c.width, c.height, 3, 20),
-          d_alpha = noise_image(c.width, c.height, 1, 21);
+    Image d_colour = noise_image(c.width, c.height, 3, 20), d_alpha = noise_image(c.width, c.height, 1, 21);
     blank(d_colour, ambiguous);
     blank(d_alpha, ambiguous);
     raster::Gradients found, expected;

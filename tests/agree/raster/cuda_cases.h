@@ -13,9 +13,11 @@ struct Everything {
     Image values;
 };
 
-inline Everything run(raster::Rasterizer& rasterizer, const GaussianData& data, const Camera& camera, const raster::Settings& settings, std::size_t first_row = 0) {
+inline Everything run(raster::Rasterizer& rasterizer, const GaussianData& data, const Camera& camera,
+                      const raster::Settings& settings, std::size_t first_row = 0) {
     Everything all;
-    const Image d_colour = noise_image(camera.width, camera.height, 3, 1), d_alpha = noise_image(camera.width, camera.height, 1, 2);
+    const Image d_colour = noise_image(camera.width, camera.height, 3, 1),
+                d_alpha = noise_image(camera.width, camera.height, 1, 2);
     all.masked.resize(data.size());
     all.total.resize(data.size());
     rasterizer.forward(spans(data), camera, settings, all.image);
@@ -26,8 +28,8 @@ inline Everything run(raster::Rasterizer& rasterizer, const GaussianData& data, 
 }
 
 inline bool identical(const Everything& a, const Everything& b) {
-    return identical(a.image, b.image) && identical(a.gradients, b.gradients) && a.masked == b.masked && a.total == b.total &&
-           a.values.data == b.values.data;
+    return identical(a.image, b.image) && identical(a.gradients, b.gradients) && a.masked == b.masked &&
+           a.total == b.total && a.values.data == b.values.data;
 }
 
 /// Every case of the vector kernels, and what is special about tiles, sorting and culling.

@@ -1,4 +1,5 @@
-// The CUDA rasterizer against the plain one: its kernels and launches, on the processor (tests/agree/cuda has a device).
+// The CUDA rasterizer against the plain one: its kernels and launches, on the processor (tests/agree/cuda has
+// a device).
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -31,12 +32,15 @@ DOCTEST_TEST_CASE("contributions and composited values of the CUDA kernels agree
         const Camera camera = test::test_camera(c.width, c.height, c.distance);
         const auto ambiguous = test::ambiguous_pixels(data, camera, c.settings);
         Image mask(c.width, c.height, 1);
-        for (std::size_t i = 0; i < mask.data.size(); ++i) mask.data[i] = ambiguous[i] != 0 ? 0.0f : static_cast<float>(i % 7) / 7;
-        std::vector<double> masked(data.size(), 1.5), total(data.size(), 2.5), true_masked = masked, true_total = total;
+        for (std::size_t i = 0; i < mask.data.size(); ++i)
+            mask.data[i] = ambiguous[i] != 0 ? 0.0f : static_cast<float>(i % 7) / 7;
+        std::vector<double> masked(data.size(), 1.5), total(data.size(), 2.5), true_masked = masked,
+                                                                               true_total = total;
         plain->contributions(spans(data), camera, c.settings, mask, true_masked, true_total);
         emulated->contributions(spans(data), camera, c.settings, mask, masked, total);
         DOCTEST_CHECK(test::relative_l2(masked, true_masked) < test::ContributionTolerance);
-        constexpr double ambiguity_tolerance = 1e-3;  // the total is also of the pixels that are left out of the mask
+        constexpr double ambiguity_tolerance =
+            1e-3;  // the total is also of the pixels that are left out of the mask
         DOCTEST_CHECK(test::relative_l2(total, true_total) < ambiguity_tolerance);
         Random random(5);
         std::vector<float> values(data.size());
@@ -59,7 +63,8 @@ DOCTEST_TEST_CASE("the order in which blocks and threads run does not tell, nor 
         const test::Everything expected = test::run(*forward, data, camera, c.settings);
         DOCTEST_CHECK(test::identical(test::run(*reversed, data, camera, c.settings), expected));
         DOCTEST_CHECK(test::identical(test::run(*forward, data, camera, c.settings), expected));
-        DOCTEST_CHECK(test::identical(test::run(*cuda::make_emulated_cuda_rasterizer(), data, camera, c.settings), expected));
+        DOCTEST_CHECK(test::identical(
+            test::run(*cuda::make_emulated_cuda_rasterizer(), data, camera, c.settings), expected));
     }
 }
 
@@ -79,14 +84,15 @@ DOCTEST_TEST_CASE("the CUDA kernels draw splats at one depth in the order of the
 
 DOCTEST_TEST_CASE("the CUDA kernels count every row that means nothing, and give it no gradient") {
     GaussianData data = test::random_scene({.count = 300, .seed = 24});
-    constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
+                    inf = std::numeric_limits<float>::infinity();
     data.position[3 * 3] = nan;
     data.log_scale[7 * 3 + 1] = inf;
     data.rotation[11 * 4 + 2] = -inf;
     data.opacity_logit[13] = nan;
     data.position[17 * 3 + 1] = 1e30f;
-    data.opacity_logit[19] = inf;       // an opaque one
-    data.log_scale[23 * 3] = -inf;      // a flat one
+    data.opacity_logit[19] = inf;   // an opaque one
+    data.log_scale[23 * 3] = -inf;  // a flat one
     const Camera camera = test::test_camera(70, 50);
     const test::Everything found = test::run(*cuda::make_emulated_cuda_rasterizer(), data, camera, {});
     const test::Everything expected = test::run(*make_plain_rasterizer(), data, camera, {});

@@ -39,8 +39,7 @@ bool identical(const Results& a, const Results& b) {
            a.masked == b.masked && a.total == b.total;
 }
 
-template <class Values>
-Values tail(const Values& all, std::size_t begin) {
+template <class Values> Values tail(const Values& all, std::size_t begin) {
     return {all.begin() + static_cast<std::ptrdiff_t>(begin), all.end()};
 }
 
@@ -97,7 +96,8 @@ DOCTEST_TEST_CASE("a restriction to rows gives exactly the tail of the full grad
 }
 
 DOCTEST_TEST_CASE("gradients that go past the caches are those that do not") {
-    // 450,000 rows: coefficients and slots are more than Frame keeps in caches, those of the last rows are not.
+    // 450,000 rows: coefficients and slots are more than Frame keeps in caches, those of the last rows are
+    // not.
     const GaussianData data = test::random_scene({.count = 450000, .seed = 81, .log_scale = -5});
     const std::size_t stride = data.sh_stride(), first = data.size() - 3001;
     const Camera camera = test::test_camera(480, 360);
@@ -118,7 +118,9 @@ DOCTEST_TEST_CASE("gradients that go past the caches are those that do not") {
             if (full.gradients.visible[row] != 0) continue;
             ++unseen;
             const auto begin = full.gradients.sh.begin() + static_cast<std::ptrdiff_t>(row * stride);
-            if (std::any_of(begin, begin + static_cast<std::ptrdiff_t>(stride), [](float value) { return value != 0.0f; })) DOCTEST_FAIL("row " << row);
+            if (std::any_of(begin, begin + static_cast<std::ptrdiff_t>(stride),
+                            [](float value) { return value != 0.0f; }))
+                DOCTEST_FAIL("row " << row);
         }
         DOCTEST_CHECK(unseen > 1000);
     }

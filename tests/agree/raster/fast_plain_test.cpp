@@ -97,16 +97,19 @@ DOCTEST_TEST_CASE("colours that nobody wants are left out only where all are fin
     const Camera camera = test::test_camera(83, 61);
     const Image mask = test::noise_image(camera.width, camera.height, 1, 3);
     const float infinite = std::numeric_limits<float>::infinity();
-    for (const float odd : {0.5f, std::numeric_limits<float>::quiet_NaN(), infinite, -infinite, 2e30f, 3e38f}) {
+    for (const float odd :
+         {0.5f, std::numeric_limits<float>::quiet_NaN(), infinite, -infinite, 2e30f, 3e38f}) {
         DOCTEST_CAPTURE(odd);
         GaussianData data = test::random_scene({.count = 900, .seed = 33});
-        for (std::size_t row = 3; row < data.size(); row += 7) data.sh[row * data.sh_stride() + row % data.sh_stride()] = odd;
+        for (std::size_t row = 3; row < data.size(); row += 7)
+            data.sh[row * data.sh_stride() + row % data.sh_stride()] = odd;
         const std::vector<float>& values = data.opacity_logit;
         for (const std::string& kernels : raster::usable_kernels()) {
             DOCTEST_CAPTURE(kernels);
             const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
-            const GaussianSet set(data);   // remembers what its colours are; the arrays alone do not
-            std::vector<double> masked(data.size()), total(data.size()), set_masked(data.size()), set_total(data.size());
+            const GaussianSet set(data);  // remembers what its colours are; the arrays alone do not
+            std::vector<double> masked(data.size()), total(data.size()), set_masked(data.size()),
+                set_total(data.size());
             rasterizer->contributions(spans(data), camera, {}, mask, masked, total);
             rasterizer->contributions(set.spans(), camera, {}, mask, set_masked, set_total);
             DOCTEST_CHECK(set_masked == masked);
@@ -115,12 +118,14 @@ DOCTEST_TEST_CASE("colours that nobody wants are left out only where all are fin
             rasterizer->forward_values(spans(data), camera, {}, values, expected);
             rasterizer->forward_values(set.spans(), camera, {}, values, found);
             DOCTEST_CHECK(found.data == expected.data);
-            DOCTEST_CHECK(*set.spans().colours_known == (odd == 0.5f ? ColoursKnown::Finite : ColoursKnown::NotAll));
-            ForwardOutput picture, set_picture;   // a picture wants them
+            DOCTEST_CHECK(*set.spans().colours_known ==
+                          (odd == 0.5f ? ColoursKnown::Finite : ColoursKnown::NotAll));
+            ForwardOutput picture, set_picture;  // a picture wants them
             rasterizer->forward(spans(data), camera, {}, picture);
             rasterizer->forward(set.spans(), camera, {}, set_picture);
             DOCTEST_CHECK(set_picture.colour.data == picture.colour.data);
-            DOCTEST_CHECK(test::relative_l2(picture.alpha.data, std::vector<float>(picture.alpha.data.size())) > 0);
+            DOCTEST_CHECK(
+                test::relative_l2(picture.alpha.data, std::vector<float>(picture.alpha.data.size())) > 0);
         }
     }
 }

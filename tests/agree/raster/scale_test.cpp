@@ -1,4 +1,5 @@
-// Scenes of any size: the near plane follows scene and camera, and nothing else of the image knows about world units.
+// Scenes of any size: the near plane follows scene and camera, and nothing else of the image knows about
+// world units.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -21,7 +22,8 @@ constexpr double ScaleTolerance = 2e-3, MeanScaleTolerance = 2e-5;
 
 double mean_error(const Image& a, const Image& b) {
     double sum = 0;
-    for (std::size_t i = 0; i < a.data.size(); ++i) sum += std::abs(static_cast<double>(a.data[i]) - static_cast<double>(b.data[i]));
+    for (std::size_t i = 0; i < a.data.size(); ++i)
+        sum += std::abs(static_cast<double>(a.data[i]) - static_cast<double>(b.data[i]));
     return sum / static_cast<double>(a.data.size());
 }
 
@@ -47,7 +49,7 @@ DOCTEST_TEST_CASE("a scene of any size gives the same picture") {
     const auto plain = make_plain_rasterizer();
     const auto fast = make_fast_rasterizer(pool);
     const GaussianData data = test::random_scene({.count = 600, .seed = 41});
-    for (const double distance : {4.0, 0.8}) {   // from outside, and from among the splats
+    for (const double distance : {4.0, 0.8}) {  // from outside, and from among the splats
         const Camera camera = test::test_camera(80, 60, distance);
         const auto ambiguous = test::ambiguous_pixels(data, camera, {});
         ForwardOutput truth;
@@ -60,7 +62,8 @@ DOCTEST_TEST_CASE("a scene of any size gives the same picture") {
             for (Rasterizer* rasterizer : {plain.get(), fast.get()}) {
                 ForwardOutput output;
                 rasterizer->forward(spans(large), test::scaled(camera, scale), {}, output);
-                DOCTEST_CHECK(test::clear_error(output.colour.data, truth.colour.data, ambiguous) < ScaleTolerance);
+                DOCTEST_CHECK(test::clear_error(output.colour.data, truth.colour.data, ambiguous) <
+                              ScaleTolerance);
                 DOCTEST_CHECK(mean_error(output.colour, truth.colour) < MeanScaleTolerance);
             }
         }
@@ -75,7 +78,8 @@ DOCTEST_TEST_CASE("the fitted orbit shows scenes of any size alike") {
     DOCTEST_REQUIRE(mean_alpha(truth) > 0.05);
     for (const double scale : Scales) {
         DOCTEST_CAPTURE(scale);
-        DOCTEST_CHECK(mean_error(seen(test::scaled(data, scale), *fast).colour, truth.colour) < MeanScaleTolerance);
+        DOCTEST_CHECK(mean_error(seen(test::scaled(data, scale), *fast).colour, truth.colour) <
+                      MeanScaleTolerance);
     }
 }
 
@@ -87,11 +91,13 @@ DOCTEST_TEST_CASE("a single splat and splats that are all in one place are seen,
             for (const float place : {0.0f, 0.7f}) {
                 DOCTEST_CAPTURE(count);
                 DOCTEST_CAPTURE(scale);
-                GaussianData data = test::random_scene({.count = count, .seed = 43, .opacity = 4, .opacity_spread = 0});
+                GaussianData data =
+                    test::random_scene({.count = count, .seed = 43, .opacity = 4, .opacity_spread = 0});
                 std::fill(data.position.begin(), data.position.end(), place);
                 const ForwardOutput output = seen(test::scaled(data, scale), *fast);
                 DOCTEST_CHECK(output.alpha.at(32, 24, 0) > 0.9f);
-                DOCTEST_CHECK(mean_alpha(output) > 0.005);   // a spot of the picture, not a pixel, however thin the splat
+                DOCTEST_CHECK(mean_alpha(output) >
+                              0.005);  // a spot of the picture, not a pixel, however thin the splat
                 if (count == 1) DOCTEST_CHECK(mean_alpha(output) < 0.5);
             }
 }
@@ -112,7 +118,10 @@ DOCTEST_TEST_CASE("a plane that is given stays where it is") {
         rasterizer->contributions(spans(data), camera, settings, Image(48, 48, 1, 1.0f), masked, total);
         std::size_t seen_rows = 0;
         for (std::size_t row = 0; row < data.size(); ++row) {
-            const double z = camera.to_camera({data.position[row * 3], data.position[row * 3 + 1], data.position[row * 3 + 2]}).z;
+            const double z = camera
+                                 .to_camera({data.position[row * 3], data.position[row * 3 + 1],
+                                             data.position[row * 3 + 2]})
+                                 .z;
             const bool cut = settings.near_plane > 0 ? z <= depth : z >= depth;
             if (cut) DOCTEST_CHECK(total[row] == 0);
             seen_rows += total[row] > 0 ? 1 : 0;

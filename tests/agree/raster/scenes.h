@@ -80,8 +80,7 @@ inline Image noise_image(int width, int height, int channels, std::uint64_t seed
     return image;
 }
 
-template <class A, class B>
-double relative_l2(const A& found, const B& expected) {
+template <class A, class B> double relative_l2(const A& found, const B& expected) {
     if (found.size() != expected.size()) return INFINITY;
     double difference = 0, size = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {

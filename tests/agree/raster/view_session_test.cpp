@@ -1,5 +1,5 @@
-// A view session against rendering in full: bit-identical while the rows of an edit move, split, go and are labelled anew, for
-// every budget, and near to the plain double version.
+// A view session against rendering in full: bit-identical while the rows of an edit move, split, go and are
+// labelled anew, for every budget, and near to the plain double version.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -33,12 +33,14 @@ Rows with_compact_tail(const GaussianData& data, std::size_t count) {
     const auto distance = [&](std::size_t row) {
         double sum = 0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double d = static_cast<double>(data.position[row * 3 + axis]) - static_cast<double>(data.position[axis]);
+            const double d =
+                static_cast<double>(data.position[row * 3 + axis]) - static_cast<double>(data.position[axis]);
             sum += d * d;
         }
-        return std::isfinite(sum) ? sum : 0.0;   // rows that cannot be drawn are labelled too
+        return std::isfinite(sum) ? sum : 0.0;  // rows that cannot be drawn are labelled too
     };
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return distance(a) > distance(b); });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return distance(a) > distance(b); });
     Rows rows;
     rows.data.sh_degree = data.sh_degree;
     for (const std::size_t row : order) rows.data.append_row(data, row);
@@ -48,7 +50,8 @@ Rows with_compact_tail(const GaussianData& data, std::size_t count) {
 
 void jitter(Rows& rows, Random& random, double size) {
     const auto move = [&](std::vector<float>& values, std::size_t stride, double step) {
-        for (std::size_t i = rows.first * stride; i < values.size(); ++i) values[i] += static_cast<float>(step * random.normal());
+        for (std::size_t i = rows.first * stride; i < values.size(); ++i)
+            values[i] += static_cast<float>(step * random.normal());
     };
     move(rows.data.position, 3, size);
     move(rows.data.log_scale, 3, size);
@@ -128,13 +131,15 @@ void live_through(Comparison& comparison, Rows rows, std::uint64_t seed) {
     jitter(rows, random, 0.3);
     prune(rows);
     comparison.check(rows);
-    rows.data.resize(rows.first);   // none is left
+    rows.data.resize(rows.first);  // none is left
     comparison.check(rows);
 }
 
 }  // namespace
 
-DOCTEST_TEST_CASE("a view session gives the bits of rendering in full, for every instruction set, thread count and budget") {
+DOCTEST_TEST_CASE(
+    "a view session gives the bits of rendering in full, for every instruction set, thread count and "
+    "budget") {
     for (const std::string& kernels : raster::usable_kernels())
         for (const unsigned threads : {1u, 2u})
             for (const std::size_t budget : {std::size_t{0}, std::size_t{600 << 10}, Ample}) {
@@ -144,7 +149,8 @@ DOCTEST_TEST_CASE("a view session gives the bits of rendering in full, for every
                 ThreadPool pool(threads);
                 const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
                 Comparison comparison(*rasterizer, budget);
-                const Rows rows = with_compact_tail(test::random_scene({.count = 5000, .seed = 81, .log_scale = -3.6}), 400);
+                const Rows rows = with_compact_tail(
+                    test::random_scene({.count = 5000, .seed = 81, .log_scale = -3.6}), 400);
                 live_through(comparison, rows, 82);
                 const ViewSessionWork work = comparison.session().work();
                 DOCTEST_CHECK(work.kept_bytes <= budget);
@@ -161,10 +167,10 @@ DOCTEST_TEST_CASE("a view session follows another label, other cameras and other
     Rows rows = with_compact_tail(data, 200);
     comparison.check(rows);
     DOCTEST_CHECK(comparison.session().work().prepared == 2);
-    rows = with_compact_tail(data, 350);   // seen by itself: there are others that stay
+    rows = with_compact_tail(data, 350);  // seen by itself: there are others that stay
     comparison.check(rows);
     DOCTEST_CHECK(comparison.session().work().prepared == 4);
-    GaussianData turned = data;   // as many rows as before, but others
+    GaussianData turned = data;  // as many rows as before, but others
     std::reverse(turned.opacity_logit.begin(), turned.opacity_logit.end());
     rows = with_compact_tail(turned, 350);
     comparison.session().forget();
@@ -196,13 +202,14 @@ DOCTEST_TEST_CASE("a view session follows the near plane, given or fitted to row
     const GaussianData data = test::random_scene({.count = 3000, .seed = 84, .log_scale = -3.6});
     Rows rows = with_compact_tail(data, 300);
     Comparison given(*rasterizer, Ample);
-    for (const float near : {0.2f, 0.25f, 2.9f, 2.95f, 4.0f, 0.2f}) {   // some inside of the scene
+    for (const float near : {0.2f, 0.25f, 2.9f, 2.95f, 4.0f, 0.2f}) {  // some inside of the scene
         DOCTEST_CAPTURE(near);
         given.settings.near_plane = near;
         given.settings.far_plane = 20 * near;
         given.check(rows);
     }
-    // Cameras inside the scene, and rows before them: the fitted plane moves with every step, among rows that stay.
+    // Cameras inside the scene, and rows before them: the fitted plane moves with every step, among rows that
+    // stay.
     Comparison fitted(*rasterizer, Ample);
     for (Camera& camera : fitted.cameras) camera = test::test_camera(90, 70, 0.7);
     Random random(85);
@@ -231,15 +238,17 @@ DOCTEST_TEST_CASE("a view session counts rows that cannot be drawn, before and b
     }
 }
 
-DOCTEST_TEST_CASE("a row that changes may come to reach the whole picture, and one as deep as a fixed row lies behind it") {
+DOCTEST_TEST_CASE(
+    "a row that changes may come to reach the whole picture, and one as deep as a fixed row lies behind it") {
     ThreadPool pool(2);
     for (const std::string& kernels : raster::usable_kernels()) {
         DOCTEST_CAPTURE(kernels);
         const auto rasterizer = raster::make_fast_rasterizer(pool, kernels);
-        Rows rows = with_compact_tail(test::random_scene({.count = 2000, .seed = 88, .log_scale = -3.6, .opacity = 3}), 60);
+        Rows rows = with_compact_tail(
+            test::random_scene({.count = 2000, .seed = 88, .log_scale = -3.6, .opacity = 3}), 60);
         Comparison comparison(*rasterizer, Ample);
         comparison.check(rows);
-        for (std::size_t i = rows.first; i < rows.data.size(); ++i) {   // twins of fixed rows: ties in depth
+        for (std::size_t i = rows.first; i < rows.data.size(); ++i) {  // twins of fixed rows: ties in depth
             const std::size_t twin = (i - rows.first) * 7;
             std::copy_n(rows.data.position.begin() + static_cast<std::ptrdiff_t>(twin * 3), 3,
                         rows.data.position.begin() + static_cast<std::ptrdiff_t>(i * 3));
@@ -272,13 +281,19 @@ DOCTEST_TEST_CASE("a view session agrees with the plain version rendered in full
             session->backward(d_colour, {}, found.gradients);
             truth->forward(0, spans(rows.data), rows.first, camera, {}, expected.image);
             truth->backward(d_colour, {}, expected.gradients);
-            DOCTEST_CHECK(test::clear_error(found.image.colour.data, expected.image.colour.data, ambiguous) < ImageTolerance);
-            DOCTEST_CHECK(test::clear_error(found.image.alpha.data, expected.image.alpha.data, ambiguous) < ImageTolerance);
+            DOCTEST_CHECK(test::clear_error(found.image.colour.data, expected.image.colour.data, ambiguous) <
+                          ImageTolerance);
+            DOCTEST_CHECK(test::clear_error(found.image.alpha.data, expected.image.alpha.data, ambiguous) <
+                          ImageTolerance);
             DOCTEST_CHECK(test::clear_error(found.image.blended, expected.image.blended, ambiguous) == 0);
-            DOCTEST_CHECK(test::relative_l2(found.gradients.position, expected.gradients.position) < GradientTolerance);
-            DOCTEST_CHECK(test::relative_l2(found.gradients.log_scale, expected.gradients.log_scale) < GradientTolerance);
-            DOCTEST_CHECK(test::relative_l2(found.gradients.rotation, expected.gradients.rotation) < GradientTolerance);
-            DOCTEST_CHECK(test::relative_l2(found.gradients.opacity_logit, expected.gradients.opacity_logit) < GradientTolerance);
+            DOCTEST_CHECK(test::relative_l2(found.gradients.position, expected.gradients.position) <
+                          GradientTolerance);
+            DOCTEST_CHECK(test::relative_l2(found.gradients.log_scale, expected.gradients.log_scale) <
+                          GradientTolerance);
+            DOCTEST_CHECK(test::relative_l2(found.gradients.rotation, expected.gradients.rotation) <
+                          GradientTolerance);
+            DOCTEST_CHECK(test::relative_l2(found.gradients.opacity_logit, expected.gradients.opacity_logit) <
+                          GradientTolerance);
             DOCTEST_CHECK(test::relative_l2(found.gradients.sh, expected.gradients.sh) < GradientTolerance);
         }
         DOCTEST_CHECK(session->work().continued == 3);

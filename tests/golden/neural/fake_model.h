@@ -1,4 +1,5 @@
-// What the cases of samplers share: the function that stands in for a network, and the comparison of trajectories.
+// What the cases of samplers share: the function that stands in for a network, and the comparison of
+// trajectories.
 #pragma once
 
 #include "tests/golden/neural/golden_case.h"
@@ -11,10 +12,8 @@ constexpr double TrajectoryRelative = 1e-4, TrajectoryAbsolute = 1e-4;
 /// What stands in for a network: linear * x + sine * sin(frequency * x + t / period).
 struct FakeModel {
     explicit FakeModel(const neural::Json& stated)
-        : linear(stated.at("linear").get<double>()),
-          sine(stated.at("sine").get<double>()),
-          frequency(stated.at("frequency").get<double>()),
-          period(stated.at("period").get<double>()) {}
+        : linear(stated.at("linear").get<double>()), sine(stated.at("sine").get<double>()),
+          frequency(stated.at("frequency").get<double>()), period(stated.at("period").get<double>()) {}
     torch::Tensor operator()(const torch::Tensor& x, double t) const {
         return linear * x + sine * torch::sin(frequency * x + t / period);
     }

@@ -30,13 +30,15 @@ struct GoldenCase {
     bool present;
 };
 
-/// Names and shapes of the tensors of a published model: a line each, the name, a tab, "3x4" or "scalar" or nothing.
+/// Names and shapes of the tensors of a published model: a line each, the name, a tab, "3x4" or "scalar" or
+/// nothing.
 inline neural::KeyShapes read_manifest(const std::filesystem::path& path) {
     neural::KeyShapes shapes;
     std::ifstream stream(path);
     for (std::string line; std::getline(stream, line);) {
         const auto tab = line.find('\t');
-        if (line.empty() || tab == std::string::npos || line.starts_with('#') || line.starts_with("key")) continue;
+        if (line.empty() || tab == std::string::npos || line.starts_with('#') || line.starts_with("key"))
+            continue;
         std::vector<std::int64_t> shape;
         auto text = line.substr(tab + 1, line.find('\t', tab + 1) - tab - 1);
         if (text == "scalar") text.clear();

@@ -1,4 +1,5 @@
-// CLIPSeg against its reference: every layer of the decoder, both ways of enlarging, words and a picture as the condition.
+// CLIPSeg against its reference: every layer of the decoder, both ways of enlarging, words and a picture as
+// the condition.
 #include <algorithm>
 
 #include "engine/neural/clipseg_model.h"
@@ -9,7 +10,7 @@ namespace {
 
 using namespace gse::neural;
 
-constexpr double ClipSegLogitTolerance = 2e-5;   // of the largest value, at least of 1 (clipseg/README.md)
+constexpr double ClipSegLogitTolerance = 2e-5;  // of the largest value, at least of 1 (clipseg/README.md)
 
 void check_clipseg(const std::string& name) {
     const GoldenCase golden(name);
@@ -35,27 +36,36 @@ void check_clipseg(const std::string& name) {
     near("conditional_embeddings", condition);
     const auto logits = model->logits(shown(pixels, ids.size(0)), condition, &layers);
     for (std::size_t i = 0; i < layers.size(); ++i)
-        if (const auto what = "decoder.hidden_states." + std::to_string(i); io.contains(what)) near(what, layers[i]);
+        if (const auto what = "decoder.hidden_states." + std::to_string(i); io.contains(what))
+            near(what, layers[i]);
     near("logits", logits);
     if (io.contains("prob")) near("prob", torch::sigmoid(logits));
-    near("logits_native_size", model->logits(shown(pixels.slice(2, 0, 64).slice(3, 0, 64), 1), condition.slice(0, 0, 1)));
+    near("logits_native_size",
+         model->logits(shown(pixels.slice(2, 0, 64).slice(3, 0, 64), 1), condition.slice(0, 0, 1)));
     if (io.contains("logits_image_conditioned"))
-        near("logits_image_conditioned", model->logits(shown(pixels, 1), model->clip->vision->forward(pixels.flip({3})).image_embeds));
+        near("logits_image_conditioned",
+             model->logits(shown(pixels, 1), model->clip->vision->forward(pixels.flip({3})).image_embeds));
 }
 
 }  // namespace
 
-DOCTEST_TEST_CASE("clipseg: logits of words and of a picture, every layer of the decoder") { check_clipseg("clipseg"); }
+DOCTEST_TEST_CASE("clipseg: logits of words and of a picture, every layer of the decoder") {
+    check_clipseg("clipseg");
+}
 
 DOCTEST_TEST_CASE("clipseg_simple: enlarged in one step") { check_clipseg("clipseg_simple"); }
 
 DOCTEST_TEST_CASE("manifests: names and shapes of the published CLIPSeg") {
     const GoldenCase golden("manifests");
     if (!golden.present) return;
-    const auto config = ClipSegConfig::from_json({{"model_type", "clipseg"}, {"use_complex_transposed_convolution", true},
-                                                  {"vision_config", {{"patch_size", 16}}}, {"extract_layers", {3, 6, 9}}}, golden.folder);
+    const auto config = ClipSegConfig::from_json({{"model_type", "clipseg"},
+                                                  {"use_complex_transposed_convolution", true},
+                                                  {"vision_config", {{"patch_size", 16}}},
+                                                  {"extract_layers", {3, 6, 9}}},
+                                                 golden.folder);
     const auto path = golden.folder / "clipseg_rd64_refined.tsv";
-    check_weights(*ClipSegModel(config, WeightOptions{torch::kMeta, torch::kFloat32, false}), read_manifest(path), clipseg_plan(), path);
+    check_weights(*ClipSegModel(config, WeightOptions{torch::kMeta, torch::kFloat32, false}),
+                  read_manifest(path), clipseg_plan(), path);
 }
 
 }  // namespace gse::test

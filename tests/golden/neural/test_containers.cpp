@@ -33,8 +33,7 @@ void check_expected(const SafetensorsFile& file, const Json& expected) {
             DOCTEST_CHECK(std::vector<std::int64_t>(tensor.data_ptr<std::int64_t>(),
                                                     tensor.data_ptr<std::int64_t>() + tensor.numel()) ==
                           what["values"].get<std::vector<std::int64_t>>());
-        else
-            DOCTEST_CHECK(values_of(tensor) == what["values"].get<std::vector<double>>());
+        else DOCTEST_CHECK(values_of(tensor) == what["values"].get<std::vector<double>>());
     }
 }
 

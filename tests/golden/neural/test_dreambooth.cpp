@@ -1,5 +1,5 @@
-// DreamBooth's training step against the reference: losses, gradients, clipping, AdamW, with and without prior and text
-// encoder.
+// DreamBooth's training step against the reference: losses, gradients, clipping, AdamW, with and without
+// prior and text encoder.
 #include "engine/neural/dreambooth.h"
 #include "engine/neural/key_map.h"
 #include "tests/golden/neural/golden_case.h"
@@ -12,10 +12,10 @@ using namespace gse::neural;
 using namespace gse::test;
 
 // The tolerances of the case's README.
-constexpr double LossTolerance = 1e-5;      // relative
+constexpr double LossTolerance = 1e-5;                 // relative
 constexpr double MeanShare = 1e-3, WorstShare = 0.05;  // of the learning rate, weights after some steps
-constexpr double NormTolerance = 1e-3;      // relative, how far each parameter moved
-constexpr double IgnoredShare = 1e-2;       // of the median: parameters without a true gradient
+constexpr double NormTolerance = 1e-3;                 // relative, how far each parameter moved
+constexpr double IgnoredShare = 1e-2;                  // of the median: parameters without a true gradient
 constexpr double ClassLatentTolerance = 2e-5;
 template <class Holder, class Config>
 Holder loaded(const GoldenCase& golden, const std::string& file, const LoadPlan& plan) {
@@ -27,7 +27,9 @@ Holder loaded(const GoldenCase& golden, const std::string& file, const LoadPlan&
 
 /// Everything the case starts from. The tokenizer is not used: the ids are given.
 struct Setup {
-    Setup() : golden("dreambooth"), unet("unet_sd1"), vae("vae"), text("clip_text_sd1"), pipeline("pipeline_sd1") {
+    Setup()
+        : golden("dreambooth"), unet("unet_sd1"), vae("vae"), text("clip_text_sd1"),
+          pipeline("pipeline_sd1") {
         if (present()) stated = golden.json("case.json");
     }
     bool present() const {
@@ -48,13 +50,14 @@ struct Setup {
     }
     ModelBundle bundle() const {
         const auto vae_file = vae.tensors("diffusion_pytorch_model.safetensors");
-        return {golden.folder,
-                Tokenizer(pipeline.folder / "tokenizer"),
-                loaded<ClipTextEncoder, TextEncoderConfig>(text, "model.safetensors", text_encoder_plan()),
-                loaded<UNet, UNetConfig>(unet, "diffusion_pytorch_model.safetensors", unet_plan()),
-                loaded<AutoencoderKl, VaeConfig>(vae, "diffusion_pytorch_model.safetensors", vae_plan(vae_file)),
-                schedule(),
-                {}};
+        return {
+            golden.folder,
+            Tokenizer(pipeline.folder / "tokenizer"),
+            loaded<ClipTextEncoder, TextEncoderConfig>(text, "model.safetensors", text_encoder_plan()),
+            loaded<UNet, UNetConfig>(unet, "diffusion_pytorch_model.safetensors", unet_plan()),
+            loaded<AutoencoderKl, VaeConfig>(vae, "diffusion_pytorch_model.safetensors", vae_plan(vae_file)),
+            schedule(),
+            {}};
     }
     GoldenCase golden, unet, vae, text, pipeline;
     Json stated;
@@ -74,11 +77,13 @@ torch::Tensor named(const NamedTensors& tensors, const std::string& name) {
     return {};
 }
 
-void check_weights_after(Margins& margins, const std::string& at, const NamedTensors& trained, const Setup& setup) {
+void check_weights_after(Margins& margins, const std::string& at, const NamedTensors& trained,
+                         const Setup& setup) {
     const auto io = setup.golden.tensors();
     const double rate = setup.parameters().learning_rate;
     std::size_t checked = 0;
-    const auto compare = [&](const std::string& what, const torch::Tensor& actual, const torch::Tensor& expected) {
+    const auto compare = [&](const std::string& what, const torch::Tensor& actual,
+                             const torch::Tensor& expected) {
         margins.near(at + what, actual, expected, WorstShare * rate);
         margins.near(at + what + " mean", (actual.detach() - expected).abs().mean(), torch::zeros({}),
                      MeanShare * rate);
@@ -119,7 +124,8 @@ void check_step(Margins& margins, const std::string& at, const TuningStep& step,
     const auto near = [&](const char* what, double value) {
         if (!io.contains(at + what)) return;
         const auto expected = io.tensor(at + what);
-        margins.near(at + what, torch::tensor(static_cast<float>(value)), expected, LossTolerance * largest(expected));
+        margins.near(at + what, torch::tensor(static_cast<float>(value)), expected,
+                     LossTolerance * largest(expected));
     };
     near("loss", step.loss);
     near("instance_loss", step.instance_loss);
@@ -137,7 +143,8 @@ void check_variant(const std::string& variant, bool prior, bool text, int thread
     parameters.threads = threads;
     DreamBoothTrainer trainer(bundle, parameters);
     const double latent_factor = setup.stated.at("latent_factor").get<double>();
-    margins.near("alphas_cumprod", bundle.schedule.alphas_cumprod(), io.tensor("alphas_cumprod"), CumprodTolerance);
+    margins.near("alphas_cumprod", bundle.schedule.alphas_cumprod(), io.tensor("alphas_cumprod"),
+                 CumprodTolerance);
     const auto moments = bundle.vae->encode_moments(io.tensor("pixel_values"));
     const auto steps = io.tensor("timesteps").size(0), batch = io.tensor("timesteps").size(1);
     for (std::int64_t s = 0; s < steps; ++s) {
@@ -145,7 +152,9 @@ void check_variant(const std::string& variant, bool prior, bool text, int thread
         const std::string at = variant + ".step" + std::to_string(s + 1) + ".";
         if (io.contains(at + "latents"))
             margins.near("latents", latents, io.tensor(at + "latents"), ClassLatentTolerance);
-        const auto instance = rows_of(io, latents, s, prior ? std::pair{std::int64_t{0}, batch / 2} : std::pair{std::int64_t{0}, batch});
+        const auto instance =
+            rows_of(io, latents, s,
+                    prior ? std::pair{std::int64_t{0}, batch / 2} : std::pair{std::int64_t{0}, batch});
         const auto class_half = rows_of(io, latents, s, {batch / 2, batch / 2});
         auto step = trainer.accumulate(instance, prior ? &class_half : nullptr);
         check_step(margins, at, step, io);

@@ -1,4 +1,5 @@
-// Whole models that redraw pictures in other ways than Stable Diffusion: LCM, InstructPix2Pix, and the tiny autoencoder.
+// Whole models that redraw pictures in other ways than Stable Diffusion: LCM, InstructPix2Pix, and the tiny
+// autoencoder.
 #include <fstream>
 
 #include "engine/neural/key_map.h"
@@ -15,9 +16,9 @@ using namespace gse::test;
 
 // The tolerances of the cases' README files.
 constexpr double EmbeddingTolerance = 1e-3, EmbeddingTableTolerance = 2e-3;
-constexpr double EmbeddedOutputTolerance = 3e-4;   // where the embedding is computed, not given
-constexpr double LcmLatents = 1e-3;                // of each value, and absolute
-constexpr double EditedLatents = 1e-4;             // of the largest value
+constexpr double EmbeddedOutputTolerance = 3e-4;  // where the embedding is computed, not given
+constexpr double LcmLatents = 1e-3;               // of each value, and absolute
+constexpr double EditedLatents = 1e-4;            // of the largest value
 constexpr double EditedImage = 2e-3;
 
 UNet load_unet(const GoldenCase& golden) {
@@ -27,7 +28,8 @@ UNet load_unet(const GoldenCase& golden) {
 }
 
 /// "grad.<parameter><ending>" of the file against the parameters.
-void check_gradients(Margins& margins, const torch::nn::Module& network, const SafetensorsFile& io, const std::string& ending = {}) {
+void check_gradients(Margins& margins, const torch::nn::Module& network, const SafetensorsFile& io,
+                     const std::string& ending = {}) {
     const auto parameters = network.named_parameters();
     std::size_t compared = 0;
     for (const auto& [name, entry] : io.entries()) {
@@ -42,40 +44,50 @@ void check_gradients(Margins& margins, const torch::nn::Module& network, const S
 }
 
 /// One of the two guidance scales: embedding, output with it given and computed, gradients.
-void check_embedded_scale(Margins& margins, UNet unet, const SafetensorsFile& io, double scale, const std::string& index) {
+void check_embedded_scale(Margins& margins, UNet unet, const SafetensorsFile& io, double scale,
+                          const std::string& index) {
     const auto w = io.tensor("w" + index), t = io.tensor("t"), expected = io.tensor("out.w" + index);
     const auto width = unet->config().time_cond_proj_dim;
     margins.near("w" + index, torch::full_like(w, scale - 1), w, 0);
     const auto embedding = guidance_embedding(w, width), given = io.tensor("w_embedding.w" + index);
     margins.near("w_embedding.w" + index, embedding, given, EmbeddingTolerance);
-    auto sample = io.tensor("sample").requires_grad_(true), context = io.tensor("encoder_hidden_states").requires_grad_(true);
+    auto sample = io.tensor("sample").requires_grad_(true),
+         context = io.tensor("encoder_hidden_states").requires_grad_(true);
     unet->zero_grad();
     const auto output = unet->forward(sample, t, context, nullptr, given);
     margins.near("out.w" + index, output, expected, OutputTolerance);
     (output * io.tensor("G")).sum().backward();
-    margins.near_relative("grad_sample.w" + index, sample.grad(), io.tensor("grad_sample.w" + index), GradientTolerance);
-    margins.near_relative("grad_encoder_hidden_states.w" + index, context.grad(), io.tensor("grad_encoder_hidden_states.w" + index),
+    margins.near_relative("grad_sample.w" + index, sample.grad(), io.tensor("grad_sample.w" + index),
                           GradientTolerance);
+    margins.near_relative("grad_encoder_hidden_states.w" + index, context.grad(),
+                          io.tensor("grad_encoder_hidden_states.w" + index), GradientTolerance);
     check_gradients(margins, *unet, io, ".w" + index);
     const torch::NoGradGuard no_grad;
-    margins.near("computed out.w" + index, unet->forward(sample, t, context, nullptr, embedding), expected, EmbeddedOutputTolerance);
-    const auto both = torch::stack({context, context}, 1);   // no text against it: the scale is built in
-    margins.near("guided out.w" + index, guided_output(unet, sample, t, {both, scale}), expected, EmbeddedOutputTolerance);
+    margins.near("computed out.w" + index, unet->forward(sample, t, context, nullptr, embedding), expected,
+                 EmbeddedOutputTolerance);
+    const auto both = torch::stack({context, context}, 1);  // no text against it: the scale is built in
+    margins.near("guided out.w" + index, guided_output(unet, sample, t, {both, scale}), expected,
+                 EmbeddedOutputTolerance);
 }
 
 /// One run of "pipeline" in lcm/case.json.
-void check_lcm_run(Margins& margins, const ModelBundle& bundle, const SafetensorsFile& io, const std::string& name, const Json& stated) {
+void check_lcm_run(Margins& margins, const ModelBundle& bundle, const SafetensorsFile& io,
+                   const std::string& name, const Json& stated) {
     const torch::NoGradGuard no_grad;
     const auto strength = stated.at("strength").get<double>();
-    const auto walk = image_to_image(sampler_of(bundle.kind), bundle.schedule, stated.at("steps").get<std::int64_t>(),
-                                     {.strength = strength, .original_steps = stated.at("original_inference_steps").get<std::int64_t>()});
-    margins.near(name + ".timesteps", torch::tensor(walk.sampler->timesteps()), io.tensor(name + ".timesteps").to(torch::kFloat64), 0);
+    const auto walk = image_to_image(
+        sampler_of(bundle.kind), bundle.schedule, stated.at("steps").get<std::int64_t>(),
+        {.strength = strength, .original_steps = stated.at("original_inference_steps").get<std::int64_t>()});
+    margins.near(name + ".timesteps", torch::tensor(walk.sampler->timesteps()),
+                 io.tensor(name + ".timesteps").to(torch::kFloat64), 0);
     const auto image = io.tensor("init_image");
     const auto moments = bundle.vae->encode_moments(image * 2 - 1);
     const bool sampled = name == "posterior_sample";
-    const auto clean = (sampled ? moments.sample(io.tensor("posterior_eps")) : moments.mean) * bundle.scaling_factor();
+    const auto clean =
+        (sampled ? moments.sample(io.tensor("posterior_eps")) : moments.mean) * bundle.scaling_factor();
     if (!sampled) margins.near(name + " mean", image_to_latents(bundle, image), clean, 0);
-    const auto near = [&](const std::string& what, const torch::Tensor& actual, const torch::Tensor& expected) {
+    const auto near = [&](const std::string& what, const torch::Tensor& actual,
+                          const torch::Tensor& expected) {
         near_scaled(margins, name + what, actual, expected, LcmLatents, LcmLatents);
     };
     near(".init_latents", clean, io.tensor(name + ".init_latents"));
@@ -92,16 +104,18 @@ void check_lcm_run(Margins& margins, const ModelBundle& bundle, const Safetensor
         near(" latents", x, latents[step + 1]);
         near(" denoised", walk.sampler->predicted_x0(), denoised[step]);
     };
-    margins.near(name + ".image", latents_to_image(bundle, denoise(bundle, start, job)), io.tensor(name + ".image"), EditedImage);
+    margins.near(name + ".image", latents_to_image(bundle, denoise(bundle, start, job)),
+                 io.tensor(name + ".image"), EditedImage);
 }
 
 /// Row of the reference's batch [text; picture; neither] that stands at `row` of ours.
 std::int64_t reference_row(std::int64_t row, int parts) { return parts == 2 ? 1 - row : row; }
 
-void check_first_call(Margins& margins, const ModelBundle& bundle, const SafetensorsFile& io, const std::string& name,
-                      const DenoiseJob& job, const torch::Tensor& start) {
-    const auto rows = unet_rows(bundle.unet->config(), job.sampler->scale_input(start, job.first),
-                                {job.context.unsqueeze(0), job.guidance_scale, job.picture, job.image_guidance_scale});
+void check_first_call(Margins& margins, const ModelBundle& bundle, const SafetensorsFile& io,
+                      const std::string& name, const DenoiseJob& job, const torch::Tensor& start) {
+    const auto rows =
+        unet_rows(bundle.unet->config(), job.sampler->scale_input(start, job.first),
+                  {job.context.unsqueeze(0), job.guidance_scale, job.picture, job.image_guidance_scale});
     const auto t = torch::full({1}, job.sampler->timestep(job.first), torch::kFloat32);
     const auto output = bundle.unet->forward(rows.input, t, rows.context);
     const auto in = io.tensor(name + ".unet_in_0"), out = io.tensor(name + ".unet_out_0");
@@ -115,8 +129,8 @@ void check_first_call(Margins& margins, const ModelBundle& bundle, const Safeten
 }
 
 /// One run of ip2p/case.json.
-void check_instruction_run(Margins& margins, const BundleFolder& folder, const GoldenCase& golden, const std::string& name,
-                           const Json& stated) {
+void check_instruction_run(Margins& margins, const BundleFolder& folder, const GoldenCase& golden,
+                           const std::string& name, const Json& stated) {
     const torch::NoGradGuard no_grad;
     const auto scheduler = stated.at("scheduler").get<std::string>();
     const bool ddim = scheduler == "ddim";
@@ -126,8 +140,10 @@ void check_instruction_run(Margins& margins, const BundleFolder& folder, const G
     auto bundle = folder.load();
     DOCTEST_CHECK(bundle.kind == BundleKind::InstructPix2Pix);
     const auto io = golden.tensors("pipeline_io.safetensors");
-    const auto sampler = make_sampler(sampler_kind(config), NoiseSchedule(config), stated.at("steps").get<std::int64_t>());
-    margins.near(name + ".timesteps", torch::tensor(sampler->timesteps()), io.tensor(name + ".timesteps").to(torch::kFloat64), 1e-4);
+    const auto sampler =
+        make_sampler(sampler_kind(config), NoiseSchedule(config), stated.at("steps").get<std::int64_t>());
+    margins.near(name + ".timesteps", torch::tensor(sampler->timesteps()),
+                 io.tensor(name + ".timesteps").to(torch::kFloat64), 1e-4);
     DenoiseJob job;
     job.sampler = sampler.get();
     job.guidance_scale = stated.at("guidance_scale").get<double>();
@@ -143,20 +159,24 @@ void check_instruction_run(Margins& margins, const BundleFolder& folder, const G
     };
     const auto start = io.tensor("latents_noise") * sampler->initial_sigma();
     check_first_call(margins, bundle, io, name, job, start);
-    margins.near(name + ".image", latents_to_image(bundle, denoise(bundle, start, job)), io.tensor(name + ".image"), EditedImage);
+    margins.near(name + ".image", latents_to_image(bundle, denoise(bundle, start, job)),
+                 io.tensor(name + ".image"), EditedImage);
 }
 
 void check_tiny(Margins& margins, const TinyAutoencoder& tiny, const SafetensorsFile& io) {
     auto image = io.tensor("image").requires_grad_(true);
     const auto encoded = tiny->encode(image);
     margins.near_relative("encoded", encoded, io.tensor("encoded"), OutputTolerance);
-    margins.near_relative("scaled_latents_01", (encoded / 6 + 0.5).clamp(0, 1), io.tensor("scaled_latents_01"), OutputTolerance);
+    margins.near_relative("scaled_latents_01", (encoded / 6 + 0.5).clamp(0, 1),
+                          io.tensor("scaled_latents_01"), OutputTolerance);
     (encoded * io.tensor("G")).sum().backward();
     margins.near_relative("grad_image", image.grad(), io.tensor("grad_image"), GradientTolerance);
     const auto decoded = tiny->decode(io.tensor("encoded"));
     margins.near_relative("decoded", decoded, io.tensor("decoded"), OutputTolerance);
-    margins.near_relative("decoded_clamped", decoded.clamp(0, 1), io.tensor("decoded_clamped"), OutputTolerance);
-    // In double: whether a ReLU passes a value that is nearly zero is up to the rounding of a processor's kernels in single precision.
+    margins.near_relative("decoded_clamped", decoded.clamp(0, 1), io.tensor("decoded_clamped"),
+                          OutputTolerance);
+    // In double: whether a ReLU passes a value that is nearly zero is up to the rounding of a processor's
+    // kernels in single precision.
     TinyAutoencoder exact = tiny;
     exact->to(torch::kFloat64);
     auto latents = io.tensor("encoded").to(torch::kFloat64).requires_grad_(true);
@@ -191,16 +211,20 @@ DOCTEST_TEST_CASE("lcm: the UNet with an embedded guidance scale") {
     const auto io = golden.tensors();
     const auto scales = golden.json("case.json").at("guidance_scales_unet").get<std::vector<double>>();
     DOCTEST_REQUIRE(scales.size() == 2);
-    for (std::size_t i = 0; i < scales.size(); ++i) check_embedded_scale(margins, unet, io, scales[i], std::to_string(i));
+    for (std::size_t i = 0; i < scales.size(); ++i)
+        check_embedded_scale(margins, unet, io, scales[i], std::to_string(i));
     const torch::NoGradGuard no_grad;
     const auto sample = io.tensor("sample"), context = io.tensor("encoder_hidden_states");
-    margins.near("out.no_w", unet->forward(sample, io.tensor("t"), context), io.tensor("out.no_w"), OutputTolerance);
+    margins.near("out.no_w", unet->forward(sample, io.tensor("t"), context), io.tensor("out.no_w"),
+                 OutputTolerance);
     const auto rows = torch::stack({io.tensor("w_embedding.w0")[0], io.tensor("w_embedding.w1")[1]});
-    margins.near("out.mixed_w", unet->forward(sample, torch::tensor({999, 19}), context, nullptr, rows), io.tensor("out.mixed_w"),
-                 OutputTolerance);   // timesteps as the case's README says
+    margins.near("out.mixed_w", unet->forward(sample, torch::tensor({999, 19}), context, nullptr, rows),
+                 io.tensor("out.mixed_w"),
+                 OutputTolerance);  // timesteps as the case's README says
     for (const char* name : {"w_table.embedding", "w_table.embedding_odd"}) {
         const auto expected = io.tensor(name);
-        margins.near(name, guidance_embedding(io.tensor("w_table.w"), expected.size(1)), expected, EmbeddingTableTolerance);
+        margins.near(name, guidance_embedding(io.tensor("w_table.w"), expected.size(1)), expected,
+                     EmbeddingTableTolerance);
     }
 }
 
@@ -223,15 +247,18 @@ DOCTEST_TEST_CASE("ip2p: the UNet with eight channels") {
     const auto unet = load_unet(golden);
     DOCTEST_CHECK(takes_picture(unet->config()));
     const auto io = golden.tensors();
-    auto sample = io.tensor("sample").requires_grad_(true), context = io.tensor("encoder_hidden_states").requires_grad_(true);
+    auto sample = io.tensor("sample").requires_grad_(true),
+         context = io.tensor("encoder_hidden_states").requires_grad_(true);
     const auto output = unet->forward(sample, io.tensor("t"), context);
     margins.near("out", output, io.tensor("out"), OutputTolerance);
     (output * io.tensor("G")).sum().backward();
     margins.near_relative("grad_sample", sample.grad(), io.tensor("grad_sample"), GradientTolerance);
-    margins.near_relative("grad_encoder_hidden_states", context.grad(), io.tensor("grad_encoder_hidden_states"), GradientTolerance);
+    margins.near_relative("grad_encoder_hidden_states", context.grad(),
+                          io.tensor("grad_encoder_hidden_states"), GradientTolerance);
     check_gradients(margins, *unet, io);
     const torch::NoGradGuard no_grad;
-    margins.near("out_odd_t7", unet->forward(io.tensor("sample_odd"), torch::tensor(7), context.narrow(0, 0, 1)),
+    margins.near("out_odd_t7",
+                 unet->forward(io.tensor("sample_odd"), torch::tensor(7), context.narrow(0, 0, 1)),
                  io.tensor("out_odd_t7"), OutputTolerance);
 }
 
@@ -266,14 +293,18 @@ DOCTEST_TEST_CASE("taesd_img2img: with DDIM, and with LCM and guidance") {
     DOCTEST_REQUIRE(bundle.has_tiny());
     const auto io = golden.tensors();
     const auto clean = image_to_latents(bundle, io.tensor("init_image"), Codec::Quick);
-    margins.near("init_latents", clean, io.tensor("init_latents"), OutputTolerance * std::max(1.0, largest(io.tensor("init_latents"))));
+    margins.near("init_latents", clean, io.tensor("init_latents"),
+                 OutputTolerance * std::max(1.0, largest(io.tensor("init_latents"))));
     const auto stated_runs = golden.json("case.json");
     for (const auto& [name, stated] : stated_runs.items()) {
         const bool by_lcm = name == "lcm";
-        const auto schedule = by_lcm ? NoiseSchedule(SchedulerConfig::from_json(lcm.json("scheduler_config.json"), lcm.folder)) : bundle.schedule;
+        const auto schedule =
+            by_lcm ? NoiseSchedule(SchedulerConfig::from_json(lcm.json("scheduler_config.json"), lcm.folder))
+                   : bundle.schedule;
         SamplerOptions options{.strength = stated.at("strength").get<double>()};
         if (by_lcm) options.original_steps = stated.at("original_inference_steps").get<std::int64_t>();
-        const auto walk = image_to_image(by_lcm ? SamplerKind::Lcm : SamplerKind::Ddim, schedule, stated.at("steps").get<std::int64_t>(), options);
+        const auto walk = image_to_image(by_lcm ? SamplerKind::Lcm : SamplerKind::Ddim, schedule,
+                                         stated.at("steps").get<std::int64_t>(), options);
         const auto latents = io.tensor(name + ".latents_steps"), timesteps = io.tensor(name + ".timesteps");
         DOCTEST_REQUIRE(walk.sampler->step_count() - walk.first == timesteps.numel());
         const double tolerance = EditedLatents * largest(latents);
@@ -284,13 +315,18 @@ DOCTEST_TEST_CASE("taesd_img2img: with DDIM, and with LCM and guidance") {
         job.first = walk.first;
         job.guidance_scale = stated.at("guidance_scale").get<double>();
         job.context = torch::cat({io.tensor("negative_prompt_embeds"), io.tensor("prompt_embeds")});
-        job.noise = [&](std::int64_t step) { return io.tensor("step_noises")[std::min(step, io.tensor("step_noises").size(0) - 1)]; };
+        job.noise = [&](std::int64_t step) {
+            return io.tensor("step_noises")[std::min(step, io.tensor("step_noises").size(0) - 1)];
+        };
         job.after_step = [&, &name = name](std::int64_t step, const torch::Tensor& x) {
-            margins.near(name + " timestep", torch::tensor(walk.sampler->timestep(step)), timesteps[step - walk.first].to(torch::kFloat64), 0);
+            margins.near(name + " timestep", torch::tensor(walk.sampler->timestep(step)),
+                         timesteps[step - walk.first].to(torch::kFloat64), 0);
             margins.near(name + " latents", x, latents[step - walk.first + 1], tolerance);
         };
         const auto result = denoise(bundle, start, job);
-        margins.near(name + ".decoded", bundle.tiny->decode(result) * 2 - 1, io.tensor(name + ".decoded"), EditedImage);
-        margins.near(name + ".image", latents_to_image(bundle, result, Codec::Quick), io.tensor(name + ".image"), EditedImage);
+        margins.near(name + ".decoded", bundle.tiny->decode(result) * 2 - 1, io.tensor(name + ".decoded"),
+                     EditedImage);
+        margins.near(name + ".image", latents_to_image(bundle, result, Codec::Quick),
+                     io.tensor(name + ".image"), EditedImage);
     }
 }

@@ -1,4 +1,5 @@
-// LoRA files against kohya's merge script, diffusers with PEFT, and LyCORIS: merged weights, outputs, gradients, refusals.
+// LoRA files against kohya's merge script, diffusers with PEFT, and LyCORIS: merged weights, outputs,
+// gradients, refusals.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,7 +21,8 @@ using namespace gse;
 using namespace gse::neural;
 using namespace gse::test;
 
-// The tolerances of the case's README, and the wave its checksums are taken with: sum over k of W[k] cos(0.37 (k + 1)).
+// The tolerances of the case's README, and the wave its checksums are taken with: sum over k of W[k] cos(0.37
+// (k + 1)).
 constexpr double MergedTolerance = 1e-6;
 constexpr double MergedOutputTolerance = 3e-5;
 constexpr double ChecksumTolerance = 1e-4;
@@ -37,7 +39,8 @@ struct LoraCase {
         return network;
     }
     ClipTextEncoder text() const {
-        ClipTextEncoder network(TextEncoderConfig::from_json(text_case.json("config.json"), text_case.folder));
+        ClipTextEncoder network(
+            TextEncoderConfig::from_json(text_case.json("config.json"), text_case.folder));
         load_weights(*network, text_case.tensors("model.safetensors"), text_encoder_plan());
         return network;
     }
@@ -48,7 +51,9 @@ struct LoraCase {
     torch::Tensor run(const ClipTextEncoder& network) const {
         return network->forward(text_case.tensors().tensor("input_ids").narrow(0, 0, 2)).last_hidden;
     }
-    LoraWeights read(const std::string& name) const { return read_lora(golden.folder / (name + ".safetensors")); }
+    LoraWeights read(const std::string& name) const {
+        return read_lora(golden.folder / (name + ".safetensors"));
+    }
 };
 
 struct Merged {
@@ -63,7 +68,8 @@ struct Merged {
     /// "unet.down_blocks...weight", "text_encoder.text_model...weight" ("te." in io.safetensors).
     torch::Tensor weight(const std::string& name) const {
         const auto dot = name.find('.');
-        const torch::nn::Module& network = name.starts_with("unet.") ? static_cast<const torch::nn::Module&>(*unet) : *text;
+        const torch::nn::Module& network =
+            name.starts_with("unet.") ? static_cast<const torch::nn::Module&>(*unet) : *text;
         const auto parameters = network.named_parameters();
         const auto* found = parameters.find(name.substr(dot + 1));
         DOCTEST_REQUIRE_MESSAGE(found != nullptr, name);
@@ -76,7 +82,7 @@ struct CheckedWeight {
     std::string weight;
     std::int64_t rank = 0;
     double scale = 0;
-    std::map<std::string, double> sums;   // by strength as the header writes it
+    std::map<std::string, double> sums;  // by strength as the header writes it
 };
 
 /// checks.tsv by file.
@@ -128,7 +134,8 @@ const LoraFactor* factor_for(const LoraWeights& weights, const std::string& weig
 void check_untouched(const Merged& merged, const Merged& base, const std::vector<CheckedWeight>& touched) {
     std::set<std::string> names;
     for (const auto& check : touched) names.insert(check.weight);
-    const auto compare = [&](const torch::nn::Module& now, const torch::nn::Module& before, const std::string& prefix) {
+    const auto compare = [&](const torch::nn::Module& now, const torch::nn::Module& before,
+                             const std::string& prefix) {
         const auto old = before.named_parameters();
         for (const auto& item : now.named_parameters())
             if (!names.contains(prefix + item.key()))
@@ -139,17 +146,21 @@ void check_untouched(const Merged& merged, const Merged& base, const std::vector
 }
 
 /// What io.safetensors holds of one merge: outputs, and some weights.
-void check_outputs(Margins& margins, const LoraCase& lora, const Merged& merged, const SafetensorsFile& io, const std::string& stem) {
+void check_outputs(Margins& margins, const LoraCase& lora, const Merged& merged, const SafetensorsFile& io,
+                   const std::string& stem) {
     const torch::NoGradGuard no_grad;
     DOCTEST_REQUIRE(io.contains(stem + ".unet"));
     margins.near(stem + ".unet", lora.run(merged.unet), io.tensor(stem + ".unet"), MergedOutputTolerance);
-    if (io.contains(stem + ".te")) margins.near(stem + ".te", lora.run(merged.text), io.tensor(stem + ".te"), MergedOutputTolerance);
+    if (io.contains(stem + ".te"))
+        margins.near(stem + ".te", lora.run(merged.text), io.tensor(stem + ".te"), MergedOutputTolerance);
     for (const auto& [name, entry] : io.entries())
         if (name.starts_with(stem + ".W."))
-            margins.near(name, merged.weight(name.substr(stem.size() + 3) + ".weight"), io.tensor(name), MergedTolerance);
+            margins.near(name, merged.weight(name.substr(stem.size() + 3) + ".weight"), io.tensor(name),
+                         MergedTolerance);
 }
 
-void check_file(Margins& margins, const LoraCase& lora, const std::string& file, const std::vector<CheckedWeight>& checks) {
+void check_file(Margins& margins, const LoraCase& lora, const std::string& file,
+                const std::vector<CheckedWeight>& checks) {
     const auto weights = lora.read(file);
     DOCTEST_CHECK(weights.unet.size() + weights.text.size() == checks.size());
     const auto io = lora.golden.tensors();
@@ -163,7 +174,8 @@ void check_file(Margins& margins, const LoraCase& lora, const std::string& file,
             DOCTEST_CHECK(factor->rank() == check.rank);
             DOCTEST_CHECK(std::abs(factor->scale() - check.scale) <= 1e-6 * std::abs(check.scale));
             const double error = std::abs(checksum(merged.weight(check.weight)) - check.sums.at(strength));
-            DOCTEST_CHECK_MESSAGE(error <= ChecksumTolerance, file, " ", strength, " ", check.weight, ": ", error);
+            DOCTEST_CHECK_MESSAGE(error <= ChecksumTolerance, file, " ", strength, " ", check.weight, ": ",
+                                  error);
         }
         check_untouched(merged, base, checks);
         check_outputs(margins, lora, merged, io, file + ".s" + strength);
@@ -186,7 +198,8 @@ std::string refusal(const LoraCase& lora, const Merged& base, const std::string&
 
 bool names_one_of(std::string message, const Json& words) {
     const auto lower = [](std::string text) {
-        std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        std::transform(text.begin(), text.end(), text.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
         return text;
     };
     message = lower(std::move(message));
@@ -208,7 +221,8 @@ DOCTEST_TEST_CASE("lora: merged weights and outputs of every kind of file, at ev
         margins.near("base.unet", lora.run(base.unet), io.tensor("base.unet"), MergedOutputTolerance);
         margins.near("base.te", lora.run(base.text), io.tensor("base.te"), MergedOutputTolerance);
     }
-    for (const auto& [file, checks] : read_checks(lora.golden.folder / "checks.tsv")) check_file(margins, lora, file, checks);
+    for (const auto& [file, checks] : read_checks(lora.golden.folder / "checks.tsv"))
+        check_file(margins, lora, file, checks);
 }
 
 DOCTEST_TEST_CASE("lora: two files at once, in any order") {
@@ -239,7 +253,7 @@ DOCTEST_TEST_CASE("lora: gradients of the factors") {
     if (!lora.present()) return;
     Margins margins("lora gradients");
     const auto io = lora.golden.tensors();
-    auto weights = lora.read("diffusers_peft");   // the file the case says
+    auto weights = lora.read("diffusers_peft");  // the file the case says
     UNet unet = lora.unet();
     unet->eval();
     for (auto& parameter : unet->parameters()) parameter.set_requires_grad(false);
@@ -262,8 +276,8 @@ DOCTEST_TEST_CASE("lora: gradients of the factors") {
         if (!std::regex_match(name, found, pattern)) continue;
         const auto factor = factors.find(flat(found[1]));
         DOCTEST_REQUIRE_MESSAGE(factor != factors.end(), name);
-        margins.near_relative(name, (found[2] == "A" ? factor->second->down : factor->second->up).grad(), io.tensor(name),
-                              GradientTolerance);
+        margins.near_relative(name, (found[2] == "A" ? factor->second->down : factor->second->up).grad(),
+                              io.tensor(name), GradientTolerance);
         ++compared;
     }
     DOCTEST_CHECK(compared > 0);
@@ -276,7 +290,8 @@ DOCTEST_TEST_CASE("lora: malformed files are refused by name, odd ones read") {
     const auto io = lora.golden.tensors();
     const Merged base(lora);
     for (const auto& stated : lora.golden.json("malformed.json")) {
-        const auto file = stated.at("file").get<std::string>(), expected = stated.at("expect").get<std::string>();
+        const auto file = stated.at("file").get<std::string>(),
+                   expected = stated.at("expect").get<std::string>();
         const auto message = refusal(lora, base, file);
         DOCTEST_CAPTURE(file);
         DOCTEST_CAPTURE(message);
@@ -290,8 +305,10 @@ DOCTEST_TEST_CASE("lora: malformed files are refused by name, odd ones read") {
         const auto stem = file.substr(0, file.rfind('.')) + ".s1.0.W.";
         for (const auto& [name, entry] : io.entries())
             if (name.starts_with(stem))
-                margins.near(name, merged.weight(name.substr(stem.size()) + ".weight"), io.tensor(name), MergedTolerance);
-        for (const auto& factor : weights.unet) {   // all of it or nothing: also where two ways of naming are mixed
+                margins.near(name, merged.weight(name.substr(stem.size()) + ".weight"), io.tensor(name),
+                             MergedTolerance);
+        for (const auto& factor :
+             weights.unet) {  // all of it or nothing: also where two ways of naming are mixed
             const bool nothing = factor.alpha == 0;
             bool same = true;
             for (const auto& item : merged.unet->named_parameters())

@@ -1,4 +1,5 @@
-// UNet, VAE, text encoder and CLIP against the reference implementations: outputs, attention maps and gradients.
+// UNet, VAE, text encoder and CLIP against the reference implementations: outputs, attention maps and
+// gradients.
 #include "engine/neural/clip_model.h"
 #include "engine/neural/key_map.h"
 #include "engine/neural/schedulers.h"

@@ -74,8 +74,8 @@ void check_sds_step(Margins& margins, const ModelBundle& bundle, const Safetenso
                      OutputTolerance);
         margins.near(at + "eps_cond", result.epsilon_positive, io.tensor(at + "eps_cond"), OutputTolerance);
         margins.near(at + "w", torch::tensor(result.weight), io.tensor(at + "w"), OutputTolerance);
-        margins.near_relative(scaled + "grad_latents", result.gradient,
-                              io.tensor(scaled + "grad_latents"), GradientTolerance);
+        margins.near_relative(scaled + "grad_latents", result.gradient, io.tensor(scaled + "grad_latents"),
+                              GradientTolerance);
         if (!io.contains(scaled + "grad_image")) continue;
         const auto gradient = torch::autograd::grad({latents}, {image}, {result.gradient}, true)[0];
         margins.near_relative(scaled + "grad_image", gradient, io.tensor(scaled + "grad_image"),
@@ -221,10 +221,10 @@ DOCTEST_TEST_CASE("sds: through the bilinear resize of a render") {
     const auto moments = bundle.vae->encode_moments(resized * 2 - 1);
     const auto latents = moments.sample(io.tensor("posterior_eps")) * bundle.scaling_factor();
     margins.near("latents", latents, io.tensor("render.latents"), OutputTolerance);
-    const auto result =
-        sds_gradient(bundle, latents,
-                     {io.tensor("noise"), stated.at("timestep").get<std::int64_t>(), stated.at("guidance_scale").get<double>(),
-                      torch::cat({io.tensor("uncond"), io.tensor("cond")})});
+    const auto result = sds_gradient(
+        bundle, latents,
+        {io.tensor("noise"), stated.at("timestep").get<std::int64_t>(),
+         stated.at("guidance_scale").get<double>(), torch::cat({io.tensor("uncond"), io.tensor("cond")})});
     margins.near_relative("grad_latents", result.gradient, io.tensor("render.grad_latents"),
                           GradientTolerance);
     latents.backward(result.gradient);

@@ -1,8 +1,9 @@
-// A UNet in bfloat16 is as near to fp32 as rounding allows, and no nearer: it really computes in it (goldens/precision).
+// A UNet in bfloat16 is as near to fp32 as rounding allows, and no nearer: it really computes in it
+// (goldens/precision).
+#include "engine/neural/key_map.h"
 #include "engine/neural/precision.h"
 #include "engine/neural/unet.h"
 #include "engine/neural/weights.h"
-#include "engine/neural/key_map.h"
 #include "tests/golden/neural/golden_case.h"
 
 using namespace gse;
@@ -11,7 +12,7 @@ using namespace gse::test;
 
 namespace {
 
-constexpr double MostOfAll = 1.5;        // times the emulated error with every result rounded: the case's README
+constexpr double MostOfAll = 1.5;  // times the emulated error with every result rounded: the case's README
 constexpr double LeastOfOperands = 0.3;  // times the emulated error with operands rounded only
 
 double relative_error(const torch::Tensor& value, const torch::Tensor& expected) {
@@ -46,9 +47,11 @@ DOCTEST_TEST_CASE("bf16: the UNet's error is that of rounding (precision)") {
         const torch::NoGradGuard no_grad;
         const auto sample = io.tensor("sample"), context = io.tensor("encoder_hidden_states");
         for (const std::string t : {"t0", "t1"})
-            check_error(bounds.at("out_" + t), unet->forward(sample, io.tensor(t), context), io.tensor("out_" + t));
-        check_error(bounds.at("out_odd"),
-                    unet->forward(io.tensor("sample_odd"), io.tensor("t0"), io.tensor("encoder_hidden_states_odd")),
-                    io.tensor("out_odd"));
+            check_error(bounds.at("out_" + t), unet->forward(sample, io.tensor(t), context),
+                        io.tensor("out_" + t));
+        check_error(
+            bounds.at("out_odd"),
+            unet->forward(io.tensor("sample_odd"), io.tensor("t0"), io.tensor("encoder_hidden_states_odd")),
+            io.tensor("out_odd"));
     }
 }

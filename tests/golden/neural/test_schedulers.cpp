@@ -49,12 +49,13 @@ void check_walk(Margins& margins, const GoldenCase& golden, const Walk& walk) {
     const auto expected = io.tensor(walk.name + ".latents");
     const auto noises = io.tensor("step_noises");
     const NoiseSchedule schedule(config_for(golden, walk));
-    const std::int64_t steps =
-        walk.from_image ? stated.at(walk.name).at("steps").get<std::int64_t>()
-                        : expected.size(0) - 1 - (walk.kind == SamplerKind::Pndm ? 1 : 0);
+    const std::int64_t steps = walk.from_image
+                                   ? stated.at(walk.name).at("steps").get<std::int64_t>()
+                                   : expected.size(0) - 1 - (walk.kind == SamplerKind::Pndm ? 1 : 0);
     const auto sampler = make_sampler(walk.kind, schedule, steps, {.eta = walk.eta});
     const auto first =
-        walk.from_image ? first_step(sampler->step_count(), stated.at(walk.name).at("strength").get<double>()) : 0;
+        walk.from_image ? first_step(sampler->step_count(), stated.at(walk.name).at("strength").get<double>())
+                        : 0;
     DOCTEST_REQUIRE(sampler->step_count() - first == expected.size(0) - 1);
     if (io.contains(walk.name + ".init_noise_sigma"))
         margins.near_relative(walk.name + ".init_noise_sigma", torch::tensor(sampler->initial_sigma()),
@@ -91,8 +92,7 @@ void check_spacings(Margins& margins, const GoldenCase& golden, const std::strin
         if (sigma)
             near_scaled(margins, name, torch::tensor(sampler->sigmas()), io.tensor(name), SigmaRelative,
                         1e-30);
-        else
-            margins.near(name, torch::tensor(sampler->timesteps()), io.tensor(name), 0);
+        else margins.near(name, torch::tensor(sampler->timesteps()), io.tensor(name), 0);
         ++compared;
     }
     DOCTEST_CHECK(compared > 0);
@@ -110,7 +110,8 @@ DOCTEST_TEST_CASE("schedulers: betas, products, noise and conversions") {
     margins.near("betas", schedule.betas(), io.tensor("betas"), CumprodTolerance);
     margins.near("alphas_cumprod", schedule.alphas_cumprod(), io.tensor("alphas_cumprod"), CumprodTolerance);
     const float last = schedule.config().set_alpha_to_one ? 1.0f : schedule.alpha_cumprod(0);
-    margins.near("final_alpha_cumprod", torch::tensor(last), io.tensor("final_alpha_cumprod"), CumprodTolerance);
+    margins.near("final_alpha_cumprod", torch::tensor(last), io.tensor("final_alpha_cumprod"),
+                 CumprodTolerance);
     const auto t = io.tensor("add_noise.t"), x0 = io.tensor("add_noise.x0"),
                noise = io.tensor("add_noise.noise");
     const auto x_t = io.tensor("add_noise.out"), v = io.tensor("v.in");

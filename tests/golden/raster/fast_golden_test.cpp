@@ -38,7 +38,7 @@ void equal_goldens(Rasterizer& rasterizer) {
         DOCTEST_CHECK(test::clear_pixel_error(image.blended, t["n_contrib"], t["ambiguous"]) == 0);
         Gradients g;
         rasterizer.backward(image_from(t["v_render"], golden.camera, 3),
-                             image_from(t["v_alpha"], golden.camera, 1), 0, g);
+                            image_from(t["v_alpha"], golden.camera, 1), 0, g);
         DOCTEST_CHECK(test::relative_l2(g.position, t["g_means"]) < GradientTolerance);
         DOCTEST_CHECK(test::relative_l2(g.log_scale, t["g_log_scales"]) < GradientTolerance);
         DOCTEST_CHECK(test::relative_l2(g.rotation, t["g_quats"]) < GradientTolerance);
@@ -54,6 +54,8 @@ DOCTEST_TEST_CASE("fast rasterizer equals the goldens") {
     equal_goldens(*make_fast_rasterizer(pool));
 }
 
-DOCTEST_TEST_CASE("the CUDA kernels equal the goldens") { equal_goldens(*cuda::make_emulated_cuda_rasterizer()); }
+DOCTEST_TEST_CASE("the CUDA kernels equal the goldens") {
+    equal_goldens(*cuda::make_emulated_cuda_rasterizer());
+}
 
 }  // namespace fast_golden_test

@@ -1,4 +1,5 @@
-// One rasterizer golden: a tiny reader of .safetensors files (F64, F32, I32, I64, BOOL) and the case it holds.
+// One rasterizer golden: a tiny reader of .safetensors files (F64, F32, I32, I64, BOOL) and the case it
+// holds.
 #pragma once
 
 #include <algorithm>
@@ -52,8 +53,7 @@ private:
         if (type == "BOOL") return widen<std::uint8_t>(begin, end);
         throw std::runtime_error("a golden has the type " + type);
     }
-    template <class T>
-    std::vector<double> widen(std::size_t begin, std::size_t end) const {
+    template <class T> std::vector<double> widen(std::size_t begin, std::size_t end) const {
         std::vector<T> raw((end - begin) / sizeof(T));
         std::memcpy(raw.data(), bytes_.data() + begin, end - begin);
         return {raw.begin(), raw.end()};
@@ -117,8 +117,7 @@ struct GoldenCase {
 };
 
 /// Norm of the difference over the norm of the expectation.
-template <class A>
-double relative_l2(const A& found, const std::vector<double>& expected) {
+template <class A> double relative_l2(const A& found, const std::vector<double>& expected) {
     double difference = 0, size = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
         const double d = static_cast<double>(found[i]) - expected[i];

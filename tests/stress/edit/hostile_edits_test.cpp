@@ -47,8 +47,7 @@ edit::EditResult run(const test::BallScene& scene, const edit::EditRequest& requ
 }
 
 /// The ball scene with `change` applied to its arrays.
-template <class F>
-test::BallScene changed(F&& change) {
+template <class F> test::BallScene changed(F&& change) {
     auto scene = test::ball_scene();
     GaussianData data = scene.set.to_data();
     change(data);
@@ -85,7 +84,8 @@ DOCTEST_TEST_CASE("guidance that is finite in no step ends the edit with a reaso
         int calls = 0;
         test::FunctionGuidance guidance([&](const edit::GuidanceInput& input) {
             ++calls;
-            return edit::GuidanceOutput{Image(input.rendered.width, input.rendered.height, 3, value), {{"loss", Nan}}};
+            return edit::GuidanceOutput{Image(input.rendered.width, input.rendered.height, 3, value),
+                                        {{"loss", Nan}}};
         });
         std::string message;
         try {
@@ -99,7 +99,8 @@ DOCTEST_TEST_CASE("guidance that is finite in no step ends the edit with a reaso
     }
 }
 
-DOCTEST_TEST_CASE("guidance that stops being finite leaves the last good state, one such step leaves no trace") {
+DOCTEST_TEST_CASE(
+    "guidance that stops being finite leaves the last good state, one such step leaves no trace") {
     const auto scene = test::ball_scene();
     auto request = hostile_request();
     request.densify_every = 0;
@@ -127,7 +128,7 @@ DOCTEST_TEST_CASE("guidance that stops being finite leaves the last good state, 
         DOCTEST_CHECK(record.skipped == (record.iteration >= good));
         DOCTEST_CHECK(record.guidance.count("loss") == (record.skipped ? 0 : 1));
     }
-    request.iterations = good;   // rates follow the share of the iterations that is done
+    request.iterations = good;  // rates follow the share of the iterations that is done
     request.rate_position_end = request.rate_position;
     const auto fixed_rates = run_with_bad(1000, 1000);
     request.iterations = good + 10;
@@ -157,23 +158,24 @@ DOCTEST_TEST_CASE("a few bad steps in a row, and many that are rare, do not end 
     };
     DOCTEST_CHECK(skipped([](int step) { return step >= 20 && step < 29; }) == 9);
     DOCTEST_CHECK(skipped([](int step) { return step % 2 == 0; }) == 70);
-    DOCTEST_CHECK(skipped([](int step) { return step >= 120 && step < 132; }) == 12);   // under a tenth of all by then
+    DOCTEST_CHECK(skipped([](int step) { return step >= 120 && step < 132; }) ==
+                  12);  // under a tenth of all by then
 }
 
 DOCTEST_TEST_CASE("steps that are left out are not rest") {
     const Quiet quiet;
     const auto scene = test::ball_scene();
     const auto rasterizer = raster::make_plain_rasterizer();
-    const auto plan = test::ball_plan(scene, *rasterizer, 1, 24);   // one view, drawn in every step
+    const auto plan = test::ball_plan(scene, *rasterizer, 1, 24);  // one view, drawn in every step
     auto request = hostile_request();
     request.densify_every = 0;
     request.iterations = 60;
     request.early_stop = true;
-    request.early_stop_change = 0.006;   // the picture moves by more than 0.01 in each of the first steps
+    request.early_stop_change = 0.006;  // the picture moves by more than 0.01 in each of the first steps
     auto pull = test::towards({0.1, 0.1, 0.9});
     test::FunctionGuidance guidance([&](const edit::GuidanceInput& input) {
         auto output = pull.evaluate(input);
-        if (input.iteration % 12 > 2) output.gradient.data[5] = Nan;   // three good ones, nine bad ones
+        if (input.iteration % 12 > 2) output.gradient.data[5] = Nan;  // three good ones, nine bad ones
         return output;
     });
     const auto result = edit::run_edit(scene.set, plan, request, {*rasterizer, guidance, {}, {}});
@@ -238,9 +240,9 @@ DOCTEST_TEST_CASE("labelled rows that are broken at load do not spread") {
 
 DOCTEST_TEST_CASE("rows that cannot be drawn come back bit for bit and spoil no loss") {
     const auto scene = changed([](GaussianData& d) {
-        d.sh[3 * 0] = 1e30f;            // labelled
-        d.position[3 * 1] = Nan;        // labelled
-        d.sh[3 * 200] = -1e30f;         // not labelled
+        d.sh[3 * 0] = 1e30f;      // labelled
+        d.position[3 * 1] = Nan;  // labelled
+        d.sh[3 * 200] = -1e30f;   // not labelled
         d.position[3 * 201] = 1e30f;
         d.opacity_logit[202] = Nan;
     });
@@ -254,8 +256,10 @@ DOCTEST_TEST_CASE("rows that cannot be drawn come back bit for bit and spoil no 
         DOCTEST_REQUIRE(now >= 0);
         const auto to = static_cast<std::size_t>(now);
         DOCTEST_CHECK(result.label[to] == 0);
-        DOCTEST_CHECK(test::same_bytes(result.set.position().subspan(to * 3, 3), scene.set.position().subspan(row * 3, 3)));
-        DOCTEST_CHECK(test::same_bytes(result.set.sh().subspan(to * 3, 3), scene.set.sh().subspan(row * 3, 3)));
+        DOCTEST_CHECK(test::same_bytes(result.set.position().subspan(to * 3, 3),
+                                       scene.set.position().subspan(row * 3, 3)));
+        DOCTEST_CHECK(
+            test::same_bytes(result.set.sh().subspan(to * 3, 3), scene.set.sh().subspan(row * 3, 3)));
     }
     for (const auto& record : result.history) {
         DOCTEST_CHECK(record.preservation < 10);
@@ -280,8 +284,10 @@ DOCTEST_TEST_CASE("when the memory runs out, what was reached is kept") {
         DOCTEST_CHECK(result.iterations == 12);
         DOCTEST_CHECK(!test::same_bytes(result.set, test::ball_scene().set));
     }
-    test::FunctionGuidance never([](const edit::GuidanceInput&) -> edit::GuidanceOutput { throw std::bad_alloc(); });
-    DOCTEST_CHECK_THROWS_AS(run(test::ball_scene(), hostile_request(), never), OutOfMemory);   // nothing was reached
+    test::FunctionGuidance never(
+        [](const edit::GuidanceInput&) -> edit::GuidanceOutput { throw std::bad_alloc(); });
+    DOCTEST_CHECK_THROWS_AS(run(test::ball_scene(), hostile_request(), never),
+                            OutOfMemory);  // nothing was reached
 }
 
 DOCTEST_TEST_CASE("one labelled splat, no iterations, and a label that fades away completely") {

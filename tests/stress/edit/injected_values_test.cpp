@@ -1,5 +1,5 @@
-// NaN, infinities and absurd sizes put at random into what an edit is handed: pulls, redrawn views, gradients of the rasterizer,
-// attention, masks. They are counted and left out, and the run ends well.
+// NaN, infinities and absurd sizes put at random into what an edit is handed: pulls, redrawn views, gradients
+// of the rasterizer, attention, masks. They are counted and left out, and the run ends well.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -17,7 +17,8 @@ namespace {
 
 using namespace gse;
 
-constexpr double LeastGain = 0.5;   // of the way to the target that an edit goes although a part of its steps is left out
+constexpr double LeastGain =
+    0.5;  // of the way to the target that an edit goes although a part of its steps is left out
 
 struct Quiet {
     Quiet() { log::set_level(log::Level::Off); }
@@ -46,20 +47,24 @@ public:
                  raster::ForwardOutput& output) override {
         whole_.forward(rows, camera, settings, output);
     }
-    void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row, raster::Gradients& output) override {
+    void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row,
+                  raster::Gradients& output) override {
         whole_.backward(d_colour, d_alpha, first_row, output);
         if (random_.uniform() >= share_ || output.opacity_logit.empty()) return;
         const std::size_t rows = output.opacity_logit.size();
-        const std::array<LineFloats*, 6> tensors{&output.position, &output.log_scale,   &output.rotation,
-                                                         &output.opacity_logit, &output.sh, &output.mean2d_norm};
+        const std::array<LineFloats*, 6> tensors{&output.position, &output.log_scale,
+                                                 &output.rotation, &output.opacity_logit,
+                                                 &output.sh,       &output.mean2d_norm};
         for (int i = 0; i < 5; ++i) {
             const std::size_t which = random_.below(tensors.size()), row = random_.below(rows);
             const std::size_t stride = tensors[which]->size() / rows;
-            (*tensors[which])[row * stride + random_.below(stride)] = random_.below(4) == 0 ? 1e30f : broken_value(random_);
+            (*tensors[which])[row * stride + random_.below(stride)] =
+                random_.below(4) == 0 ? 1e30f : broken_value(random_);
         }
         for (std::size_t row = 0; row < rows; ++row) {
             bool good = true;
-            for (std::size_t which = 0; which + 1 < tensors.size(); ++which) {   // the last one is for densification only
+            for (std::size_t which = 0; which + 1 < tensors.size();
+                 ++which) {  // the last one is for densification only
                 const std::size_t stride = tensors[which]->size() / rows;
                 for (std::size_t k = row * stride; k < (row + 1) * stride; ++k)
                     good = good && std::abs((*tensors[which])[k]) <= 1e15f;
@@ -67,8 +72,8 @@ public:
             broken_rows += good ? 0 : 1;
         }
     }
-    void contributions(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings, const Image& mask,
-                       std::span<double> masked, std::span<double> total) override {
+    void contributions(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings,
+                       const Image& mask, std::span<double> masked, std::span<double> total) override {
         whole_.contributions(rows, camera, settings, mask, masked, total);
     }
     void forward_values(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings,
@@ -77,7 +82,7 @@ public:
     }
     std::string name() const override { return whole_.name(); }
 
-    std::size_t broken_rows = 0;   // summed over the calls
+    std::size_t broken_rows = 0;  // summed over the calls
 
 private:
     raster::Rasterizer& whole_;
@@ -88,7 +93,8 @@ private:
 /// The oracle, some of whose pulls are broken.
 class BreakingGuidance final : public edit::Guidance {
 public:
-    BreakingGuidance(edit::Guidance& whole, double share, std::uint64_t seed) : whole_(whole), share_(share), random_(seed) {}
+    BreakingGuidance(edit::Guidance& whole, double share, std::uint64_t seed)
+        : whole_(whole), share_(share), random_(seed) {}
     edit::GuidanceOutput evaluate(const edit::GuidanceInput& input) override {
         auto output = whole_.evaluate(input);
         if (random_.uniform() < share_) {
@@ -138,12 +144,13 @@ private:
 class NoiseSegmenter final : public edit::Segmenter {
 public:
     explicit NoiseSegmenter(std::uint64_t seed) : random_(seed) {}
-    Mask segment(const Image& image, const std::vector<edit::PointPrompt>&, const std::optional<edit::BoxPrompt>&,
-                 const Image&) override {
+    Mask segment(const Image& image, const std::vector<edit::PointPrompt>&,
+                 const std::optional<edit::BoxPrompt>&, const Image&) override {
         ++asked;
         Mask mask(image.width, image.height, random_.below(3) == 0 ? 255 : 0);
         if (random_.below(3) != 0)
-            for (auto& byte : mask.data) byte = static_cast<std::uint8_t>(random_.below(256) * random_.below(2));
+            for (auto& byte : mask.data)
+                byte = static_cast<std::uint8_t>(random_.below(256) * random_.below(2));
         return mask;
     }
     std::string name() const override { return "noise"; }
@@ -156,7 +163,8 @@ private:
 /// Redrawn views, some of which are broken.
 class BreakingViews final : public edit::ViewGuidance {
 public:
-    BreakingViews(edit::ViewGuidance& whole, double share, std::uint64_t seed) : whole_(whole), share_(share), random_(seed) {}
+    BreakingViews(edit::ViewGuidance& whole, double share, std::uint64_t seed)
+        : whole_(whole), share_(share), random_(seed) {}
     edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
                             const JobControl& job) override {
         auto targets = whole_.edit(views, input, job);
@@ -168,7 +176,7 @@ public:
         return targets;
     }
     bool all = false;
-    std::size_t broken = 0;   // values
+    std::size_t broken = 0;  // values
 
 private:
     edit::ViewGuidance& whole_;
@@ -177,16 +185,19 @@ private:
 };
 
 /// Whether every row outside the label is in the result, bit for bit.
-bool outside_is_kept(const GaussianSet& base, const std::vector<std::uint8_t>& label, const edit::EditResult& result) {
+bool outside_is_kept(const GaussianSet& base, const std::vector<std::uint8_t>& label,
+                     const edit::EditResult& result) {
     for (std::size_t row = 0; row < base.size(); ++row) {
         if (label[row] != 0) continue;
         const auto now = result.base_to_new[row];
-        if (now < 0 || !same_row(base.spans(), row, result.set.spans(), static_cast<std::size_t>(now))) return false;
+        if (now < 0 || !same_row(base.spans(), row, result.set.spans(), static_cast<std::size_t>(now)))
+            return false;
     }
     return true;
 }
 
-void check_whole(const GaussianSet& base, const std::vector<std::uint8_t>& label, const edit::EditResult& result) {
+void check_whole(const GaussianSet& base, const std::vector<std::uint8_t>& label,
+                 const edit::EditResult& result) {
     DOCTEST_CHECK(outside_is_kept(base, label, result));
     DOCTEST_CHECK(result.nonfinite == 0);
     DOCTEST_CHECK(result.unusable == 0);
@@ -200,7 +211,8 @@ void check_whole(const GaussianSet& base, const std::vector<std::uint8_t>& label
 
 }  // namespace
 
-DOCTEST_TEST_CASE("broken pulls, gradients and attention are counted and left out, and the edit arrives all the same") {
+DOCTEST_TEST_CASE(
+    "broken pulls, gradients and attention are counted and left out, and the edit arrives all the same") {
     const Quiet quiet;
     test::Redrawing ball;
     for (const std::uint64_t seed : {1, 2, 3, 4}) {
@@ -237,7 +249,8 @@ DOCTEST_TEST_CASE("broken pulls, gradients and attention are counted and left ou
 }
 
 DOCTEST_TEST_CASE(
-    "broken pixels of redrawn views are counted and left as they were; views that are broken throughout are an error") {
+    "broken pixels of redrawn views are counted and left as they were; views that are broken throughout are "
+    "an error") {
     const Quiet quiet;
     test::Redrawing ball;
     const auto request = test::view_request(2, 40);
@@ -263,9 +276,7 @@ DOCTEST_TEST_CASE(
     std::string message;
     try {
         ball.edited(request);
-    } catch (const Error& error) {
-        message = error.what();
-    }
+    } catch (const Error& error) { message = error.what(); }
     DOCTEST_CHECK(message.find("not finite") != std::string::npos);
 }
 
@@ -296,7 +307,8 @@ DOCTEST_TEST_CASE("a search whose attention is broken in places finds what it fi
         std::size_t others = 0;
         for (std::size_t row = 0; row < scene.set.size(); ++row)
             others += (*found.label.bits)[row] != (*expected.label.bits)[row] ? 1 : 0;
-        constexpr std::size_t few = 8;   // of 400 rows: a broken pixel at the rim moves a view's mask by as much
+        constexpr std::size_t few =
+            8;  // of 400 rows: a broken pixel at the rim moves a view's mask by as much
         DOCTEST_CHECK(others <= few);
     }
 }

@@ -1,4 +1,5 @@
-// Thousands of iterations over a tiny scene: nothing drifts, grows or breaks. GSE_STRESS_ITERATIONS = how many.
+// Thousands of iterations over a tiny scene: nothing drifts, grows or breaks. GSE_STRESS_ITERATIONS = how
+// many.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -16,12 +17,12 @@ namespace {
 
 using namespace gse;
 
-constexpr std::size_t Windows = 10;          // of the run, over which losses are averaged
-constexpr double WarmUp = 0.2;               // share of the run
-[[maybe_unused]] constexpr double MostGrowthMb = 8;           // after that, beside the history
-constexpr std::size_t Start = 10;            // iterations whose mean is the loss at the start
-constexpr double LossRise = 1.05;            // a window against the one before: views are drawn in another order
-constexpr double LossFloor = 0.1;            // of the loss at the start: below, it wavers with the size of Adam's steps
+constexpr std::size_t Windows = 10;                  // of the run, over which losses are averaged
+constexpr double WarmUp = 0.2;                       // share of the run
+[[maybe_unused]] constexpr double MostGrowthMb = 8;  // after that, beside the history
+constexpr std::size_t Start = 10;                    // iterations whose mean is the loss at the start
+constexpr double LossRise = 1.05;  // a window against the one before: views are drawn in another order
+constexpr double LossFloor = 0.1;  // of the loss at the start: below, it wavers with the size of Adam's steps
 
 int iterations() {
     const char* asked = std::getenv("GSE_STRESS_ITERATIONS");
@@ -29,8 +30,7 @@ int iterations() {
 }
 
 /// That a figure of the history falls, and then stays where it is.
-template <class Figure>
-void check_falls(const edit::EditResult& result, const Figure& figure) {
+template <class Figure> void check_falls(const edit::EditResult& result, const Figure& figure) {
     std::vector<double> means(Windows, 0);
     std::vector<std::size_t> counts(Windows, 0);
     double start = 0;
@@ -58,7 +58,8 @@ struct MemoryWatch {
     }
 };
 
-void check_run(const GaussianSet& base, const std::vector<std::uint8_t>& label, const edit::EditResult& result, int count) {
+void check_run(const GaussianSet& base, const std::vector<std::uint8_t>& label,
+               const edit::EditResult& result, int count) {
     DOCTEST_CHECK(result.iterations == count);
     DOCTEST_CHECK_FALSE(result.failure.has_value());
     DOCTEST_CHECK(result.skipped_steps == 0);
@@ -68,7 +69,9 @@ void check_run(const GaussianSet& base, const std::vector<std::uint8_t>& label, 
     for (std::size_t row = 0; row < base.size(); ++row) {
         if (label[row] != 0) continue;
         const auto now = result.base_to_new[row];
-        changed += now >= 0 && same_row(base.spans(), row, result.set.spans(), static_cast<std::size_t>(now)) ? 0 : 1;
+        changed += now >= 0 && same_row(base.spans(), row, result.set.spans(), static_cast<std::size_t>(now))
+                       ? 0
+                       : 1;
     }
     DOCTEST_CHECK(changed == 0);
     for (const auto& record : result.history) {
@@ -82,7 +85,8 @@ void check_memory(const MemoryWatch& memory, const edit::EditResult& result) {
     DOCTEST_CAPTURE(memory.begin_mb);
     DOCTEST_CAPTURE(memory.end_mb);
 #ifdef GSE_SANITIZED
-    DOCTEST_MESSAGE("memory is not compared: a sanitizer keeps what was freed (" << history_mb << " MB of history)");
+    DOCTEST_MESSAGE("memory is not compared: a sanitizer keeps what was freed (" << history_mb
+                                                                                 << " MB of history)");
 #else
     DOCTEST_CHECK(memory.end_mb - memory.begin_mb < MostGrowthMb + history_mb);
 #endif
@@ -90,7 +94,8 @@ void check_memory(const MemoryWatch& memory, const edit::EditResult& result) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("a long run of pulls: nothing outside the label drifts, losses fall, memory does not grow") {
+DOCTEST_TEST_CASE(
+    "a long run of pulls: nothing outside the label drifts, losses fall, memory does not grow") {
     log::set_level(log::Level::Off);
     const int count = iterations();
     const test::Redrawing ball(24);

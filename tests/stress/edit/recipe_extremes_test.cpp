@@ -16,7 +16,7 @@ namespace {
 
 using namespace gse;
 
-constexpr int Steps = 20;   // of every run
+constexpr int Steps = 20;  // of every run
 
 struct Quiet {
     Quiet() { log::set_level(log::Level::Off); }
@@ -42,8 +42,7 @@ edit::EditRequest usual_request(const std::string& method) {
 }
 
 /// Sets number `which` of the fields to its lower or upper end; false for texts.
-template <class T>
-bool set_end(T& value, bool upper, const Range* range) {
+template <class T> bool set_end(T& value, bool upper, const Range* range) {
     if constexpr (std::is_same_v<T, bool>) {
         value = upper;
     } else if constexpr (std::is_arithmetic_v<T>) {
@@ -56,25 +55,25 @@ bool set_end(T& value, bool upper, const Range* range) {
 }
 
 /// Every field of Part, alone, at each of its ends.
-template <class Part>
-std::vector<Extreme> extremes(const edit::EditRequest& usual) {
+template <class Part> std::vector<Extreme> extremes(const edit::EditRequest& usual) {
     std::vector<Extreme> all;
     std::size_t fields = 0;
     edit::EditRequest counted = usual;
-    Part::visit_fields(static_cast<Part&>(counted), [&](const char*, auto&, const char*, const auto&...) { ++fields; });
+    Part::visit_fields(static_cast<Part&>(counted),
+                       [&](const char*, auto&, const char*, const auto&...) { ++fields; });
     for (std::size_t wanted = 0; wanted < fields; ++wanted)
         for (const bool upper : {false, true}) {
             Extreme extreme{{}, usual};
             std::size_t at = 0;
             bool changed = false;
-            Part::visit_fields(static_cast<Part&>(extreme.request),
-                               [&](const char* name, auto& value, const char*, const auto&... range) {
-                                   if (at++ != wanted) return;
-                                   const Range* limits = nullptr;
-                                   ((limits = &range), ...);
-                                   changed = set_end(value, upper, limits);
-                                   extreme.name = std::string(name) + (upper ? " at its upper end" : " at its lower end");
-                               });
+            Part::visit_fields(static_cast<Part&>(extreme.request), [&](const char* name, auto& value,
+                                                                        const char*, const auto&... range) {
+                if (at++ != wanted) return;
+                const Range* limits = nullptr;
+                ((limits = &range), ...);
+                changed = set_end(value, upper, limits);
+                extreme.name = std::string(name) + (upper ? " at its upper end" : " at its lower end");
+            });
             if (changed) all.push_back(std::move(extreme));
         }
     return all;
@@ -97,7 +96,8 @@ bool all_finite(std::span<const float> values) {
 }
 
 /// Runs, for 20 steps at most, and says how it ended: "finite", "refused: ..." or what is wrong.
-std::string outcome(test::Redrawing& ball, edit::Guidance& guidance, const edit::EditRequest& request, edit::EditMode mode) {
+std::string outcome(test::Redrawing& ball, edit::Guidance& guidance, const edit::EditRequest& request,
+                    edit::EditMode mode) {
     std::stop_source stop;
     auto plan = ball.plan;
     plan.mode = mode;
@@ -110,15 +110,19 @@ std::string outcome(test::Redrawing& ball, edit::Guidance& guidance, const edit:
         const auto valid = edit::validated(request);
         const auto result = edit::run_edit(ball.scene.set, plan, valid, tools);
         const auto& set = result.set;
-        for (const auto values : {set.position(), set.log_scale(), set.rotation(), set.opacity_logit(), set.sh()})
+        for (const auto values :
+             {set.position(), set.log_scale(), set.rotation(), set.opacity_logit(), set.sh()})
             if (!all_finite(values)) return "a value of the result is not finite";
         for (const auto& record : result.history)
-            if (!std::isfinite(record.preservation) || !std::isfinite(record.anchor)) return "a loss is not finite";
-        if (result.changed_outside_label != 0 || result.nonfinite != 0) return "a row outside the label has changed";
+            if (!std::isfinite(record.preservation) || !std::isfinite(record.anchor))
+                return "a loss is not finite";
+        if (result.changed_outside_label != 0 || result.nonfinite != 0)
+            return "a row outside the label has changed";
         if (result.skipped_rows > 0) return "gradients are not finite";
         return "finite";
     } catch (const Error& error) {
-        return error.message().size() > 10 ? std::string("refused: ") + error.what() : "refused without a sentence";
+        return error.message().size() > 10 ? std::string("refused: ") + error.what()
+                                           : "refused without a sentence";
     }
 }
 
@@ -157,7 +161,7 @@ DOCTEST_TEST_CASE("every field of the loop at each end of its range, for twenty 
                 ++runs;
             }
     DOCTEST_CHECK(runs > 250);
-    DOCTEST_CHECK(refused < runs / 20);   // ranges that are stated can be used
+    DOCTEST_CHECK(refused < runs / 20);  // ranges that are stated can be used
 }
 
 DOCTEST_TEST_CASE("many fields of the loop at their ends at once") {
@@ -167,10 +171,10 @@ DOCTEST_TEST_CASE("many fields of the loop at their ends at once") {
     Random random(31);
     std::size_t refused = 0;
     for (int trial = 0; trial < 400; ++trial)
-        check_outcome(
-            "trial " + std::to_string(trial),
-            outcome(ball, guidance, shaken(usual_request(trial % 2 == 0 ? "sds" : "views"), random), edit::EditMode::Modify),
-            refused);
+        check_outcome("trial " + std::to_string(trial),
+                      outcome(ball, guidance, shaken(usual_request(trial % 2 == 0 ? "sds" : "views"), random),
+                              edit::EditMode::Modify),
+                      refused);
 }
 
 DOCTEST_TEST_CASE("every field of a search at each end of its range") {
@@ -180,7 +184,8 @@ DOCTEST_TEST_CASE("every field of a search at each end of its range") {
     const auto rasterizer = raster::make_fast_rasterizer(pool);
     RedAttention attention;
     auto searches = extremes<edit::SearchSettings>(usual_request("views"));
-    for (auto& more : extremes<edit::LabelThresholds>(usual_request("views"))) searches.push_back(std::move(more));
+    for (auto& more : extremes<edit::LabelThresholds>(usual_request("views")))
+        searches.push_back(std::move(more));
     const std::vector<std::string> words;
     std::size_t found = 0;
     for (const auto& extreme : searches)
@@ -205,9 +210,7 @@ DOCTEST_TEST_CASE("every field of a search at each end of its range") {
                 DOCTEST_CHECK(all_finite(located.seeds.log_scale));
                 DOCTEST_CHECK((located.problem == edit::SearchProblem::None || located.message.size() > 10));
                 found += located.problem == edit::SearchProblem::None ? 1 : 0;
-            } catch (const Error& error) {
-                DOCTEST_CHECK(error.message().size() > 10);
-            }
+            } catch (const Error& error) { DOCTEST_CHECK(error.message().size() > 10); }
         }
     DOCTEST_CHECK(found > searches.size());
 }

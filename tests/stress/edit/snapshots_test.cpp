@@ -15,9 +15,9 @@ namespace {
 using namespace gse;
 
 constexpr std::size_t Splats = 1'000'000;
-constexpr std::size_t LabelEvery = 20;        // 5 % of the rows are labelled
-constexpr std::size_t Snapshots = 24;         // as many as the window keeps
-constexpr std::size_t MostBytes = 400'000'000;   // of them all together; whole sets would be 5.7 GB
+constexpr std::size_t LabelEvery = 20;          // 5 % of the rows are labelled
+constexpr std::size_t Snapshots = 24;           // as many as the window keeps
+constexpr std::size_t MostBytes = 400'000'000;  // of them all together; whole sets would be 5.7 GB
 constexpr double Extent = 3;
 
 GaussianSet large_scene() {
@@ -36,9 +36,12 @@ GaussianSet large_scene() {
 raster::Gradients gradients_of(const edit::WorkingSet& set, Random& random) {
     raster::Gradients gradients;
     const std::size_t rows = set.labelled();
-    for (auto [values, stride] : {std::pair{&gradients.position, std::size_t{3}}, {&gradients.log_scale, 3},
-                                  {&gradients.rotation, 4}, {&gradients.opacity_logit, 1},
-                                  {&gradients.sh, set.rows().sh_stride()}, {&gradients.mean2d_norm, 1}}) {
+    for (auto [values, stride] : {std::pair{&gradients.position, std::size_t{3}},
+                                  {&gradients.log_scale, 3},
+                                  {&gradients.rotation, 4},
+                                  {&gradients.opacity_logit, 1},
+                                  {&gradients.sh, set.rows().sh_stride()},
+                                  {&gradients.mean2d_norm, 1}}) {
         values->resize(rows * stride);
         for (auto& value : *values) value = static_cast<float>(random.uniform(-1, 1));
     }
@@ -55,13 +58,15 @@ struct Expected {
     std::vector<int> generation;
 };
 
-Expected expected_of(const edit::WorkingSet& set, const GaussianData& base, const std::vector<std::uint8_t>& label) {
+Expected expected_of(const edit::WorkingSet& set, const GaussianData& base,
+                     const std::vector<std::uint8_t>& label) {
     Expected result;
     const auto& table = set.table();
     result.data.sh_degree = base.sh_degree;
     std::vector<std::int64_t> now(base.size(), -1);
     for (std::size_t i = 0; i < table.origin.size(); ++i)
-        if (table.origin[i] >= 0) now[static_cast<std::size_t>(table.origin[i])] = static_cast<std::int64_t>(i);
+        if (table.origin[i] >= 0)
+            now[static_cast<std::size_t>(table.origin[i])] = static_cast<std::int64_t>(i);
     const auto add_labelled = [&](std::size_t i) {
         result.data.append_row(table.rows, table.first_row + i);
         result.label.push_back(1);
@@ -102,7 +107,8 @@ std::size_t resident_bytes() {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("24 snapshots of a million splats, one in twenty labelled, stay small and are what they were") {
+DOCTEST_TEST_CASE(
+    "24 snapshots of a million splats, one in twenty labelled, stay small and are what they were") {
     const GaussianSet base = large_scene();
     std::vector<std::uint8_t> label(base.size(), 0);
     for (std::size_t row = 0; row < label.size(); row += LabelEvery) label[row] = 1;
@@ -127,8 +133,8 @@ DOCTEST_TEST_CASE("24 snapshots of a million splats, one in twenty labelled, sta
     const std::size_t grown = resident_bytes() - before;
     DOCTEST_CHECK(changed.cloned + changed.split > 0);
     DOCTEST_CHECK(changed.pruned > 0);
-    DOCTEST_MESSAGE(Snapshots, " snapshots: ", static_cast<double>(bytes) / 1e6, " MB, resident memory grew by ",
-                    static_cast<double>(grown) / 1e6, " MB");
+    DOCTEST_MESSAGE(Snapshots, " snapshots: ", static_cast<double>(bytes) / 1e6,
+                    " MB, resident memory grew by ", static_cast<double>(grown) / 1e6, " MB");
     DOCTEST_CHECK(bytes < MostBytes);
     for (const auto& snapshot : snapshots) DOCTEST_CHECK(snapshot.base.shares_all_with(base));
     const GaussianData data = base.to_data();
@@ -160,7 +166,7 @@ DOCTEST_TEST_CASE("snapshots are thinned out by their number and by what they ho
     DOCTEST_CHECK(heavy.size() >= 3);
     DOCTEST_CHECK(heavy.back().iteration == 19);
     DOCTEST_CHECK(heavy[heavy.size() - 2].iteration == 18);
-    edit::thin_out(heavy, 24, one / 2);   // the newest stay, whatever they hold
+    edit::thin_out(heavy, 24, one / 2);  // the newest stay, whatever they hold
     DOCTEST_CHECK(heavy.size() == 2);
     DOCTEST_CHECK(heavy.back().iteration == 19);
 }

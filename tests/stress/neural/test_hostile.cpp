@@ -30,9 +30,7 @@ bool opens(const ScratchFolder& scratch, const std::string& bytes) {
         const SafetensorsFile file(path);
         for (const auto& [name, entry] : file.entries()) file.tensor(name);
         return true;
-    } catch (const Error&) {
-        return false;
-    }
+    } catch (const Error&) { return false; }
 }
 
 /// A safetensors file with this header.
@@ -100,7 +98,8 @@ DOCTEST_TEST_CASE("tokenizer: any bytes give ids within the vocabulary") {
 namespace {
 
 bool finite(const Image& image) {
-    return std::all_of(image.data.begin(), image.data.end(), [](float value) { return std::isfinite(value); });
+    return std::all_of(image.data.begin(), image.data.end(),
+                       [](float value) { return std::isfinite(value); });
 }
 
 }  // namespace
@@ -125,7 +124,8 @@ DOCTEST_TEST_CASE("guidance and attention: odd images") {
     Image broken(32, 32, 3, 0.5f);
     broken.at(3, 3, 1) = NAN;
     edit::GuidanceInput input{broken, view};
-    DOCTEST_CHECK_FALSE(finite(guidance.evaluate(input).gradient));   // the loop leaves such a step out and counts it
+    DOCTEST_CHECK_FALSE(
+        finite(guidance.evaluate(input).gradient));  // the loop leaves such a step out and counts it
     DOCTEST_CHECK(contains(message_of([&] { source.locate({broken, "a red bear", {"bear"}}); }), "finite"));
 }
 

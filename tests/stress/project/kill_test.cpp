@@ -69,9 +69,7 @@ struct Paths {
             writer.save(paths.project, project);
             say('P', step);
         }
-    } catch (...) {
-        _exit(3);
-    }
+    } catch (...) { _exit(3); }
 }
 
 /// What a session said before it died.

@@ -99,9 +99,8 @@ DOCTEST_TEST_CASE("nothing, one, and nothing in view") {
 }
 
 DOCTEST_TEST_CASE("any image size") {
-    for (const auto& size :
-         {std::pair{1, 1}, {5, 3}, {17, 1}, {1, 33}, {16, 16}, {31, 47}, {64, 4}}) {
-        const int width = size.first, height = size.second;   // clang 14 captures no structured binding
+    for (const auto& size : {std::pair{1, 1}, {5, 3}, {17, 1}, {1, 33}, {16, 16}, {31, 47}, {64, 4}}) {
+        const int width = size.first, height = size.second;  // clang 14 captures no structured binding
         Hostile h;
         h.camera = test::test_camera(width, height);
         DOCTEST_CAPTURE(width);

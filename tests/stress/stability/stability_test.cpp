@@ -1,5 +1,5 @@
-// Every instruction set, three threads and the view session against the plain double version, over random scenes that are hard on
-// single precision. GSE_STRESS_SCENES = scenes per cause.
+// Every instruction set, three threads and the view session against the plain double version, over random
+// scenes that are hard on single precision. GSE_STRESS_SCENES = scenes per cause.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
@@ -23,10 +23,10 @@ struct Tolerance {
     double picture, gradient, row;
 };
 
-// What single precision gives where nothing is special: a thousand pairs of 6e-8 each at worst; a gradient's row behind nearly
-// opaque ones loses digits, as what lies behind a pair is what the pixel's sum leaves over.
+// What single precision gives where nothing is special: a thousand pairs of 6e-8 each at worst; a gradient's
+// row behind nearly opaque ones loses digits, as what lies behind a pair is what the pixel's sum leaves over.
 constexpr Tolerance Usual{1e-5, 5e-4, 5e-2};
-constexpr double FlippedPairs = 3.0 / 255;   // at unclear pixels: a few pairs on either side of a cut
+constexpr double FlippedPairs = 3.0 / 255;  // at unclear pixels: a few pairs on either side of a cut
 
 /// The causes that cost more, and why.
 struct Exception {
@@ -36,12 +36,18 @@ struct Exception {
 };
 const std::vector<Exception>& exceptions() {
     static const std::vector<Exception> list{
-        {"4k strip", {3e-4, 1e-3, 0.15}, "a place of 4096 pixels is known to 2.4e-4 of one, splats are about one wide"},
+        {"4k strip",
+         {3e-4, 1e-3, 0.15},
+         "a place of 4096 pixels is known to 2.4e-4 of one, splats are about one wide"},
         {"camera inside",
          {1e-5, 1e-2, 0.3},
          "places are thousands of pixels outside the picture; gradients of flat splats cancel"},
-        {"giants", {1e-5, 2e-3, 0.1}, "flat over the picture: their gradients are differences of nearly equal sums"},
-        {"opaque", {1e-5, 2e-3, 0.1}, "most rows lie behind opaque ones; those at the alpha limit have no gradient of their own"},
+        {"giants",
+         {1e-5, 2e-3, 0.1},
+         "flat over the picture: their gradients are differences of nearly equal sums"},
+        {"opaque",
+         {1e-5, 2e-3, 0.1},
+         "most rows lie behind opaque ones; those at the alpha limit have no gradient of their own"},
         {"plane cuts", {1e-5, 2e-3, 0.1}, "giants"},
         {"few pixels", {1e-5, 2e-3, 0.1}, "sums of a few terms that cancel"},
         {"mixture", {3e-5, 1e-2, 0.3}, "all of these"},
@@ -71,7 +77,7 @@ int scenes_per_cause() {
     const char* asked = std::getenv("GSE_STRESS_SCENES");
     return asked != nullptr ? std::atoi(asked) : 50;
 }
-constexpr int Many = 100;   // scenes per cause of a full run
+constexpr int Many = 100;  // scenes per cause of a full run
 
 std::vector<StabilityRecord> measured(const std::string& cause, std::uint64_t seed, int scenes) {
     StabilityParameters parameters;
@@ -96,18 +102,19 @@ DOCTEST_TEST_CASE("hostile scenes: every kernel near to the double version, by c
             gradient = std::max(gradient, record.error.gradient);
             row = std::max(row, record.error.row);
         }
-        DOCTEST_CHECK(clear > 0.8);   // else little is compared
-        fmt::print("{:15} {:6} pictures  {:5.1f} % clear  picture {:.2e}  gradient {:.2e}  row {:.2e}\n", cause.name,
-                   records.size(), 100 * clear, picture, gradient, row);
+        DOCTEST_CHECK(clear > 0.8);  // else little is compared
+        fmt::print("{:15} {:6} pictures  {:5.1f} % clear  picture {:.2e}  gradient {:.2e}  row {:.2e}\n",
+                   cause.name, records.size(), 100 * clear, picture, gradient, row);
         pictures += records.size();
     }
-    DOCTEST_CHECK(pictures ==
-                  hostile_causes().size() * raster::usable_kernels().size() * static_cast<std::size_t>(scenes_per_cause()));
+    DOCTEST_CHECK(pictures == hostile_causes().size() * raster::usable_kernels().size() *
+                                  static_cast<std::size_t>(scenes_per_cause()));
 }
 
 DOCTEST_TEST_CASE("hostile scenes: the CUDA kernels near to the double version, by cause") {
-    constexpr int one_in = 5;   // they stand in for a device, which is slow
-    KernelStability kernels("emulated cuda", [](ThreadPool&) { return raster::cuda::make_emulated_cuda_rasterizer(); });
+    constexpr int one_in = 5;  // they stand in for a device, which is slow
+    KernelStability kernels("emulated cuda",
+                            [](ThreadPool&) { return raster::cuda::make_emulated_cuda_rasterizer(); });
     for (const auto& cause : hostile_causes()) {
         double picture = 0, gradient = 0, row = 0;
         for (int i = 0; i < std::max(1, scenes_per_cause() / one_in); ++i) {
@@ -115,8 +122,10 @@ DOCTEST_TEST_CASE("hostile scenes: the CUDA kernels near to the double version, 
             const HostileScene scene = hostile_scene(cause.name, seed);
             const StabilityTruth truth(scene);
             const auto error = kernels.measure(truth);
-            check_record({cause.name, kernels.kernels(), seed, truth.clear_share(), error}, tolerance_of(cause.name));
-            picture = std::max(picture, error.picture), gradient = std::max(gradient, error.gradient), row = std::max(row, error.row);
+            check_record({cause.name, kernels.kernels(), seed, truth.clear_share(), error},
+                         tolerance_of(cause.name));
+            picture = std::max(picture, error.picture), gradient = std::max(gradient, error.gradient),
+            row = std::max(row, error.row);
         }
         fmt::print("{:15} picture {:.2e}  gradient {:.2e}  row {:.2e}\n", cause.name, picture, gradient, row);
     }
@@ -126,7 +135,7 @@ DOCTEST_TEST_CASE("the scenes that were worst among 250 per cause") {
     struct Worst {
         const char* cause;
         std::uint64_t seed;
-        Tolerance tolerance;   // three times what was found
+        Tolerance tolerance;  // three times what was found
         const char* what;
     };
     const std::vector<Worst> scenes{
@@ -155,7 +164,8 @@ DOCTEST_TEST_CASE("two opaque layers end a pixel in every version: behind them T
         std::fill_n(&scene.data.log_scale[row * 3], 3, 2.0f);
         scene.data.rotation[row * 4] = 1;
         scene.data.opacity_logit[row] = 20;
-        for (std::size_t c = 0; c < 3; ++c) scene.data.sh[row * 3 + c] = static_cast<float>(sh_from_colour(row == c ? 1 : 0));
+        for (std::size_t c = 0; c < 3; ++c)
+            scene.data.sh[row * 3 + c] = static_cast<float>(sh_from_colour(row == c ? 1 : 0));
     }
     scene.camera = Camera::look_at({0, 0, -4}, {0, 0, 0}, {0, -1, 0}, 0.9, 16, 16);
     const StabilityTruth truth(scene);
@@ -163,17 +173,18 @@ DOCTEST_TEST_CASE("two opaque layers end a pixel in every version: behind them T
         DOCTEST_CAPTURE(name);
         const auto error = KernelStability(name).measure(truth);
         DOCTEST_CHECK(error.picture < Usual.picture);
-        DOCTEST_CHECK(error.unclear_picture < Usual.picture);   // although the cut is as near as can be
+        DOCTEST_CHECK(error.unclear_picture < Usual.picture);  // although the cut is as near as can be
     }
 }
 
 DOCTEST_TEST_CASE("a 4k picture is as its strips are" * doctest::skip(scenes_per_cause() < Many)) {
-    auto scene = hostile_scene("ordinary", 7);   // 1.5 GB for the double version: in the full run only
+    auto scene = hostile_scene("ordinary", 7);  // 1.5 GB for the double version: in the full run only
     scene.camera = scene.camera.resized(3840, 2160);
     const StabilityTruth truth(scene);
     const auto& exception = exceptions().front();
     for (const auto& name : raster::usable_kernels())
-        check_record({"4k", name, 7, truth.clear_share(), KernelStability(name).measure(truth)}, exception.tolerance);
+        check_record({"4k", name, 7, truth.clear_share(), KernelStability(name).measure(truth)},
+                     exception.tolerance);
 }
 
 DOCTEST_TEST_CASE("decades of error, and causes that there are not") {

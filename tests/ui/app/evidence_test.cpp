@@ -24,11 +24,13 @@ DOCTEST_TEST_CASE("views come in while a search looks; one can be left out, put 
     session.open_bear();
     auto& app = session.app;
     app.locate();
-    bool some = false;   // were there while it still looked
+    bool some = false;  // were there while it still looked
     DOCTEST_REQUIRE(session.until([&] {
         const auto& views = app.model().attention;
-        const bool here = std::any_of(views.begin(), views.end(), [](const auto& view) { return view.render != nullptr; });
-        some |= app.model().attention_arriving && app.model().job.running && here && app.model().labelled == 0;
+        const bool here =
+            std::any_of(views.begin(), views.end(), [](const auto& view) { return view.render != nullptr; });
+        some |=
+            app.model().attention_arriving && app.model().job.running && here && app.model().labelled == 0;
         return !app.model().job.running;
     }));
     DOCTEST_REQUIRE(session.settled());
@@ -43,7 +45,7 @@ DOCTEST_TEST_CASE("views come in while a search looks; one can be left out, put 
     DOCTEST_CHECK(app.document().names().back() == "Leave out " + app.model().attention[2].name);
     DOCTEST_CHECK(app.document().position() == at + 1);
     DOCTEST_CHECK(app.model().attention[2].step == edit::ViewStep::LeftOut);
-    DOCTEST_CHECK(app.model().attention[2].render == render);   // what is on the screen stays
+    DOCTEST_CHECK(app.model().attention[2].render == render);  // what is on the screen stays
     DOCTEST_CHECK(app.model().request.left_out == "2");
     const auto without = *active(app).weight;
     DOCTEST_CHECK(without != all);
@@ -51,7 +53,7 @@ DOCTEST_TEST_CASE("views come in while a search looks; one can be left out, put 
     DOCTEST_CHECK(*active(app).weight == all);
     DOCTEST_CHECK(app.model().request.left_out.empty());
     DOCTEST_REQUIRE(session.settled());
-    DOCTEST_CHECK(app.model().attention[2].step != edit::ViewStep::LeftOut);   // the evidence follows
+    DOCTEST_CHECK(app.model().attention[2].step != edit::ViewStep::LeftOut);  // the evidence follows
     DOCTEST_CHECK(app.document().position() == at);
     app.redo();
     DOCTEST_CHECK(*active(app).weight == without);
@@ -59,14 +61,14 @@ DOCTEST_TEST_CASE("views come in while a search looks; one can be left out, put 
     DOCTEST_CHECK(app.model().attention[2].step == edit::ViewStep::LeftOut);
     app.leave_out_view(2, false);
     DOCTEST_REQUIRE(session.settled());
-    DOCTEST_CHECK(*active(app).weight == all);   // to the bit
+    DOCTEST_CHECK(*active(app).weight == all);  // to the bit
     DOCTEST_CHECK(app.document().names().back() == "Put back " + app.model().attention[2].name);
     app.leave_out_view(5, true);
     DOCTEST_REQUIRE(session.settled());
     auto request = app.model().request;
     request.prompt = "a red bear on the grass", request.target = "red";
     app.set_request(request);
-    DOCTEST_CHECK(app.model().request.left_out.empty());   // another search has other views
+    DOCTEST_CHECK(app.model().request.left_out.empty());  // another search has other views
 }
 
 DOCTEST_TEST_CASE("a search that is stopped gives back the views of the one before") {

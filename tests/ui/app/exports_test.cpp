@@ -53,9 +53,10 @@ DOCTEST_TEST_CASE("a result that waits is what is exported, and the toast says t
     DOCTEST_CHECK(toasted(app, "not applied"));
     app.apply_result();
     app.export_scene();
-    app.answer(0);   // another name
+    app.answer(0);  // another name
     DOCTEST_REQUIRE(session.idle());
-    DOCTEST_CHECK(same_colours(load_scene(place.folder / "scene-2.ply").gaussians, app.document().state().current));
+    DOCTEST_CHECK(
+        same_colours(load_scene(place.folder / "scene-2.ply").gaussians, app.document().state().current));
     DOCTEST_CHECK(same_colours(load_scene(place.folder / "scene-2.ply").gaussians, written.gaussians));
     app.shut_down();
 }
@@ -153,7 +154,8 @@ DOCTEST_TEST_CASE("the camera path is work of the project: saved, loaded, and no
     DOCTEST_REQUIRE(again.until([&] { return app.model().document != nullptr; }));
     DOCTEST_REQUIRE(app.model().camera_keys.size() == 2);
     DOCTEST_CHECK(app.model().camera_keys[1].time == 2);
-    DOCTEST_CHECK_FALSE(app.model().camera_keys[0].camera.translation == app.model().camera_keys[1].camera.translation);
+    DOCTEST_CHECK_FALSE(app.model().camera_keys[0].camera.translation ==
+                        app.model().camera_keys[1].camera.translation);
     app.open_sample();
     DOCTEST_REQUIRE(again.until([&] { return app.model().project_path.empty(); }));
     DOCTEST_CHECK(app.model().camera_keys.empty());

@@ -11,7 +11,7 @@ namespace foreign_fonts_test {
 DOCTEST_TEST_CASE("a character that some font has is painted at its size, one that none has is not") {
     gse::ui::ForeignFonts fonts;
     for (const float size_px : {13.0f, 15.0f, 30.0f}) {
-        const auto face = fonts.paint(0x1F600, size_px);   // DejaVu Sans has it
+        const auto face = fonts.paint(0x1F600, size_px);  // DejaVu Sans has it
         DOCTEST_REQUIRE(face.has_value());
         DOCTEST_CHECK(face->rgba.size() == static_cast<std::size_t>(face->width * face->height * 4));
         DOCTEST_CHECK(static_cast<float>(face->height) > 0.5f * size_px);
@@ -21,7 +21,7 @@ DOCTEST_TEST_CASE("a character that some font has is painted at its size, one th
         DOCTEST_CHECK(ink > 1000);
     }
     DOCTEST_CHECK_FALSE(fonts.paint(0x10FFF0, 15).has_value());
-    const auto space = fonts.paint(0x2003, 15);   // an em wide, nothing to be seen
+    const auto space = fonts.paint(0x2003, 15);  // an em wide, nothing to be seen
     DOCTEST_CHECK((!space.has_value() || (space->width == 0 && space->advance > 5)));
 }
 

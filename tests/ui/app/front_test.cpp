@@ -21,7 +21,9 @@ Camera turned(const app::Application& app, double degrees) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("a search takes the side that the scene was turned to with it, and looking at what it found begins no other") {
+DOCTEST_TEST_CASE(
+    "a search takes the side that the scene was turned to with it, and looking at what it found begins no "
+    "other") {
     if (!networks()) return;
     const Place place;
     Session session;
@@ -33,14 +35,14 @@ DOCTEST_TEST_CASE("a search takes the side that the scene was turned to with it,
     const auto looked = [&] { return app.document().state().labels.at(0).looked_from; };
     app.locate();
     DOCTEST_REQUIRE(session.settled());
-    DOCTEST_CHECK(looked().empty());   // nobody has turned to a side
+    DOCTEST_CHECK(looked().empty());  // nobody has turned to a side
     app.set_camera(turned(app, 90));
     app.locate();
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(looked() == "90");
     DOCTEST_REQUIRE(app.model().search.front.has_value());
     const double away = std::abs(std::remainder(*app.model().search.front, 360));
-    DOCTEST_CHECK(away < 45);   // the pictures of the bear are sure
+    DOCTEST_CHECK(away < 45);  // the pictures of the bear are sure
     const auto searches = app.model().search.number;
     app.set_camera(turned(app, 200));
     app.edit();

@@ -1,4 +1,5 @@
-// LoRAs in the artist's window: tried before they count, kept with the project, and the model stays as it was where they fail.
+// LoRAs in the artist's window: tried before they count, kept with the project, and the model stays as it was
+// where they fail.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -38,21 +39,25 @@ void write_ones(const fs::path& path, const std::map<std::string, std::vector<st
 /// A LoRA for one layer of the starter, of rank 1.
 void write_starter_lora(const fs::path& path) {
     const std::string layer = "mid_block.attentions.0.transformer_blocks.0.attn2.to_q";
-    const auto header = safetensors_header(app::starter_model_path() / "unet/diffusion_pytorch_model.safetensors");
+    const auto header =
+        safetensors_header(app::starter_model_path() / "unet/diffusion_pytorch_model.safetensors");
     const auto shape = header[layer + ".weight"]["shape"].get<std::vector<std::size_t>>();
-    write_ones(path, {{"unet." + layer + ".lora_A.weight", {1, shape[1]}}, {"unet." + layer + ".lora_B.weight", {shape[0], 1}}});
+    write_ones(path, {{"unet." + layer + ".lora_A.weight", {1, shape[1]}},
+                      {"unet." + layer + ".lora_B.weight", {shape[0], 1}}});
 }
 
 }  // namespace
 
-DOCTEST_TEST_CASE("LoRAs: added, weighed, taken off; a bad one leaves the model as it was; the project keeps them") {
+DOCTEST_TEST_CASE(
+    "LoRAs: added, weighed, taken off; a bad one leaves the model as it was; the project keeps them") {
     if (!networks()) return;
     const Place place;
     const auto good = place.folder / "style.safetensors", fast = place.folder / "lcm style.safetensors",
                other = place.folder / "other.safetensors", project = place.folder / "with.gsep";
     write_starter_lora(good);
     write_starter_lora(fast);
-    write_ones(other, {{"lora_unet_no_such_layer.lora_down.weight", {1, 4}}, {"lora_unet_no_such_layer.lora_up.weight", {4, 1}}});
+    write_ones(other, {{"lora_unet_no_such_layer.lora_down.weight", {1, 4}},
+                       {"lora_unet_no_such_layer.lora_up.weight", {4, 1}}});
     {
         Session session;
         session.open_bear();
@@ -73,7 +78,7 @@ DOCTEST_TEST_CASE("LoRAs: added, weighed, taken off; a bad one leaves the model 
             DOCTEST_CHECK(app.model().toasts.back().text.find("LoRA") != std::string::npos);
         }
         const int rounds = app.model().request.rounds;
-        app.add_lora(fast.string());   // brings settings of its own
+        app.add_lora(fast.string());  // brings settings of its own
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_REQUIRE(app.model().loras.size() == 2);
         DOCTEST_CHECK(app.model().request.rounds == 2);
@@ -97,7 +102,7 @@ DOCTEST_TEST_CASE("LoRAs: added, weighed, taken off; a bad one leaves the model 
         DOCTEST_CHECK(again.app.model().loras[0].strength == -0.25);
         again.app.shut_down();
     }
-    fs::remove(good);   // gone until the next start: the model works without it
+    fs::remove(good);  // gone until the next start: the model works without it
     Session last;
     DOCTEST_REQUIRE(last.settled());
     DOCTEST_CHECK(last.app.model().loras.empty());

@@ -31,12 +31,13 @@ fs::path model_that_states(const Place& place, const std::string& name, const nl
 DOCTEST_TEST_CASE("a model's settings are taken where the artist changed nothing, and given up with it") {
     if (!networks()) return;
     const Place place;
-    const auto stating = model_that_states(place, "stating", {{"request", {{"tau", 0.6}, {"views", 5}}}, {"dreambooth", {{"steps", 333}}}});
+    const auto stating = model_that_states(
+        place, "stating", {{"request", {{"tau", 0.6}, {"views", 5}}}, {"dreambooth", {{"steps", 333}}}});
     const auto wrong = model_that_states(place, "wrong", {{"request", {{"tao", 0.6}}}});
     const edit::EditRequest usual;
     {
         Session session;
-        session.open_bear();   // with 8 views
+        session.open_bear();  // with 8 views
         auto& app = session.app;
         const auto steps = app.model().model_settings.learning.steps;
         app.choose_model(stating.string());
@@ -66,7 +67,8 @@ DOCTEST_TEST_CASE("a model's settings are taken where the artist changed nothing
     DOCTEST_CHECK(again.app.model().request.views == 5);
 }
 
-DOCTEST_TEST_CASE("what the window says of guidance, attention, learning and front is in the recipe and in the project") {
+DOCTEST_TEST_CASE(
+    "what the window says of guidance, attention, learning and front is in the recipe and in the project") {
     if (!networks()) return;
     const Place place;
     {
@@ -110,18 +112,20 @@ DOCTEST_TEST_CASE("what the window says of guidance, attention, learning and fro
 }
 
 DOCTEST_TEST_CASE("settings of the first projects are read, wrong ones are refused by name") {
-    const auto old = ui::model_settings_from_json({{"learn_steps", 31}, {"learn_rank", 4}, {"gate", false}}, {});
+    const auto old =
+        ui::model_settings_from_json({{"learn_steps", 31}, {"learn_rank", 4}, {"gate", false}}, {});
     DOCTEST_CHECK(old.learning.steps == 31);
     DOCTEST_CHECK(old.learning.rank == 4);
     DOCTEST_CHECK(!old.gate);
     const auto round = ui::model_settings_from_json(ui::model_settings_to_json(old), {});
     DOCTEST_CHECK(ui::model_settings_to_json(round) == ui::model_settings_to_json(old));
-    for (const auto& wrong : {nlohmann::ordered_json{{"guidance", {{"clamp", -1}}}}, nlohmann::ordered_json{{"device", 7}},
-                              nlohmann::ordered_json{{"learn", true}}})
+    for (const auto& wrong : {nlohmann::ordered_json{{"guidance", {{"clamp", -1}}}},
+                              nlohmann::ordered_json{{"device", 7}}, nlohmann::ordered_json{{"learn", true}}})
         DOCTEST_CHECK_THROWS_AS(ui::model_settings_from_json(wrong, {}), Error);
 }
 
-DOCTEST_TEST_CASE("a scene is learned once for the same words and settings, and only where it was asked for") {
+DOCTEST_TEST_CASE(
+    "a scene is learned once for the same words and settings, and only where it was asked for") {
     if (!networks()) return;
     const Place place;
     Session session;
@@ -148,7 +152,8 @@ DOCTEST_TEST_CASE("a scene is learned once for the same words and settings, and 
     DOCTEST_CHECK(tunings() == 0);
     search(true, [](auto&) {});
     DOCTEST_CHECK(tunings() == 1);
-    search(true, [](auto& request) { request.positive_points = 4; });   // another search, the same scene and words
+    search(true,
+           [](auto& request) { request.positive_points = 4; });  // another search, the same scene and words
     DOCTEST_CHECK(tunings() == 1);
     search(true, [](auto& request) { request.views = 6; });
     DOCTEST_CHECK(tunings() == 2);

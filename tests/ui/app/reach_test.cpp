@@ -46,12 +46,14 @@ DOCTEST_TEST_CASE("what an addition left behind is not what the next edit of ano
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_REQUIRE(app.model().result_waiting);
     app.discard_result();
-    app.select(stroke_over_bear(5), ui::SetOperation::Remove, true);   // says nothing of where the hat goes, and that is said
+    app.select(stroke_over_bear(5), ui::SetOperation::Remove,
+               true);  // says nothing of where the hat goes, and that is said
     app.edit();
     DOCTEST_REQUIRE(session.idle());
     app.update(session.preview);
     bool said = false;
-    for (const auto& line : app.model().log) said |= line.text == app::AddsElsewhere;   // its toast is gone where the edit took long
+    for (const auto& line : app.model().log)
+        said |= line.text == app::AddsElsewhere;  // its toast is gone where the edit took long
     DOCTEST_CHECK(said);
     app.apply_result();
     DOCTEST_REQUIRE(active(app).name == "hat");
@@ -61,19 +63,21 @@ DOCTEST_TEST_CASE("what an addition left behind is not what the next edit of ano
     app.set_request(request);
     app.update(session.preview);
     DOCTEST_CHECK_FALSE(app.model().reach.by_label);
-    DOCTEST_CHECK(app.model().reach.label == "hat");   // offered
+    DOCTEST_CHECK(app.model().reach.label == "hat");  // offered
     const auto hat = *active(app).bits;
     app.edit();
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_REQUIRE(active(app).name == "bear");
     std::size_t in_hat = 0;
-    for (std::size_t row = 0; row < hat.size(); ++row) in_hat += hat[row] != 0 && (*active(app).bits)[row] != 0 ? 1 : 0;
+    for (std::size_t row = 0; row < hat.size(); ++row)
+        in_hat += hat[row] != 0 && (*active(app).bits)[row] != 0 ? 1 : 0;
     DOCTEST_CHECK(count_labelled(active(app)) > 100);
     DOCTEST_CHECK(in_hat < count_labelled(active(app)) / 2);
     app.shut_down();
 }
 
-DOCTEST_TEST_CASE("a label that was found and renamed is still the one that the edit changes, with its corrections") {
+DOCTEST_TEST_CASE(
+    "a label that was found and renamed is still the one that the edit changes, with its corrections") {
     if (!networks()) return;
     const Place place;
     Session session;
@@ -87,7 +91,7 @@ DOCTEST_TEST_CASE("a label that was found and renamed is still the one that the 
     DOCTEST_CHECK_FALSE(app.model().attention_corrected);
     app.select(stroke_over_bear(5), ui::SetOperation::Remove, true);
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().attention_corrected);   // the masks are from before
+    DOCTEST_CHECK(app.model().attention_corrected);  // the masks are from before
     const auto corrected = *active(app).bits;
     app.rename_label(app.document().state().active_label, "Bruno");
     app.update(session.preview);
@@ -98,14 +102,14 @@ DOCTEST_TEST_CASE("a label that was found and renamed is still the one that the 
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.document().state().labels.size() == 1);
     DOCTEST_CHECK(*active(app).bits == corrected);
-    DOCTEST_CHECK_FALSE(app.model().view.tint_labels);   // what was made is to be seen
+    DOCTEST_CHECK_FALSE(app.model().view.tint_labels);  // what was made is to be seen
     auto view = app.model().view;
-    view.tint_labels = true;   // by T, a tool or a stroke
+    view.tint_labels = true;  // by T, a tool or a stroke
     app.set_view_settings(view);
     app.update(session.preview);
     DOCTEST_CHECK(session.preview.last.values != nullptr);
     app.discard_result();
-    app.locate();   // another search corrects the same label
+    app.locate();  // another search corrects the same label
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.document().state().labels.size() == 1);
     DOCTEST_CHECK(active(app).name == "Bruno");
@@ -114,11 +118,12 @@ DOCTEST_TEST_CASE("a label that was found and renamed is still the one that the 
     app.open(place.folder / "bruno.gsep");
     DOCTEST_REQUIRE(session.idle());
     app.update(session.preview);
-    DOCTEST_CHECK(app.model().reach.by_label);   // the project keeps the connection
+    DOCTEST_CHECK(app.model().reach.by_label);  // the project keeps the connection
     app.shut_down();
 }
 
-DOCTEST_TEST_CASE("who paints a label means it, until another source is edited; the panel can say otherwise") {
+DOCTEST_TEST_CASE(
+    "who paints a label means it, until another source is edited; the panel can say otherwise") {
     const Place place;
     Session session;
     session.open_bear();
@@ -138,7 +143,7 @@ DOCTEST_TEST_CASE("who paints a label means it, until another source is edited; 
     app.set_request(request);
     app.update(session.preview);
     DOCTEST_CHECK_FALSE(app.model().reach.by_label);
-    app.open_sample();   // another document: nothing is labelled there
+    app.open_sample();  // another document: nothing is labelled there
     DOCTEST_REQUIRE(session.until([&] { return app.document().state().labels.empty(); }));
     app.update(session.preview);
     DOCTEST_CHECK(app.model().reach.label.empty());

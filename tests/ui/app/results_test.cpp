@@ -24,12 +24,13 @@ app::Application& opened(Session& session) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("one more result with another seed: each can be shown and applied, and a stopped one takes none away") {
+DOCTEST_TEST_CASE(
+    "one more result with another seed: each can be shown and applied, and a stopped one takes none away") {
     if (!networks()) return;
     const Place place;
     Session session;
     auto& app = opened(session);
-    app.another_result();   // of nothing
+    app.another_result();  // of nothing
     DOCTEST_CHECK_FALSE(app.model().job.running);
     app.edit();
     DOCTEST_REQUIRE(session.idle());
@@ -49,7 +50,7 @@ DOCTEST_TEST_CASE("one more result with another seed: each can be shown and appl
     app.cancel();
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.model().results.size() >= 2);
-    DOCTEST_REQUIRE(app.model().result_waiting);   // stopped before its first step, or after some
+    DOCTEST_REQUIRE(app.model().result_waiting);  // stopped before its first step, or after some
     app.show_result(0);
     app.update(session.preview);
     DOCTEST_CHECK(session.preview.last.set.shares_all_with(first));
@@ -63,7 +64,8 @@ DOCTEST_TEST_CASE("one more result with another seed: each can be shown and appl
     DOCTEST_CHECK(app.model().results.empty());
 }
 
-DOCTEST_TEST_CASE("one more result, and all of them discarded: the scene and what is tinted are as before the first") {
+DOCTEST_TEST_CASE(
+    "one more result, and all of them discarded: the scene and what is tinted are as before the first") {
     if (!networks()) return;
     const Place place;
     Session session;

@@ -1,4 +1,5 @@
-// SAM's weights in the artist's window: tried before they count, kept until the next start, and GrabCut is a click away.
+// SAM's weights in the artist's window: tried before they count, kept until the next start, and GrabCut is a
+// click away.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -14,7 +15,8 @@ namespace segmenter_test {
 using namespace gse;
 using namespace gse::test;
 
-DOCTEST_TEST_CASE("a segmenter: bad weights change nothing, good ones cut out the masks and are there again") {
+DOCTEST_TEST_CASE(
+    "a segmenter: bad weights change nothing, good ones cut out the masks and are there again") {
     const auto weights = fs::absolute(goldens_folder() / "sam/sam_original.safetensors").lexically_normal();
     if (!networks() || !available(weights)) return;
     const Place place;
@@ -33,7 +35,7 @@ DOCTEST_TEST_CASE("a segmenter: bad weights change nothing, good ones cut out th
             DOCTEST_CHECK(app.model().toasts.back().is_error);
             DOCTEST_CHECK(app.model().toasts.back().text.find("segmenter") != std::string::npos);
         }
-        app.choose_segmenter(ui::SegmenterRole::Words, place.folder.string());   // no CLIPSeg
+        app.choose_segmenter(ui::SegmenterRole::Words, place.folder.string());  // no CLIPSeg
         DOCTEST_CHECK(app.model().segmenters[1].checking);
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().segmenters[1].path.empty());
@@ -42,7 +44,8 @@ DOCTEST_TEST_CASE("a segmenter: bad weights change nothing, good ones cut out th
         DOCTEST_REQUIRE(session.settled());
         DOCTEST_CHECK(app.model().segmenters[0].path == weights.string());
         app.locate();
-        DOCTEST_REQUIRE(session.settled());   // of weights drawn at random; whether they find anything is theirs
+        DOCTEST_REQUIRE(
+            session.settled());  // of weights drawn at random; whether they find anything is theirs
         app.shut_down();
     }
     Session again;
@@ -52,12 +55,13 @@ DOCTEST_TEST_CASE("a segmenter: bad weights change nothing, good ones cut out th
     again.app.shut_down();
 }
 
-DOCTEST_TEST_CASE("a thing in a box is cut out in the background, one step of undo, and no model is loaded for it") {
+DOCTEST_TEST_CASE(
+    "a thing in a box is cut out in the background, one step of undo, and no model is loaded for it") {
     const Place place;
     Session session;
     session.open_bear();
     auto& app = session.app;
-    ui::ScreenRegion box;   // around the bear, which is small in the home view
+    ui::ScreenRegion box;  // around the bear, which is small in the home view
     const auto camera = app.model().camera;
     const auto cx = static_cast<float>(camera.width) / 2, cy = static_cast<float>(camera.height) / 2;
     box.polygon = {{cx - 40, cy - 40}, {cx + 40, cy - 40}, {cx + 40, cy + 40}, {cx - 40, cy + 40}};
@@ -74,7 +78,9 @@ DOCTEST_TEST_CASE("a thing in a box is cut out in the background, one step of un
     const auto looked = [&] { return app.document().state().labels.at(0).looked_from; };
     const auto first = fmt::format("{:.0f}", pipeline::looked_from(camera, state.info.up));
     DOCTEST_CHECK(looked() == first);
-    app.set_camera(Camera::look_at(camera.centre() + camera.rotation.row(0) * 2.0, camera.centre() + camera.forward() * 4.0, state.info.up, 0.9, camera.width, camera.height));
+    app.set_camera(Camera::look_at(camera.centre() + camera.rotation.row(0) * 2.0,
+                                   camera.centre() + camera.forward() * 4.0, state.info.up, 0.9, camera.width,
+                                   camera.height));
     app.update(session.preview);
     app.select(box, ui::SetOperation::Add, true);
     DOCTEST_CHECK(looked() == first);
@@ -90,7 +96,8 @@ DOCTEST_TEST_CASE("a thing in a box is cut out in the background, one step of un
     app.cancel();
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.document().state().labels.empty());
-    for (const auto& toast : app.model().toasts) DOCTEST_CHECK_FALSE(toast.is_error);   // it was the artist's wish
+    for (const auto& toast : app.model().toasts)
+        DOCTEST_CHECK_FALSE(toast.is_error);  // it was the artist's wish
     app.shut_down();
 }
 

@@ -14,7 +14,9 @@ namespace {
 
 using Bits = std::vector<std::uint8_t>;
 
-std::size_t count(const Bits& bits) { return static_cast<std::size_t>(std::count(bits.begin(), bits.end(), 1)); }
+std::size_t count(const Bits& bits) {
+    return static_cast<std::size_t>(std::count(bits.begin(), bits.end(), 1));
+}
 
 const Bits& labelled(const app::Application& app) {
     const auto& state = app.document().state();
@@ -23,7 +25,8 @@ const Bits& labelled(const app::Application& app) {
 
 std::size_t invisible(const GaussianSet& set) {
     const auto logits = set.opacity_logit();
-    return static_cast<std::size_t>(std::count_if(logits.begin(), logits.end(), [](float logit) { return std::isinf(logit) && logit < 0; }));
+    return static_cast<std::size_t>(std::count_if(
+        logits.begin(), logits.end(), [](float logit) { return std::isinf(logit) && logit < 0; }));
 }
 
 /// The sample with a label of its larger splats.
@@ -36,12 +39,16 @@ struct Labelled : Session {
         app.drop_picked();
         app.update(preview);
     }
-    static localize::RowChoice large(float threshold) { return {localize::RowProperty::Size, {}, threshold, true, false}; }
+    static localize::RowChoice large(float threshold) {
+        return {localize::RowProperty::Size, {}, threshold, true, false};
+    }
 };
 
 }  // namespace
 
-DOCTEST_TEST_CASE("colours adjusted by hand are one edit and one step of undo, of what is labelled, until something else is done") {
+DOCTEST_TEST_CASE(
+    "colours adjusted by hand are one edit and one step of undo, of what is labelled, until something else "
+    "is done") {
     const Place place;
     Labelled session;
     auto& app = session.app;
@@ -58,9 +65,10 @@ DOCTEST_TEST_CASE("colours adjusted by hand are one edit and one step of undo, o
     DOCTEST_CHECK(state.stack[0].name == "Colours: hue 90");
     std::size_t outside = 0;
     for (std::size_t row = 0; row < before.size(); ++row)
-        outside += labelled(app)[row] == 0 && !same_row(before.spans(), row, state.current.spans(), row) ? 1 : 0;
+        outside +=
+            labelled(app)[row] == 0 && !same_row(before.spans(), row, state.current.spans(), row) ? 1 : 0;
     DOCTEST_CHECK(outside == 0);
-    app.adjust_colours({});   // as it was
+    app.adjust_colours({});  // as it was
     app.update(session.preview);
     DOCTEST_CHECK(app.document().position() == at);
     DOCTEST_CHECK_FALSE(app.model().adjusting);
@@ -68,13 +76,16 @@ DOCTEST_TEST_CASE("colours adjusted by hand are one edit and one step of undo, o
     app.clear_label();
     app.update(session.preview);
     DOCTEST_CHECK_FALSE(app.model().adjusting);
-    app.adjust_colours({0, 0});   // a second edit, of everything
+    app.adjust_colours({0, 0});  // a second edit, of everything
     app.update(session.preview);
     DOCTEST_CHECK(app.document().state().stack.size() == 2);
-    DOCTEST_CHECK(app.document().state().stack[1].delta->changed.size() > app.document().state().stack[0].delta->changed.size());
+    DOCTEST_CHECK(app.document().state().stack[1].delta->changed.size() >
+                  app.document().state().stack[0].delta->changed.size());
 }
 
-DOCTEST_TEST_CASE("splats chosen by a property are shown, labelled, taken from a label and deleted; each is one step of undo") {
+DOCTEST_TEST_CASE(
+    "splats chosen by a property are shown, labelled, taken from a label and deleted; each is one step of "
+    "undo") {
     const Place place;
     Session session;
     session.open_bear();
@@ -83,19 +94,22 @@ DOCTEST_TEST_CASE("splats chosen by a property are shown, labelled, taken from a
     const std::size_t all = app.document().state().current.size();
     localize::RowChoice choice{localize::RowProperty::Isolation, {}, 0.0f, false, false};
     app.pick_rows(choice);
-    DOCTEST_REQUIRE(session.until([&] { return app.model().picked.values != nullptr && !app.model().picked.working; }));
+    DOCTEST_REQUIRE(
+        session.until([&] { return app.model().picked.values != nullptr && !app.model().picked.working; }));
     const auto values = *app.model().picked.values;
     auto sorted = values;
     std::sort(sorted.begin(), sorted.end());
     choice.threshold = sorted[all / 2];
     app.pick_rows(choice);
     app.update(session.preview);
-    const auto nearer = static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [&](float value) { return value <= choice.threshold; }));
+    const auto nearer = static_cast<std::size_t>(
+        std::count_if(values.begin(), values.end(), [&](float value) { return value <= choice.threshold; }));
     DOCTEST_CHECK(app.model().picked.count == nearer);
     app.update(session.preview);
     DOCTEST_REQUIRE(session.preview.last.values != nullptr);
-    DOCTEST_CHECK(std::count(session.preview.last.values->begin(), session.preview.last.values->end(), 1.0f) == static_cast<std::ptrdiff_t>(nearer));
-    DOCTEST_CHECK(app.document().position() == at);   // looking changes nothing
+    DOCTEST_CHECK(std::count(session.preview.last.values->begin(), session.preview.last.values->end(),
+                             1.0f) == static_cast<std::ptrdiff_t>(nearer));
+    DOCTEST_CHECK(app.document().position() == at);  // looking changes nothing
     choice.above = true;
     app.pick_rows(choice);
     app.update(session.preview);
@@ -115,7 +129,7 @@ DOCTEST_TEST_CASE("splats chosen by a property are shown, labelled, taken from a
     app.undo();
     app.update(session.preview);
     DOCTEST_CHECK(count(labelled(app)) == chosen);
-    DOCTEST_CHECK(app.model().picked.count == within);   // follows the label
+    DOCTEST_CHECK(app.model().picked.count == within);  // follows the label
     app.use_picked(ui::PickedUse::Delete);
     DOCTEST_CHECK(app.document().state().current.size() == all - within);
     app.undo();
@@ -125,7 +139,9 @@ DOCTEST_TEST_CASE("splats chosen by a property are shown, labelled, taken from a
     DOCTEST_CHECK_FALSE(app.model().picked.shown);
 }
 
-DOCTEST_TEST_CASE("hiding is for the eye: the document, its revision and the project stay, and picking passes over what is hidden") {
+DOCTEST_TEST_CASE(
+    "hiding is for the eye: the document, its revision and the project stay, and picking passes over what is "
+    "hidden") {
     const Place place;
     Labelled session;
     auto& app = session.app;
@@ -141,18 +157,19 @@ DOCTEST_TEST_CASE("hiding is for the eye: the document, its revision and the pro
     DOCTEST_CHECK(invisible(session.preview.last.set) == faint + some);
     const auto arrays = session.preview.last.set;
     app.update(session.preview);
-    DOCTEST_CHECK(session.preview.last.set.shares_all_with(arrays));   // nothing is uploaded anew
-    DOCTEST_CHECK(invisible(session.preview.last.original) == faint + some);   // comparisons show as much
+    DOCTEST_CHECK(session.preview.last.set.shares_all_with(arrays));          // nothing is uploaded anew
+    DOCTEST_CHECK(invisible(session.preview.last.original) == faint + some);  // comparisons show as much
     DOCTEST_CHECK(app.document().revision() == revision);
     DOCTEST_CHECK(app.document().state().current.shares_all_with(set));
     app.pick_rows(Labelled::large(0.0f));
-    DOCTEST_REQUIRE(session.until([&] { return !app.model().picked.working && app.model().picked.count > 0; }));
+    DOCTEST_REQUIRE(
+        session.until([&] { return !app.model().picked.working && app.model().picked.count > 0; }));
     DOCTEST_CHECK(app.model().picked.count == set.size() - some);
     app.drop_picked();
     app.isolate_label();
     app.update(session.preview);
     DOCTEST_CHECK(app.model().hidden == set.size() - some);
-    app.delete_labelled_splats();   // what is seen goes; the rest is still hidden
+    app.delete_labelled_splats();  // what is seen goes; the rest is still hidden
     app.update(session.preview);
     DOCTEST_CHECK(app.model().hidden == app.document().state().current.size());
     app.undo();
@@ -182,9 +199,11 @@ DOCTEST_TEST_CASE("an export leaves out what is hidden only when that is said") 
     const auto rest = written("rest.ply", true);
     DOCTEST_CHECK(rest.gaussians.size() == all - some);
     DOCTEST_REQUIRE_FALSE(rest.labels.labels.empty());
-    DOCTEST_CHECK(count(*rest.labels.labels.front().bits) == 0);   // all that was labelled is hidden
+    DOCTEST_CHECK(count(*rest.labels.labels.front().bits) == 0);  // all that was labelled is hidden
     const auto& toasts = app.model().toasts;
-    DOCTEST_CHECK(std::any_of(toasts.begin(), toasts.end(), [](const auto& toast) { return toast.text.find("without what is hidden") != std::string::npos; }));
+    DOCTEST_CHECK(std::any_of(toasts.begin(), toasts.end(), [](const auto& toast) {
+        return toast.text.find("without what is hidden") != std::string::npos;
+    }));
     app.isolate_label();
     app.delete_labelled_splats();
     app.update(session.preview);
@@ -195,7 +214,7 @@ DOCTEST_TEST_CASE("an export leaves out what is hidden only when that is said") 
     DOCTEST_CHECK_FALSE(fs::exists(place.folder / "none.ply"));
     app.show_hidden();
     app.update(session.preview);
-    DOCTEST_CHECK_FALSE(app.model().exports.visible_only);   // a choice for what was hidden then
+    DOCTEST_CHECK_FALSE(app.model().exports.visible_only);  // a choice for what was hidden then
 }
 
 DOCTEST_TEST_CASE("any step can be what comparisons show as before") {
@@ -207,7 +226,8 @@ DOCTEST_TEST_CASE("any step can be what comparisons show as before") {
     const auto first = app.document().state().current;
     const auto step = app.document().position();
     app.pick_rows(Labelled::large(0.4f));
-    DOCTEST_REQUIRE(session.until([&] { return !app.model().picked.working && app.model().picked.count > 0; }));
+    DOCTEST_REQUIRE(
+        session.until([&] { return !app.model().picked.working && app.model().picked.count > 0; }));
     app.use_picked(ui::PickedUse::Delete);
     app.drop_picked();
     app.update(session.preview);
@@ -218,7 +238,7 @@ DOCTEST_TEST_CASE("any step can be what comparisons show as before") {
     DOCTEST_CHECK(app.model().compared_name == app.document().names()[step]);
     DOCTEST_CHECK(session.preview.last.original.shares_all_with(first));
     app.undo();
-    app.undo();   // beyond it: it is compared with all the same
+    app.undo();  // beyond it: it is compared with all the same
     app.update(session.preview);
     DOCTEST_CHECK(session.preview.last.original.shares_all_with(first));
     DOCTEST_CHECK(session.preview.last.set.shares_all_with(opened));
@@ -236,7 +256,8 @@ DOCTEST_TEST_CASE("toasts of steps take them back, but not what came after") {
     const auto before = app.document().state().current;
     const auto undo_button = [&] {
         const auto& toasts = app.model().toasts;
-        const auto found = std::find_if(toasts.rbegin(), toasts.rend(), [](const auto& toast) { return toast.button == "Undo"; });
+        const auto found = std::find_if(toasts.rbegin(), toasts.rend(),
+                                        [](const auto& toast) { return toast.button == "Undo"; });
         DOCTEST_REQUIRE(found != toasts.rend());
         return static_cast<std::size_t>(toasts.rend() - found) - 1;
     };
@@ -249,7 +270,7 @@ DOCTEST_TEST_CASE("toasts of steps take them back, but not what came after") {
     app.update(session.preview);
     const auto revision = app.document().revision();
     app.press_toast(undo_button());
-    DOCTEST_CHECK(app.document().revision() == revision);   // History leads back
+    DOCTEST_CHECK(app.document().revision() == revision);  // History leads back
 }
 
 }  // namespace selection_test

@@ -47,9 +47,9 @@ struct Session {
     explicit Session(bool autosave = true) : app({.autosave = autosave, .autosave_seconds = 0.2}) {
         app.set_viewport_size(320, 240);
     }
-    /// Frames until the condition holds; false after `seconds`, times GSE_PATIENCE: instrumented builds are that much slower.
-    template <class F>
-    bool until(F condition, double seconds = 600) {
+    /// Frames until the condition holds; false after `seconds`, times GSE_PATIENCE: instrumented builds are
+    /// that much slower.
+    template <class F> bool until(F condition, double seconds = 600) {
         const double patience = std::atof(from_environment("GSE_PATIENCE", "1").c_str());
         const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds * patience);
         while (std::chrono::steady_clock::now() < end) {
@@ -65,10 +65,12 @@ struct Session {
     /// Until no job has run for a while: one may follow another.
     bool settled() {
         int still = 0;
-        return until([&] {
-            still = app.model().job.running || app.model().file_job.running ? 0 : still + 1;
-            return still > 20;
-        }, 600);
+        return until(
+            [&] {
+                still = app.model().job.running || app.model().file_job.running ? 0 : still + 1;
+                return still > 20;
+            },
+            600);
     }
     void open_bear() {
         app.open_sample();
@@ -82,7 +84,7 @@ struct Session {
         request.target = "blue";
         request.views = 8;
         request.image_size = 64;
-        request.method = "sds";   // goes on for as many steps as a test needs
+        request.method = "sds";  // goes on for as many steps as a test needs
         request.iterations = 30;
         app.set_request(request);
     }

@@ -52,7 +52,7 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         auto typed = app.model().request;
         typed.source = "Bear";
         typed.prompt = sentence;
-        typed.target.clear();   // guessed
+        typed.target.clear();  // guessed
         app.set_request(typed);
         auto same = job_of(app);
         same.locate();
@@ -64,7 +64,8 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         DOCTEST_REQUIRE(active < app.document().state().labels.size());
         DOCTEST_CHECK(app.document().state().labels[active].name == "bear");
         DOCTEST_REQUIRE(app.model().search.front);
-        DOCTEST_CHECK(std::abs(std::remainder(*app.model().search.front, 360)) < 45);   // the bear looks at the first view
+        DOCTEST_CHECK(std::abs(std::remainder(*app.model().search.front, 360)) <
+                      45);  // the bear looks at the first view
         DOCTEST_CHECK(*app.document().state().labels[active].bits == *same.located().label.bits);
         const auto searches = app.model().search.number;
         const auto found = count_labelled(app.document().state().labels[active]);
@@ -74,7 +75,7 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         // A brush stroke takes away what lies under it, and undo gives it back.
         ui::ScreenRegion stroke;
         stroke.circles = {{160, 120}};
-        stroke.radius_px = 5;   // part of the bear, which is small in the home view
+        stroke.radius_px = 5;  // part of the bear, which is small in the home view
         app.select(stroke, ui::SetOperation::Remove, true);
         const auto corrected = count_labelled(app.document().state().labels[active]);
         DOCTEST_CHECK(corrected < found);
@@ -88,13 +89,14 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
         DOCTEST_CHECK(app.model().job.error.empty());
         DOCTEST_REQUIRE(app.model().result_waiting);
         DOCTEST_CHECK(app.model().losses.size() == 30);
-        DOCTEST_CHECK(app.model().search.number == searches);   // what was found is used, not looked for again
+        DOCTEST_CHECK(app.model().search.number == searches);  // what was found is used, not looked for again
         DOCTEST_CHECK_FALSE(session.preview.last.set.shares_all_with(base));  // the waiting result is shown
         const auto label = *app.document().state().labels[active].bits;
         app.apply_result();
         const auto& state = app.document().state();
         DOCTEST_REQUIRE(state.stack.size() == 1);
-        DOCTEST_CHECK(nlohmann::ordered_json::parse(state.stack[0].recipe)["request"] == fields_to_json(same.recipe().request));
+        DOCTEST_CHECK(nlohmann::ordered_json::parse(state.stack[0].recipe)["request"] ==
+                      fields_to_json(same.recipe().request));
         DOCTEST_CHECK(state.stack[0].changed_outside_label == 0);
         // What the label leaves out has not moved by a bit; that includes what the brush took away.
         std::size_t changed_outside = 0, kept = 0;
@@ -137,10 +139,11 @@ DOCTEST_TEST_CASE("open, locate, correct, edit, apply, undo, save and reopen") {
     DOCTEST_REQUIRE(current.size() == applied_rows);
     DOCTEST_CHECK(
         std::equal(current.sh().begin(), current.sh().end(), applied_colours.begin(), applied_colours.end()));
-    DOCTEST_CHECK(again.app.model().request.prompt == sentence);   // as it was typed
+    DOCTEST_CHECK(again.app.model().request.prompt == sentence);  // as it was typed
 }
 
-DOCTEST_TEST_CASE("the word that is new is read off the scene when it is searched, and the edit takes that search") {
+DOCTEST_TEST_CASE(
+    "the word that is new is read off the scene when it is searched, and the edit takes that search") {
     if (!networks()) return;
     Session session;
     session.open_bear();
@@ -152,19 +155,19 @@ DOCTEST_TEST_CASE("the word that is new is read off the scene when it is searche
     typed.method = "sds";
     typed.iterations = 2;
     app.set_request(typed);
-    DOCTEST_CHECK(app.target() == "red");   // all that the sentence alone can say
+    DOCTEST_CHECK(app.target() == "red");  // all that the sentence alone can say
     app.locate();
     DOCTEST_REQUIRE(session.idle());
-    DOCTEST_CHECK(app.model().read_target == "snow");   // the bear is red already
+    DOCTEST_CHECK(app.model().read_target == "snow");  // the bear is red already
     typed.source = "grass";
     typed.prompt = "a bear on the snow";
     app.set_request(typed);
-    DOCTEST_CHECK(app.target() == "snow");   // what things stand on for what they stood on
+    DOCTEST_CHECK(app.target() == "snow");  // what things stand on for what they stood on
     app.locate();
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.model().read_target == "snow");
     DOCTEST_CHECK(app.target() == "snow");
-    DOCTEST_CHECK(app.model().request.target.empty());   // still for the pictures to say
+    DOCTEST_CHECK(app.model().request.target.empty());  // still for the pictures to say
     const auto searches = app.model().search.number;
     app.edit();
     DOCTEST_REQUIRE(session.idle());
@@ -173,15 +176,16 @@ DOCTEST_TEST_CASE("the word that is new is read off the scene when it is searche
     app.apply_result();
     const auto recipe = nlohmann::ordered_json::parse(app.document().state().stack[0].recipe);
     DOCTEST_CHECK(recipe["request"]["target"] == "snow");
-    typed.prompt = "a bear on the sand";   // another sentence: what was read of the last one says nothing of it
+    typed.prompt =
+        "a bear on the sand";  // another sentence: what was read of the last one says nothing of it
     app.set_request(typed);
     session.until([&] { return app.model().read_target.empty(); }, 5);
     DOCTEST_CHECK(app.model().read_target.empty());
-    DOCTEST_CHECK(app.target() == "sand");   // the bear was said already
+    DOCTEST_CHECK(app.target() == "sand");  // the bear was said already
     typed.prompt = "a blue bear on the snow";
     typed.source = "bear";
     app.set_request(typed);
-    app.edit();   // without a search before: it reads the word too, and says so
+    app.edit();  // without a search before: it reads the word too, and says so
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.model().read_target == "blue");
     app.shut_down();
@@ -206,11 +210,13 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
     DOCTEST_CHECK(session.app.model().job.paused);
     session.app.pause(false);
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().losses.size() > standing + 3; }));
-    // A brush stroke corrects the label of the running edit: what it takes away is as it was in the next snapshot.
+    // A brush stroke corrects the label of the running edit: what it takes away is as it was in the next
+    // snapshot.
     ui::ScreenRegion stroke;
     stroke.circles = {{160, 120}};
-    stroke.radius_px = 5;   // part of the bear, which is small in the home view
-    DOCTEST_REQUIRE(session.app.document().state().active_label >= 0);   // the edit's own search shows what it found
+    stroke.radius_px = 5;  // part of the bear, which is small in the home view
+    DOCTEST_REQUIRE(session.app.document().state().active_label >=
+                    0);  // the edit's own search shows what it found
     const auto active = static_cast<std::size_t>(session.app.document().state().active_label);
     const auto before = *session.app.document().state().labels[active].bits;
     session.app.select(stroke, ui::SetOperation::Remove, true);
@@ -226,9 +232,11 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
     const auto& base = session.app.document().state().current;
     std::size_t outside = 0;
     for (std::size_t row = 0; row < std::min(base.size(), shown.size()); ++row)
-        outside += before[row] != 0 && corrected[row] == 0 && shown.sh()[row * 3] != base.sh()[row * 3] ? 1 : 0;
+        outside +=
+            before[row] != 0 && corrected[row] == 0 && shown.sh()[row * 3] != base.sh()[row * 3] ? 1 : 0;
     DOCTEST_CHECK(outside == 0);
-    DOCTEST_CHECK(session.app.model().gate.pictures.size() == 4);   // what the model makes of it was shown first
+    DOCTEST_CHECK(session.app.model().gate.pictures.size() ==
+                  4);  // what the model makes of it was shown first
     session.app.take_snapshot(session.app.model().snapshots.front().iteration);
     session.app.apply_result();
     DOCTEST_CHECK(session.app.document().state().stack.size() == 1);
@@ -236,7 +244,8 @@ DOCTEST_TEST_CASE("a running edit pauses, shows snapshots, is cancelled and keep
     DOCTEST_CHECK(session.app.document().state().stack.empty());
 }
 
-DOCTEST_TEST_CASE("a branch goes on from a snapshot with the settings as they are now, also out of a running edit") {
+DOCTEST_TEST_CASE(
+    "a branch goes on from a snapshot with the settings as they are now, also out of a running edit") {
     if (!networks()) return;
     const Place place;
     Session session;
@@ -251,7 +260,7 @@ DOCTEST_TEST_CASE("a branch goes on from a snapshot with the settings as they ar
     request = app.model().request;
     request.iterations = from;
     app.set_request(request);
-    app.branch_from_snapshot(from);   // nothing would be left to do: the edit is not even stopped
+    app.branch_from_snapshot(from);  // nothing would be left to do: the edit is not even stopped
     app.update(session.preview);
     DOCTEST_CHECK(app.model().job.running);
     DOCTEST_CHECK(app.model().toasts.back().text.find("iterations") != std::string::npos);
@@ -261,10 +270,11 @@ DOCTEST_TEST_CASE("a branch goes on from a snapshot with the settings as they ar
     app.branch_from_snapshot(from);
     DOCTEST_REQUIRE(session.until([&] { return app.model().result_waiting; }));
     DOCTEST_CHECK(app.model().losses.back().iteration == from + 11);
-    for (std::size_t i = 1; i < app.model().losses.size(); ++i)   // the curve goes through, without what was given up
+    for (std::size_t i = 1; i < app.model().losses.size();
+         ++i)  // the curve goes through, without what was given up
         DOCTEST_CHECK(app.model().losses[i].iteration > app.model().losses[i - 1].iteration);
     DOCTEST_CHECK(app.model().snapshots.back().iteration <= from + 12);
-    app.branch_from_snapshot(from - 1000000);   // before all of them: nothing happens
+    app.branch_from_snapshot(from - 1000000);  // before all of them: nothing happens
     DOCTEST_CHECK(app.model().result_waiting);
     // Out of the finished edit, once more.
     request.iterations = from + 20;
@@ -277,7 +287,7 @@ DOCTEST_TEST_CASE("a branch goes on from a snapshot with the settings as they ar
     DOCTEST_REQUIRE(app.document().state().stack.size() == 1);
     DOCTEST_CHECK(app.document().state().stack[0].changed_outside_label == 0);
     const auto revision = app.document().revision();
-    app.branch_from_snapshot(from);   // they were states of another scene
+    app.branch_from_snapshot(from);  // they were states of another scene
     DOCTEST_CHECK_FALSE(app.model().job.running);
     DOCTEST_CHECK(app.document().revision() == revision);
 }
@@ -306,13 +316,13 @@ DOCTEST_TEST_CASE("a threshold drag is one step of undo with its value, and undo
         app.set_attention_threshold(*(values.end() - 1), true);
         DOCTEST_REQUIRE(session.settled());
     };
-    drag({0.6, 0.75, 0.85, 0.9});   // the bear is found whole with any up to 0.8
+    drag({0.6, 0.75, 0.85, 0.9});  // the bear is found whole with any up to 0.8
     DOCTEST_CHECK(app.document().position() == at + 1);
     DOCTEST_CHECK(app.document().names().back() == "Attention threshold 0.900");
     const auto strict = bits();
     DOCTEST_CHECK(strict != found);
     drag({0.5, 0.3});
-    DOCTEST_CHECK(app.document().position() == at + 2);   // another drag, another step
+    DOCTEST_CHECK(app.document().position() == at + 2);  // another drag, another step
     const auto wide = bits();
     DOCTEST_CHECK(wide != strict);
     DOCTEST_CHECK(app.model().request.attention_threshold == 0.3);
@@ -321,11 +331,11 @@ DOCTEST_TEST_CASE("a threshold drag is one step of undo with its value, and undo
     DOCTEST_CHECK(bits() == strict);
     DOCTEST_CHECK(app.model().request.attention_threshold == 0.9);
     DOCTEST_REQUIRE(session.settled());
-    DOCTEST_CHECK(app.model().attention[0].mask_picture != masks);   // the evidence follows
-    DOCTEST_CHECK(app.document().position() == at + 1);   // and makes no step of its own
+    DOCTEST_CHECK(app.model().attention[0].mask_picture != masks);  // the evidence follows
+    DOCTEST_CHECK(app.document().position() == at + 1);             // and makes no step of its own
     app.undo();
     DOCTEST_CHECK(bits() == found);
-    DOCTEST_CHECK(app.model().request.attention_threshold == 0);   // as the model states
+    DOCTEST_CHECK(app.model().request.attention_threshold == 0);  // as the model states
     DOCTEST_REQUIRE(session.settled());
     DOCTEST_CHECK(app.model().attention_threshold == stated);
     app.redo();
@@ -400,7 +410,7 @@ DOCTEST_TEST_CASE("a search is known after a restart, unless the cache was clear
     const ScratchFolder folder;
     setenv("GSE_CACHE_DIR", folder.path().c_str(), 1);
     std::vector<std::uint8_t> label;
-    const auto start = [&](auto before) {   // one start of the program: its network passes
+    const auto start = [&](auto before) {  // one start of the program: its network passes
         Session session;
         auto& app = session.app;
         before(app);
@@ -427,12 +437,14 @@ DOCTEST_TEST_CASE("a search is known after a restart, unless the cache was clear
     DOCTEST_CHECK(start([](app::Application& app) { DOCTEST_CHECK(app.model().cache_bytes > 0); }) == 0);
     DOCTEST_CHECK(start([](app::Application& app) { app.clear_cache(); }) == first);
     DOCTEST_CHECK(start([](app::Application& app) { app.set_cache_mb(0); }) == first);
-    DOCTEST_CHECK(start([](app::Application& app) { DOCTEST_CHECK(app.model().cache_mb == 0); }) == first);   // it is remembered
+    DOCTEST_CHECK(start([](app::Application& app) { DOCTEST_CHECK(app.model().cache_mb == 0); }) ==
+                  first);  // it is remembered
     DOCTEST_CHECK(fs::is_empty(folder.path() / "answers"));
     setenv("GSE_CACHE_DIR", "/dev/null", 1);
 }
 
-DOCTEST_TEST_CASE("settings of view and export are there again after a restart, what belongs to one scene is not") {
+DOCTEST_TEST_CASE(
+    "settings of view and export are there again after a restart, what belongs to one scene is not") {
     const Place place;
     {
         Session session;
@@ -466,11 +478,11 @@ DOCTEST_TEST_CASE("a scale for one start is not kept, a chosen one is") {
         app::Application app({.autosave = false, .ui_scale = for_this_start, .desktop_scale = 1.25f});
         return app.model().ui_scale;
     };
-    DOCTEST_CHECK(scale_of(0) == 1.25f);   // as the desktop says
+    DOCTEST_CHECK(scale_of(0) == 1.25f);  // as the desktop says
     {
         app::Application app({.autosave = false, .ui_scale = 2});
         DOCTEST_CHECK(app.model().ui_scale == 2);
-        app.shut_down();   // writes the settings
+        app.shut_down();  // writes the settings
     }
     DOCTEST_CHECK(scale_of(0) == 1.25f);
     {
@@ -532,7 +544,8 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     DOCTEST_CHECK(shot.channels == 4);
     DOCTEST_CHECK(shot.data[3] == 0);  // the corner shows nothing
     DOCTEST_CHECK(read_png_text(place.folder / "shot.png").count("Recipe") == 1);
-    DOCTEST_CHECK(read_png_text(place.folder / "shot.png").at("parameters").find("Seed: ") != std::string::npos);
+    DOCTEST_CHECK(read_png_text(place.folder / "shot.png").at("parameters").find("Seed: ") !=
+                  std::string::npos);
     session.app.export_turntable();
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(fs::exists(place.folder / "turn/frame_0003.png"));
@@ -549,7 +562,7 @@ DOCTEST_TEST_CASE("pictures, films, scenes and camera paths are written; mistake
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(load_scene(place.folder / "out.spz").gaussians.size() ==
                   session.app.document().state().current.size());
-    DOCTEST_CHECK(read_file(place.folder / "out.spz").starts_with("NGSP"));   // only version 4 begins so
+    DOCTEST_CHECK(read_file(place.folder / "out.spz").starts_with("NGSP"));  // only version 4 begins so
     const auto& views = session.app.document().state().views;
     for (const char* name : {"cameras.json", "transforms.json"}) {
         exports.viewpoints_path = (place.folder / name).string();

@@ -1,5 +1,5 @@
-// Redrawn views in the application: the edit waits for the artist, takes what is said, and branches go on with what was redrawn;
-// what an edit was estimated to take beside what it took.
+// Redrawn views in the application: the edit waits for the artist, takes what is said, and branches go on
+// with what was redrawn; what an edit was estimated to take beside what it took.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -32,7 +32,8 @@ void ask_for_views(Session& session, bool review, int fit_steps) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("an edit waits until the artist has looked at the redrawn views, and takes what is said of them") {
+DOCTEST_TEST_CASE(
+    "an edit waits until the artist has looked at the redrawn views, and takes what is said of them") {
     if (!networks()) return;
     const Place place;
     Session session;
@@ -59,9 +60,11 @@ DOCTEST_TEST_CASE("an edit waits until the artist has looked at the redrawn view
     DOCTEST_CHECK(model.cost.unet > 0);
     DOCTEST_CHECK(model.cost.tflop > 0);
     DOCTEST_CHECK(!model.targets_wait);
-    DOCTEST_CHECK(view(0).dropped);   // still to be seen
-    app.order_target({0, view(0).view, TargetChoice::Accept});   // too late: said, not done
-    DOCTEST_CHECK(session.until([&] { return !model.toasts.empty() && model.toasts.back().text.find("over") != std::string::npos; }, 5));
+    DOCTEST_CHECK(view(0).dropped);                             // still to be seen
+    app.order_target({0, view(0).view, TargetChoice::Accept});  // too late: said, not done
+    DOCTEST_CHECK(session.until(
+        [&] { return !model.toasts.empty() && model.toasts.back().text.find("over") != std::string::npos; },
+        5));
     app.discard_result();
     // Cancelled while it waits.
     app.edit();
@@ -141,15 +144,17 @@ DOCTEST_TEST_CASE("what an edit is estimated to take after the search, beside wh
         app.set_request(request);
         app.locate();
         DOCTEST_REQUIRE(session.idle());
-        session.until([] { return false; }, 1.2);   // the estimate is refreshed
+        session.until([] { return false; }, 1.2);  // the estimate is refreshed
         const ui::Estimate estimate = model.estimate;
         DOCTEST_CHECK(estimate.seconds > 0);
         DOCTEST_CHECK(estimate.memory_mb > current_rss_mb() * 0.9);
         const PeakMemory peak;
         app.edit();
         DOCTEST_REQUIRE(session.until([&] { return model.result_waiting; }));
-        DOCTEST_MESSAGE(std::string(method) << ": estimated " << estimate.seconds << " s, " << estimate.tflop << " TFLOP, " << estimate.memory_mb
-                               << " MB; took " << model.job.seconds << " s, " << model.cost.tflop << " TFLOP, " << peak.mb() << " MB");
+        DOCTEST_MESSAGE(std::string(method)
+                        << ": estimated " << estimate.seconds << " s, " << estimate.tflop << " TFLOP, "
+                        << estimate.memory_mb << " MB; took " << model.job.seconds << " s, "
+                        << model.cost.tflop << " TFLOP, " << peak.mb() << " MB");
         // Passes can be foreseen; how many masks follow the edit cannot quite.
         DOCTEST_CHECK(estimate.tflop == doctest::Approx(model.cost.tflop).epsilon(0.25));
         DOCTEST_CHECK(estimate.memory_mb > 0.75 * peak.mb());

@@ -1,5 +1,5 @@
-// Work that is not saved: kept when the program ends in the middle of an edit, offered again, gone when it was saved or given
-// up; folders that hold scenes; exports that write over nothing.
+// Work that is not saved: kept when the program ends in the middle of an edit, offered again, gone when it
+// was saved or given up; folders that hold scenes; exports that write over nothing.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -54,14 +54,15 @@ std::size_t count_offered(const app::Application& app) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("a finished edit that was not applied is unsaved work: kept, offered by name, had back whole") {
+DOCTEST_TEST_CASE(
+    "a finished edit that was not applied is unsaved work: kept, offered by name, had back whole") {
     if (!networks()) return;
     const Place place;
     const auto scene = own_scene(place);
     std::vector<float> base, edited;
     {
         Session session;
-        open_and_save(session, scene);   // all is saved but the edit
+        open_and_save(session, scene);  // all is saved but the edit
         base = colours(session.app.document().state().current);
         start_edit(session, 30);
         DOCTEST_CHECK(session.app.model().edit_running);
@@ -85,7 +86,7 @@ DOCTEST_TEST_CASE("a finished edit that was not applied is unsaved work: kept, o
     DOCTEST_CHECK(found.running.find("not applied") != std::string::npos);
     DOCTEST_REQUIRE(found.thumbnail != nullptr);
     DOCTEST_CHECK(found.thumbnail->width > 100);
-    again.app.open(scene);   // the same scene: the offer comes along
+    again.app.open(scene);  // the same scene: the offer comes along
     DOCTEST_REQUIRE(again.until([&] { return again.app.model().document != nullptr; }));
     DOCTEST_CHECK(count_offered(again.app) == 1);
     again.app.recover(found.file);
@@ -101,7 +102,7 @@ DOCTEST_TEST_CASE("a finished edit that was not applied is unsaved work: kept, o
     again.app.save_project({});
     DOCTEST_REQUIRE(again.until([&] { return !again.app.model().unsaved; }));
     again.until([&] { return find_recoverable().empty() && fs::is_empty(autosave_folder()); }, 10);
-    DOCTEST_CHECK(fs::is_empty(autosave_folder()));   // recovered and saved: nothing is offered any more
+    DOCTEST_CHECK(fs::is_empty(autosave_folder()));  // recovered and saved: nothing is offered any more
 }
 
 DOCTEST_TEST_CASE("a program that is ended in the middle of an edit loses none of it") {
@@ -115,16 +116,16 @@ DOCTEST_TEST_CASE("a program that is ended in the middle of an edit loses none o
         start_edit(session, 5000);
         DOCTEST_REQUIRE(session.until([&] { return session.app.model().snapshots.size() >= 2; }));
         reached = session.app.model().snapshots.back().iteration;
-        session.app.shut_down();   // as SIGTERM does: nobody can be asked
+        session.app.shut_down();  // as SIGTERM does: nobody can be asked
     }
     Session again;
-    again.app.open(scene);   // named on the command line: no start page was seen
+    again.app.open(scene);  // named on the command line: no start page was seen
     DOCTEST_REQUIRE(again.until([&] { return again.app.model().document != nullptr; }));
     DOCTEST_REQUIRE(count_offered(again.app) == 1);
     DOCTEST_CHECK(again.app.model().recoverable[0].running.find("of 5000") != std::string::npos);
     again.app.postpone_recovery(again.app.model().recoverable[0].file);
     DOCTEST_CHECK(count_offered(again.app) == 0);
-    again.app.open(scene);   // opened again, offered again
+    again.app.open(scene);  // opened again, offered again
     DOCTEST_REQUIRE(again.until([&] { return count_offered(again.app) == 1; }));
     again.app.recover(again.app.model().recoverable[0].file);
     DOCTEST_REQUIRE(again.until([&] { return again.app.model().result_waiting; }));
@@ -153,7 +154,8 @@ DOCTEST_TEST_CASE("a discarded edit is gone, the scene stays; another scene is o
     session.app.save_project(fs::path(scene).replace_extension(".gsep"));
     DOCTEST_REQUIRE(session.until([&] { return !session.app.model().unsaved; }, 60));
     DOCTEST_REQUIRE(session.until([&] { return fs::is_empty(autosave_folder()); }, 60));
-    // Kept, and another scene opened: it is offered when the first scene is opened again, also in this session.
+    // Kept, and another scene opened: it is offered when the first scene is opened again, also in this
+    // session.
     start_edit(session, 5000);
     DOCTEST_REQUIRE(session.until([&] { return session.app.model().snapshots.size() >= 2; }));
     session.app.leave_edit(true, [&] { session.app.open(other); });
@@ -175,8 +177,9 @@ DOCTEST_TEST_CASE("what was given up on purpose is not offered again") {
         Session session;
         open_and_save(session, scene);
         session.app.add_label("unsaved");
-        DOCTEST_REQUIRE(session.until([&] { return fs::exists(autosave_folder()) && !fs::is_empty(autosave_folder()); }, 20));
-        session.app.quit();   // the window asked before
+        DOCTEST_REQUIRE(session.until(
+            [&] { return fs::exists(autosave_folder()) && !fs::is_empty(autosave_folder()); }, 20));
+        session.app.quit();  // the window asked before
         session.app.shut_down();
     }
     const Session again;
@@ -203,7 +206,7 @@ DOCTEST_TEST_CASE("a folder with a scene and its cameras opens; several scenes a
     DOCTEST_CHECK(asked.answers[0].listed);
     DOCTEST_CHECK(session.app.model().scene_path == scene.string());
     session.app.answer(0);
-    session.app.answer(0);   // a question is answered once
+    session.app.answer(0);  // a question is answered once
     DOCTEST_REQUIRE(
         session.until([&] { return session.app.model().scene_path == (folder / "another.ply").string(); }));
     DOCTEST_CHECK(session.app.model().toasts.empty());
@@ -231,7 +234,7 @@ DOCTEST_TEST_CASE("cameras that are opened are those of the open scene; without 
     auto elsewhere = orbit_views(app.model().orbit, 7, 64, 64);
     for (auto& view : elsewhere) view.camera.translation.x += 1000;
     save_cameras_json(place.folder / "cameras.json", elsewhere);
-    app.open(place.folder);   // the folder is as good
+    app.open(place.folder);  // the folder is as good
     DOCTEST_REQUIRE(session.idle());
     DOCTEST_CHECK(app.document().state().views.size() == before);
     DOCTEST_CHECK(app.model().toasts.back().is_error);
@@ -309,7 +312,8 @@ DOCTEST_TEST_CASE("every export numbers its files, a scene is replaced only when
             (session.app.*act)();
             DOCTEST_REQUIRE(session.idle());
         }
-    for (const char* name : {"shot.png", "shot-2.png", "shot-3.png", "turn/frame_0001.png", "turn-3/frame_0001.png"})
+    for (const char* name :
+         {"shot.png", "shot-2.png", "shot-3.png", "turn/frame_0001.png", "turn-3/frame_0001.png"})
         DOCTEST_CHECK_MESSAGE(fs::exists(place.folder / name), name);
     for (int time = 0; time < 2; ++time) {
         session.app.export_camera_path(false);

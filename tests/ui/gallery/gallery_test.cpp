@@ -42,7 +42,8 @@ const std::vector<Shot>& shots() {
          Situation::Scene,
          {},
          [](Harness& harness) {
-             harness.application.model().recent = {(source_folder() / "assets/scenes/bear/scene.ply").string()};
+             harness.application.model().recent = {
+                 (source_folder() / "assets/scenes/bear/scene.ply").string()};
              harness.modifiers(false, true, false);
              harness.key('O');
              harness.modifiers(false, false, false);

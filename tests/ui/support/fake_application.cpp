@@ -82,7 +82,8 @@ Image masked(const Image& render, const Image& values) {
 ui::RecoveryView recovery_of(const std::string& scene) {
     auto picture = std::make_shared<Image>(160, 120, 3, 0.3f);
     for (std::size_t i = 0; i < picture->pixel_count(); ++i)
-        picture->data[i * 3 + 1] = 0.3f + 0.4f * static_cast<float>(i) / static_cast<float>(picture->pixel_count());
+        picture->data[i * 3 + 1] =
+            0.3f + 0.4f * static_cast<float>(i) / static_cast<float>(picture->pixel_count());
     return {"/home/mira/.local/state/gseditpro/autosave/" + scene + ".gsep",
             scene + ".ply",
             "/home/mira/scenes/" + scene + ".ply",
@@ -113,7 +114,8 @@ FakeApplication::FakeApplication(Situation situation)
     if (situation == Situation::Failed) {
         model_.search.confidence.value = 0.21;
         model_.search.problem = edit::SearchProblem::Unsure;
-        model_.search.message = "it is not sure that \"car\" was found (confidence 0.21, at least 0.35 is needed)";
+        model_.search.message =
+            "it is not sure that \"car\" was found (confidence 0.21, at least 0.35 is needed)";
         model_.search.remedy = "name something the scene shows, look at what was found, or label it by hand";
         model_.attention[1].failed = true;
         model_.attention[1].step = edit::ViewStep::TooLittle;
@@ -237,7 +239,8 @@ void FakeApplication::make_work(bool running) {
     for (int view = 0; view < 4; ++view) {
         auto picture = std::make_shared<Image>(64, 64, 3);
         for (std::size_t i = 0; i < picture->data.size(); ++i)
-            picture->data[i] = static_cast<float>(random.uniform(0.2, 0.3) + 0.15 * view * static_cast<double>(i % 3));
+            picture->data[i] =
+                static_cast<float>(random.uniform(0.2, 0.3) + 0.15 * view * static_cast<double>(i % 3));
         model_.gate.pictures.push_back(picture);
     }
     model_.gate.verdict = "The model shows the edit in 4 of 4 views.";
@@ -285,7 +288,8 @@ void FakeApplication::make_targets() {
 
 void FakeApplication::order_target(const edit::TargetOrder& order) {
     constexpr std::array<const char*, 3> names{"accept", "drop", "redo"};
-    calls.push_back(fmt::format("order_target {} {} {}", order.round, order.view, names[static_cast<std::size_t>(order.choice)]));
+    calls.push_back(fmt::format("order_target {} {} {}", order.round, order.view,
+                                names[static_cast<std::size_t>(order.choice)]));
 }
 
 void FakeApplication::make_rest() {
@@ -374,9 +378,11 @@ void FakeApplication::leave_out_view(std::size_t view, bool out) {
 
 void FakeApplication::pick_rows(const localize::RowChoice& choice) {
     calls.push_back("pick_rows " + localize::choice_text(choice) + (choice.within_label ? " within" : ""));
-    const auto values = localize::row_values(document_->state().current, choice.property, choice.colour, nullptr);
+    const auto values =
+        localize::row_values(document_->state().current, choice.property, choice.colour, nullptr);
     const auto rows = localize::chosen_rows(choice, values, {});
-    model_.picked = {true, false, static_cast<std::size_t>(std::count(rows.begin(), rows.end(), 1)), std::make_shared<const std::vector<float>>(values)};
+    model_.picked = {true, false, static_cast<std::size_t>(std::count(rows.begin(), rows.end(), 1)),
+                     std::make_shared<const std::vector<float>>(values)};
 }
 
 void FakeApplication::set_attention_threshold(double value, bool drag_ends) {
@@ -427,7 +433,7 @@ void FakeApplication::set_comparison(ui::Comparison comparison) {
 void FakeApplication::look_through(std::size_t view) {
     calls.push_back("look_through " + std::to_string(view));
     const int width = std::max(model_.viewport_width, 1), height = std::max(model_.viewport_height, 1);
-    model_.camera = fitted(document_->state().views[view].camera, width, height);   // as the application does
+    model_.camera = fitted(document_->state().views[view].camera, width, height);  // as the application does
 }
 
 void FakeApplication::set_viewport_size(int width, int height) {

@@ -73,14 +73,18 @@ public:
     void another_result() override { calls.push_back("another_result"); }
     void show_result(std::size_t index) override { calls.push_back("show_result " + std::to_string(index)); }
     void show_snapshot(int index) override { calls.push_back("show_snapshot " + std::to_string(index)); }
-    void take_snapshot(int iteration) override { calls.push_back("take_snapshot " + std::to_string(iteration)); }
+    void take_snapshot(int iteration) override {
+        calls.push_back("take_snapshot " + std::to_string(iteration));
+    }
     void branch_from_snapshot(int iteration) override {
         calls.push_back("branch_from_snapshot " + std::to_string(iteration));
     }
     void hide_label() override { calls.push_back("hide_label"); }
     void isolate_label() override { calls.push_back("isolate_label"); }
     void show_hidden() override { calls.push_back("show_hidden"); }
-    void compare_with(std::size_t position) override { calls.push_back("compare_with " + std::to_string(position)); }
+    void compare_with(std::size_t position) override {
+        calls.push_back("compare_with " + std::to_string(position));
+    }
     void pick_rows(const localize::RowChoice& choice) override;
     void set_keymap(const std::string& text) override {
         calls.push_back("set_keymap " + text);
@@ -94,21 +98,27 @@ public:
         calls.push_back("drop_picked");
         model_.picked = {};
     }
-    void use_picked(ui::PickedUse use) override { calls.push_back("use_picked " + std::to_string(static_cast<int>(use))); }
+    void use_picked(ui::PickedUse use) override {
+        calls.push_back("use_picked " + std::to_string(static_cast<int>(use)));
+    }
     void set_attention_threshold(double value, bool drag_ends) override;
     void leave_out_view(std::size_t view, bool out) override;
     void set_label_threshold(float value, bool drag_ends) override;
     void set_active_label(int index) override {
         calls.push_back("set_active_label " + std::to_string(index));
     }
-    void set_reach(bool by_label) override { calls.push_back(by_label ? "set_reach label" : "set_reach search"); }
+    void set_reach(bool by_label) override {
+        calls.push_back(by_label ? "set_reach label" : "set_reach search");
+    }
     void add_label(const std::string& name) override { calls.push_back("add_label " + name); }
     void rename_label(int index, const std::string& name) override {
         calls.push_back("rename_label " + std::to_string(index) + " " + name);
     }
     void delete_label(int index) override;
     void select(const ui::ScreenRegion& region, ui::SetOperation operation, bool stroke_ends) override;
-    void cut_out(const ui::ScreenRegion& box, ui::SetOperation) override { calls.push_back("cut_out " + std::to_string(box.polygon.size())); }
+    void cut_out(const ui::ScreenRegion& box, ui::SetOperation) override {
+        calls.push_back("cut_out " + std::to_string(box.polygon.size()));
+    }
     void grow_label(int steps) override { calls.push_back("grow_label " + std::to_string(steps)); }
     void invert_label() override { calls.push_back("invert_label"); }
     void clear_label() override { calls.push_back("clear_label"); }
@@ -120,7 +130,8 @@ public:
         calls.push_back("set_edit_enabled " + std::to_string(id) + (on ? " on" : " off"));
     }
     void set_edit_strength(std::uint64_t id, double strength, bool drag_ends) override {
-        calls.push_back("set_edit_strength " + std::to_string(id) + " " + std::to_string(strength) + (drag_ends ? " end" : ""));
+        calls.push_back("set_edit_strength " + std::to_string(id) + " " + std::to_string(strength) +
+                        (drag_ends ? " end" : ""));
     }
     void delete_edit(std::uint64_t id) override { calls.push_back("delete_edit " + std::to_string(id)); }
     void move_edit(std::uint64_t id, int places) override {
@@ -141,7 +152,8 @@ public:
     void set_request(const edit::EditRequest& request) override;
     void choose_model(const std::string& path) override { calls.push_back("choose_model " + path); }
     void choose_segmenter(ui::SegmenterRole role, const std::string& path) override {
-        calls.push_back((role == ui::SegmenterRole::Clicks ? "choose_segmenter " : "choose_text_segmenter ") + path);
+        calls.push_back((role == ui::SegmenterRole::Clicks ? "choose_segmenter " : "choose_text_segmenter ") +
+                        path);
     }
     void add_lora(const std::string& text) override { calls.push_back("add_lora " + text); }
     void set_lora_strength(std::size_t index, double strength) override {

@@ -32,7 +32,8 @@ bool key_asks(Harness& harness, int index, const std::string& call) {
 DOCTEST_TEST_CASE("the start page opens, recovers and discards") {
     Harness harness({Wide, High, 1, Situation::Nothing, false});
     DOCTEST_CHECK(asks(harness, "start.sample", "open_sample"));
-    DOCTEST_CHECK(asks(harness, "start.recover.0", "recover /home/mira/.local/state/gseditpro/autosave/garden.gsep"));
+    DOCTEST_CHECK(
+        asks(harness, "start.recover.0", "recover /home/mira/.local/state/gseditpro/autosave/garden.gsep"));
     DOCTEST_CHECK(asks(harness, "start.recent.1", "open /home/mira/scenes/b\xC3\xA4r im Wald.gsep"));
     harness.click("start.discard.0");
     DOCTEST_CHECK(!harness.application.asked("discard_recovery"));
@@ -72,16 +73,18 @@ DOCTEST_TEST_CASE("prompt: every setting of a recipe is found by a word of its n
     Harness harness({Wide, High, 1, Situation::Scene, false});
     auto& model = harness.application.model();
     harness.click("prompt.advanced");
-    DOCTEST_CHECK(harness.find("guidance.guidance_scale") == nullptr);   // in its group
+    DOCTEST_CHECK(harness.find("guidance.guidance_scale") == nullptr);  // in its group
     const auto search = [&](const char* text) {
         harness.click("prompt.filter");
         for (int letter = 0; letter < 40; ++letter) harness.key(key::Backspace);
         harness.type(text);
         harness.frame();
     };
-    for (const auto& wanted : {std::pair{"GUIDANCE SC", "guidance.guidance_scale"}, std::pair{"img2img", "attention.method"},
-                                      std::pair{"prior", "learning.prior_weight"}, std::pair{"shows its front", "model_settings.front"},
-                                      std::pair{"where the networks", "model_settings.device"}, std::pair{"dbscan", "request.dbscan_eps"}}) {
+    for (const auto& wanted :
+         {std::pair{"GUIDANCE SC", "guidance.guidance_scale"}, std::pair{"img2img", "attention.method"},
+          std::pair{"prior", "learning.prior_weight"}, std::pair{"shows its front", "model_settings.front"},
+          std::pair{"where the networks", "model_settings.device"},
+          std::pair{"dbscan", "request.dbscan_eps"}}) {
         search(wanted.first);
         DOCTEST_CHECK_MESSAGE(harness.find(wanted.second) != nullptr, wanted.first);
         DOCTEST_CHECK_MESSAGE(harness.find("request.tau") == nullptr, wanted.first);
@@ -148,12 +151,12 @@ DOCTEST_TEST_CASE("an unknown source is refused before work; a label by hand is 
     harness.application.calls.clear();
     DOCTEST_CHECK(!harness.rect("prompt.locate").enabled);
     DOCTEST_CHECK(!harness.rect("prompt.edit").enabled);
-    DOCTEST_CHECK(harness.find("prompt.source.suggestion") == nullptr);   // "in" is no thing
+    DOCTEST_CHECK(harness.find("prompt.source.suggestion") == nullptr);  // "in" is no thing
     DOCTEST_CHECK(asks(harness, "prompt.source.by_hand", "add_label sign"));
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
     harness.frame(3);
     DOCTEST_CHECK(harness.find("panel.Labels") != nullptr);
-    model.labelled_by_hand = true;   // something was painted
+    model.labelled_by_hand = true;  // something was painted
     harness.shell.show(ui::PanelId::Prompt);
     harness.frame(3);
     DOCTEST_CHECK(!harness.rect("prompt.locate").enabled);
@@ -161,14 +164,15 @@ DOCTEST_TEST_CASE("an unknown source is refused before work; a label by hand is 
     DOCTEST_CHECK(asks(harness, "prompt.edit", "edit"));
 }
 
-DOCTEST_TEST_CASE("above the buttons stands which label the edit changes or what it searches for, and the other way") {
+DOCTEST_TEST_CASE(
+    "above the buttons stands which label the edit changes or what it searches for, and the other way") {
     Harness harness({Wide, High, 1, Situation::Scene, false});
     auto& model = harness.application.model();
     model.request.prompt = "a golden bear";
     model.request.target = "golden";
     harness.frame(2);
     DOCTEST_REQUIRE(harness.find("prompt.reach") != nullptr);
-    DOCTEST_CHECK(harness.find("prompt.reach.other") == nullptr);   // there is no label to use
+    DOCTEST_CHECK(harness.find("prompt.reach.other") == nullptr);  // there is no label to use
     model.reach = {"hat", 416, false, false};
     harness.frame(2);
     DOCTEST_CHECK(asks(harness, "prompt.reach.other", "set_reach label"));
@@ -177,7 +181,7 @@ DOCTEST_TEST_CASE("above the buttons stands which label the edit changes or what
     DOCTEST_CHECK(asks(harness, "prompt.reach.other", "set_reach search"));
     DOCTEST_CHECK(harness.rect("prompt.reach").y < harness.rect("prompt.edit").y);
     DOCTEST_CHECK(harness.rect("prompt.edit").visible);
-    model.request.source = "crane";   // unknown: there is nothing to search for
+    model.request.source = "crane";  // unknown: there is nothing to search for
     harness.frame(2);
     DOCTEST_CHECK(harness.find("prompt.reach.other") == nullptr);
     DOCTEST_CHECK(harness.find("prompt.reach") != nullptr);
@@ -185,17 +189,17 @@ DOCTEST_TEST_CASE("above the buttons stands which label the edit changes or what
 
 DOCTEST_TEST_CASE("a search that labelled nothing shows its pictures and the ways on") {
     Harness harness({Wide, High, 1, Situation::Failed, false});
-    DOCTEST_REQUIRE(harness.find("panel.Attention") != nullptr);   // it came to the front by itself
+    DOCTEST_REQUIRE(harness.find("panel.Attention") != nullptr);  // it came to the front by itself
     DOCTEST_CHECK(harness.find("attention.view.1") != nullptr);
     DOCTEST_CHECK(harness.find("attention.confidence") != nullptr);
     DOCTEST_CHECK(harness.find("attention.front") != nullptr);
     DOCTEST_CHECK(asks(harness, "attention.anyway", "label_anyway"));
     harness.shell.show(ui::PanelId::Log);
     harness.frame(3);
-    DOCTEST_CHECK(harness.find("panel.Attention") == nullptr);   // once is enough
+    DOCTEST_CHECK(harness.find("panel.Attention") == nullptr);  // once is enough
     harness.shell.show(ui::PanelId::Attention);
     harness.frame(3);
-    DOCTEST_CHECK(asks(harness, "attention.by_hand", "set_active_label 0"));   // there is one of that name
+    DOCTEST_CHECK(asks(harness, "attention.by_hand", "set_active_label 0"));  // there is one of that name
     harness.frame(3);
     DOCTEST_CHECK(harness.find("panel.Labels") != nullptr);
 }
@@ -305,12 +309,15 @@ DOCTEST_TEST_CASE("attention: choosing a view and the threshold") {
     harness.drag({bar.x + bar.width * 0.35f, bar.y + 8}, {bar.x + bar.width * 0.6f, bar.y + 8});
     DOCTEST_CHECK(harness.application.asked("set_attention_threshold 0.6"));
     const auto& calls = harness.application.calls;
-    DOCTEST_CHECK(std::count_if(calls.begin(), calls.end(), [](const auto& call) { return call.ends_with(" end"); }) == 1);
+    DOCTEST_CHECK(std::count_if(calls.begin(), calls.end(),
+                                [](const auto& call) { return call.ends_with(" end"); }) == 1);
     DOCTEST_CHECK(harness.application.model().attention_threshold == doctest::Approx(0.6).epsilon(0.05));
     DOCTEST_CHECK(asks(harness, "attention.look", "set_camera"));
 }
 
-DOCTEST_TEST_CASE("attention: a thumbnail turns the camera there, with its map over the picture; Ctrl leaves the view out") {
+DOCTEST_TEST_CASE(
+    "attention: a thumbnail turns the camera there, with its map over the picture; Ctrl leaves the view "
+    "out") {
     Harness harness({Wide, High, 1, Situation::Located, false});
     auto& over = harness.shell.state().attention.over;
     DOCTEST_CHECK(harness.find("viewport.evidence") == nullptr);
@@ -319,7 +326,8 @@ DOCTEST_TEST_CASE("attention: a thumbnail turns the camera there, with its map o
     const Camera& wanted = harness.application.model().attention[3].camera;
     DOCTEST_CHECK(length(harness.application.model().camera.centre() - wanted.centre()) < 1e-6);
     const auto shown = harness.rect("viewport.evidence");
-    DOCTEST_CHECK(shown.width / shown.height == doctest::Approx(static_cast<double>(wanted.width) / wanted.height).epsilon(0.02));
+    DOCTEST_CHECK(shown.width / shown.height ==
+                  doctest::Approx(static_cast<double>(wanted.width) / wanted.height).epsilon(0.02));
     DOCTEST_CHECK(over == ui::Over::Attention);
     harness.key('M');
     DOCTEST_CHECK(over == ui::Over::Mask);
@@ -329,7 +337,7 @@ DOCTEST_TEST_CASE("attention: a thumbnail turns the camera there, with its map o
     harness.key('M');
     harness.frame(2);
     DOCTEST_CHECK(over == ui::Over::Attention);
-    harness.key(ui::key::Right);   // to the next view of the search
+    harness.key(ui::key::Right);  // to the next view of the search
     harness.frame(3);
     DOCTEST_CHECK(harness.shell.state().attention.chosen == 4);
     DOCTEST_CHECK(harness.find("viewport.evidence") != nullptr);
@@ -345,14 +353,14 @@ DOCTEST_TEST_CASE("attention: a thumbnail turns the camera there, with its map o
     harness.frame(2);
     DOCTEST_CHECK(harness.find("evidence.votes") == nullptr);
     DOCTEST_CHECK(asks(harness, "attention.votes", "leave_out_view 4 back"));
-    harness.application.model().attention_arriving = true;   // nothing is voted while the search looks
+    harness.application.model().attention_arriving = true;  // nothing is voted while the search looks
     harness.application.model().attention[2] = {};
     harness.frame(2);
     DOCTEST_CHECK(harness.find("attention.arriving") != nullptr);
     DOCTEST_CHECK_FALSE(harness.rect("attention.votes").enabled);
     const auto calls = harness.application.calls.size();
     harness.click("attention.view.2");
-    DOCTEST_CHECK(harness.application.calls.size() == calls);   // it has no camera yet
+    DOCTEST_CHECK(harness.application.calls.size() == calls);  // it has no camera yet
 }
 
 DOCTEST_TEST_CASE("progress: pause, snapshots, cancel") {
@@ -389,7 +397,7 @@ DOCTEST_TEST_CASE("a result that waits lies behind the last snapshot, which can 
     Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
     harness.shell.show(ui::PanelId::Progress);
     harness.frame(3);
-    DOCTEST_CHECK_FALSE(harness.rect("progress.take").enabled);   // it is the result
+    DOCTEST_CHECK_FALSE(harness.rect("progress.take").enabled);  // it is the result
     DOCTEST_CHECK_FALSE(harness.rect("progress.newest").enabled);
     auto& model = harness.application.model();
     const int last = static_cast<int>(model.snapshots.size()) - 1;
@@ -399,7 +407,8 @@ DOCTEST_TEST_CASE("a result that waits lies behind the last snapshot, which can 
     DOCTEST_CHECK(harness.application.asked(fmt::format("show_snapshot {}", last)));
     model.shown_snapshot = last;
     harness.frame(3);
-    DOCTEST_CHECK(asks(harness, "progress.take", fmt::format("take_snapshot {}", model.snapshots.back().iteration)));
+    DOCTEST_CHECK(
+        asks(harness, "progress.take", fmt::format("take_snapshot {}", model.snapshots.back().iteration)));
     DOCTEST_CHECK(asks(harness, "progress.newest", "show_snapshot -1"));
 }
 
@@ -414,13 +423,15 @@ DOCTEST_TEST_CASE("a result that waits is applied or discarded") {
 DOCTEST_TEST_CASE("one more result is asked for, and of several each can be shown") {
     Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
     DOCTEST_CHECK(asks(harness, "result.another", "another_result"));
-    DOCTEST_CHECK(harness.find("result.0") == nullptr);   // one needs no choice
-    harness.application.model().results = {{nullptr, 4}, {std::make_shared<const Image>(8, 8, 3), 5}, {nullptr, 6}};
+    DOCTEST_CHECK(harness.find("result.0") == nullptr);  // one needs no choice
+    harness.application.model().results = {
+        {nullptr, 4}, {std::make_shared<const Image>(8, 8, 3), 5}, {nullptr, 6}};
     harness.application.model().shown_result = 2;
     harness.frame(3);
     DOCTEST_CHECK(asks(harness, "result.0", "show_result 0"));
     DOCTEST_CHECK(asks(harness, "result.1", "show_result 1"));
-    const auto first = harness.rect("result.0"), second = harness.rect("result.1"), apply = harness.rect("result.apply");
+    const auto first = harness.rect("result.0"), second = harness.rect("result.1"),
+               apply = harness.rect("result.apply");
     DOCTEST_CHECK(first.x + first.width <= second.x);
     DOCTEST_CHECK(first.y + first.height <= apply.y);
 }
@@ -431,16 +442,18 @@ DOCTEST_TEST_CASE("where Apply is decided stands what it took and what it left a
         DOCTEST_REQUIRE(harness.find(name) != nullptr);
         DOCTEST_CHECK(harness.rect(name).visible);
         const auto words = harness.rect(name), compare = harness.rect("result.compare");
-        DOCTEST_CHECK((words.x + words.width <= compare.x || words.y + words.height <= compare.y));   // beside them, or above where that is too wide
+        DOCTEST_CHECK((words.x + words.width <= compare.x ||
+                       words.y + words.height <= compare.y));  // beside them, or above where that is too wide
     }
-    DOCTEST_CHECK(harness.rect("result.apply").y > harness.rect("viewport").y + harness.rect("viewport").height * 3 / 4);   // not over a hat
+    DOCTEST_CHECK(harness.rect("result.apply").y >
+                  harness.rect("viewport").y + harness.rect("viewport").height * 3 / 4);  // not over a hat
 }
 
 DOCTEST_TEST_CASE("history: stack and steps") {
     Harness harness({Wide, High, 1, Situation::Located, false});
     DOCTEST_CHECK(asks(harness, "history.enabled.7", "set_edit_enabled 7 off"));
     DOCTEST_CHECK(asks(harness, "history.repeat.7", "repeat_edit 7"));
-    harness.shell.show(ui::PanelId::History);   // repeating shows the prompt
+    harness.shell.show(ui::PanelId::History);  // repeating shows the prompt
     harness.frame(3);
     const auto bar = harness.rect("history.strength.7");
     harness.drag({bar.x + bar.width * 0.5f, bar.y + 8}, {bar.x + bar.width * 0.8f, bar.y + 8});
@@ -493,13 +506,13 @@ DOCTEST_TEST_CASE("views, export, scene, models, settings") {
     upright.info.up = {0, 0, 1}, upright.info.up_known = true;
     document.apply("Up axis", upright);
     harness.frame(3);
-    DOCTEST_CHECK(!asks(harness, "scene.up.z", "set_up_axis"));   // it is chosen, and shown to be
+    DOCTEST_CHECK(!asks(harness, "scene.up.z", "set_up_axis"));  // it is chosen, and shown to be
     DOCTEST_CHECK(asks(harness, "scene.up.-z", "set_up_axis -z"));
     harness.shell.show(ui::PanelId::Models);
     harness.frame(3);
     DOCTEST_CHECK(asks(harness, "models.use.1", "choose_model /home/mira/ComfyUI"));
     DOCTEST_CHECK(!asks(harness, "models.use.2", "choose_model"));
-    DOCTEST_CHECK(!harness.rect("models.lora.add").enabled);   // nothing was typed
+    DOCTEST_CHECK(!harness.rect("models.lora.add").enabled);  // nothing was typed
     harness.application.model().loras = {{"/loras/style.safetensors", "style", 0.5}};
     harness.frame(2);
     DOCTEST_CHECK(asks(harness, "models.lora.remove.0", "remove_lora 0"));

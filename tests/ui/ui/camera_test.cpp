@@ -146,8 +146,11 @@ DOCTEST_TEST_CASE("a glide ends, and then nothing moves") {
 
 DOCTEST_TEST_CASE("home and frame show a box whole and as large as can be, at any window shape") {
     constexpr int shapes[][2] = {{1600, 900}, {900, 1600}, {640, 640}, {3000, 200}, {200, 3000}};
-    const Bounds boxes[] = {{{-1, -1, -1}, {1, 1, 1}}, {{4, -3, 2}, {4.2, 3, 2.1}}, {{-5, 0, -5}, {5, 0.2, 5}},
-                            {{1e-3, 1e-3, 1e-3}, {2e-3, 3e-3, 2e-3}}, {{1e4, 0, 0}, {3e4, 2e4, 1e4}}};
+    const Bounds boxes[] = {{{-1, -1, -1}, {1, 1, 1}},
+                            {{4, -3, 2}, {4.2, 3, 2.1}},
+                            {{-5, 0, -5}, {5, 0.2, 5}},
+                            {{1e-3, 1e-3, 1e-3}, {2e-3, 3e-3, 2e-3}},
+                            {{1e4, 0, 0}, {3e4, 2e4, 1e4}}};
     for (const auto& box : boxes)
         for (const auto& shape : shapes)
             for (const bool frames : {false, true}) {
@@ -164,10 +167,11 @@ DOCTEST_TEST_CASE("home and frame show a box whole and as large as can be, at an
                 else control.home();
                 rest(control);
                 const Camera camera = control.camera();
-                double nearest = 1;   // to an edge, of the picture
+                double nearest = 1;  // to an edge, of the picture
                 for (int corner = 0; corner < 8; ++corner) {
-                    const Vec3 at = pixel(camera, {corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                                                   corner & 4 ? box.high.z : box.low.z});
+                    const Vec3 at = pixel(
+                        camera, {corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                                 corner & 4 ? box.high.z : box.low.z});
                     DOCTEST_CHECK(at.z > 0);
                     const double x = at.x / shape[0], y = at.y / shape[1];
                     nearest = std::min({nearest, x, 1 - x, y, 1 - y});
@@ -177,13 +181,15 @@ DOCTEST_TEST_CASE("home and frame show a box whole and as large as can be, at an
             }
 }
 
-DOCTEST_TEST_CASE("a camera at home stays there when the window changes its shape, one that was moved does not") {
+DOCTEST_TEST_CASE(
+    "a camera at home stays there when the window changes its shape, one that was moved does not") {
     OrbitParameters orbit;
     const Bounds box{{-0.3, -0.5, -0.3}, {0.3, 0.5, 0.3}};
     for (const bool moved : {false, true}) {
         CameraControl control;
         control.set_home(orbit, box);
-        control.adopt(home_camera(orbit, box, 0.87, 64, 64));   // as it is opened, before the window has its size
+        control.adopt(
+            home_camera(orbit, box, 0.87, 64, 64));  // as it is opened, before the window has its size
         control.set_size(1600, 500);
         control.update(0.016);
         DOCTEST_CHECK(same_view(control.camera(), home_camera(orbit, box, control.fov(), 1600, 500)));

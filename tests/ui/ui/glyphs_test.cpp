@@ -1,4 +1,5 @@
-// Characters beyond the fonts: which are asked for, how they go through ImGui and back, and that they get pictures.
+// Characters beyond the fonts: which are asked for, how they go through ImGui and back, and that they get
+// pictures.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -9,7 +10,8 @@
 namespace gse::test::glyphs_test {
 namespace {
 
-constexpr const char* Mixed = "b\xC3\xA4r \xE7\x86\x8A \xF0\x9F\x90\xBB";  // bär, the Chinese bear, the emoji bear
+constexpr const char* Mixed =
+    "b\xC3\xA4r \xE7\x86\x8A \xF0\x9F\x90\xBB";  // bär, the Chinese bear, the emoji bear
 
 std::optional<ui::PaintedGlyph> square(char32_t, float size_px) {
     ui::PaintedGlyph glyph;
@@ -31,7 +33,8 @@ DOCTEST_TEST_CASE("what does not fit into 16 bits comes back as it was") {
     DOCTEST_CHECK(glyphs.meant(shown) == Mixed);
     DOCTEST_CHECK(glyphs.shown(Mixed) == shown);
     DOCTEST_CHECK(glyphs.shown("plain") == "plain");
-    DOCTEST_CHECK(glyphs.meant(glyphs.shown("\xFF\xC0 x")).ends_with(" x"));  // no UTF-8: nothing is read beyond it
+    DOCTEST_CHECK(
+        glyphs.meant(glyphs.shown("\xFF\xC0 x")).ends_with(" x"));  // no UTF-8: nothing is read beyond it
 }
 
 DOCTEST_TEST_CASE("texts that are shown ask for what the fonts lack, once, and then have it") {
@@ -61,7 +64,7 @@ DOCTEST_TEST_CASE("a prompt with an emoji keeps it while it is edited") {
     harness.application.model().request.prompt = Mixed;
     harness.frame(2);
     harness.click("prompt.sentence");
-    harness.key(269);   // End
+    harness.key(269);  // End
     harness.type("!");
     DOCTEST_CHECK(harness.application.model().request.prompt == std::string(Mixed) + "!");
 }

@@ -82,14 +82,19 @@ DOCTEST_TEST_CASE("Tab goes once around all buttons, fields and sliders of every
         auto buttons = pressable(harness);
         if (situation == Situation::Nothing) buttons.erase("viewport");  // there is a page in its place
         for (const char* wanted :
-             {"prompt.source", "prompt.sentence", "prompt.mode.add", "prompt.strength", "prompt.iterations", "prompt.seed",
-              "prompt.seed.lock", "prompt.learn", "prompt.advanced", "prompt.locate", "prompt.edit", "prompt.cancel",
-              "tool.brush", "tool.lasso", "tool.frame", "tool.undo", "tool.screenshot", "viewport.mode", "viewport.compare",
-              "viewport.tint", "viewport", "tab.Prompt", "tab.Labels", "tab.History", "tab.Attention", "job.pause",
-              "job.cancel", "job.file.cancel", "result.apply", "result.discard", "start.open", "start.sample", "start.recover.0",
-              "start.recent.0", "toast.0.close", "toast.0.button", "attention.view.2", "attention.threshold", "attention.look",
-              "history.undo", "history.repeat.7"})
-            if (buttons.contains(wanted)) DOCTEST_CHECK_MESSAGE(reached.contains(wanted), std::string(wanted));
+             {"prompt.source",     "prompt.sentence",     "prompt.mode.add",  "prompt.strength",
+              "prompt.iterations", "prompt.seed",         "prompt.seed.lock", "prompt.learn",
+              "prompt.advanced",   "prompt.locate",       "prompt.edit",      "prompt.cancel",
+              "tool.brush",        "tool.lasso",          "tool.frame",       "tool.undo",
+              "tool.screenshot",   "viewport.mode",       "viewport.compare", "viewport.tint",
+              "viewport",          "tab.Prompt",          "tab.Labels",       "tab.History",
+              "tab.Attention",     "job.pause",           "job.cancel",       "job.file.cancel",
+              "result.apply",      "result.discard",      "start.open",       "start.sample",
+              "start.recover.0",   "start.recent.0",      "toast.0.close",    "toast.0.button",
+              "attention.view.2",  "attention.threshold", "attention.look",   "history.undo",
+              "history.repeat.7"})
+            if (buttons.contains(wanted))
+                DOCTEST_CHECK_MESSAGE(reached.contains(wanted), std::string(wanted));
         DOCTEST_CHECK(reached.contains(situation == Situation::Nothing ? "start.sample" : "tool.brush"));
     }
 }
@@ -163,7 +168,8 @@ DOCTEST_TEST_CASE("F6 goes from area to area, P to the prompt") {
     DOCTEST_CHECK(harness.application.model().request.prompt == "a green bear");
 }
 
-DOCTEST_TEST_CASE("a question is answered by keys: Enter takes what loses nothing, Tab reaches the others, Esc none") {
+DOCTEST_TEST_CASE(
+    "a question is answered by keys: Enter takes what loses nothing, Tab reaches the others, Esc none") {
     Harness harness({Wide, High, 1, Situation::Scene, false});
     std::string answer;
     const auto ask = [&] {
@@ -183,7 +189,7 @@ DOCTEST_TEST_CASE("a question is answered by keys: Enter takes what loses nothin
     ask();
     harness.key(key::Tab);
     DOCTEST_CHECK(harness.shell.focused() == "question.2");
-    harness.key(key::Tab);   // stays within the question
+    harness.key(key::Tab);  // stays within the question
     DOCTEST_CHECK(harness.shell.focused() == "question.0");
     harness.key(key::Space);
     DOCTEST_CHECK(answer == "lost");
@@ -200,13 +206,16 @@ DOCTEST_TEST_CASE("the label's threshold moves by arrows") {
     DOCTEST_REQUIRE(tab_to(harness, "labels.threshold"));
     const float before = harness.application.document().state().labels[0].threshold;
     harness.key(key::Right);
-    DOCTEST_CHECK(harness.application.document().state().labels[0].threshold == doctest::Approx(before + 0.01));
+    DOCTEST_CHECK(harness.application.document().state().labels[0].threshold ==
+                  doctest::Approx(before + 0.01));
     DOCTEST_CHECK(harness.shell.focused() == "labels.threshold");
-    harness.key(key::Space);   // the mouse is somewhere else: nothing jumps there
-    DOCTEST_CHECK(harness.application.document().state().labels[0].threshold == doctest::Approx(before + 0.01));
+    harness.key(key::Space);  // the mouse is somewhere else: nothing jumps there
+    DOCTEST_CHECK(harness.application.document().state().labels[0].threshold ==
+                  doctest::Approx(before + 0.01));
 }
 
-DOCTEST_TEST_CASE("keys are chosen in their list: the command that had them is told, and they act once it is closed") {
+DOCTEST_TEST_CASE(
+    "keys are chosen in their list: the command that had them is told, and they act once it is closed") {
     Harness harness({1920, 1080, 1, Situation::Located, false});
     const auto tool = [&] { return harness.shell.state().viewport.tool; };
     const auto choose = [&](const char* command, int code) {
@@ -216,12 +225,13 @@ DOCTEST_TEST_CASE("keys are chosen in their list: the command that had them is t
         harness.key(code);
         harness.frame(2);
     };
-    choose("brush", 'R');   // Rectangle's
-    DOCTEST_CHECK(harness.application.asked("set_keymap {\"preset\":\"Splat\",\"keys\":{\"brush\":\"R\",\"rectangle\":\"\"}}"));
+    choose("brush", 'R');  // Rectangle's
+    DOCTEST_CHECK(harness.application.asked(
+        "set_keymap {\"preset\":\"Splat\",\"keys\":{\"brush\":\"R\",\"rectangle\":\"\"}}"));
     DOCTEST_CHECK(harness.shell.state().keys.note == "R was \"Rectangle\", which has no key now");
     harness.key(key::Escape);
     DOCTEST_CHECK_FALSE(harness.shell.state().help_open);
-    DOCTEST_CHECK(tool() == ui::Tool::Orbit);   // it was no command
+    DOCTEST_CHECK(tool() == ui::Tool::Orbit);  // it was no command
     harness.key('R');
     DOCTEST_CHECK(tool() == ui::Tool::Brush);
     harness.key(key::Escape);
@@ -229,7 +239,7 @@ DOCTEST_TEST_CASE("keys are chosen in their list: the command that had them is t
     DOCTEST_CHECK(tool() == ui::Tool::Orbit);
     choose("lasso", 'W');
     DOCTEST_CHECK(harness.shell.state().keys.note == "W flies");
-    harness.key(key::Escape);   // leaves the choice, not the list
+    harness.key(key::Escape);  // leaves the choice, not the list
     DOCTEST_CHECK(harness.shell.state().help_open);
     DOCTEST_CHECK_FALSE(harness.shell.state().keys.choosing);
     harness.click("keys.preset.Blender");
@@ -251,7 +261,8 @@ DOCTEST_TEST_CASE("as in Maya, Alt moves the camera with a tool in hand, too") {
         harness.application.calls.clear();
         const auto view = harness.rect("viewport");
         harness.modifiers(false, false, true);
-        harness.drag({view.x + view.width * 0.4f, view.y + view.height * 0.4f}, {view.x + view.width * 0.6f, view.y + view.height * 0.5f});
+        harness.drag({view.x + view.width * 0.4f, view.y + view.height * 0.4f},
+                     {view.x + view.width * 0.6f, view.y + view.height * 0.5f});
         harness.modifiers(false, false, false);
         harness.frame(2);
         harness.key(key::Escape);
@@ -264,7 +275,8 @@ DOCTEST_TEST_CASE("as in Maya, Alt moves the camera with a tool in hand, too") {
 DOCTEST_TEST_CASE("the list of keys tells about all of it") {
     std::string all;
     for (const auto& line : ui::KeyTable) all += std::string(line.keys) + "|";
-    for (const char* wanted : {"Tab, Shift + Tab|", "Arrows|", "Space, Enter|", "F6, Shift + F6|", "Alt|", "|T|", "|P|", "F1|"})
+    for (const char* wanted :
+         {"Tab, Shift + Tab|", "Arrows|", "Space, Enter|", "F6, Shift + F6|", "Alt|", "|T|", "|P|", "F1|"})
         DOCTEST_CHECK_MESSAGE(all.find(wanted) != std::string::npos, std::string(wanted));
 }
 

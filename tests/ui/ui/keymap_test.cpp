@@ -23,10 +23,11 @@ DOCTEST_TEST_CASE("every convention gives every command keys of its own that can
             const std::string keys = chord_text(map.of(line.command));
             DOCTEST_CHECK_MESSAGE(!keys.empty(), line.name);
             DOCTEST_CHECK_MESSAGE(seen.insert(keys).second, keys);
-            DOCTEST_CHECK_MESSAGE(Keymap::why_not(map.of(line.command)).empty(), Keymap::why_not(map.of(line.command)));
+            DOCTEST_CHECK_MESSAGE(Keymap::why_not(map.of(line.command)).empty(),
+                                  Keymap::why_not(map.of(line.command)));
             DOCTEST_CHECK(parse_chord(keys) == map.of(line.command));
             DOCTEST_CHECK(map.user_of(map.of(line.command)) == line.command);
-            if (preset == KeyPreset::Splat) DOCTEST_CHECK(keys == line.keys);   // what the table says
+            if (preset == KeyPreset::Splat) DOCTEST_CHECK(keys == line.keys);  // what the table says
         }
         DOCTEST_CHECK(commands == CommandCount);
     }
@@ -44,7 +45,9 @@ DOCTEST_TEST_CASE("a chosen key is taken from the command that had it, and comes
 }
 
 DOCTEST_TEST_CASE("text that is no keymap changes nothing; keys with a fixed meaning are refused by name") {
-    for (const char* text : {"", "{", "[]", "{\"preset\":7}", "{\"keys\":{\"brush\":\"Hyper + 9\",\"lasso\":\"W\",\"wipe\":3,\"what\":\"B\"}}"})
+    for (const char* text :
+         {"", "{", "[]", "{\"preset\":7}",
+          "{\"keys\":{\"brush\":\"Hyper + 9\",\"lasso\":\"W\",\"wipe\":3,\"what\":\"B\"}}"})
         DOCTEST_CHECK(Keymap::parse(text).text() == Keymap().text());
     for (const char* keys : {"W", "Shift + E", "Ctrl + -", "Esc", "Tab", "Left", "[", "F1", "`", "Space"}) {
         DOCTEST_REQUIRE(parse_chord(keys));

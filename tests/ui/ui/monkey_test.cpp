@@ -63,24 +63,14 @@ void act(Harness& harness, Random& random) {
             io.MousePos = {static_cast<float>(random.uniform(-20, 1300)),
                            static_cast<float>(random.uniform(-20, 740))};
             break;
-        case 1:
-            io.MouseDown[random.below(3)] = true;
-            break;
-        case 2:
-            io.MouseDown[0] = io.MouseDown[1] = io.MouseDown[2] = false;
-            break;
-        case 3:
-            io.MouseWheel = static_cast<float>(random.uniform(-3, 3));
-            break;
-        case 4:
-            io.KeysDown[Keys[random.below(Keys.size())]] = random.uniform() < 0.5;
-            break;
+        case 1: io.MouseDown[random.below(3)] = true; break;
+        case 2: io.MouseDown[0] = io.MouseDown[1] = io.MouseDown[2] = false; break;
+        case 3: io.MouseWheel = static_cast<float>(random.uniform(-3, 3)); break;
+        case 4: io.KeysDown[Keys[random.below(Keys.size())]] = random.uniform() < 0.5; break;
         case 5:
             harness.modifiers(random.uniform() < 0.3, random.uniform() < 0.3, random.uniform() < 0.2);
             break;
-        case 6:
-            io.AddInputCharactersUTF8(random.uniform() < 0.5 ? "bear 7" : "\xC3\xA4\xD0\xBC");
-            break;
+        case 6: io.AddInputCharactersUTF8(random.uniform() < 0.5 ? "bear 7" : "\xC3\xA4\xD0\xBC"); break;
         default: {
             // Somewhere on a widget, so that the nonsense reaches all of them.
             auto chosen = widgets.begin();

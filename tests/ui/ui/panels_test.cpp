@@ -25,7 +25,7 @@ constexpr std::array<Screen, 6> Screens{
 /// Buttons whose text is wider than they are, and visible widgets outside the window.
 void check_widgets(const Harness& harness, const Screen& screen) {
     for (const auto& [key, rect] : harness.shell.widgets()) {
-        const auto& name = key;   // a structured binding cannot be captured
+        const auto& name = key;  // a structured binding cannot be captured
         DOCTEST_CAPTURE(name);
         DOCTEST_CHECK(rect.width >= 0);
         DOCTEST_CHECK(rect.height >= 0);
@@ -44,9 +44,9 @@ void check_right_edges(const Harness& harness) {
     for (const auto& [key, rect] : harness.shell.widgets()) {
         const auto& name = key;
         if (!rect.visible || rect.text_width <= 0) continue;
-        for (const char* panel :
-             {"panel.Prompt", "panel.Labels", "panel.Scene", "panel.Models", "panel.History", "panel.Views",
-              "panel.Export", "panel.Settings", "panel.Attention", "panel.Targets", "panel.Progress", "panel.Log"}) {
+        for (const char* panel : {"panel.Prompt", "panel.Labels", "panel.Scene", "panel.Models",
+                                  "panel.History", "panel.Views", "panel.Export", "panel.Settings",
+                                  "panel.Attention", "panel.Targets", "panel.Progress", "panel.Log"}) {
             const auto* place = harness.find(panel);
             if (place == nullptr) continue;
             const float x = rect.x + rect.width / 2, y = rect.y + rect.height / 2;

@@ -20,7 +20,9 @@ bool clicking_asks(Harness& harness, const std::string& widget, const std::strin
 
 }  // namespace
 
-DOCTEST_TEST_CASE("colours are adjusted while a slider moves, go back by its right click, and begin anew after another step") {
+DOCTEST_TEST_CASE(
+    "colours are adjusted while a slider moves, go back by its right click, and begin anew after another "
+    "step") {
     Harness harness({Wide, 2 * High, 1, Situation::Located, false});
     harness.shell.show(ui::PanelId::Labels);
     harness.frame(3);
@@ -29,13 +31,15 @@ DOCTEST_TEST_CASE("colours are adjusted while a slider moves, go back by its rig
     DOCTEST_CHECK(harness.find("adjust.reach") != nullptr);
     DOCTEST_CHECK_FALSE(harness.rect("adjust.reset").enabled);
     const auto slider = harness.rect("adjust.saturation");
-    harness.drag({slider.x + slider.width / 3, slider.y + slider.height / 2}, {slider.x + 3, slider.y + slider.height / 2});
+    harness.drag({slider.x + slider.width / 3, slider.y + slider.height / 2},
+                 {slider.x + 3, slider.y + slider.height / 2});
     DOCTEST_CHECK(harness.application.asked("adjust_colours saturation 0"));
     DOCTEST_CHECK(clicking_asks(harness, "adjust.reset", "adjust_colours "));
-    harness.drag({slider.x + slider.width / 3, slider.y + slider.height / 2}, {slider.x + 3, slider.y + slider.height / 2});
+    harness.drag({slider.x + slider.width / 3, slider.y + slider.height / 2},
+                 {slider.x + 3, slider.y + slider.height / 2});
     harness.frame(2);
     DOCTEST_CHECK(harness.shell.state().adjust.values.saturation < 0.1);
-    harness.application.model().adjusting = false;   // undone, or something else was done
+    harness.application.model().adjusting = false;  // undone, or something else was done
     harness.frame(2);
     DOCTEST_CHECK(harness.shell.state().adjust.values == ColourAdjustment{});
     harness.application.model().result_waiting = true;
@@ -44,7 +48,7 @@ DOCTEST_TEST_CASE("colours are adjusted while a slider moves, go back by its rig
 }
 
 DOCTEST_TEST_CASE("select by property: seen while the section is open, used by its buttons, gone with it") {
-    Harness harness({Wide, 2 * High, 1, Situation::Located, false});   // all of the panel is seen
+    Harness harness({Wide, 2 * High, 1, Situation::Located, false});  // all of the panel is seen
     harness.shell.show(ui::PanelId::Labels);
     harness.frame(3);
     auto& model = harness.application.model();
@@ -56,14 +60,16 @@ DOCTEST_TEST_CASE("select by property: seen while the section is open, used by i
     const auto bar = harness.rect("pick.threshold");
     harness.drag({bar.x + bar.width * 0.1f, bar.y + 8}, {bar.x + bar.width * 0.95f, bar.y + 8});
     DOCTEST_CHECK(harness.application.asked("pick_rows opacity below 0.95"));
-    DOCTEST_CHECK(model.picked.count > before);   // at once, with every move
+    DOCTEST_CHECK(model.picked.count > before);  // at once, with every move
     DOCTEST_CHECK(clicking_asks(harness, "pick.within", "pick_rows opacity below 0.95 within"));
     DOCTEST_CHECK(clicking_asks(harness, "pick.side.Above", "pick_rows opacity above 0.95 within"));
     DOCTEST_CHECK(clicking_asks(harness, "pick.property.Size", "pick_rows size above 5 % within"));
-    DOCTEST_CHECK(clicking_asks(harness, "pick.property.Floaters", "pick_rows above 4.0 times the usual distance within"));
+    DOCTEST_CHECK(clicking_asks(harness, "pick.property.Floaters",
+                                "pick_rows above 4.0 times the usual distance within"));
     DOCTEST_CHECK(clicking_asks(harness, "pick.property.Colour", "pick_rows colour within 15 within"));
     DOCTEST_CHECK(harness.find("pick.colour") != nullptr);
-    DOCTEST_CHECK(clicking_asks(harness, "pick.property.Opacity", "pick_rows opacity above 0.95 within"));   // as it was left
+    DOCTEST_CHECK(clicking_asks(harness, "pick.property.Opacity",
+                                "pick_rows opacity above 0.95 within"));  // as it was left
     model.picked.count = 7;
     harness.frame(2);
     DOCTEST_CHECK(clicking_asks(harness, "pick.new", "use_picked 0"));
@@ -72,9 +78,10 @@ DOCTEST_TEST_CASE("select by property: seen while the section is open, used by i
     DOCTEST_CHECK(clicking_asks(harness, "pick.delete", "use_picked 3"));
     model.picked.count = 0;
     harness.frame(2);
-    for (const char* name : {"pick.new", "pick.add", "pick.remove", "pick.delete"}) DOCTEST_CHECK_FALSE(harness.rect(name).enabled);
+    for (const char* name : {"pick.new", "pick.add", "pick.remove", "pick.delete"})
+        DOCTEST_CHECK_FALSE(harness.rect(name).enabled);
     harness.application.calls.clear();
-    harness.shell.show(ui::PanelId::Prompt);   // another tab: nothing is tinted that nobody can change
+    harness.shell.show(ui::PanelId::Prompt);  // another tab: nothing is tinted that nobody can change
     harness.frame(3);
     DOCTEST_CHECK(harness.application.asked("drop_picked"));
     harness.shell.show(ui::PanelId::Labels);
@@ -111,11 +118,11 @@ DOCTEST_TEST_CASE("hide and isolate: by key and button, with a note as long as s
     DOCTEST_CHECK_FALSE(application.model().exports.visible_only);
     harness.click("export.visible_only");
     harness.frame(2);
-    DOCTEST_CHECK(application.model().exports.visible_only);   // only when it is said
+    DOCTEST_CHECK(application.model().exports.visible_only);  // only when it is said
     Harness empty({Wide, High, 1, Situation::Nothing, false});
     empty.key('H');
     empty.key('I');
-    DOCTEST_CHECK_FALSE(empty.application.asked("hide_label"));   // nothing is open
+    DOCTEST_CHECK_FALSE(empty.application.asked("hide_label"));  // nothing is open
     DOCTEST_CHECK_FALSE(empty.application.asked("isolate_label"));
 }
 
@@ -130,7 +137,7 @@ DOCTEST_TEST_CASE("history: any step but the one that is shown can be compared w
     DOCTEST_CHECK(clicking_asks(harness, "history.compare.0", "compare_with 0"));
     harness.application.model().compared_revision = document.revision_at(0);
     harness.frame(2);
-    DOCTEST_CHECK(clicking_asks(harness, "history.compare.0", "compare_with 0"));   // takes it back
+    DOCTEST_CHECK(clicking_asks(harness, "history.compare.0", "compare_with 0"));  // takes it back
 }
 
 }  // namespace gse::test::selection_test

@@ -1,5 +1,5 @@
-// The contact sheet of redrawn views: what is shown of them, what can be said about them and when, by mouse and by keys; and
-// what the prompt says of settings that the method does not use.
+// The contact sheet of redrawn views: what is shown of them, what can be said about them and when, by mouse
+// and by keys; and what the prompt says of settings that the method does not use.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -30,12 +30,13 @@ struct Sheet : Harness {
 
 DOCTEST_TEST_CASE("a redrawn view is dropped, accepted again and redrawn by its buttons") {
     Sheet sheet;
-    for (int view = 0; view < 8; ++view) DOCTEST_CHECK(sheet.find("targets." + std::to_string(view)) != nullptr);
+    for (int view = 0; view < 8; ++view)
+        DOCTEST_CHECK(sheet.find("targets." + std::to_string(view)) != nullptr);
     DOCTEST_CHECK(sheet.asks("targets.1.drop", "order_target 1 3 drop"));
     DOCTEST_CHECK(sheet.asks("targets.1.redo", "order_target 1 3 redo"));
-    DOCTEST_CHECK(sheet.find("targets.2.drop") == nullptr);   // it is dropped already
+    DOCTEST_CHECK(sheet.find("targets.2.drop") == nullptr);  // it is dropped already
     DOCTEST_CHECK(sheet.asks("targets.2.accept", "order_target 1 6 accept"));
-    sheet.last().targets[1].ordered = true;   // what was said is still to be done
+    sheet.last().targets[1].ordered = true;  // what was said is still to be done
     sheet.frame(2);
     DOCTEST_CHECK(!sheet.rect("targets.1.drop").enabled);
     DOCTEST_CHECK(sheet.rect("targets.0.drop").enabled);
@@ -75,7 +76,7 @@ DOCTEST_TEST_CASE("an edit that waits for the artist brings the sheet to the fro
     DOCTEST_CHECK(harness.application.asked("fit_to_targets"));
     harness.shell.show(ui::PanelId::Progress);
     harness.frame(3);
-    DOCTEST_CHECK(harness.find("panel.Targets") == nullptr);   // it was seen
+    DOCTEST_CHECK(harness.find("panel.Targets") == nullptr);  // it was seen
     harness.click("progress.targets");
     harness.frame(3);
     DOCTEST_CHECK(harness.find("panel.Targets") != nullptr);
@@ -86,7 +87,8 @@ DOCTEST_TEST_CASE("the sheet is reached and answered by keys") {
     sheet.application.model().targets_wait = true;
     constexpr int most = 400;
     const auto tab_to = [&](const std::string& name) {
-        for (int presses = 0; presses < most && sheet.shell.focused() != name; ++presses) sheet.key(ui::key::Tab);
+        for (int presses = 0; presses < most && sheet.shell.focused() != name; ++presses)
+            sheet.key(ui::key::Tab);
         return sheet.shell.focused() == name;
     };
     DOCTEST_REQUIRE(tab_to("targets.4.drop"));
@@ -118,17 +120,18 @@ DOCTEST_TEST_CASE("iterations are those of the method that leads the edit") {
     DOCTEST_CHECK(now.fit_steps > 40);
     DOCTEST_CHECK(now.iterations == pulled);
     harness.application.model().request.method = "sds";
-    harness.frame(60);   // else two presses are a double click
-    const auto moved = harness.middle("prompt.iterations");   // the quality counts for views alone
+    harness.frame(60);                                       // else two presses are a double click
+    const auto moved = harness.middle("prompt.iterations");  // the quality counts for views alone
     harness.drag(moved, {moved.x + 120, moved.y});
     DOCTEST_CHECK(harness.application.model().request.iterations > pulled);
 }
 
-DOCTEST_TEST_CASE("what a sentence that nobody has clicked a word of will do says whose iterations are shown") {
+DOCTEST_TEST_CASE(
+    "what a sentence that nobody has clicked a word of will do says whose iterations are shown") {
     Harness harness({Wide, High, 1, Situation::Scene, false});
     auto& request = harness.application.model().request;
     request.source = "bear";
-    request.prompt = "a cat on the grass";   // another thing in its place
+    request.prompt = "a cat on the grass";  // another thing in its place
     request.target.clear();
     const int fit_steps = request.fit_steps, shape_fit_steps = request.shape_fit_steps;
     harness.frame(3);

@@ -22,8 +22,10 @@ constexpr std::array<Screen, 7> Screens{{{700, 500, 1},
                                          {2560, 1440, 2}}};
 
 const std::string Long(
-    "The cameras beside the scene cannot be used: the file holds 24 cameras of an unknown model; write them as "
-    "cameras.json, or let the views be an orbit around what is labelled. (/home/mira/scenes/garden/cameras.txt)");
+    "The cameras beside the scene cannot be used: the file holds 24 cameras of an unknown model; write them "
+    "as "
+    "cameras.json, or let the views be an orbit around what is labelled. "
+    "(/home/mira/scenes/garden/cameras.txt)");
 
 bool overlap(const ui::Rect& a, const ui::Rect& b) {
     const float edge = 1;
@@ -44,7 +46,8 @@ std::size_t check_free(const Harness& harness) {
             const auto &name = other, &of = key;
             // What the start page has scrolled away is cut off at its edge.
             if (name.starts_with("start.") && name != "start.page") continue;
-            if (name.starts_with(of + ".") || name == of || name == "viewport" || name.starts_with("panel.") || !rect.visible)
+            if (name.starts_with(of + ".") || name == of || name == "viewport" ||
+                name.starts_with("panel.") || !rect.visible)
                 continue;
             DOCTEST_CAPTURE(of);
             DOCTEST_CAPTURE(name);
@@ -58,13 +61,16 @@ std::size_t check_free(const Harness& harness) {
 
 DOCTEST_TEST_CASE("no toast lies over a button or another toast") {
     for (const auto& screen : Screens)
-        for (const auto situation : {Situation::Nothing, Situation::Scene, Situation::Editing, Situation::ResultWaiting}) {
+        for (const auto situation :
+             {Situation::Nothing, Situation::Scene, Situation::Editing, Situation::ResultWaiting}) {
             DOCTEST_CAPTURE(screen.width);
             DOCTEST_CAPTURE(screen.scale);
             DOCTEST_CAPTURE(static_cast<int>(situation));
             Harness harness({screen.width, screen.height, screen.scale, situation, false});
             auto& model = harness.application.model();
-            model.toasts = {{Long, true, 1, {}}, {"Wrote turntable.mp4", false, 1, {}}, {Long + " again", false, 1, "Show"},
+            model.toasts = {{Long, true, 1, {}},
+                            {"Wrote turntable.mp4", false, 1, {}},
+                            {Long + " again", false, 1, "Show"},
                             {"Up axis guessed from 24 cameras", false, 1, "Flip"}};
             harness.frame(3);
             std::size_t drawn = check_free(harness);
@@ -84,7 +90,7 @@ DOCTEST_TEST_CASE("no toast lies over a button or another toast") {
 DOCTEST_TEST_CASE("a dialog lies above the toasts") {
     Harness harness({1280, 720, 1, Situation::Scene, false});
     auto& model = harness.application.model();
-    harness.shell.request_quit();   // asks: there is unsaved work
+    harness.shell.request_quit();  // asks: there is unsaved work
     harness.frame(3);
     for (int i = 0; i < 4; ++i) model.toasts.push_back({Long + std::to_string(i), true, 1, {}});
     harness.frame(3);

@@ -33,14 +33,15 @@ DOCTEST_TEST_CASE("quitting in the middle of an edit asks: keep, wait or discard
     ask_to_quit(harness);
     DOCTEST_REQUIRE(harness.find("question.2") != nullptr);
     DOCTEST_CHECK(harness.shell.state().question.text.find("212 of 400") != std::string::npos);
-    harness.click("question.1");   // wait
+    harness.click("question.1");  // wait
     DOCTEST_CHECK(!harness.application.asked("leave_edit"));
     DOCTEST_CHECK(!harness.application.asked("quit"));
     ask_to_quit(harness);
     harness.key(ui::key::Escape);
     DOCTEST_CHECK(!harness.application.asked("leave_edit"));
     ask_to_quit(harness);
-    harness.click("question.0");   // stop and keep: all else that is unsaved is kept too, nothing more is asked
+    harness.click(
+        "question.0");  // stop and keep: all else that is unsaved is kept too, nothing more is asked
     harness.frame(3);
     DOCTEST_REQUIRE(harness.application.calls.size() >= 2);
     DOCTEST_CHECK(harness.application.calls[0] == "leave_edit keep");
@@ -54,7 +55,8 @@ DOCTEST_TEST_CASE("an answer can be seen only where it stays: a click at its pla
         std::vector<ui::Rect> seen;
         for (int frame = 0; frame < 6; ++frame) {
             harness.frame();
-            if (const auto* answer = harness.find(name); answer != nullptr && answer->visible) seen.push_back(*answer);
+            if (const auto* answer = harness.find(name); answer != nullptr && answer->visible)
+                seen.push_back(*answer);
         }
         return seen;
     };
@@ -78,11 +80,11 @@ DOCTEST_TEST_CASE("an answer can be seen only where it stays: a click at its pla
 DOCTEST_TEST_CASE("a discarded edit does not take other unsaved work along") {
     Harness harness({Wide, High, 1, Situation::ResultWaiting, false});
     ask_to_quit(harness);
-    harness.click("question.2");   // discard it
+    harness.click("question.2");  // discard it
     harness.frame(3);
     DOCTEST_CHECK(harness.application.asked("leave_edit discard"));
     DOCTEST_CHECK(!harness.application.asked("quit"));
-    DOCTEST_REQUIRE(harness.find("question.1") != nullptr);   // the changes since the last save
+    DOCTEST_REQUIRE(harness.find("question.1") != nullptr);  // the changes since the last save
     harness.click("question.1");
     harness.frame(3);
     DOCTEST_CHECK(count_calls(harness, "quit") == 1);
@@ -164,7 +166,7 @@ DOCTEST_TEST_CASE("what another session left is offered over an open scene") {
     model.recoverable = {recovery_of("kitchen"), recovery_of("garden")};
     model.recoverable[0].offered = false;
     harness.frame(3);
-    DOCTEST_CHECK(harness.find("recovery.recover.0") == nullptr);   // of another scene
+    DOCTEST_CHECK(harness.find("recovery.recover.0") == nullptr);  // of another scene
     DOCTEST_CHECK(harness.find("recovery.thumbnail.1") != nullptr);
     harness.application.calls.clear();
     harness.click("recovery.later.1");
@@ -177,7 +179,7 @@ DOCTEST_TEST_CASE("what another session left is offered over an open scene") {
     harness.click("question.0");
     DOCTEST_CHECK(harness.application.asked("discard_recovery " + model.recoverable[1].file));
     harness.application.calls.clear();
-    model.unsaved = true;   // work here would be replaced
+    model.unsaved = true;  // work here would be replaced
     harness.click("recovery.recover.1");
     DOCTEST_CHECK(!harness.application.asked("recover "));
     DOCTEST_CHECK(harness.find("question.2") != nullptr);
@@ -186,7 +188,9 @@ DOCTEST_TEST_CASE("what another session left is offered over an open scene") {
 DOCTEST_TEST_CASE("a question of the application is shown once and answered once") {
     Harness harness({Wide, High, 1, Situation::Nothing, false});
     auto& model = harness.application.model();
-    model.question = {1, "Which one?", "There are several.",
+    model.question = {1,
+                      "Which one?",
+                      "There are several.",
                       {{"a.ply", "1.0 MB", false, true}, {"b.ply", "2.0 MB", false, true}, {"Cancel"}}};
     harness.frame(3);
     harness.application.calls.clear();

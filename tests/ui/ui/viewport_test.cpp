@@ -201,8 +201,8 @@ DOCTEST_TEST_CASE("a box of the tool that cuts out asks for what is in it, once"
     harness.drag(in_viewport(harness, 0.25f, 0.25f), in_viewport(harness, 0.5f, 0.75f));
     const auto& calls = harness.application.calls;
     DOCTEST_CHECK(std::count(calls.begin(), calls.end(), "cut_out 4") == 1);
-    DOCTEST_CHECK(harness.application.regions.empty());   // nothing was selected by the box itself
-    harness.click("tool.cut_out");   // in use already
+    DOCTEST_CHECK(harness.application.regions.empty());  // nothing was selected by the box itself
+    harness.click("tool.cut_out");                       // in use already
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::CutOut);
     harness.key(key::Escape);
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
@@ -211,20 +211,20 @@ DOCTEST_TEST_CASE("a box of the tool that cuts out asks for what is in it, once"
 DOCTEST_TEST_CASE("who picks a tool that labels, or paints, sees what is labelled") {
     Harness harness(with_depth());
     auto& view = harness.application.model().view;
-    view.tint_labels = false;   // as after Apply
+    view.tint_labels = false;  // as after Apply
     harness.frame(2);
     const auto at = in_viewport(harness, 0.5f, 0.5f);
     harness.move(at.x, at.y);
     harness.key('B');
     harness.frame();
     DOCTEST_CHECK(view.tint_labels);
-    harness.key('T');   // it can be switched off again
+    harness.key('T');  // it can be switched off again
     harness.frame();
     DOCTEST_CHECK_FALSE(view.tint_labels);
     harness.drag(at, {at.x + 40, at.y});
     DOCTEST_CHECK(view.tint_labels);
     view.tint_labels = false;
-    harness.key('B');   // back to the camera
+    harness.key('B');  // back to the camera
     harness.frame();
     DOCTEST_CHECK_FALSE(view.tint_labels);
 }
@@ -363,14 +363,14 @@ DOCTEST_TEST_CASE("Left and Right step through the views in a picture that is no
         harness.application.calls.clear();
         harness.key(key::Right);
         DOCTEST_CHECK(harness.application.asked(wanted));
-        harness.frame(3);   // the camera comes back
+        harness.frame(3);  // the camera comes back
     }
     DOCTEST_CHECK(harness.shell.state().viewport.selected_view == 2);
     harness.application.calls.clear();
     harness.key(key::Left);
     DOCTEST_CHECK(harness.application.asked("look_through 1"));
     harness.frame(3);
-    const auto at = in_viewport(harness, 0.4f, 0.7f);   // a camera that was moved looks through none of them
+    const auto at = in_viewport(harness, 0.4f, 0.7f);  // a camera that was moved looks through none of them
     harness.drag(at, {at.x + 90, at.y}, 1);
     harness.application.model().camera.translation.x += 0.3;
     harness.frame(3);
@@ -404,7 +404,7 @@ DOCTEST_TEST_CASE("select by property takes a colour from the picture") {
     harness.frame(3);
     const auto& state = harness.application.document().state();
     const auto mean = localize::mean_colour(state.current, *state.labels.at(0).bits);
-    const auto away = [&](float x, float y) {   // of the colour clicked at from that of the thing
+    const auto away = [&](float x, float y) {  // of the colour clicked at from that of the thing
         harness.click("pick.colour.drop");
         harness.frame(2);
         DOCTEST_REQUIRE(harness.shell.state().viewport.tool == ui::Tool::PickColour);
@@ -414,16 +414,19 @@ DOCTEST_TEST_CASE("select by property takes a colour from the picture") {
         harness.frame(2);
         DOCTEST_CHECK(harness.application.asked("pick_rows colour"));
         DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
-        const auto& colour = harness.shell.state().pick.choices[static_cast<std::size_t>(localize::RowProperty::Colour)].colour;
+        const auto& colour = harness.shell.state()
+                                 .pick.choices[static_cast<std::size_t>(localize::RowProperty::Colour)]
+                                 .colour;
         double sum = 0;
         for (std::size_t c = 0; c < 3; ++c) sum += std::abs(static_cast<double>(colour[c]) - mean[c]);
         return sum;
     };
-    const Vec3 thing = pixel(harness.application.model().camera, framing_bounds(state.current, *state.labels.at(0).bits).centre());
+    const Vec3 thing = pixel(harness.application.model().camera,
+                             framing_bounds(state.current, *state.labels.at(0).bits).centre());
     DOCTEST_CHECK(away(static_cast<float>(thing.x), static_cast<float>(thing.y)) < away(0.5f, 0.8f));
     harness.click("pick.colour.drop");
     harness.frame(2);
-    harness.click("pick.property.Opacity");   // its button is gone
+    harness.click("pick.property.Opacity");  // its button is gone
     harness.frame(2);
     DOCTEST_CHECK(harness.shell.state().viewport.tool == ui::Tool::Orbit);
 }

@@ -151,7 +151,7 @@ DOCTEST_TEST_CASE("what is said about a sentence") {
     DOCTEST_CHECK(ui::facts_of(request, ground).problem.empty());
     request.target = "hta";
     DOCTEST_CHECK(ui::facts_of(request, ground).problem.find("\"hta\"") != std::string::npos);
-    DOCTEST_CHECK(ui::facts_of(request, ground).locate_problem.empty());   // it can be looked for all the same
+    DOCTEST_CHECK(ui::facts_of(request, ground).locate_problem.empty());  // it can be looked for all the same
     request.target = "red";
     // A model without a list of words knows every word.
     for (const auto& chip : ui::facts_of(request, ui::SentenceGround{}).chips) DOCTEST_CHECK(chip.known);
@@ -163,7 +163,8 @@ DOCTEST_TEST_CASE("what is said about a sentence") {
     DOCTEST_CHECK(ui::locate_request(request, ui::facts_of(request, ground).problem).prompt == "a bear");
     request.prompt = "a golden bear";
     request.target = "golden";
-    DOCTEST_CHECK(ui::locate_request(request, ui::facts_of(request, ground).problem).prompt == "a golden bear");
+    DOCTEST_CHECK(ui::locate_request(request, ui::facts_of(request, ground).problem).prompt ==
+                  "a golden bear");
     request.source = "two words";
     request.prompt.clear();
     DOCTEST_CHECK(!ui::facts_of(request, ground).locate_problem.empty());
@@ -173,7 +174,9 @@ DOCTEST_TEST_CASE("the target follows the sentence, against what the scene shows
     edit::EditRequest request;
     request.source = "bear";
     request.prompt = "a blue bear wearing a red hat";
-    const auto target = [&](const ui::SentenceGround& ground) { return ui::facts_of(request, ground).guessed_target; };
+    const auto target = [&](const ui::SentenceGround& ground) {
+        return ui::facts_of(request, ground).guessed_target;
+    };
     DOCTEST_CHECK(target({}) == "hat");
     DOCTEST_CHECK(target({.said = {"a", "bear", "wearing", "hat", "red"}}) == "blue");
     DOCTEST_CHECK(target({.said = {"a", "blue", "bear"}}) == "hat");
@@ -187,7 +190,7 @@ DOCTEST_TEST_CASE("what cannot be made is said in a line, however many words the
     ui::SentenceGround ground{.known = {"a", "bear", "red", "on", "the", "grass"}};
     for (char a = 'a'; a <= 'z'; ++a)
         for (char b = 'a'; b <= 'z'; ++b) ground.known.push_back(std::string("zz") + a + b);
-    constexpr std::size_t line = 160;   // letters: two lines of the panel
+    constexpr std::size_t line = 160;  // letters: two lines of the panel
     DOCTEST_CHECK(ui::facts_of(request, ground).problem.find("under Models") != std::string::npos);
     DOCTEST_CHECK(ui::facts_of(request, ground).problem.find("colours") == std::string::npos);
     DOCTEST_CHECK(ui::facts_of(request, ground).problem.size() < line);
@@ -212,7 +215,8 @@ DOCTEST_TEST_CASE("things of several words are marked, checked and looked for wh
         DOCTEST_CHECK(facts.chips[i].source == (i == 1 || i == 2));
         DOCTEST_CHECK(facts.chips[i].target == (i == 5 || i == 6));
     }
-    DOCTEST_CHECK(!ui::facts_of(request, {.known = known, .words_read = 6}).problem.empty());   // "hat" is not read
+    DOCTEST_CHECK(
+        !ui::facts_of(request, {.known = known, .words_read = 6}).problem.empty());  // "hat" is not read
     DOCTEST_CHECK(ui::locate_request(request, "not yet").prompt == "a teddy bear");
     request.source = "tedyd bear";
     facts = ui::facts_of(request, {.known = known});
@@ -313,7 +317,8 @@ DOCTEST_TEST_CASE("the map of widgets is written as JSON") {
 DOCTEST_TEST_CASE("long text breaks at spaces only, and nothing of it is lost") {
     Harness harness({});
     harness.frame();
-    const std::string text = "Estimate: about 3.3 s (draft 1.5 s, normal 3.3 s, fine 9.5 s), 0.15 TFLOP,\n567 MB of 23.2 GB free";
+    const std::string text =
+        "Estimate: about 3.3 s (draft 1.5 s, normal 3.3 s, fine 9.5 s), 0.15 TFLOP,\n567 MB of 23.2 GB free";
     for (const float width : {1.0f, 60.0f, 120.0f, 250.0f, 2000.0f}) {
         const std::string lines = ui::broken_at_spaces(text, width);
         DOCTEST_REQUIRE(lines.size() == text.size());

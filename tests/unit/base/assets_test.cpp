@@ -10,7 +10,8 @@ namespace assets_test {
 
 using namespace gse;
 
-DOCTEST_TEST_CASE("an installed program takes the files installed with it, another one those of its checkout") {
+DOCTEST_TEST_CASE(
+    "an installed program takes the files installed with it, another one those of its checkout") {
     test::ScratchFolder scratch;
     const auto program = scratch.path() / "usr/bin";
     std::filesystem::create_directories(program);

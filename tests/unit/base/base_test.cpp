@@ -31,8 +31,7 @@ struct Settings {
     bool on = false;
     std::string word = "hat";
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("steps", self.steps, "Steps.", Range{1, 10});
         f("rate", self.rate, "Rate.");
         f("on", self.on, "Whether.");
@@ -40,13 +39,10 @@ struct Settings {
     }
 };
 
-template <class F>
-bool throws_error(F&& body, ErrorCode code) {
+template <class F> bool throws_error(F&& body, ErrorCode code) {
     try {
         body();
-    } catch (const Error& error) {
-        return error.code() == code;
-    }
+    } catch (const Error& error) { return error.code() == code; }
     return false;
 }
 
@@ -59,7 +55,8 @@ DOCTEST_TEST_CASE("an error says what, what to do and where, on one line") {
 }
 
 DOCTEST_TEST_CASE("a zero byte that a message quotes does not end it") {
-    const Error error(ErrorCode::Malformed, std::string("it holds \"a\0b\"", 14), "get it again", "scene.ply");
+    const Error error(ErrorCode::Malformed, std::string("it holds \"a\0b\"", 14), "get it again",
+                      "scene.ply");
     DOCTEST_CHECK(std::string(error.what()) == "it holds \"a\\x00b\"; get it again: scene.ply");
 }
 

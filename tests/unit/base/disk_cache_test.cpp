@@ -34,7 +34,8 @@ std::vector<fs::path> entries_in(const fs::path& folder) {
 /// Bytes of any value, other ones for another seed.
 std::string answer_of(std::size_t bytes, int seed) {
     std::string answer(bytes, '\0');
-    for (std::size_t i = 0; i < bytes; ++i) answer[i] = static_cast<char>((i * 31 + static_cast<std::size_t>(seed)) % 251);
+    for (std::size_t i = 0; i < bytes; ++i)
+        answer[i] = static_cast<char>((i * 31 + static_cast<std::size_t>(seed)) % 251);
     return answer;
 }
 
@@ -60,14 +61,15 @@ DOCTEST_TEST_CASE("disk cache: what was kept is found by the next object, and no
     DOCTEST_CHECK(!cache.find("where is the bear"));
     cache.keep(question, "here");
     DOCTEST_CHECK(cache.find(question) == "here");
-    DOCTEST_CHECK(entries_in(cache.folder()).size() == 2);   // nothing half written is left
+    DOCTEST_CHECK(entries_in(cache.folder()).size() == 2);  // nothing half written is left
     DOCTEST_CHECK(cached_bytes(cache.folder()) > 0);
     clear_cache_folder(cache.folder());
     DOCTEST_CHECK(!cache.find(question));
     DOCTEST_CHECK(cached_bytes(cache.folder()) == 0);
 }
 
-DOCTEST_TEST_CASE("disk cache: an entry that is not whole, or was changed anywhere, is removed and counts as not there") {
+DOCTEST_TEST_CASE(
+    "disk cache: an entry that is not whole, or was changed anywhere, is removed and counts as not there") {
     const test::ScratchFolder folder;
     DiskCache cache(folder.path(), Room);
     const std::string question = "a question", answer = answer_of(300, 2);
@@ -93,11 +95,15 @@ DOCTEST_TEST_CASE("disk cache: an entry that is not whole, or was changed anywhe
     const auto path = keep();
     cache.keep("another", "answer");
     for (const auto& other : entries_in(folder.path()))
-        if (other != path) fs::copy_file(other, path, fs::copy_options::overwrite_existing);   // a whole entry, of another question
+        if (other != path)
+            fs::copy_file(other, path,
+                          fs::copy_options::overwrite_existing);  // a whole entry, of another question
     DOCTEST_CHECK(!cache.find(question));
 }
 
-DOCTEST_TEST_CASE("disk cache: what was used least recently goes when the room is full, and too large an answer is not kept") {
+DOCTEST_TEST_CASE(
+    "disk cache: what was used least recently goes when the room is full, and too large an answer is not "
+    "kept") {
     const test::ScratchFolder folder;
     DiskCache cache(folder.path(), 100000);
     const auto question = [](int i) { return fmt::format("question {}", i); };
@@ -105,7 +111,7 @@ DOCTEST_TEST_CASE("disk cache: what was used least recently goes when the room i
         cache.keep(question(i), answer_of(10000, i));
         for (const auto& path : entries_in(folder.path())) age(path, std::chrono::seconds(100 - i));
     }
-    DOCTEST_CHECK(cache.find(question(0)));   // used again: the youngest now
+    DOCTEST_CHECK(cache.find(question(0)));  // used again: the youngest now
     cache.keep(question(9), answer_of(10000, 9));
     cache.keep(question(10), answer_of(10000, 10));
     DOCTEST_CHECK(cached_bytes(folder.path()) <= 100000);
@@ -142,7 +148,8 @@ DOCTEST_TEST_CASE("disk cache: files of others stay, and so does what another pr
 DOCTEST_TEST_CASE("disk cache: a folder that cannot be made, read or written is no error") {
     const test::ScratchFolder folder;
     write_file(folder.path() / "file", "no folder");
-    for (const fs::path& place : {fs::path("/dev/null"), folder.path() / "file", folder.path() / "file" / "below", fs::path("/proc/self/cache")}) {
+    for (const fs::path& place : {fs::path("/dev/null"), folder.path() / "file",
+                                  folder.path() / "file" / "below", fs::path("/proc/self/cache")}) {
         DiskCache cache(place, Room);
         cache.keep("question", "answer");
         DOCTEST_CHECK(!cache.find("question"));
@@ -154,12 +161,14 @@ DOCTEST_TEST_CASE("disk cache: a folder that cannot be made, read or written is 
     DiskCache(closed, Room).keep("question", "answer");
     fs::permissions(closed, fs::perms::owner_read | fs::perms::owner_exec);
     DiskCache cache(closed, Room);
-    cache.keep("another", "answer");   // kept where the user may do everything
+    cache.keep("another", "answer");  // kept where the user may do everything
     DOCTEST_CHECK(cache.find("question") == "answer");
     fs::permissions(closed, fs::perms::owner_all);
 }
 
-DOCTEST_TEST_CASE("disk cache: processes and threads that share a folder see whole answers only, and stay within the room") {
+DOCTEST_TEST_CASE(
+    "disk cache: processes and threads that share a folder see whole answers only, and stay within the "
+    "room") {
     const test::ScratchFolder folder;
     constexpr int questions = 12, rounds = 150;
     const auto work = [&](int seed) {
@@ -168,7 +177,8 @@ DOCTEST_TEST_CASE("disk cache: processes and threads that share a folder see who
         for (int i = 0; i < rounds; ++i) {
             const int number = (i * 7 + seed) % questions;
             const auto question = fmt::format("question {}", number);
-            if (const auto answer = cache.find(question)) right = right && *answer == answer_of(20000, number);
+            if (const auto answer = cache.find(question))
+                right = right && *answer == answer_of(20000, number);
             else cache.keep(question, answer_of(20000, number));
         }
         return right;
@@ -190,7 +200,8 @@ DOCTEST_TEST_CASE("disk cache: processes and threads that share a folder see who
         waitpid(child, &status, 0);
         DOCTEST_CHECK((WIFEXITED(status) && WEXITSTATUS(status) == 0));
     }
-    DOCTEST_CHECK(cached_bytes(folder.path()) <= 4 * 120000);   // each process knows its own writes at once, those of others later
+    DOCTEST_CHECK(cached_bytes(folder.path()) <=
+                  4 * 120000);  // each process knows its own writes at once, those of others later
     DiskCache cache(folder.path(), 120000);
     for (int i = 0; i < 7; ++i) cache.keep(fmt::format("last {}", i), answer_of(20000, i));
     DOCTEST_CHECK(cached_bytes(folder.path()) <= 120000);

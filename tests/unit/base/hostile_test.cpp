@@ -1,5 +1,5 @@
-// What files and users can do to the basics: files cut off while they are read, deep JSON, control characters, numbers that
-// are none, and more memory than there is.
+// What files and users can do to the basics: files cut off while they are read, deep JSON, control
+// characters, numbers that are none, and more memory than there is.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 #include <sys/stat.h>
@@ -33,8 +33,7 @@ struct Numbers {
     std::uint64_t seed = 1;
     std::string word = "hat";
 
-    template <class Self, class F>
-    static void visit_fields(Self& self, F&& f) {
+    template <class Self, class F> static void visit_fields(Self& self, F&& f) {
         f("steps", self.steps, "Steps.", Range{1, 10});
         f("rate", self.rate, "Rate.", Range{0, 1});
         f("share", self.share, "Share.", Range{0, 0.1});
@@ -46,13 +45,10 @@ struct Numbers {
 };
 
 /// The message of the Error that `body` throws; empty when it throws none.
-template <class F>
-std::string message_of(F&& body) {
+template <class F> std::string message_of(F&& body) {
     try {
         body();
-    } catch (const Error& error) {
-        return error.what();
-    }
+    } catch (const Error& error) { return error.what(); }
     return "";
 }
 
@@ -95,7 +91,8 @@ DOCTEST_TEST_CASE("JSON nested too deep is refused before it is parsed, brackets
     DOCTEST_CHECK(try_parse_json("[" + fits + "]").is_discarded());
     const std::string text = "{\"a\\\"\": \"" + std::string(500, '{') + "\"}";
     DOCTEST_CHECK(parse_json(text, "it").size() == 1);
-    DOCTEST_CHECK(says(message_of([] { parse_json("{\"a\": 1,\n  b}", "it"); }), {"it is not valid JSON", "line 2, column 3"}));
+    DOCTEST_CHECK(says(message_of([] { parse_json("{\"a\": 1,\n  b}", "it"); }),
+                       {"it is not valid JSON", "line 2, column 3"}));
     DOCTEST_CHECK(says(message_of([] { parse_json("[1e999]", "it"); }), {"too large"}));
     DOCTEST_CHECK(says(message_of([] { parse_json("", "it"); }), {"not valid JSON"}));
     DOCTEST_CHECK(json_text(nlohmann::json("a\xff")) == "\"a\xef\xbf\xbd\"");
@@ -106,11 +103,13 @@ DOCTEST_TEST_CASE("control characters and broken UTF-8 become escapes, other scr
     DOCTEST_CHECK(printable(std::string_view("a\0b", 3)) == "a\\x00b");
     DOCTEST_CHECK(printable("a\nb\tc\x7f") == "a\\x0ab\\x09c\\x7f");
     DOCTEST_CHECK(printable("a\nb\tc", true) == "a\nb\tc");
-    DOCTEST_CHECK(printable("h\xc3\xbct \xe5\xb8\xbd \xf0\x9f\x8e\xa9") == "h\xc3\xbct \xe5\xb8\xbd \xf0\x9f\x8e\xa9");
-    DOCTEST_CHECK(printable("\xc2\x9b" "1m") == "\\x9b1m");            // C1 as UTF-8
-    DOCTEST_CHECK(printable("\xe2\x80\xae") == "\\u202e");              // right-to-left override
+    DOCTEST_CHECK(printable("h\xc3\xbct \xe5\xb8\xbd \xf0\x9f\x8e\xa9") ==
+                  "h\xc3\xbct \xe5\xb8\xbd \xf0\x9f\x8e\xa9");
+    DOCTEST_CHECK(printable("\xc2\x9b"
+                            "1m") == "\\x9b1m");            // C1 as UTF-8
+    DOCTEST_CHECK(printable("\xe2\x80\xae") == "\\u202e");  // right-to-left override
     DOCTEST_CHECK(printable("\xff\xc0\x80\xed\xa0\x80") == "\\xff\\xc0\\x80\\xed\\xa0\\x80");
-    DOCTEST_CHECK(printable("\xe5\xb8") == "\\xe5\\xb8");               // cut off
+    DOCTEST_CHECK(printable("\xe5\xb8") == "\\xe5\\xb8");  // cut off
 }
 
 DOCTEST_TEST_CASE("settings from JSON: what is no number of the setting's range is refused by name") {
@@ -118,10 +117,11 @@ DOCTEST_TEST_CASE("settings from JSON: what is no number of the setting's range 
     const auto refused = [](const Json& json) {
         Numbers numbers;
         const std::string message = message_of([&] { fields_from_json(numbers, json); });
-        DOCTEST_CHECK(numbers.steps == 4);   // nothing was set
+        DOCTEST_CHECK(numbers.steps == 4);  // nothing was set
         return message;
     };
-    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    const double nan = std::numeric_limits<double>::quiet_NaN(),
+                 infinity = std::numeric_limits<double>::infinity();
     DOCTEST_CHECK(says(refused({{"steps", 2}, {"rate", nan}}), {"rate", "0 to 1", "nan"}));
     DOCTEST_CHECK(says(refused({{"rate", infinity}}), {"rate", "inf"}));
     DOCTEST_CHECK(says(refused({{"free", infinity}}), {"free", "finite"}));
@@ -129,7 +129,7 @@ DOCTEST_TEST_CASE("settings from JSON: what is no number of the setting's range 
     DOCTEST_CHECK(says(refused({{"share", 0.2}}), {"share"}));
     DOCTEST_CHECK(says(refused({{"share", "\x1b"}}), {"share", "\\u001b"}));
     DOCTEST_CHECK(says(refused({{"steps", 2.5}}), {"steps", "whole", "2.5"}));
-    DOCTEST_CHECK(says(refused({{"steps", 4294967298}}), {"steps"}));   // 2 when cut to 32 bits
+    DOCTEST_CHECK(says(refused({{"steps", 4294967298}}), {"steps"}));  // 2 when cut to 32 bits
     DOCTEST_CHECK(says(refused({{"steps", true}}), {"steps", "true"}));
     DOCTEST_CHECK(says(refused({{"on", 1}}), {"on", "true or false", "1"}));
     DOCTEST_CHECK(says(refused({{"seed", -1}}), {"seed", "-1"}));
@@ -141,7 +141,7 @@ DOCTEST_TEST_CASE("settings from JSON: what is no number of the setting's range 
     DOCTEST_CHECK(taken.steps == 3);
     DOCTEST_CHECK(taken.seed == ~std::uint64_t{0});
     DOCTEST_CHECK(taken.rate == 1);
-    fields_from_json(taken, fields_to_json(taken));   // a float at its limit comes back
+    fields_from_json(taken, fields_to_json(taken));  // a float at its limit comes back
 }
 
 DOCTEST_TEST_CASE("settings in memory are checked the same way") {
@@ -157,13 +157,14 @@ DOCTEST_TEST_CASE("settings in memory are checked the same way") {
 DOCTEST_TEST_CASE("more memory than there is: the sentence says what is needed and what is free") {
     DOCTEST_CHECK(free_memory() > 0);
     DOCTEST_CHECK(message_of([] { require_memory(1 << 20, "a small thing"); }).empty());
-    const std::string message = message_of([] { require_memory(std::uint64_t{1} << 60, "the scene of 5 splats"); });
+    const std::string message =
+        message_of([] { require_memory(std::uint64_t{1} << 60, "the scene of 5 splats"); });
     DOCTEST_CHECK(says(message, {"the scene of 5 splats needs", "GB", "are free"}));
     DOCTEST_CHECK(memory_text(1500000) == "2 MB");
     DOCTEST_CHECK(memory_text(60123456789) == "60.1 GB");
     note_refused(3'000'000'000);
     DOCTEST_CHECK(says(out_of_memory().what(), {"3 GB more were needed", "are free"}));
-    DOCTEST_CHECK(says(out_of_memory().what(), {"there is not enough memory; ", "are free"}));   // told once
+    DOCTEST_CHECK(says(out_of_memory().what(), {"there is not enough memory; ", "are free"}));  // told once
 }
 
 }  // namespace hostile_test

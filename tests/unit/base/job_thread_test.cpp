@@ -20,8 +20,7 @@ using namespace gse;
 using namespace std::chrono_literals;
 
 /// Runs the main queue until `condition` holds; gives up after ten seconds.
-template <class F>
-bool wait_for(MainQueue& queue, F condition) {
+template <class F> bool wait_for(MainQueue& queue, F condition) {
     for (int i = 0; i < 2000; ++i) {
         queue.run();
         if (condition()) return true;
@@ -31,7 +30,9 @@ bool wait_for(MainQueue& queue, F condition) {
 }
 
 struct Quiet {
-    Quiet() { log::set_sink([](log::Level, std::string_view) {}); }
+    Quiet() {
+        log::set_sink([](log::Level, std::string_view) {});
+    }
     ~Quiet() { log::set_sink({}); }
 };
 
@@ -41,7 +42,8 @@ DOCTEST_TEST_CASE("a job reports, ends and tells the main thread") {
     MainQueue queue;
     JobThread jobs(queue);
     bool done = false;
-    DOCTEST_REQUIRE(jobs.start({"count", [](const JobControl& job) {
+    DOCTEST_REQUIRE(jobs.start({"count",
+                                [](const JobControl& job) {
                                     for (int i = 1; i <= 10; ++i) job.report("counting", i, 10);
                                 },
                                 [&](const Error* error) { done = error == nullptr; }}));
@@ -69,7 +71,8 @@ DOCTEST_TEST_CASE("no job begins before the main thread has what the last one le
     DOCTEST_CHECK_FALSE(jobs.running());
     // What a job leaves may begin the next one.
     bool chained = false;
-    DOCTEST_REQUIRE(jobs.start({"second", [](const JobControl&) {}, [&](const Error*) {
+    DOCTEST_REQUIRE(jobs.start({"second", [](const JobControl&) {},
+                                [&](const Error*) {
                                     chained = jobs.start({"third", [](const JobControl&) {}, {}});
                                 }}));
     DOCTEST_REQUIRE(wait_for(queue, [&] { return !jobs.running(); }));
@@ -110,7 +113,7 @@ DOCTEST_TEST_CASE("a paused job stands still, goes on, and can be cancelled whil
                                 [&](const Error*) { ended = true; }, true}));
     DOCTEST_REQUIRE(wait_for(queue, [&] { return steps > 3; }));
     jobs.pause(true);
-    std::this_thread::sleep_for(20ms);   // the step under way may still end
+    std::this_thread::sleep_for(20ms);  // the step under way may still end
     const int standing = steps;
     std::this_thread::sleep_for(50ms);
     DOCTEST_CHECK(steps == standing);
@@ -127,7 +130,8 @@ DOCTEST_TEST_CASE("failures arrive as one error, foreign ones too") {
     JobThread jobs(queue);
     std::string message;
     const auto keep = [&](const Error* error) { message = error != nullptr ? error->message() : "none"; };
-    DOCTEST_REQUIRE(jobs.start({"bad", [](const JobControl&) { throw Error(ErrorCode::NotFound, "no such file"); }, keep}));
+    DOCTEST_REQUIRE(jobs.start(
+        {"bad", [](const JobControl&) { throw Error(ErrorCode::NotFound, "no such file"); }, keep}));
     DOCTEST_REQUIRE(wait_for(queue, [&] { return !message.empty(); }));
     DOCTEST_CHECK(message == "no such file");
     message.clear();
@@ -144,8 +148,11 @@ DOCTEST_TEST_CASE("patient jobs and the threads they start leave the processor t
         JobThread jobs(queue, priority);
         int own = -1, child = -1;
         bool done = false;
-        const auto read = [](int& to) { to = getpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid))); };
-        jobs.start({"nice", [&](const JobControl&) {
+        const auto read = [](int& to) {
+            to = getpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)));
+        };
+        jobs.start({"nice",
+                    [&](const JobControl&) {
                         read(own);
                         std::thread([&] { read(child); }).join();
                     },

@@ -1,4 +1,5 @@
-// New versions of files appear whole or not at all, whatever fails; links, modes and read-only files are respected.
+// New versions of files appear whole or not at all, whatever fails; links, modes and read-only files are
+// respected.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 #include <fmt/core.h>
@@ -122,7 +123,8 @@ DOCTEST_TEST_CASE("read-only files, folders and pipes are refused") {
     DOCTEST_CHECK(read_file(read_only) == "old");
     DOCTEST_REQUIRE(mkfifo(pipe_path.c_str(), 0600) == 0);
     DOCTEST_CHECK_THROWS_WITH_AS(write_file(pipe_path, "x"), doctest::Contains("pipe"), Error);
-    DOCTEST_CHECK_THROWS_WITH_AS(read_file(pipe_path), doctest::Contains("pipe"), Error);  // and does not wait
+    DOCTEST_CHECK_THROWS_WITH_AS(read_file(pipe_path), doctest::Contains("pipe"),
+                                 Error);  // and does not wait
     DOCTEST_CHECK_THROWS_WITH_AS(read_file("/dev/zero"), doctest::Contains("device"), Error);
     DOCTEST_CHECK_THROWS_WITH_AS(write_file("/dev/full", "x"), doctest::Contains("device"), Error);
     DOCTEST_CHECK_THROWS_WITH_AS(write_file(folder.path(), "x"), doctest::Contains("folder"), Error);
@@ -152,7 +154,8 @@ DOCTEST_TEST_CASE("what a killed writer left is removed at once, what a living o
 }
 
 DOCTEST_TEST_CASE("names that are not UTF-8 go through JSON and back") {
-    for (const std::string name : {"/a/b.ply", "", "/tmp/b\xe4r 100%.ply", "/b\xc3\xa4r.ply", "file:strange", "rel\xff"}) {
+    for (const std::string name :
+         {"/a/b.ply", "", "/tmp/b\xe4r 100%.ply", "/b\xc3\xa4r.ply", "file:strange", "rel\xff"}) {
         const std::string text = text_of_path(name);
         DOCTEST_CHECK(is_utf8(text));
         DOCTEST_CHECK(path_of_text(text) == name);

@@ -11,7 +11,7 @@ DOCTEST_TEST_CASE("the nearest word is the one that shares most letters") {
     DOCTEST_CHECK(gse::nearest_word("baer", known) == "bear");
     DOCTEST_CHECK(gse::nearest_word("gold", known) == "golden");
     DOCTEST_CHECK(gse::nearest_word("hats", known) == "hat");
-    DOCTEST_CHECK(gse::nearest_word("plant", known).empty());   // "an" is in it, which is no help
+    DOCTEST_CHECK(gse::nearest_word("plant", known).empty());  // "an" is in it, which is no help
     DOCTEST_CHECK(gse::nearest_word("bear", {}).empty());
 }
 

@@ -1,5 +1,5 @@
-// Folders of results: killed or failing at every rename, the old results or the new ones are there, never half of each
-// under a report that says otherwise.
+// Folders of results: killed or failing at every rename, the old results or the new ones are there, never
+// half of each under a report that says otherwise.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -31,10 +31,10 @@ namespace {
 
 /// What the calls below do: the n-th rename kills the process or fails.
 struct Fault {
-    int at = 0;       // 0 = never
-    int code = 0;     // errno, or 0 to kill
+    int at = 0;    // 0 = never
+    int code = 0;  // errno, or 0 to kill
     bool no_exchange = false;
-    int span = 1;     // so many calls in a row
+    int span = 1;  // so many calls in a row
     int calls = 0;
 };
 Fault fault;
@@ -54,7 +54,8 @@ extern "C" int rename(const char* from, const char* to) noexcept {
     if (fails()) return -1;
     return static_cast<int>(syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
 }
-extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) noexcept {
+extern "C" int renameat2(int from_folder, const char* from, int to_folder, const char* to,
+                         unsigned flags) noexcept {
     if (fault.no_exchange && (flags & RENAME_EXCHANGE) != 0) {
         errno = EINVAL;
         return -1;
@@ -70,7 +71,8 @@ const FolderContents contents{"report.json", {"report.json", "scene.ply", "film.
 /// Writes the results of run `name` into the folder's stage.
 void fill(StagedFolder& folder, const std::string& name, int views) {
     for (const char* file : {"scene.ply", "film.mp4"}) write_file(folder.path() / file, name + file);
-    for (int view = 0; view < views; ++view) write_file(folder.path() / fmt::format("evidence/{}.png", view), name);
+    for (int view = 0; view < views; ++view)
+        write_file(folder.path() / fmt::format("evidence/{}.png", view), name);
     const Json report{{"run", name}, {"files", folder.listing()}};
     write_file(folder.path() / "report.json", report.dump());
 }
@@ -81,8 +83,8 @@ void run(const fs::path& target, const std::string& name, int views) {
     folder.commit();
 }
 
-/// Name of the run whose results, all of them and nothing else of a run, are there; "" when the report says that they
-/// do not belong together. Anything else fails the test.
+/// Name of the run whose results, all of them and nothing else of a run, are there; "" when the report says
+/// that they do not belong together. Anything else fails the test.
 std::string run_in(const fs::path& target, bool with_strangers = false) {
     const Json report = Json::parse(read_file(target / "report.json"));
     if (report.contains("unfinished")) return "";
@@ -131,7 +133,8 @@ constexpr int MostRenames = 40;
 
 }  // namespace
 
-DOCTEST_TEST_CASE("a folder killed at any rename holds one run, whole, and the next run removes the remains") {
+DOCTEST_TEST_CASE(
+    "a folder killed at any rename holds one run, whole, and the next run removes the remains") {
     for (int at = 1;; ++at) {
         DOCTEST_REQUIRE(at < MostRenames);
         DOCTEST_CAPTURE(at);
@@ -193,9 +196,7 @@ DOCTEST_TEST_CASE("a commit that fails keeps the new results and the old ones") 
                 std::string said;
                 try {
                     commit_with_fault(target, {at, code, false, 2}, 3);
-                } catch (const Error& error) {
-                    said = error.what();
-                }
+                } catch (const Error& error) { said = error.what(); }
                 const bool reached = fault.calls >= at || !said.empty();
                 fault = {};
                 if (said.empty()) {  // another way was found
@@ -203,12 +204,14 @@ DOCTEST_TEST_CASE("a commit that fails keeps the new results and the old ones") 
                 } else {
                     ++failed;
                     const std::string name = run_in(target, stranger);
-                    if (name.empty()) {  // moving back failed, too: the report says so, and nothing is deleted
+                    if (name.empty()) {  // moving back failed, too: the report says so, and nothing is
+                                         // deleted
                         ++mixed;
                         continue;
                     }
                     DOCTEST_CHECK(name == "old ");
-                    const bool beside = fs::exists(scratch.path() / "out.kept"), inside = fs::exists(target / "out.kept");
+                    const bool beside = fs::exists(scratch.path() / "out.kept"),
+                               inside = fs::exists(target / "out.kept");
                     DOCTEST_REQUIRE((beside || inside));
                     const auto kept = beside ? scratch.path() / "out.kept" : target / "out.kept";
                     DOCTEST_CHECK(run_in(kept) == "new ");
@@ -247,8 +250,11 @@ DOCTEST_TEST_CASE("links, read-only files and files of others are refused before
         DOCTEST_CHECK_THROWS_WITH_AS(StagedFolder(target, contents), doctest::Contains(word), Error);
         DOCTEST_CHECK(hidden_entries(target) == 0);
     };
-    refused([](const fs::path& target) { fs::remove(target / "scene.ply"), fs::create_symlink("/x", target / "scene.ply"); },
-            "link");
+    refused(
+        [](const fs::path& target) {
+            fs::remove(target / "scene.ply"), fs::create_symlink("/x", target / "scene.ply");
+        },
+        "link");
     refused([](const fs::path& target) { chmod((target / "scene.ply").c_str(), 0444); }, "read-only");
     refused([](const fs::path& target) { chmod((target / "evidence/0.png").c_str(), 0400); }, "read-only");
     refused([](const fs::path& target) { fs::remove(target / "report.json"); }, "no earlier run");
@@ -273,16 +279,19 @@ DOCTEST_TEST_CASE("a linked folder is written where the link leads, and modes st
     DOCTEST_CHECK_THROWS_AS(StagedFolder(real / "scene.ply", contents), Error);
 }
 
-DOCTEST_TEST_CASE("the folder somebody stands in stays the same folder; a hostile report removes nothing outside") {
+DOCTEST_TEST_CASE(
+    "the folder somebody stands in stays the same folder; a hostile report removes nothing outside") {
     const test::ScratchFolder scratch;
     const auto target = scratch.path() / "out";
     run(target, "old ", 3);
     Json report = Json::parse(read_file(target / "report.json"));
     write_file(scratch.path() / "precious", "x");
-    for (const char* name : {"../precious", "evidence/../../precious", "/etc/hostname"}) report["files"][name] = Json::object();
+    for (const char* name : {"../precious", "evidence/../../precious", "/etc/hostname"})
+        report["files"][name] = Json::object();
     write_file(target / "report.json", report.dump());
     write_file(target / "notes.txt", "mine");
-    struct stat before {}, after {};
+    struct stat before {
+    }, after{};
     stat(target.c_str(), &before);
     const auto here = fs::current_path();
     fs::current_path(target);

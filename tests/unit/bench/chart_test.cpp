@@ -35,7 +35,8 @@ double ink(const Image& image) {
 }  // namespace
 
 DOCTEST_TEST_CASE("the front of errors goes down, that of merits goes up") {
-    const std::vector<ChartPoint> points{{1, 0.5, ""}, {2, 0.6, ""}, {3, 0.2, ""}, {4, 0.2, ""}, {5, 0.9, ""}, {Nothing, 0, ""}};
+    const std::vector<ChartPoint> points{{1, 0.5, ""}, {2, 0.6, ""}, {3, 0.2, ""},
+                                         {4, 0.2, ""}, {5, 0.9, ""}, {Nothing, 0, ""}};
     DOCTEST_CHECK(pareto_front(points, true) == std::vector<std::size_t>{0, 2});
     DOCTEST_CHECK(pareto_front(points, false) == std::vector<std::size_t>{0, 1, 4});
 }
@@ -71,29 +72,38 @@ DOCTEST_TEST_CASE("numbers on axes and in tables") {
 }
 
 DOCTEST_TEST_CASE("the default is on the front unless something is clearly cheaper or better for as much") {
-    const auto default_of = [](const std::vector<SettingPoint>& points) { return fronts_of(points, {ErrorFacet})[0]["default"]; };
-    const auto good = default_of({setting("usual", 10, 0.1, true), setting("worse", 5, 0.2), setting("dear", 20, 0.05)});
+    const auto default_of = [](const std::vector<SettingPoint>& points) {
+        return fronts_of(points, {ErrorFacet})[0]["default"];
+    };
+    const auto good =
+        default_of({setting("usual", 10, 0.1, true), setting("worse", 5, 0.2), setting("dear", 20, 0.05)});
     DOCTEST_CHECK(good["on_front"] == true);
     DOCTEST_CHECK(good["name"] == "curve, usual");
-    const auto noise = default_of({setting("usual", 10, 0.1, true), setting("as good", 10 * (1 - CostNoise / 2), 0.1)});
+    const auto noise =
+        default_of({setting("usual", 10, 0.1, true), setting("as good", 10 * (1 - CostNoise / 2), 0.1)});
     DOCTEST_CHECK(noise["on_front"] == true);
-    const auto beaten = default_of({setting("usual", 10, 0.1, true), setting("cheap", 5, 0.1), setting("better", 10, 0.05)});
+    const auto beaten =
+        default_of({setting("usual", 10, 0.1, true), setting("cheap", 5, 0.1), setting("better", 10, 0.05)});
     DOCTEST_CHECK(beaten["on_front"] == false);
     DOCTEST_CHECK(beaten["beaten_by"] == nlohmann::ordered_json{"curve, cheap", "curve, better"});
     DOCTEST_CHECK(default_of({setting("usual", 10, Nothing, true)})["on_front"] == false);
     DOCTEST_CHECK(default_of({setting("other", 10, 1)}).is_null());
 }
 
-DOCTEST_TEST_CASE("a lead within the scatter of the cases is named and does not count; one that is sure does") {
+DOCTEST_TEST_CASE(
+    "a lead within the scatter of the cases is named and does not count; one that is sure does") {
     const auto with_cases = [](SettingPoint point, const std::vector<double>& errors) {
         point.figures["per_case"]["error"] = errors;
         return point;
     };
     const auto usual = with_cases(setting("usual", 10, 0.25, true), {0.1, 0.2, 0.3, 0.4});
-    const auto chance = with_cases(setting("by chance", 10, 0.2), {0.1, 0.2, 0.3, 0.2});   // one case of four: 0.05, error 0.05
-    const auto sure = with_cases(setting("sure", 10, 0.2), {0.05, 0.15, 0.25, 0.35});      // each case by as much
+    const auto chance = with_cases(setting("by chance", 10, 0.2),
+                                   {0.1, 0.2, 0.3, 0.2});  // one case of four: 0.05, error 0.05
+    const auto sure = with_cases(setting("sure", 10, 0.2), {0.05, 0.15, 0.25, 0.35});  // each case by as much
     const auto alone = setting("of other cases", 10, 0.2);
-    const auto fronts = [&](const std::vector<SettingPoint>& points) { return fronts_of(points, {ErrorFacet}); };
+    const auto fronts = [&](const std::vector<SettingPoint>& points) {
+        return fronts_of(points, {ErrorFacet});
+    };
     const auto scatter = fronts({usual, chance})[0]["default"];
     DOCTEST_CHECK(scatter["on_front"] == true);
     DOCTEST_REQUIRE(scatter["within_scatter"].size() == 1);
@@ -119,15 +129,18 @@ DOCTEST_TEST_CASE("the slope through logarithms is the power; what has no logari
 }
 
 DOCTEST_TEST_CASE("panels, guides, legends and notes are drawn; more panels make more rows") {
-    if (text_width("x", 10) == 0) return;   // built without OpenCV
+    if (text_width("x", 10) == 0) return;  // built without OpenCV
     std::vector<SettingPoint> points;
-    for (int i = 0; i < 12; ++i)   // three heaps of names that would lie on each other
-        points.push_back({i % 2 == 0 ? "even" : "odd", "setting number " + std::to_string(i), i == 4, {},
+    for (int i = 0; i < 12; ++i)  // three heaps of names that would lie on each other
+        points.push_back({i % 2 == 0 ? "even" : "odd",
+                          "setting number " + std::to_string(i),
+                          i == 4,
+                          {},
                           {{"ms", 10 + i % 3 + 0.01 * i}, {"error", std::pow(10, -1 - i % 3)}}});
     Chart chart;
     chart.title = "Twelve settings";
-    chart.notes = {std::string(40, 'x') + " a note that is too long for one line of the picture " + std::string(90, 'y') +
-                   " and goes on"};
+    chart.notes = {std::string(40, 'x') + " a note that is too long for one line of the picture " +
+                   std::string(90, 'y') + " and goes on"};
     chart.panels = {panel_of(points, ErrorFacet)};
     DOCTEST_REQUIRE(chart.panels[0].curves.size() == 2);
     chart.panels[0].guides = {{11, "a limit"}};
@@ -151,13 +164,23 @@ DOCTEST_TEST_CASE("what the axes cannot show is left out, and an axis of one poi
     for (const auto scale : {ChartScale::Percent, ChartScale::Linear, ChartScale::Logarithmic}) {
         const auto with = [&](std::vector<ChartPoint> points) {
             Chart chart;
-            chart.panels = {{"ms", "error", {{"", {0, 0, 0}, std::move(points)}}, ChartLine::CommonFront, scale, true, "", {}}};
+            chart.panels = {{"ms",
+                             "error",
+                             {{"", {0, 0, 0}, std::move(points)}},
+                             ChartLine::CommonFront,
+                             scale,
+                             true,
+                             "",
+                             {}}};
             return draw_chart(chart);
         };
         const Image none = with({});
-        DOCTEST_CHECK(with({{0, 1, ""}, {-1, 1, ""}, {1, Nothing, ""}, {std::numeric_limits<double>::infinity(), 1, ""}}).data ==
-                      none.data);
-        DOCTEST_CHECK((with({{1, 0, ""}}).data == none.data) == (scale == ChartScale::Logarithmic || text_width("x", 10) == 0));
+        DOCTEST_CHECK(
+            with(
+                {{0, 1, ""}, {-1, 1, ""}, {1, Nothing, ""}, {std::numeric_limits<double>::infinity(), 1, ""}})
+                .data == none.data);
+        DOCTEST_CHECK((with({{1, 0, ""}}).data == none.data) ==
+                      (scale == ChartScale::Logarithmic || text_width("x", 10) == 0));
         for (const float value : with({{2, 0.5, "one"}}).data) DOCTEST_REQUIRE((value >= 0 && value <= 1));
     }
 }

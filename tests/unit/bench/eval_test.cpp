@@ -53,19 +53,22 @@ Json report_of(Json edits) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("how often the verdict on redrawn views warns is counted apart for edits that help and those that do not") {
+DOCTEST_TEST_CASE(
+    "how often the verdict on redrawn views warns is counted apart for edits that help and those that do "
+    "not") {
     const auto judged = [](int index, double l1_reduction, bool warns) {
         Json edit = changed_edit(index, 0.9, l1_reduction, 40);
         edit["gate"] = {{"score", warns ? 0.1 : 0.6}, {"verdict", ""}, {"warns", warns}};
         return edit;
     };
-    Json edits = Json::array({judged(0, -0.1, true), judged(1, -0.2, false), judged(2, 0.5, false), judged(3, 0.6, false),
-                              judged(4, 0.4, false), judged(5, 0.3, true)});
+    Json edits = Json::array({judged(0, -0.1, true), judged(1, -0.2, false), judged(2, 0.5, false),
+                              judged(3, 0.6, false), judged(4, 0.4, false), judged(5, 0.3, true)});
     const auto summary = eval_summary(report_of(edits));
     DOCTEST_CHECK(summary["gate_warned_of_failures"]["value"] == 0.5);
     DOCTEST_CHECK(summary["gate_warned_of_successes"]["value"] == 0.25);
-    edits[2]["gate"]["score"] = nullptr;   // the model has no encoder
-    DOCTEST_CHECK(eval_summary(report_of(Json::array({edits[2]}))).contains("gate_warned_of_successes") == false);
+    edits[2]["gate"]["score"] = nullptr;  // the model has no encoder
+    DOCTEST_CHECK(eval_summary(report_of(Json::array({edits[2]}))).contains("gate_warned_of_successes") ==
+                  false);
 }
 
 DOCTEST_TEST_CASE("every edit of the suite ends in a combination that training never saw") {
@@ -120,7 +123,8 @@ DOCTEST_TEST_CASE("edits that replace are drawn apart: the others are the same w
     DOCTEST_CHECK(lines(all, false) == lines(make_suite(1, 24, first_four), false));
     DOCTEST_CHECK(lines(all, true) == lines(make_suite(1, 6, {"replace"}), true));
     // A case of the suite as it was before edits that replace were in it.
-    DOCTEST_CHECK(lines(all, false).front() == "recolour a white duck with red wings on the grass 10220632845217208698");
+    DOCTEST_CHECK(lines(all, false).front() ==
+                  "recolour a white duck with red wings on the grass 10220632845217208698");
 }
 
 DOCTEST_TEST_CASE("what comes is called by words that are drawn only, where that is asked for") {
@@ -131,14 +135,16 @@ DOCTEST_TEST_CASE("what comes is called by words that are drawn only, where that
         DOCTEST_CHECK(std::find(list.begin(), list.end(), edit.target_word) != list.end());
         DOCTEST_CHECK(synth::held_out(edit.target));
         DOCTEST_CHECK(edit.prompt.find(edit.target_word) != std::string::npos);
-        const auto applied = synth::apply_edit(edit.source, edit.prompt);   // the sentence alone leads from the source to the target
+        const auto applied = synth::apply_edit(
+            edit.source, edit.prompt);  // the sentence alone leads from the source to the target
         DOCTEST_CHECK(applied.object == edit.target.object);
         DOCTEST_CHECK(applied.accessory == edit.target.accessory);
         DOCTEST_CHECK(applied.material == edit.target.material);
         words.insert(edit.target_word);
     }
-    DOCTEST_CHECK(words.size() > 12);   // of 26
-    DOCTEST_CHECK(make_suite(5, 4, {"recolour"}, true).front().prompt == make_suite(5, 4, {"recolour"}).front().prompt);
+    DOCTEST_CHECK(words.size() > 12);  // of 26
+    DOCTEST_CHECK(make_suite(5, 4, {"recolour"}, true).front().prompt ==
+                  make_suite(5, 4, {"recolour"}).front().prompt);
 }
 
 DOCTEST_TEST_CASE("another object of a held-out combination takes the place, as the sentence says") {
@@ -194,9 +200,11 @@ DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and siz
     DOCTEST_CHECK(perfect["mean_truth"]["l1_reduction"].get<double>() < 0.95);
     DOCTEST_CHECK(perfect["mean_truth"]["l1_reduction"].get<double>() > 0.2);
     DOCTEST_CHECK(perfect["mean_truth"]["old_left"].get<double>() < 0.5);
-    const auto ground = rows_of(edited, synth::Part::Ground);   // what closes holes is no part of the thing
-    for (std::size_t row = 0; row < ground.size(); ++row) result.label[row] |= ground[row], result.hidden[row] = ground[row];
-    DOCTEST_CHECK(edited_figures(setting, plan, result, {painter})["silhouette_iou"].get<double>() == doctest::Approx(1));
+    const auto ground = rows_of(edited, synth::Part::Ground);  // what closes holes is no part of the thing
+    for (std::size_t row = 0; row < ground.size(); ++row)
+        result.label[row] |= ground[row], result.hidden[row] = ground[row];
+    DOCTEST_CHECK(edited_figures(setting, plan, result, {painter})["silhouette_iou"].get<double>() ==
+                  doctest::Approx(1));
     result.set = setting.source.scene.gaussians;
     result.label = rows_of(setting.source, synth::Part::Object);
     result.hidden.assign(result.label.size(), 0);
@@ -209,7 +217,9 @@ DOCTEST_TEST_CASE("of a new thing the true scene is taken in the heading and siz
     DOCTEST_CHECK(nothing["l1_reduction"].get<double>() == doctest::Approx(0));
 }
 
-DOCTEST_TEST_CASE("what replaces has figures of its own and leaves the others as they are; what is added has a line per thing") {
+DOCTEST_TEST_CASE(
+    "what replaces has figures of its own and leaves the others as they are; what is added has a line per "
+    "thing") {
     const Json plain = report_of(Json::array({changed_edit(0, 0.9, 0.8, 40)}));
     Json replaced = changed_edit(1, 0.5, 0.25, 20);
     replaced["kind"] = "replace";
@@ -228,7 +238,8 @@ DOCTEST_TEST_CASE("what replaces has figures of its own and leaves the others as
     failed["error"] = "no place";
     const auto before = eval_summary(plain);
     const auto with = eval_summary(report_of(Json::array({changed_edit(0, 0.9, 0.8, 40), replaced})));
-    for (const char* key : {"psnr_outside_db", "existing_weighted_iou", "change_l1_reduction", "mode_right", "leak_rate"})
+    for (const char* key :
+         {"psnr_outside_db", "existing_weighted_iou", "change_l1_reduction", "mode_right", "leak_rate"})
         DOCTEST_CHECK(before[key] == with[key]);
     DOCTEST_CHECK(!before.contains("replace_silhouette_iou"));
     DOCTEST_CHECK(with["replace_silhouette_iou"]["value"] == doctest::Approx(0.75));
@@ -244,7 +255,7 @@ DOCTEST_TEST_CASE("what replaces has figures of its own and leaves the others as
     DOCTEST_CHECK(table[1]["thing"] == "hat");
     DOCTEST_CHECK(table[1]["edits"] == 2);
     DOCTEST_CHECK(table[1]["failed"] == 1);
-    DOCTEST_CHECK(table[1]["silhouette_iou"] == doctest::Approx(0.25));   // the failed one has no outline
+    DOCTEST_CHECK(table[1]["silhouette_iou"] == doctest::Approx(0.25));  // the failed one has no outline
     DOCTEST_CHECK(table[1]["leak_rate"] == doctest::Approx(0));
 }
 

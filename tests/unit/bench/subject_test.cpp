@@ -68,7 +68,9 @@ ScaleBenchParameters tiny_scale() {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("the rasterizer's sweep has a point per instruction set and number of threads, with errors to the truth") {
+DOCTEST_TEST_CASE(
+    "the rasterizer's sweep has a point per instruction set and number of threads, with errors to the "
+    "truth") {
     const auto subject = bench_raster_sweep(tiny_sweep(), {});
     std::set<std::string> kernels;
     int defaults = 0;
@@ -77,7 +79,7 @@ DOCTEST_TEST_CASE("the rasterizer's sweep has a point per instruction set and nu
         defaults += point["default"].get<bool>();
         DOCTEST_CHECK(point["forward_ms"].get<double>() > 0);
         DOCTEST_CHECK(point["backward_ms"].get<double>() > 0);
-        constexpr double rough = 1e-2;   // single precision is nearer by far
+        constexpr double rough = 1e-2;  // single precision is nearer by far
         DOCTEST_CHECK(point["max_abs_error"].get<double>() < rough);
         DOCTEST_CHECK(point["gradient_error"].get<double>() < rough);
     }
@@ -112,15 +114,16 @@ DOCTEST_TEST_CASE("what the first picture of a view takes longer is not timed") 
     constexpr std::size_t views = 4;
     constexpr double slow_ms = 30;
     const auto draw = [&](std::size_t view) {
-        if (drawn[view]++ == 0) std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(slow_ms));
+        if (drawn[view]++ == 0)
+            std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(slow_ms));
     };
     TurnTimer timer;
     const auto first = timer.time(views, draw);
     DOCTEST_REQUIRE(first.size() == views);
     DOCTEST_CHECK(first.front() < slow_ms);
-    DOCTEST_CHECK(first[views / 2] < slow_ms);   // of a busy machine the last may be slow all the same
+    DOCTEST_CHECK(first[views / 2] < slow_ms);  // of a busy machine the last may be slow all the same
     DOCTEST_CHECK(drawn == std::map<std::size_t, int>{{0, 2}, {1, 2}, {2, 2}, {3, 2}});
-    timer.time(views, draw);   // is warm: one picture more
+    timer.time(views, draw);  // is warm: one picture more
     DOCTEST_CHECK(drawn == std::map<std::size_t, int>{{0, 3}, {1, 3}, {2, 3}, {3, 4}});
 }
 
@@ -147,8 +150,9 @@ DOCTEST_TEST_CASE("stability: a line per cause, every picture in one decade, the
 DOCTEST_TEST_CASE("a histogram's cells are where their counts are, and the darker the more") {
     std::vector<std::size_t> first(ErrorDecades, 0), second(ErrorDecades, 0);
     first[0] = 9, second[9] = 1, second[8] = 8;
-    const auto image = draw_histograms("title", {"first", "second"}, {{"panel", {first, second}}}, {"a note"});
-    const auto shade = [&](double across, int line) {   // at the upper left of a cell, where no number is
+    const auto image =
+        draw_histograms("title", {"first", "second"}, {{"panel", {first, second}}}, {"a note"});
+    const auto shade = [&](double across, int line) {  // at the upper left of a cell, where no number is
         return image.at(static_cast<int>(170 + across * 101 + 4), 110 + 26 * line + 4, 0);
     };
     DOCTEST_CHECK(image.width == 1200);
@@ -173,7 +177,7 @@ DOCTEST_TEST_CASE("series grow until a limit, with exponents") {
     }
     DOCTEST_CHECK(of == std::set<std::string>{"splats", "side", "views", "share"});
     DOCTEST_CHECK(subject.tables.size() == 4);
-    parameters.limit_seconds = 0.001;   // no second point is as quick
+    parameters.limit_seconds = 0.001;  // no second point is as quick
     parameters.splats = "2000 20000000";
     const auto limited = bench_scale(parameters, {}, {});
     DOCTEST_CHECK(limited.report["series"][0]["left_out"].size() == 1);
@@ -192,24 +196,27 @@ DOCTEST_TEST_CASE("a subject is left as figures, picture and text") {
     DOCTEST_CHECK(subject_text(subject).find("default") != std::string::npos);
 }
 
-DOCTEST_TEST_CASE("lists of numbers are read once each and ascending; wrong ones are refused with the setting's name") {
+DOCTEST_TEST_CASE(
+    "lists of numbers are read once each and ascending; wrong ones are refused with the setting's name") {
     DOCTEST_CHECK(numbers_in_list("views", "8, 4 8", 1, 100) == std::vector<double>{4, 8});
     DOCTEST_CHECK(numbers_in_list("views", "", 1, 100).empty());
     for (const char* wrong : {"four", "0", "101", "nan", "4x"}) {
         std::string message;
         try {
             numbers_in_list("views", wrong, 1, 100);
-        } catch (const Error& error) {
-            message = error.message();
-        }
+        } catch (const Error& error) { message = error.message(); }
         DOCTEST_CHECK(message.starts_with("views"));
     }
 }
 
 DOCTEST_TEST_CASE("base64") {
-    for (const auto& [bytes, text] : {std::pair<std::string, std::string>{"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"},
-                                      {"foobar", "Zm9vYmFy"}, {"\xff\xfe\xfd", "//79"}})
-        DOCTEST_CHECK(base64_text(bytes) == text);   // RFC 4648, section 10, and bytes above 127
+    for (const auto& [bytes, text] : {std::pair<std::string, std::string>{"", ""},
+                                      {"f", "Zg=="},
+                                      {"fo", "Zm8="},
+                                      {"foo", "Zm9v"},
+                                      {"foobar", "Zm9vYmFy"},
+                                      {"\xff\xfe\xfd", "//79"}})
+        DOCTEST_CHECK(base64_text(bytes) == text);  // RFC 4648, section 10, and bytes above 127
 }
 
 DOCTEST_TEST_CASE("the page escapes what it is told and refers to no other file") {
@@ -221,8 +228,8 @@ DOCTEST_TEST_CASE("the page escapes what it is told and refers to no other file"
                                              {{"splats", 3}}}};
     const auto html = html_page("Page", {{"processor", "<unknown>"}}, sections);
     DOCTEST_CHECK_FALSE(refers_elsewhere(html));
-    for (const char* text :
-         {"Less &lt;b&gt;&amp; more&quot;", "a&lt;b", "&lt;unknown&gt;", "data:image/png;base64,", "a remark", "a note"})
+    for (const char* text : {"Less &lt;b&gt;&amp; more&quot;", "a&lt;b", "&lt;unknown&gt;",
+                             "data:image/png;base64,", "a remark", "a note"})
         DOCTEST_CHECK(html.find(text) != std::string::npos);
     DOCTEST_CHECK(html.find("<b>") == std::string::npos);
 }

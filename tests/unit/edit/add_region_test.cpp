@@ -76,7 +76,9 @@ DOCTEST_TEST_CASE("what is inside a place is hidden by its shell: its picture is
     DOCTEST_CHECK(region.shell.size() < region.centres.size());
     auto whole = region;
     whole.shell.clear();
-    for (const auto& view : setup.views) DOCTEST_CHECK(edit::region_mask(region, view.camera).data == edit::region_mask(whole, view.camera).data);
+    for (const auto& view : setup.views)
+        DOCTEST_CHECK(edit::region_mask(region, view.camera).data ==
+                      edit::region_mask(whole, view.camera).data);
 }
 
 DOCTEST_TEST_CASE("a place is not seen where it lies behind the surface by more than one of its cubes") {
@@ -94,10 +96,10 @@ DOCTEST_TEST_CASE("a place is not seen where it lies behind the surface by more 
         const Image depth(camera.width, camera.height, 1, static_cast<float>(surface));
         return edit::region_mask(region, camera, &depth);
     };
-    DOCTEST_CHECK(seen_with(0).data == whole.data);             // nothing is there
+    DOCTEST_CHECK(seen_with(0).data == whole.data);  // nothing is there
     DOCTEST_CHECK(seen_with(farthest).data == whole.data);
     DOCTEST_CHECK(seen_with(nearest - 2 * region.side).count() == 0);
-    const Mask half = seen_with(nearest - 0.5 * region.side);   // the cubes in front
+    const Mask half = seen_with(nearest - 0.5 * region.side);  // the cubes in front
     DOCTEST_CHECK(half.count() > 0);
     DOCTEST_CHECK(half.count() < whole.count());
 }
@@ -111,12 +113,15 @@ DOCTEST_TEST_CASE("where no depth is known, nothing hides a place") {
 }
 
 DOCTEST_TEST_CASE("a place of several parts keeps all, also a small one; specks do not count") {
-    const Vec3 left{-0.55, -0.55, 0.05}, right{0.1, -0.55, 0.05}, small{-0.95, -0.25, 0.05}, speck{-0.2, -0.75, 0.05};
+    const Vec3 left{-0.55, -0.55, 0.05}, right{0.1, -0.55, 0.05}, small{-0.95, -0.25, 0.05},
+        speck{-0.2, -0.75, 0.05};
     Search setup(left, 0.2);
-    for (const auto& [centre, radius] : {std::pair{right, 0.17}, std::pair{small, 0.13}, std::pair{speck, 0.06}}) {
+    for (const auto& [centre, radius] :
+         {std::pair{right, 0.17}, std::pair{small, 0.13}, std::pair{speck, 0.06}}) {
         const Search other(centre, radius);
         for (std::size_t v = 0; v < setup.masks.size(); ++v)
-            for (std::size_t i = 0; i < setup.masks[v].data.size(); ++i) setup.masks[v].data[i] |= other.masks[v].data[i];
+            for (std::size_t i = 0; i < setup.masks[v].data.size(); ++i)
+                setup.masks[v].data[i] |= other.masks[v].data[i];
     }
     const auto region = edit::vote_region(setup.search());
     const auto near = [&region](const Vec3& centre, double radius) {
@@ -125,13 +130,13 @@ DOCTEST_TEST_CASE("a place of several parts keeps all, also a small one; specks 
     };
     DOCTEST_CHECK(near(left, 0.2) > 20);
     DOCTEST_CHECK(near(right, 0.17) > 20);
-    DOCTEST_CHECK(near(small, 0.13) > 3);   // a quarter of the first
+    DOCTEST_CHECK(near(small, 0.13) > 3);  // a quarter of the first
     DOCTEST_CHECK(near(speck, 0.06) == 0);
 }
 
 DOCTEST_TEST_CASE("a place may lie below a label that lacks what carries the thing: a scarf around a stem") {
     constexpr int Cap = 900, Stem = 150, Ground = 3000;
-    const Vec3 scarf{0, 0.25, 0};   // up is -y, the ground y = 0.5
+    const Vec3 scarf{0, 0.25, 0};  // up is -y, the ground y = 0.5
     const Search around(scarf, 0.2);
     Random random(11);
     GaussianData data;
@@ -139,7 +144,15 @@ DOCTEST_TEST_CASE("a place may lie below a label that lacks what carries the thi
     std::vector<std::uint8_t> cap(data.size(), 0);
     for (std::size_t row = 0; row < data.size(); ++row) {
         const bool of_cap = row < Cap, of_stem = !of_cap && row < Cap + Stem;
-        const double wide = of_cap ? 0.4 : of_stem ? 0.1 : 1.5, low = of_cap ? -0.5 : of_stem ? 0 : 0.49, high = of_cap ? 0 : of_stem ? 0.5 : 0.51;
+        const double wide = of_cap    ? 0.4
+                            : of_stem ? 0.1
+                                      : 1.5,
+                     low = of_cap    ? -0.5
+                           : of_stem ? 0
+                                     : 0.49,
+                     high = of_cap    ? 0
+                            : of_stem ? 0.5
+                                      : 0.51;
         data.position[row * 3] = static_cast<float>(random.uniform(-wide, wide));
         data.position[row * 3 + 1] = static_cast<float>(random.uniform(low, high));
         data.position[row * 3 + 2] = static_cast<float>(random.uniform(-wide, wide));
@@ -156,15 +169,18 @@ DOCTEST_TEST_CASE("a place may lie below a label that lacks what carries the thi
 }
 
 DOCTEST_TEST_CASE("of all levels of agreement the one is taken whose silhouettes match the masks best") {
-    // A third of the views sees only the middle of the thing: what nearly all views agree on would be that middle.
+    // A third of the views sees only the middle of the thing: what nearly all views agree on would be that
+    // middle.
     const Vec3 centre{-0.55, -0.55, 0.05};
     Search setup(centre, 0.2);
     const Search middle(centre, 0.08);
     for (std::size_t v = 0; v < setup.masks.size(); v += 3) setup.masks[v] = middle.masks[v];
     const auto region = edit::vote_region(setup.search());
-    const auto whole = edit::vote_region(Search(centre, 0.2).search());   // the grid is that of the source, the same in both
+    const auto whole =
+        edit::vote_region(Search(centre, 0.2).search());  // the grid is that of the source, the same in both
     DOCTEST_REQUIRE_FALSE(whole.empty());
-    const double share = static_cast<double>(region.centres.size()) / static_cast<double>(whole.centres.size());
+    const double share =
+        static_cast<double>(region.centres.size()) / static_cast<double>(whole.centres.size());
     DOCTEST_CHECK(share > 0.6);
     DOCTEST_CHECK(share < 1.4);
 }
@@ -239,21 +255,24 @@ DOCTEST_TEST_CASE("seeds lie in the region, are finite and repeatable") {
 }
 
 DOCTEST_TEST_CASE("beside is the side with room, under is below what floats and at the foot of what stands") {
-    const Search setup({-0.55, -0.55, 0}, 0.2);   // the red ball; the green one lies at its right
+    const Search setup({-0.55, -0.55, 0}, 0.2);  // the red ball; the green one lies at its right
     auto search = setup.search();
     const auto middle = [](const edit::AddRegion& region) {
         Vec3 mean;
-        for (const auto& cell : region.centres) mean = mean + cell / static_cast<double>(region.centres.size());
+        for (const auto& cell : region.centres)
+            mean = mean + cell / static_cast<double>(region.centres.size());
         return mean;
     };
     search.relation = edit::Relation::Beside;
-    const auto beside = edit::usual_region(search, "hat");   // what usually sits on top does not, where the sentence says so
+    const auto beside =
+        edit::usual_region(search, "hat");  // what usually sits on top does not, where the sentence says so
     DOCTEST_CHECK(beside.origin == "beside");
     DOCTEST_CHECK(middle(beside).x < -0.95);
     search.relation = edit::Relation::Right;
     DOCTEST_CHECK(middle(edit::usual_region(search, "ball")).x > -0.15);
     search.relation = edit::Relation::Under;
-    for (const auto& cell : edit::usual_region(search, "ball").centres) DOCTEST_CHECK(cell.y > 0.35);   // up is -y
+    for (const auto& cell : edit::usual_region(search, "ball").centres)
+        DOCTEST_CHECK(cell.y > 0.35);  // up is -y
     search.relation = edit::Relation::Above;
     DOCTEST_CHECK(edit::usual_region(search, "scarf").origin == "neck");
     // On a floor of other splats nothing fits below: it lies at the foot.
@@ -268,8 +287,8 @@ DOCTEST_TEST_CASE("beside is the side with room, under is below what floats and 
         bits.push_back(0);
     }
     const GaussianSet standing(std::move(data));
-    const edit::RegionSearch floor{standing,     bits, setup.views, setup.masks, setup.depths, {0, -1, 0}, {0, 0, -1},
-                                   edit::Relation::Under};
+    const edit::RegionSearch floor{standing,     bits,       setup.views, setup.masks,
+                                   setup.depths, {0, -1, 0}, {0, 0, -1},  edit::Relation::Under};
     const auto rug = edit::usual_region(floor, "rug");
     DOCTEST_REQUIRE_FALSE(rug.empty());
     for (const auto& cell : rug.centres) DOCTEST_CHECK(std::abs(cell.y - 0.4) < 0.08);

@@ -12,8 +12,8 @@ namespace {
 
 using namespace gse;
 
-constexpr double Rate = 0.0675;        // that of an edit
-constexpr double SameRow = 1e-5;       // float rounding of a hundred steps
+constexpr double Rate = 0.0675;   // that of an edit
+constexpr double SameRow = 1e-5;  // float rounding of a hundred steps
 
 std::vector<float> rows_of(const std::vector<Vec3>& colours) {
     std::vector<float> sh;
@@ -29,7 +29,8 @@ double mean_difference(std::span<const float> a, std::span<const float> b) {
 }
 
 /// Colours after `steps` steps towards `goal` under a quadratic loss.
-std::vector<float> led(edit::CommonColour& common, std::span<const float> birth, std::span<const float> goal, int steps) {
+std::vector<float> led(edit::CommonColour& common, std::span<const float> birth, std::span<const float> goal,
+                       int steps) {
     std::vector<float> sh(birth.begin(), birth.end()), gradient(birth.size());
     for (int step = 0; step < steps; ++step) {
         for (std::size_t i = 0; i < sh.size(); ++i) gradient[i] = sh[i] - goal[i];
@@ -59,7 +60,8 @@ DOCTEST_TEST_CASE("grain is painted over and the shading stays") {
     const auto birth = rows_of(colours), goal = rows_of(painted);
     edit::CommonColour common(birth, 3);
     const auto reached = led(common, birth, goal, 75);
-    constexpr double left = 0.08;   // measured: 0.04 along the colours' own axes as wide as they spread, 0.12 all alike
+    constexpr double left =
+        0.08;  // measured: 0.04 along the colours' own axes as wide as they spread, 0.12 all alike
     DOCTEST_CHECK(mean_difference(reached, goal) < left * mean_difference(birth, goal));
 }
 
@@ -75,7 +77,8 @@ DOCTEST_TEST_CASE("a row that joins late is where it would be had it taken every
                                 birth.begin() + static_cast<std::ptrdiff_t>(row * 3 + 3));
         const auto own = late;
         common.apply(own, late);
-        for (std::size_t c = 0; c < 3; ++c) DOCTEST_CHECK(late[c] == doctest::Approx(reached[row * 3 + c]).epsilon(SameRow));
+        for (std::size_t c = 0; c < 3; ++c)
+            DOCTEST_CHECK(late[c] == doctest::Approx(reached[row * 3 + c]).epsilon(SameRow));
     }
 }
 
@@ -92,7 +95,8 @@ DOCTEST_TEST_CASE("colours seen from anywhere follow the map of the base colours
     // The map taken from pairs of rows: differences of base colours go through A alone.
     const auto mapped = [&](const Vec3& base, const std::vector<float>& like) {
         std::vector<float> own = like;
-        for (int c = 0; c < 3; ++c) own[static_cast<std::size_t>(c)] = static_cast<float>(sh_from_colour(base[c]));
+        for (int c = 0; c < 3; ++c)
+            own[static_cast<std::size_t>(c)] = static_cast<float>(sh_from_colour(base[c]));
         auto after = own;
         common.apply(own, after);
         return Vec3{colour_from_sh(after[0]), colour_from_sh(after[1]), colour_from_sh(after[2])};
@@ -100,30 +104,35 @@ DOCTEST_TEST_CASE("colours seen from anywhere follow the map of the base colours
     for (std::size_t j = 3; j < stride; j += 3) {
         const std::vector<float> row(birth.begin(), birth.begin() + static_cast<std::ptrdiff_t>(stride));
         const Vec3 seen{ShC0 * row[j], ShC0 * row[j + 1], ShC0 * row[j + 2]};
-        constexpr double part = 0.2;   // small enough to stay among the label's colours, beyond which the map is bounded
+        constexpr double part =
+            0.2;  // small enough to stay among the label's colours, beyond which the map is bounded
         const Vec3 grey{0.5, 0.5, 0.5};
         const Vec3 moved = (mapped(grey + seen * part, row) - mapped(grey, row)) / part;
         for (int c = 0; c < 3; ++c)
-            DOCTEST_CHECK(ShC0 * sh[j + static_cast<std::size_t>(c)] == doctest::Approx(moved[c]).epsilon(1e-4));
+            DOCTEST_CHECK(ShC0 * sh[j + static_cast<std::size_t>(c)] ==
+                          doctest::Approx(moved[c]).epsilon(1e-4));
     }
 }
 
 DOCTEST_TEST_CASE("a row of a colour the label never had gets no wild colour") {
     std::vector<Vec3> reds;
     Random random(6);
-    for (int i = 0; i < 200; ++i) reds.push_back(Vec3{0.8, 0.1 + 0.001 * random.normal(), 0.1} * random.uniform(0.5, 1.1));
+    for (int i = 0; i < 200; ++i)
+        reds.push_back(Vec3{0.8, 0.1 + 0.001 * random.normal(), 0.1} * random.uniform(0.5, 1.1));
     const auto birth = rows_of(reds);
     edit::CommonColour common(birth, 3);
     std::vector<float> sh = birth, gradient(birth.size());
-    for (int step = 0; step < 100; ++step) {   // the pull of a model: towards blue, with noise
+    for (int step = 0; step < 100; ++step) {  // the pull of a model: towards blue, with noise
         for (std::size_t i = 0; i < sh.size(); ++i)
-            gradient[i] = sh[i] - static_cast<float>(sh_from_colour(i % 3 == 2 ? 0.9 : 0.1)) + static_cast<float>(random.normal());
+            gradient[i] = sh[i] - static_cast<float>(sh_from_colour(i % 3 == 2 ? 0.9 : 0.1)) +
+                          static_cast<float>(random.normal());
         common.step(gradient, birth, sh, Rate);
     }
     auto green = rows_of({{0.1, 0.9, 0.1}});
     const auto own = green;
     common.apply(own, green);
-    constexpr double reach = 1.5;   // a red row moves by less than one; the unbounded map would move green by dozens
+    constexpr double reach =
+        1.5;  // a red row moves by less than one; the unbounded map would move green by dozens
     for (std::size_t c = 0; c < 3; ++c) DOCTEST_CHECK(std::abs(green[c] - own[c]) * ShC0 < reach);
 }
 
@@ -148,12 +157,14 @@ DOCTEST_TEST_CASE("grey things with coloured gloss keep a gloss of the same size
         before += std::pow(birth[i], 2);
         after += std::pow(sh[i], 2);
     }
-    constexpr double growth = 10;   // of the energy under pure noise: measured 5.5, and 47 were the gloss no part of the spread
+    constexpr double growth =
+        10;  // of the energy under pure noise: measured 5.5, and 47 were the gloss no part of the spread
     DOCTEST_CHECK(after < growth * before);
 }
 
 DOCTEST_TEST_CASE("black, one colour and one row stay finite") {
-    for (const auto& colours : {std::vector<Vec3>(5, Vec3{}), std::vector<Vec3>(5, Vec3{0.2, 0.4, 0.6}), std::vector<Vec3>{{1, 0, 0}}}) {
+    for (const auto& colours : {std::vector<Vec3>(5, Vec3{}), std::vector<Vec3>(5, Vec3{0.2, 0.4, 0.6}),
+                                std::vector<Vec3>{{1, 0, 0}}}) {
         const auto birth = rows_of(colours);
         const auto goal = rows_of(std::vector<Vec3>(colours.size(), Vec3{0.7, 0.6, 0.1}));
         edit::CommonColour common(birth, 3);

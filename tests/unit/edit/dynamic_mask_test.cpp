@@ -1,4 +1,5 @@
-// Masks that follow the edit: refreshed when due, joined with the label, never running away; and the detector of rest.
+// Masks that follow the edit: refreshed when due, joined with the label, never running away; and the detector
+// of rest.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -33,7 +34,7 @@ class FixedAttention : public edit::AttentionSource {
 public:
     Mask where{Side, Side};
     int calls = 0;
-    std::string word;   // asked for last
+    std::string word;  // asked for last
     std::vector<Image> locate(const edit::AttentionQuery& query) override {
         ++calls;
         word = query.words.front();
@@ -76,7 +77,7 @@ DOCTEST_TEST_CASE("masks are static first, then refreshed now and then; without 
     used.refresh(0, 50, setup.shown, picture(disc(32, 32, 12)));
     DOCTEST_CHECK_FALSE(used.due(0, 55));
     DOCTEST_CHECK(used.due(0, 63));
-    DOCTEST_CHECK(used.due(1, 55));   // every view has its own clock
+    DOCTEST_CHECK(used.due(1, 55));  // every view has its own clock
     setup.request.dynamic_mask = false;
     DOCTEST_CHECK_FALSE(setup.masks().due(0, 99));
     setup.request.dynamic_mask = true;
@@ -90,12 +91,12 @@ DOCTEST_TEST_CASE("a mask follows what moved, in two steps, and only where the l
     const Image label = picture(disc(36, 32, 14));
     masks.refresh(0, 50, setup.shown, label);
     const std::size_t once = different(masks.mask(0), setup.attention.where);
-    DOCTEST_CHECK(different(masks.mask(0), setup.plan.masks[0]) == 0);   // one half is inside the hysteresis
+    DOCTEST_CHECK(different(masks.mask(0), setup.plan.masks[0]) == 0);  // one half is inside the hysteresis
     masks.refresh(0, 70, setup.shown, label);
     DOCTEST_CHECK(different(masks.mask(0), setup.attention.where) < once);
     masks.refresh(0, 90, setup.shown, label);
     const auto near = different(masks.mask(0), setup.attention.where);
-    DOCTEST_CHECK(near <= 8);   // the 64-cell grid and the reach of the label round a few pixels
+    DOCTEST_CHECK(near <= 8);  // the 64-cell grid and the reach of the label round a few pixels
     DOCTEST_CHECK(different(masks.mask(1), setup.plan.masks[1]) == 0);
     // Attention far from everything labelled counts for nothing.
     setup.attention.where = disc(8, 8, 6);
@@ -116,7 +117,8 @@ DOCTEST_TEST_CASE("what replaces the word is looked for, as the sentence does no
         .refresh(0, 50, setup.shown, picture(disc(32, 32, 12)));
     DOCTEST_CHECK(setup.attention.word == "snow");
     setup.request.target = "";
-    DOCTEST_CHECK_FALSE(edit::DynamicMasks(setup.plan, setup.request, "grass", &setup.attention, nullptr).due(0, 99));
+    DOCTEST_CHECK_FALSE(
+        edit::DynamicMasks(setup.plan, setup.request, "grass", &setup.attention, nullptr).due(0, 99));
 }
 
 DOCTEST_TEST_CASE("a mask that would run away, or be empty, stays as it was") {
@@ -174,7 +176,7 @@ DOCTEST_TEST_CASE("new splats outside of where the new thing is seen go, unless 
     auto rasterizer = raster::make_plain_rasterizer();
     auto plan = test::ball_plan(scene, *rasterizer, 6, 24);
     plan.label.assign(plan.label.size(), 0);
-    edit::AddRegion high, low;   // the scene's up is -y
+    edit::AddRegion high, low;  // the scene's up is -y
     high.side = low.side = 0.2;
     high.centres = {{0, -0.75, 0}};
     low.centres = {{0, 0.75, 0}};
@@ -199,7 +201,7 @@ DOCTEST_TEST_CASE("new splats outside of where the new thing is seen go, unless 
             above += result.set.position()[row * 3 + 1] < 0 ? 1 : 0;
         return std::pair{above, all - above};
     };
-    DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 20});   // nothing seen: nothing dropped
+    DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 20});  // nothing seen: nothing dropped
     for (int y = 0; y < 12; ++y)
         for (int x = 0; x < 24; ++x) attention.where.at(x, y) = 1;
     DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 0});
@@ -207,7 +209,7 @@ DOCTEST_TEST_CASE("new splats outside of where the new thing is seen go, unless 
     DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 20});
     request.look_again = true;
     attention.where = Mask(24, 24);
-    for (int x = 0; x < 24; ++x) attention.where.at(x, 0) = 1;   // far from all of them
+    for (int x = 0; x < 24; ++x) attention.where.at(x, 0) = 1;  // far from all of them
     DOCTEST_CHECK(added() == std::pair<std::size_t, std::size_t>{30, 20});
 }
 

@@ -17,27 +17,32 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
-/// Knows pictures by their first value, the azimuth at which they see the front, and words by their side; likes one word
-/// better than the others in every picture, and one picture better than the others with every word.
+/// Knows pictures by their first value, the azimuth at which they see the front, and words by their side;
+/// likes one word better than the others in every picture, and one picture better than the others with every
+/// word.
 class ToyEncoder : public TextImageScore {
 public:
     explicit ToyEncoder(double strength) : strength_(strength) {}
     std::vector<float> image(const Image& image) override {
         const double turn = image.data[0];
-        const auto of = [&](double middle) { return static_cast<float>(strength_ * std::cos(turn - middle)); };
+        const auto of = [&](double middle) {
+            return static_cast<float>(strength_ * std::cos(turn - middle));
+        };
         const auto side = static_cast<float>(-strength_ * std::abs(std::cos(turn)));
         return {of(0), of(Pi), side, turn > 2 ? 1.5f : 0.5f};
     }
     std::vector<float> text(const std::string& sentence) override {
         if (sentence.ends_with("front view")) return {1, 0, 0, 1};
-        return sentence.ends_with("back view") ? std::vector<float>{0, 1, 0, 0.5f} : std::vector<float>{0, 0, 1, 2};
+        return sentence.ends_with("back view") ? std::vector<float>{0, 1, 0, 0.5f}
+                                               : std::vector<float>{0, 0, 1, 2};
     }
 
 protected:
     double strength_;
 };
 
-/// The same, but it has learned to tell viewpoints: shares about the azimuth, in sectors of 15 degrees, which are as sharp as it is strong.
+/// The same, but it has learned to tell viewpoints: shares about the azimuth, in sectors of 15 degrees, which
+/// are as sharp as it is strong.
 class ToyClassifier final : public ToyEncoder {
 public:
     using ToyEncoder::ToyEncoder;
@@ -47,15 +52,15 @@ public:
         float sum = 0;
         for (int s = 0; s < Sectors; ++s) {
             const double off = image.data[0] - 2 * Pi * s / Sectors;
-            sum += shares[static_cast<std::size_t>(s)] = static_cast<float>(std::exp(strength_ * (std::cos(off) - 1)));
+            sum += shares[static_cast<std::size_t>(s)] =
+                static_cast<float>(std::exp(strength_ * (std::cos(off) - 1)));
         }
         for (auto& share : shares) share /= sum;
         return shares;
     }
 };
 
-template <class Encoder>
-FrontReading read(double front, double strength, int count) {
+template <class Encoder> FrontReading read(double front, double strength, int count) {
     Recognition recognition(std::make_unique<Encoder>(strength), {});
     std::vector<Image> pictures;
     std::vector<double> azimuths;
@@ -68,7 +73,8 @@ FrontReading read(double front, double strength, int count) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("the front is where the words for the sides fit, whatever else a picture or a word is liked for") {
+DOCTEST_TEST_CASE(
+    "the front is where the words for the sides fit, whatever else a picture or a word is liked for") {
     for (const double front : {-3.0, -2.0, -1.0, 0.0, 0.7, 1.6, 3.1})
         for (const int count : {8, 12, 24}) {
             DOCTEST_CAPTURE(front);
@@ -80,7 +86,8 @@ DOCTEST_TEST_CASE("the front is where the words for the sides fit, whatever else
         }
 }
 
-DOCTEST_TEST_CASE("a model that tells viewpoints tells the front more exactly than cameras or sectors stand apart") {
+DOCTEST_TEST_CASE(
+    "a model that tells viewpoints tells the front more exactly than cameras or sectors stand apart") {
     constexpr double Exact = 3 * Pi / 180;
     for (const double front : {-3.0, -2.0, -1.0, 0.0, 0.1, 0.7, 1.6, 3.1})
         for (const int count : {3, 8, 12}) {
@@ -109,7 +116,7 @@ DOCTEST_TEST_CASE("one picture that a classifier is wrong about moves no front")
     for (int i = 0; i < 12; ++i) {
         azimuths.push_back(2 * Pi * i / 12);
         std::vector<float> shares(24, 0.0f);
-        shares[static_cast<std::size_t>(2 * i)] = 1;   // the front is at azimuth 0
+        shares[static_cast<std::size_t>(2 * i)] = 1;  // the front is at azimuth 0
         seen.push_back(shares);
     }
     std::rotate(seen[4].begin(), seen[4].begin() + 9, seen[4].end());
@@ -142,7 +149,8 @@ DOCTEST_TEST_CASE("words of a side") {
 }
 
 DOCTEST_TEST_CASE("the side that was looked at is the front, unless the pictures are sure of another") {
-    const auto by_words = read<ToyEncoder>(0.7, 1, 24), sharp = read<ToyClassifier>(0.7, 30, 24), dull = read<ToyClassifier>(0.7, 2, 24);
+    const auto by_words = read<ToyEncoder>(0.7, 1, 24), sharp = read<ToyClassifier>(0.7, 30, 24),
+               dull = read<ToyClassifier>(0.7, 2, 24);
     DOCTEST_REQUIRE(by_words.clear);
     DOCTEST_CHECK_FALSE(by_words.sure);
     DOCTEST_REQUIRE(sharp.sure);

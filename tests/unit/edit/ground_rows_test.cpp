@@ -32,7 +32,9 @@ const Vec3 Red{1, -1, -1}, Green{-1, 0.5, -1};
 
 DOCTEST_TEST_CASE("ground that a label holds below a thing is told from the thing by height and colour") {
     Scene bear;
-    bear.box(0.3, 0.02, 1, Red, 2000, true).box(0.3, -0.005, 0.005, Green, 60, true).box(2, -0.005, 0.005, Green, 3000, false);
+    bear.box(0.3, 0.02, 1, Red, 2000, true)
+        .box(0.3, -0.005, 0.005, Green, 60, true)
+        .box(2, -0.005, 0.005, Green, 3000, false);
     const auto ground = bear.ground();
     DOCTEST_REQUIRE(ground.size() == 60);
     DOCTEST_CHECK(ground.front() == 2000);
@@ -40,35 +42,47 @@ DOCTEST_TEST_CASE("ground that a label holds below a thing is told from the thin
 }
 
 DOCTEST_TEST_CASE("a thing keeps rows of its own colour, and green ones that are high") {
-    Scene frog;   // as green as the grass it sits on
+    Scene frog;  // as green as the grass it sits on
     frog.box(0.3, 0, 1, Green, 2000, true).box(2, -0.005, 0.005, Green, 3000, false);
     DOCTEST_CHECK(frog.ground().empty());
     Scene tree;
-    tree.box(0.3, 0, 0.6, Red, 1000, true).box(0.3, 0.6, 1, Green, 1000, true).box(2, -0.005, 0.005, Green, 3000, false);
+    tree.box(0.3, 0, 0.6, Red, 1000, true)
+        .box(0.3, 0.6, 1, Green, 1000, true)
+        .box(2, -0.005, 0.005, Green, 3000, false);
     DOCTEST_CHECK(tree.ground().empty());
 }
 
-DOCTEST_TEST_CASE("a ground that is a label of its own, a thing without ground and an empty label lose nothing") {
+DOCTEST_TEST_CASE(
+    "a ground that is a label of its own, a thing without ground and an empty label lose nothing") {
     Scene lawn;
-    lawn.box(2, -0.005, 0.005, Green, 3000, true).box(0.3, 0.02, 1, Red, 500, false).box(3, -0.005, 0.005, Green, 200, false);
+    lawn.box(2, -0.005, 0.005, Green, 3000, true)
+        .box(0.3, 0.02, 1, Red, 500, false)
+        .box(3, -0.005, 0.005, Green, 200, false);
     DOCTEST_CHECK(lawn.ground().empty());
     Scene floating;
     floating.box(0.3, 0, 1, Red, 2000, true).box(0.3, -0.005, 0.005, Green, 60, true);
     DOCTEST_CHECK(floating.ground().empty());
-    Scene potted;   // what is not labelled lies within it: no ground
-    potted.box(0.3, 0, 1, Red, 2000, true).box(0.3, -0.005, 0.005, Green, 60, true).box(0.2, -0.005, 0.005, Green, 300, false);
+    Scene potted;  // what is not labelled lies within it: no ground
+    potted.box(0.3, 0, 1, Red, 2000, true)
+        .box(0.3, -0.005, 0.005, Green, 60, true)
+        .box(0.2, -0.005, 0.005, Green, 300, false);
     DOCTEST_CHECK(potted.ground().empty());
     Scene nothing;
     nothing.box(2, -0.005, 0.005, Green, 300, false);
     DOCTEST_CHECK(nothing.ground().empty());
 }
 
-DOCTEST_TEST_CASE("of what is labelled around a ground the lowest layer is the ground, however it slopes; what is no wider than high stays whole") {
+DOCTEST_TEST_CASE(
+    "of what is labelled around a ground the lowest layer is the ground, however it slopes; what is no wider "
+    "than high stays whole") {
     test::BoxRows lawn;
-    lawn.box(-2, 2, 0, 0.02, -2, 2, 4000, true, Green).box(-0.4, 0.4, 0.3, 1.2, -0.4, 0.4, 500, true, Red).box(-2, 2, 0, 0.02, -2, 2, 100, false, Green);
+    lawn.box(-2, 2, 0, 0.02, -2, 2, 4000, true, Green)
+        .box(-0.4, 0.4, 0.3, 1.2, -0.4, 0.4, 500, true, Red)
+        .box(-2, 2, 0, 0.02, -2, 2, 100, false, Green);
     const auto flat = edit::lowest_layer(lawn.set(), lawn.bits, Up);
     for (std::size_t row = 0; row < flat.size(); ++row) DOCTEST_CHECK((flat[row] != 0) == (row < 4000));
-    for (std::size_t row = 0; row < flat.size(); ++row) lawn.data.position[row * 3 + 1] -= 0.15f * lawn.data.position[row * 3];
+    for (std::size_t row = 0; row < flat.size(); ++row)
+        lawn.data.position[row * 3 + 1] -= 0.15f * lawn.data.position[row * 3];
     DOCTEST_CHECK(edit::lowest_layer(lawn.set(), lawn.bits, Up) == flat);
     test::BoxRows tower;
     tower.box(-0.5, 0.5, 0, 3, -0.5, 0.5, 1000, true, Red);

@@ -20,13 +20,17 @@ EditRequest asked(const std::string& source, const std::string& prompt, const st
 
 }  // namespace
 
-DOCTEST_TEST_CASE("instruction: what the artist says, else the source is turned into what the sentence describes") {
-    DOCTEST_CHECK(instruction_of(asked("bear", "a golden bear", "make the bear golden")) == "make the bear golden");
+DOCTEST_TEST_CASE(
+    "instruction: what the artist says, else the source is turned into what the sentence describes") {
+    DOCTEST_CHECK(instruction_of(asked("bear", "a golden bear", "make the bear golden")) ==
+                  "make the bear golden");
     DOCTEST_CHECK(instruction_of(asked("bear", "a golden bear")) == "turn the bear into golden bear");
-    DOCTEST_CHECK(instruction_of(asked("teddy bear", "The teddy bear wearing a hat.")) == "turn the teddy bear into teddy bear wearing a hat");
+    DOCTEST_CHECK(instruction_of(asked("teddy bear", "The teddy bear wearing a hat.")) ==
+                  "turn the teddy bear into teddy bear wearing a hat");
     DOCTEST_CHECK(instruction_of(asked("bear", "an orange * bear")) == "turn the bear into orange bear");
     DOCTEST_CHECK(instruction_of(asked("", "a snowy garden")) == "make it snowy garden");
-    DOCTEST_CHECK(instruction_of(asked("bear", "andalusian bear")) == "turn the bear into andalusian bear");   // no article
+    DOCTEST_CHECK(instruction_of(asked("bear", "andalusian bear")) ==
+                  "turn the bear into andalusian bear");  // no article
 }
 
 }  // namespace instruction_test

@@ -19,7 +19,7 @@ using namespace gse;
 namespace {
 
 constexpr int Side = 48;
-constexpr std::size_t Wrong = 4;   // the view that looks at the other ball
+constexpr std::size_t Wrong = 4;  // the view that looks at the other ball
 
 /// "ball" is drawn to what is red; in one view, told by its picture, to what is green.
 class MisledAttention : public edit::AttentionSource {
@@ -40,7 +40,7 @@ public:
     }
     int image_size() const override { return Side; }
     Image wrong;
-    float scale = 1;   // of what it draws in that view
+    float scale = 1;  // of what it draws in that view
 };
 
 struct Search {
@@ -96,7 +96,7 @@ DOCTEST_TEST_CASE("a view that is left out has no say: the label is that of a se
         DOCTEST_CHECK((without.views[v].step == edit::ViewStep::LeftOut) == (v == Wrong));
         DOCTEST_CHECK(without.views[v].failed == (v == Wrong));
     }
-    DOCTEST_CHECK(without.views[Wrong].mask.data == misled.views[Wrong].mask.data);   // still to be seen
+    DOCTEST_CHECK(without.views[Wrong].mask.data == misled.views[Wrong].mask.data);  // still to be seen
     DOCTEST_CHECK(without.confidence.value > misled.confidence.value);
     Search fewer;
     fewer.attention.wrong = {};
@@ -107,24 +107,28 @@ DOCTEST_TEST_CASE("a view that is left out has no say: the label is that of a se
     DOCTEST_CHECK(without.confidence.value == doctest::Approx(expected.confidence.value));
 }
 
-DOCTEST_TEST_CASE("so many views can be left out that too few are left, and a view that is not there cannot") {
+DOCTEST_TEST_CASE(
+    "so many views can be left out that too few are left, and a view that is not there cannot") {
     Search search;
     search.request.left_out = "0, 1, 2, 3, 4, 5, 6, 7";
     const auto few = search.run();
     DOCTEST_CHECK(few.problem == edit::SearchProblem::FewViews);
     DOCTEST_CHECK(few.message.find("2 of 2 views") != std::string::npos);
     search.request.left_out = "10";
-    DOCTEST_CHECK_THROWS_WITH_AS(search.run(), doctest::Contains("view 10 is to be left out, but the last one is 9"), Error);
+    DOCTEST_CHECK_THROWS_WITH_AS(
+        search.run(), doctest::Contains("view 10 is to be left out, but the last one is 9"), Error);
 }
 
-DOCTEST_TEST_CASE("a view in which the word draws much less attention than in the others has no say, and tells why") {
+DOCTEST_TEST_CASE(
+    "a view in which the word draws much less attention than in the others has no say, and tells why") {
     Search search;
     search.request.left_out = std::to_string(Wrong);
     const auto without = search.run();
     search.request.left_out.clear();
     search.attention.scale = 0.3f;
     const auto faint = search.run();
-    for (std::size_t v = 0; v < faint.views.size(); ++v) DOCTEST_CHECK((faint.views[v].step == edit::ViewStep::Faint) == (v == Wrong));
+    for (std::size_t v = 0; v < faint.views.size(); ++v)
+        DOCTEST_CHECK((faint.views[v].step == edit::ViewStep::Faint) == (v == Wrong));
     DOCTEST_CHECK(faint.views[Wrong].failed);
     DOCTEST_CHECK(faint.views[Wrong].mask.count() == 0);
     DOCTEST_CHECK(*faint.label.bits == *without.label.bits);
@@ -135,7 +139,7 @@ DOCTEST_TEST_CASE("faint is what is far below most, in at most half of the views
     DOCTEST_CHECK(edit::faint_views({}).empty());
     DOCTEST_CHECK(edit::faint_views({0.5f, 0.4f, 0.45f, 0.5f}).empty());
     DOCTEST_CHECK(edit::faint_views({0.5f, 0.1f, 0.45f, 0.5f}) == std::vector<std::size_t>{1});
-    DOCTEST_CHECK(edit::faint_views({0.1f, 0.1f, 0.1f, 0.5f}).empty());   // most are so
+    DOCTEST_CHECK(edit::faint_views({0.1f, 0.1f, 0.1f, 0.5f}).empty());  // most are so
     DOCTEST_CHECK(edit::faint_views({0.1f, 0.12f, 0.45f, 0.5f, 0.5f}).size() == 2);
     DOCTEST_CHECK(edit::faint_views(std::vector<float>(5, 0.0f)).empty());
 }
@@ -148,7 +152,8 @@ DOCTEST_TEST_CASE("something new is not put where only a view says that was left
     const auto located = search.run();
     DOCTEST_CHECK(located.views[Wrong].step == edit::ViewStep::LeftOut);
     DOCTEST_CHECK(located.views[Wrong].failed);
-    DOCTEST_CHECK(*located.source_label.bits != std::vector<std::uint8_t>(located.source_label.bits->size()));   // that was found by all
+    DOCTEST_CHECK(*located.source_label.bits !=
+                  std::vector<std::uint8_t>(located.source_label.bits->size()));  // that was found by all
 }
 
 DOCTEST_TEST_CASE("a search tells of every view as it is attended, then with its mask") {
@@ -163,7 +168,7 @@ DOCTEST_TEST_CASE("a search tells of every view as it is attended, then with its
     DOCTEST_CHECK(attended.size() == search.views.size());
     DOCTEST_CHECK(masked.size() == search.views.size());
     DOCTEST_CHECK(order.front() == 0);
-    DOCTEST_CHECK(order[1] == 1);   // one by one, not all at the end
+    DOCTEST_CHECK(order[1] == 1);  // one by one, not all at the end
     for (const auto& [view, times] : masked) DOCTEST_CHECK(times == 1);
 }
 

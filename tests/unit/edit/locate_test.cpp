@@ -30,7 +30,8 @@ double iou(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& 
 class ColourAttention : public edit::AttentionSource {
 public:
     std::vector<Image> locate(const edit::AttentionQuery& query) override {
-        if (query.words.size() > most_words) throw Error(ErrorCode::NotFound, "a word stands beyond what the model reads");
+        if (query.words.size() > most_words)
+            throw Error(ErrorCode::NotFound, "a word stands beyond what the model reads");
         queries.push_back({query.prompt, query.words.front(), query.absent, query.seed, query.words});
         Image map(query.image.width, query.image.height, 1);
         const bool blind = calls++ % 12 < blind_views;
@@ -39,7 +40,8 @@ public:
                 const int source = query.absent ? y + hat_shift : y;  // absent things are drawn above the red
                 if (source < map.height) map.at(x, y, 0) = redness(query.image, x, source);
             }
-        std::vector<Image> maps{localize::resize_image(localize::resize_image(map, 16, 16), map.width, map.height)};
+        std::vector<Image> maps{
+            localize::resize_image(localize::resize_image(map, 16, 16), map.width, map.height)};
         for (std::size_t rival = 1; rival < query.words.size(); ++rival) {  // all other words: the lower half
             maps.emplace_back(map.width, map.height, 1);
             for (int y = map.height / 2; y < map.height; ++y)
@@ -74,7 +76,8 @@ public:
         auto maps = ColourAttention::locate(query);
         if (queries.size() % 12 == 1)
             for (int y = 0; y < maps[0].height; ++y)
-                for (int x = 0; x < maps[0].width / 3; ++x) maps[0].at(x, y, 0) = std::max(maps[0].at(x, y, 0), Beside * maximum(maps[0]));
+                for (int x = 0; x < maps[0].width / 3; ++x)
+                    maps[0].at(x, y, 0) = std::max(maps[0].at(x, y, 0), Beside * maximum(maps[0]));
         return maps;
     }
 
@@ -99,8 +102,8 @@ public:
 /// Leaves out the lower part of what is red, as if it had another colour.
 class TopSegmenter : public edit::Segmenter {
 public:
-    Mask segment(const Image& image, const std::vector<edit::PointPrompt>&, const std::optional<edit::BoxPrompt>&,
-                 const Image&) override {
+    Mask segment(const Image& image, const std::vector<edit::PointPrompt>&,
+                 const std::optional<edit::BoxPrompt>&, const Image&) override {
         Mask mask(image.width, image.height);
         for (int y = 0; y < image.height / 2 + 2; ++y)
             for (int x = 0; x < image.width; ++x)
@@ -115,8 +118,8 @@ public:
 /// Takes whatever is not black.
 class GreedySegmenter : public edit::Segmenter {
 public:
-    Mask segment(const Image& image, const std::vector<edit::PointPrompt>&, const std::optional<edit::BoxPrompt>&,
-                 const Image&) override {
+    Mask segment(const Image& image, const std::vector<edit::PointPrompt>&,
+                 const std::optional<edit::BoxPrompt>&, const Image&) override {
         Mask mask(image.width, image.height);
         for (int y = 0; y < image.height; ++y)
             for (int x = 0; x < image.width; ++x)
@@ -206,7 +209,8 @@ DOCTEST_TEST_CASE("the same seed asks and answers the same; views get seeds of t
     }
 }
 
-DOCTEST_TEST_CASE("views in which nothing is found do not vote; too many of them label nothing and show why") {
+DOCTEST_TEST_CASE(
+    "views in which nothing is found do not vote; too many of them label nothing and show why") {
     const Quiet quiet;
     const auto request = request_for("a blue ball", "blue");
     Fixture some;
@@ -222,7 +226,7 @@ DOCTEST_TEST_CASE("views in which nothing is found do not vote; too many of them
     DOCTEST_CHECK(lost.problem == edit::SearchProblem::FewViews);
     DOCTEST_CHECK(lost.message.find("5 of 12") != std::string::npos);
     DOCTEST_CHECK(lost.remedy.find("by hand") != std::string::npos);
-    DOCTEST_CHECK(lost.remedy.find("--") == std::string::npos);   // the window says it too
+    DOCTEST_CHECK(lost.remedy.find("--") == std::string::npos);  // the window says it too
     DOCTEST_CHECK(lost.failed_views == 7);
     DOCTEST_REQUIRE(lost.views.size() == 12);
     for (const auto& view : lost.views) {
@@ -237,12 +241,13 @@ DOCTEST_TEST_CASE("a view says in which step it failed") {
     const Quiet quiet;
     Fixture fixture;
     auto request = request_for("a blue ball", "blue");
-    request.dbscan_min_samples = 1000;   // no pixel has so many neighbours
+    request.dbscan_min_samples = 1000;  // no pixel has so many neighbours
     const auto scattered = edit::locate(fixture.input(request), fixture.tools());
     DOCTEST_CHECK(scattered.problem == edit::SearchProblem::FewViews);
     for (const auto& view : scattered.views) DOCTEST_CHECK(view.step == edit::ViewStep::TooLittle);
     DOCTEST_CHECK(scattered.remedy.find("lower the attention threshold") != std::string::npos);
-    for (const auto step : {edit::ViewStep::NoAttention, edit::ViewStep::TooLittle, edit::ViewStep::Everything})
+    for (const auto step :
+         {edit::ViewStep::NoAttention, edit::ViewStep::TooLittle, edit::ViewStep::Everything})
         DOCTEST_CHECK((!edit::step_text(step).empty() && !edit::step_remedy(step).empty()));
 }
 
@@ -283,7 +288,8 @@ DOCTEST_TEST_CASE("one or two splats are no thing") {
     const auto whole = fixture.scene;
     for (const std::size_t red : {2, 12}) {
         auto keep = whole.first;
-        for (std::size_t row = 0, left = red; row < keep.size(); ++row) keep[row] = keep[row] == 0 || (left > 0 && left-- > 0) ? 1 : 0;
+        for (std::size_t row = 0, left = red; row < keep.size(); ++row)
+            keep[row] = keep[row] == 0 || (left > 0 && left-- > 0) ? 1 : 0;
         fixture.scene.set = whole.set.filtered(keep);
         const auto found = edit::locate(fixture.input(request), fixture.tools());
         const auto labelled = std::count(found.label.bits->begin(), found.label.bits->end(), std::uint8_t{1});
@@ -293,10 +299,11 @@ DOCTEST_TEST_CASE("one or two splats are no thing") {
     }
 }
 
-DOCTEST_TEST_CASE("a word that is found in everything is not found where the sentence names other things too") {
+DOCTEST_TEST_CASE(
+    "a word that is found in everything is not found where the sentence names other things too") {
     const Quiet quiet;
     Fixture fixture;
-    fixture.scene.set = fixture.scene.set.filtered(fixture.scene.first);   // the red ball alone
+    fixture.scene.set = fixture.scene.set.filtered(fixture.scene.first);  // the red ball alone
     auto request = request_for("a blue ball", "blue");
     request.least_confidence = 0.05;
     const auto alone = edit::locate(fixture.input(request), fixture.tools());
@@ -308,7 +315,7 @@ DOCTEST_TEST_CASE("a word that is found in everything is not found where the sen
     DOCTEST_CHECK(all.confidence.share > 0.97);
     DOCTEST_CHECK(all.confidence.value == 0);
     DOCTEST_CHECK(all.problem == edit::SearchProblem::Unsure);
-    request.rivals = "none";   // whoever knows better may say so
+    request.rivals = "none";  // whoever knows better may say so
     DOCTEST_CHECK(edit::locate(fixture.input(request), fixture.tools()).problem == edit::SearchProblem::None);
 }
 
@@ -355,21 +362,24 @@ DOCTEST_TEST_CASE("what another thing of the sentence attends to for sure is not
     const Quiet quiet;
     Fixture fixture;
     GreedySegmenter segmenter;
-    auto request = request_for("a blue ball on the grass", "blue");   // "grass" attends to the lower half, the ball's too
-    request.label_smoothness = 0;   // every splat for itself: the votes alone
+    auto request =
+        request_for("a blue ball on the grass", "blue");  // "grass" attends to the lower half, the ball's too
+    request.label_smoothness = 0;                         // every splat for itself: the votes alone
     const auto found = edit::locate(fixture.input(request), fixture.tools(&segmenter));
     DOCTEST_CHECK(std::count_if(found.views.begin(), found.views.end(),
                                 [](const auto& view) { return view.branch == "points"; }) > 6);
     DOCTEST_CHECK(fixture.attention.queries.front().prompt == "a blue ball on the grass");
     const double competing = iou(*found.label.bits, fixture.scene.first);
-    DOCTEST_CHECK(competing > LeastIouUnrefined);   // the ball is kept, its lower half too
+    DOCTEST_CHECK(competing > LeastIouUnrefined);  // the ball is kept, its lower half too
     request.rivals = "none";
     const auto alone = edit::locate(fixture.input(request), fixture.tools(&segmenter));
     constexpr double least_gain = 0.05;  // the other ball's lower half, in the views whose mask takes it
     DOCTEST_CHECK(competing > iou(*alone.label.bits, fixture.scene.first) + least_gain);
 }
 
-DOCTEST_TEST_CASE("a thing of the sentence that the model cannot read does not end the search; one that was asked for does") {
+DOCTEST_TEST_CASE(
+    "a thing of the sentence that the model cannot read does not end the search; one that was asked for "
+    "does") {
     const Quiet quiet;
     Fixture fixture;
     fixture.attention.most_words = 1;
@@ -385,15 +395,15 @@ DOCTEST_TEST_CASE("what the attention covers belongs to the thing, even where th
     Fixture fixture;
     TopSegmenter segmenter;
     auto request = request_for("a blue ball", "blue");
-    request.label_smoothness = 0;   // every splat for itself: the votes alone
+    request.label_smoothness = 0;  // every splat for itself: the votes alone
     const auto found = edit::locate(fixture.input(request), fixture.tools(&segmenter));
     DOCTEST_CHECK(std::count_if(found.views.begin(), found.views.end(),
                                 [](const auto& view) { return view.branch == "points"; }) > 6);
     const double covered = iou(*found.label.bits, fixture.scene.first);
     DOCTEST_CHECK(covered > LeastIouUnrefined);
-    request.tau = 0.6;   // more than half a vote: the masks must agree
+    request.tau = 0.6;  // more than half a vote: the masks must agree
     const auto strict = edit::locate(fixture.input(request), fixture.tools(&segmenter));
-    constexpr double least_gain = 0.1;   // the part left out is a third of the ball
+    constexpr double least_gain = 0.1;  // the part left out is a third of the ball
     DOCTEST_CHECK(covered > iou(*strict.label.bits, fixture.scene.first) + least_gain);
 }
 
@@ -406,9 +416,12 @@ DOCTEST_TEST_CASE("a segmenter that is trusted trims the attention") {
     const auto joined = edit::locate(fixture.input(request), fixture.tools(&segmenter));
     segmenter.trusted_ = true;
     const auto trimmed = edit::locate(fixture.input(request), fixture.tools(&segmenter));
-    const auto labelled = [](const auto& found) { return std::count(found.label.bits->begin(), found.label.bits->end(), 1); };
+    const auto labelled = [](const auto& found) {
+        return std::count(found.label.bits->begin(), found.label.bits->end(), 1);
+    };
     DOCTEST_CHECK(labelled(trimmed) > 0);
-    DOCTEST_CHECK(labelled(trimmed) < 0.9 * static_cast<double>(labelled(joined)));   // it leaves a third of the ball out
+    DOCTEST_CHECK(labelled(trimmed) <
+                  0.9 * static_cast<double>(labelled(joined)));  // it leaves a third of the ball out
 }
 
 DOCTEST_TEST_CASE("a text segmenter that agrees with the attention is believed") {
@@ -453,8 +466,10 @@ DOCTEST_TEST_CASE("attention has to be surer of what is not there yet") {
                 if (view.region.data[i] != 0) least = std::min<double>(least, view.map.data[i]);
         return least;
     };
-    const double there = least_inside(request_for("a blue ball", "blue")), absent = least_inside(request_for("a ball with a hat", "hat"));
-    DOCTEST_CHECK(absent > there + 0.15 * level);   // a region is a little more than the pixels above the level
+    const double there = least_inside(request_for("a blue ball", "blue")),
+                 absent = least_inside(request_for("a ball with a hat", "hat"));
+    DOCTEST_CHECK(absent >
+                  there + 0.15 * level);  // a region is a little more than the pixels above the level
     DOCTEST_CHECK(absent < there + 0.25 * level);
 }
 
@@ -491,9 +506,7 @@ DOCTEST_TEST_CASE("an empty scene, no views and a stop are errors of their own")
     try {
         edit::locate(fixture.input(request), tools);
         DOCTEST_CHECK(false);
-    } catch (const Error& error) {
-        DOCTEST_CHECK(error.code() == ErrorCode::Cancelled);
-    }
+    } catch (const Error& error) { DOCTEST_CHECK(error.code() == ErrorCode::Cancelled); }
 }
 
 DOCTEST_TEST_CASE("what the sentence replaces is looked for in the sentence as it was before") {
@@ -556,12 +569,13 @@ DOCTEST_TEST_CASE("a threshold at which another view is at odds with the rest as
         return asked;
     };
     const auto low = asked_at(0.3, 0.6), high = asked_at(0.6, 0.3);
-    DOCTEST_CHECK(low[0] > high[0]);   // the view is asked again
+    DOCTEST_CHECK(low[0] > high[0]);  // the view is asked again
     DOCTEST_CHECK(low[1] == low[0]);
     DOCTEST_CHECK(high[1] == high[0]);
 }
 
-DOCTEST_TEST_CASE("attention is asked about whole phrases, in the sentence as every part of the model is told it") {
+DOCTEST_TEST_CASE(
+    "attention is asked about whole phrases, in the sentence as every part of the model is told it") {
     const Quiet quiet;
     auto request = request_for("A Blue, * beach ball on Grass!", "blue");
     request.source = "beach ball";
@@ -572,10 +586,12 @@ DOCTEST_TEST_CASE("attention is asked about whole phrases, in the sentence as ev
     const auto& query = fixture.attention.queries.front();
     DOCTEST_CHECK(query.prompt == edit::as_told(request.prompt));
     DOCTEST_CHECK(query.prompt == "a blue * beach ball on grass");
-    DOCTEST_CHECK(query.words == std::vector<std::string>{"beach ball", "grass"});   // its head is no rival of the phrase
+    DOCTEST_CHECK(query.words ==
+                  std::vector<std::string>{"beach ball", "grass"});  // its head is no rival of the phrase
     request.rivals = "top hat, grass";
     edit::locate(fixture.input(request), fixture.tools());
-    DOCTEST_CHECK(fixture.attention.queries.back().words == std::vector<std::string>{"beach ball", "top hat", "grass"});
+    DOCTEST_CHECK(fixture.attention.queries.back().words ==
+                  std::vector<std::string>{"beach ball", "top hat", "grass"});
 }
 
 DOCTEST_TEST_CASE("networks see a ground that is no part of the scene, and the views agree on it") {
@@ -589,7 +605,7 @@ DOCTEST_TEST_CASE("networks see a ground that is no part of the scene, and the v
     };
     const edit::PlainGround plain{{{0, 2, 0}, 1, 1, 1}, {0, -1, 0}, {0, 0, 0.2f}, {0, 0, 0.5f}};
     const auto before_black = seen({}), before_plain = seen(plain);
-    DOCTEST_CHECK(*before_plain.label.bits == *before_black.label.bits);   // both are as red as black
+    DOCTEST_CHECK(*before_plain.label.bits == *before_black.label.bits);  // both are as red as black
     DOCTEST_CHECK(before_plain.on_ground);
     DOCTEST_CHECK_FALSE(before_black.on_ground);
     DOCTEST_CHECK(before_plain.views[0].render.at(0, 0, 2) == doctest::Approx(plain.sky[2]));

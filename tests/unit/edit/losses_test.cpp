@@ -135,7 +135,8 @@ DOCTEST_TEST_CASE("the preservation loss and its gradient agree with the definit
     }
 }
 
-DOCTEST_TEST_CASE("a change in a corner costs what the definition says, and pushes nothing farther off than two windows") {
+DOCTEST_TEST_CASE(
+    "a change in a corner costs what the definition says, and pushes nothing farther off than two windows") {
     const Image original = random_image(60, 50, 6);
     for (const auto& [x0, y0] : {std::array{0, 0}, {57, 47}, {30, 20}, {0, 25}}) {
         Image image = original;
@@ -148,7 +149,8 @@ DOCTEST_TEST_CASE("a change in a corner costs what the definition says, and push
         const double loss = preservation.add_gradient(image, original, Mask(60, 50), gradient);
         DOCTEST_CHECK(loss == doctest::Approx(plain_loss(image, original)).epsilon(1e-5));
         double largest = 0;
-        for (const float value : gradient.data) largest = std::max(largest, std::abs(static_cast<double>(value)));
+        for (const float value : gradient.data)
+            largest = std::max(largest, std::abs(static_cast<double>(value)));
         for (int y = 0; y < 50; ++y)
             for (int x = 0; x < 60; ++x) {
                 const bool near = x >= x0 - 10 && x < x0 + 13 && y >= y0 - 10 && y < y0 + 13;
@@ -160,7 +162,8 @@ DOCTEST_TEST_CASE("a change in a corner costs what the definition says, and push
                 down.data[i] -= static_cast<float>(Step);
                 const double slope = (plain_loss(up, original) - plain_loss(down, original)) /
                                      (static_cast<double>(up.data[i]) - down.data[i]);
-                if (image.data[i] != original.data[i]) DOCTEST_CHECK(std::abs(gradient.data[i] - slope) < GradientTolerance * largest);
+                if (image.data[i] != original.data[i])
+                    DOCTEST_CHECK(std::abs(gradient.data[i] - slope) < GradientTolerance * largest);
             }
     }
 }

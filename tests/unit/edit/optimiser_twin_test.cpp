@@ -17,9 +17,10 @@ namespace {
 using namespace gse;
 
 constexpr double Extent = 3;
-constexpr double StepError = 3e-6;    // of one Adam step in float, relative: a dozen roundings
-constexpr double ValueError = 1.2e-7; // of a value that is stored as float, relative
-constexpr double SsimLossError = 2e-6, SsimGradientError = 2e-4;   // relative; the gradient's to its largest value
+constexpr double StepError = 3e-6;     // of one Adam step in float, relative: a dozen roundings
+constexpr double ValueError = 1.2e-7;  // of a value that is stored as float, relative
+constexpr double SsimLossError = 2e-6,
+                 SsimGradientError = 2e-4;  // relative; the gradient's to its largest value
 
 /// One value under Adam (Kingma and Ba 2015, algorithm 1), beta 0.9 / 0.999, eps 1e-15.
 struct AdamTwin {
@@ -27,8 +28,8 @@ struct AdamTwin {
     double step(double gradient, double rate, int count) {
         first = 0.9 * first + 0.1 * gradient;
         second = 0.999 * second + 0.001 * gradient * gradient;
-        const double change =
-            rate * (first / (1 - std::pow(0.9, count))) / (std::sqrt(second / (1 - std::pow(0.999, count))) + 1e-15);
+        const double change = rate * (first / (1 - std::pow(0.9, count))) /
+                              (std::sqrt(second / (1 - std::pow(0.999, count))) + 1e-15);
         value -= change;
         return change;
     }
@@ -47,20 +48,23 @@ struct Attribute {
 };
 
 struct TwinStep {
-    std::vector<double> values, rates;   // of the labelled rows
+    std::vector<double> values, rates;  // of the labelled rows
     double anchor_loss = 0;
 };
 
-/// GSEditPro eq. 6: the mean over the values of weight * generation's weight * (value - anchor)^2, and Adam on both gradients.
-TwinStep twin_step(const Attribute& a, const edit::RowTable& table, const edit::GenerationSchedule& schedule, double row_factor,
-                   int count) {
+/// GSEditPro eq. 6: the mean over the values of weight * generation's weight * (value - anchor)^2, and Adam
+/// on both gradients.
+TwinStep twin_step(const Attribute& a, const edit::RowTable& table, const edit::GenerationSchedule& schedule,
+                   double row_factor, int count) {
     TwinStep result;
     const std::size_t size = a.anchor.size();
     for (std::size_t i = 0; i < size; ++i) {
         const std::size_t row = i / a.stride;
-        AdamTwin twin{a.values[a.first_row * a.stride + i], a.moments.first.empty() ? 0.0 : a.moments.first[i],
+        AdamTwin twin{a.values[a.first_row * a.stride + i],
+                      a.moments.first.empty() ? 0.0 : a.moments.first[i],
                       a.moments.second.empty() ? 0.0 : a.moments.second[i]};
-        const double factor = a.anchor_weight / static_cast<double>(size) * schedule.weight(table.generation[row]);
+        const double factor =
+            a.anchor_weight / static_cast<double>(size) * schedule.weight(table.generation[row]);
         const double away = twin.value - static_cast<double>(a.anchor[i]);
         result.anchor_loss += factor * away * away;
         const double share = table.origin[row] >= 0 ? row_factor : 1;
@@ -84,7 +88,8 @@ edit::EditRequest twin_request() {
     request.colour_coupling = 0;
     request.anchor_first = 0.5;
     request.anchor_colour = 20;
-    request.rate_scale = request.rate_colour = request.rate_sh = request.rate_opacity = 1e-3;   // far from every guard
+    request.rate_scale = request.rate_colour = request.rate_sh = request.rate_opacity =
+        1e-3;  // far from every guard
     request.densify_percent = 0.1;
     request.min_opacity = 0;
     return request;
@@ -99,7 +104,8 @@ struct Plane {
     int width = 0, height = 0;
     std::vector<double> values;
     double at(int x, int y) const {
-        return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+        return values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(x)];
     }
 };
 
@@ -113,14 +119,15 @@ Plane plane_of(const Image& image, std::size_t channel) {
 double ssim_loss(const Plane& a, const Plane& b) {
     std::array<double, 11> window{};
     double sum = 0, total = 0;
-    for (int i = 0; i < 11; ++i) sum += window[static_cast<std::size_t>(i)] = std::exp(-(i - 5) * (i - 5) / 4.5);
+    for (int i = 0; i < 11; ++i)
+        sum += window[static_cast<std::size_t>(i)] = std::exp(-(i - 5) * (i - 5) / 4.5);
     for (int y = 0; y < a.height; ++y)
         for (int x = 0; x < a.width; ++x) {
             double ma = 0, mb = 0, aa = 0, bb = 0, ab = 0;
             for (int v = std::max(0, y - 5); v <= std::min(a.height - 1, y + 5); ++v)
                 for (int u = std::max(0, x - 5); u <= std::min(a.width - 1, x + 5); ++u) {
-                    const double w =
-                        window[static_cast<std::size_t>(v - y + 5)] * window[static_cast<std::size_t>(u - x + 5)] / (sum * sum);
+                    const double w = window[static_cast<std::size_t>(v - y + 5)] *
+                                     window[static_cast<std::size_t>(u - x + 5)] / (sum * sum);
                     const double p = a.at(u, v), q = b.at(u, v);
                     ma += w * p, mb += w * q, aa += w * p * p, bb += w * q * q, ab += w * p * q;
                 }
@@ -132,7 +139,8 @@ double ssim_loss(const Plane& a, const Plane& b) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("Adam in float follows its twin in double for thousands of steps, for gradients from 1e-12 to 1e12") {
+DOCTEST_TEST_CASE(
+    "Adam in float follows its twin in double for thousands of steps, for gradients from 1e-12 to 1e12") {
     constexpr std::size_t count = 200;
     constexpr int steps = 3000;
     constexpr double rate = 0.01;
@@ -171,34 +179,38 @@ DOCTEST_TEST_CASE("every step of the working set is that of its twin: anchors by
         set.collect(gradients);
         const double loss = set.step(gradients, iteration, request);
         const double progress = static_cast<double>(iteration) / (request.iterations - 1);
-        const double position_rate =
-            Extent * std::pow(request.rate_position, 1 - progress) * std::pow(request.rate_position_end, progress);
+        const double position_rate = Extent * std::pow(request.rate_position, 1 - progress) *
+                                     std::pow(request.rate_position_end, progress);
         auto colour_rates = all_at(request.rate_sh);
         std::fill_n(colour_rates.begin(), 3, request.rate_colour);
         const GaussianData &was = before.rows, &now = set.rows();
         const std::size_t first = before.first_row, sh = was.sh_stride();
         const std::array<std::pair<Attribute, const std::vector<float>*>, 5> attributes{
-            {{{was.position, first, before.anchor.position, before.position, gradients.position, 3, request.anchor_position,
-               all_at(position_rate)},
+            {{{was.position, first, before.anchor.position, before.position, gradients.position, 3,
+               request.anchor_position, all_at(position_rate)},
               &now.position},
-             {{was.log_scale, first, before.anchor.log_scale, before.log_scale, gradients.log_scale, 3, request.anchor_scale,
-               all_at(request.rate_scale)},
+             {{was.log_scale, first, before.anchor.log_scale, before.log_scale, gradients.log_scale, 3,
+               request.anchor_scale, all_at(request.rate_scale)},
               &now.log_scale},
-             {{was.rotation, first, before.anchor.rotation, before.rotation, gradients.rotation, 4, request.anchor_rotation,
-               all_at(request.rate_rotation)},
+             {{was.rotation, first, before.anchor.rotation, before.rotation, gradients.rotation, 4,
+               request.anchor_rotation, all_at(request.rate_rotation)},
               &now.rotation},
-             {{was.opacity_logit, first, before.anchor.opacity_logit, before.opacity, gradients.opacity_logit, 1,
-               request.anchor_opacity, all_at(request.rate_opacity)},
+             {{was.opacity_logit, first, before.anchor.opacity_logit, before.opacity, gradients.opacity_logit,
+               1, request.anchor_opacity, all_at(request.rate_opacity)},
               &now.opacity_logit},
-             {{was.sh, first, before.anchor.sh, before.sh, gradients.sh, sh, request.anchor_colour, colour_rates}, &now.sh}}};
-        double twin_loss = 0, worst = 0;   // steps are of the size of their rate
+             {{was.sh, first, before.anchor.sh, before.sh, gradients.sh, sh, request.anchor_colour,
+               colour_rates},
+              &now.sh}}};
+        double twin_loss = 0, worst = 0;  // steps are of the size of their rate
         for (std::size_t k = 0; k < attributes.size(); ++k) {
             const auto& [attribute, values] = attributes[k];
-            const auto twin = twin_step(attribute, before, schedule, k < 4 ? request.geometry_share : 1, iteration + 1);
+            const auto twin =
+                twin_step(attribute, before, schedule, k < 4 ? request.geometry_share : 1, iteration + 1);
             twin_loss += twin.anchor_loss;
             for (std::size_t i = 0; i < twin.values.size(); ++i) {
                 const double allowed = StepError * twin.rates[i] + ValueError * std::abs(twin.values[i]);
-                worst = std::max(worst, std::abs((*values)[first * attribute.stride + i] - twin.values[i]) / allowed);
+                worst = std::max(
+                    worst, std::abs((*values)[first * attribute.stride + i] - twin.values[i]) / allowed);
                 ++compared;
             }
         }
@@ -214,7 +226,9 @@ DOCTEST_TEST_CASE("every step of the working set is that of its twin: anchors by
     DOCTEST_CHECK(compared > 60 * 150 * 20);
 }
 
-DOCTEST_TEST_CASE("the structural loss and its gradient are those of the twin: flat, black against white, and bright pictures") {
+DOCTEST_TEST_CASE(
+    "the structural loss and its gradient are those of the twin: flat, black against white, and bright "
+    "pictures") {
     constexpr int width = 19, height = 14;
     const auto filled = [&](std::uint64_t seed, double low, double high) {
         Image image(width, height, 3);
@@ -242,9 +256,10 @@ DOCTEST_TEST_CASE("the structural loss and its gradient are those of the twin: f
         const auto count = static_cast<double>(gradient.data.size());
         DOCTEST_CHECK(loss == doctest::Approx(twin_loss / count).epsilon(SsimLossError));
         const Plane other = plane_of(pair.b, 1);
-        for (const float value : gradient.data) largest = std::max(largest, std::abs(static_cast<double>(value)));
+        for (const float value : gradient.data)
+            largest = std::max(largest, std::abs(static_cast<double>(value)));
         Random random(11);
-        for (int trial = 0; trial < 25; ++trial) {   // central differences in double: exact to 1e-8
+        for (int trial = 0; trial < 25; ++trial) {  // central differences in double: exact to 1e-8
             constexpr double nudge = 1e-5;
             const std::size_t i = random.below(static_cast<std::uint64_t>(width) * height);
             Plane up = plane_of(pair.a, 1), down = up;

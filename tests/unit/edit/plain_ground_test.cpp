@@ -25,7 +25,8 @@ PlainGround ground_of(const std::string& sentence) { return *plain_ground(senten
 /// Where the camera sees a point of the world.
 std::pair<int, int> pixel_of(const Camera& camera, const Vec3& point) {
     const Vec3 at = camera.to_camera(point);
-    return {static_cast<int>(std::floor(camera.fx * at.x / at.z + camera.cx)), static_cast<int>(std::floor(camera.fy * at.y / at.z + camera.cy))};
+    return {static_cast<int>(std::floor(camera.fx * at.x / at.z + camera.cx)),
+            static_cast<int>(std::floor(camera.fy * at.y / at.z + camera.cy))};
 }
 
 /// Keeps what it was shown; answers with outlines or without.
@@ -45,7 +46,7 @@ public:
     }
     bool restyles() const override { return restyles_; }
     std::vector<std::vector<RoundView>> shown;
-    float covers = 0;   // of every pixel, what it tells
+    float covers = 0;  // of every pixel, what it tells
 
 private:
     bool outlines_, restyles_;
@@ -64,7 +65,9 @@ RoundView red_view() {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("the plain ground lies where the thing stands, three figures wide to every side, in the colour that the sentence names") {
+DOCTEST_TEST_CASE(
+    "the plain ground lies where the thing stands, three figures wide to every side, in the colour that the "
+    "sentence names") {
     const auto plain = ground_of("a red cat on the grass");
     const auto camera = Camera::look_at({0.5, -3, -6}, {0.5, 1, 2}, Up, 0.9, 200, 160);
     const auto picture = picture_of(plain, camera);
@@ -80,7 +83,8 @@ DOCTEST_TEST_CASE("the plain ground lies where the thing stands, three figures w
     DOCTEST_CHECK(picture.at(100, 1, 2) == doctest::Approx(plain.sky[2]));
     DOCTEST_CHECK(ground_of("a red cat").ground != plain.ground);
     DOCTEST_CHECK(ground_of("a red cat on the snow").ground != ground_of("a red cat").ground);
-    const auto below = Camera::look_at({0.5, 3, -6}, {0.5, 1, 2}, Up, 0.9, 40, 40);   // seen from under it, there is no more than that
+    const auto below = Camera::look_at({0.5, 3, -6}, {0.5, 1, 2}, Up, 0.9, 40,
+                                       40);  // seen from under it, there is no more than that
     for (const float value : picture_of(plain, below).data) DOCTEST_CHECK(std::isfinite(value));
 }
 
@@ -107,7 +111,7 @@ DOCTEST_TEST_CASE("only rounds that begin a new thing, and restyles, are shown t
     DOCTEST_CHECK(shown.rendered.data == picture_of(ground_of("a red cat"), view.view.camera).data);
     DOCTEST_CHECK(shown.original.data == shown.rendered.data);
     DOCTEST_CHECK(shown.backdrop.picture.data == shown.rendered.data);
-    Recorder silent(false);   // its pictures could not be cut out: the scene after all
+    Recorder silent(false);  // its pictures could not be cut out: the scene after all
     asked(silent, anew);
     DOCTEST_REQUIRE(silent.shown.size() == 2);
     DOCTEST_CHECK(silent.shown[1][0].rendered.data == view.rendered.data);
@@ -120,22 +124,24 @@ DOCTEST_TEST_CASE("only rounds that begin a new thing, and restyles, are shown t
     DOCTEST_CHECK(plain.shown[0][0].rendered.data == view.rendered.data);
     asked(restyles, {});
     const auto& styled = restyles.shown[0][0];
-    DOCTEST_CHECK(styled.rendered.at(16, 12, 0) == 1);   // what may change is shown as it is
+    DOCTEST_CHECK(styled.rendered.at(16, 12, 0) == 1);  // what may change is shown as it is
     DOCTEST_CHECK(styled.rendered.at(15, 12, 0) != 1);
 }
 
-DOCTEST_TEST_CASE("what is drawn on the plain ground is moved before the scene, as far as it is seen through") {
+DOCTEST_TEST_CASE(
+    "what is drawn on the plain ground is moved before the scene, as far as it is seen through") {
     auto view = red_view();
     RoundInput anew;
     anew.anew = true;
     for (const float covers : {0.0f, 0.25f, 1.0f}) {
-        Recorder model(true);   // draws what it was shown: nothing of its own
+        Recorder model(true);  // draws what it was shown: nothing of its own
         model.covers = covers;
         OnPlainGround on_ground(model, ground_of("a red cat"), BeforePlain::Nothing);
         const auto drawn = on_ground.edit({view}, anew, JobControl{});
         const auto& shown = model.shown[0][0].rendered;
         for (std::size_t i = 0; i < shown.data.size(); ++i)
-            DOCTEST_REQUIRE(drawn.images[0].data[i] == doctest::Approx(covers * shown.data[i] + (1 - covers) * view.rendered.data[i]));
+            DOCTEST_REQUIRE(drawn.images[0].data[i] ==
+                            doctest::Approx(covers * shown.data[i] + (1 - covers) * view.rendered.data[i]));
     }
 }
 
@@ -194,16 +200,19 @@ DOCTEST_TEST_CASE("how much ground there is around a thing is seen from above: a
         const auto standing = standing_of(column.set, column.bits, Up, {0, 0, -1});
         return ground_cover(column.set, column.bits, standing, Up, *rasterizer);
     };
-    const auto in_nothing = [&](const Column& column) { return ground_under("a cat", column.set, column.bits, Up, {0, 0, -1}, *rasterizer)->in_nothing; };
-    const auto field = column_on(1.6, 0), plinth = column_on(0.3, 0), bare = column_on(-1, 0), roof = column_on(1.6, 0.8), below = column_on(1.6, -1.5);
+    const auto in_nothing = [&](const Column& column) {
+        return ground_under("a cat", column.set, column.bits, Up, {0, 0, -1}, *rasterizer)->in_nothing;
+    };
+    const auto field = column_on(1.6, 0), plinth = column_on(0.3, 0), bare = column_on(-1, 0),
+               roof = column_on(1.6, 0.8), below = column_on(1.6, -1.5);
     DOCTEST_CHECK(cover(field) > 0.95);
     DOCTEST_CHECK_FALSE(in_nothing(field));
     DOCTEST_CHECK(cover(plinth) > 0);
     DOCTEST_CHECK(in_nothing(plinth));
     DOCTEST_CHECK(cover(bare) == 0);
     DOCTEST_CHECK(in_nothing(bare));
-    DOCTEST_CHECK(cover(roof) == 0);   // over its head is no ground
-    DOCTEST_CHECK(cover(below) > 0.95);   // it is worn, or held
+    DOCTEST_CHECK(cover(roof) == 0);     // over its head is no ground
+    DOCTEST_CHECK(cover(below) > 0.95);  // it is worn, or held
     const std::vector<std::uint8_t> other(3, 1);
     DOCTEST_CHECK_FALSE(ground_under("a cat", field.set, other, Up, {0, 0, -1}, *rasterizer).has_value());
 }
@@ -214,15 +223,19 @@ DOCTEST_TEST_CASE("a scene has a ground where that reaches out from under what r
     orbit.centre = {0, -0.5, 0};
     orbit.radius = 4;
     const auto views = orbit_views(orbit, 6, 32, 32);
-    const auto below = [&](const Column& column) { return ground_below("a cat", column.set, views, Up, *rasterizer); };
+    const auto below = [&](const Column& column) {
+        return ground_below("a cat", column.set, views, Up, *rasterizer);
+    };
     DOCTEST_CHECK_FALSE(below(column_on(1.6, 0)).has_value());
     const auto bare = below(column_on(-1, 0)), plinth = below(column_on(0.3, 0));
     DOCTEST_REQUIRE(bare.has_value());
     DOCTEST_CHECK(plinth.has_value());
-    DOCTEST_CHECK(std::abs(dot(bare->standing.foot, Up)) < 0.1);   // the lowest of it
+    DOCTEST_CHECK(std::abs(dot(bare->standing.foot, Up)) < 0.1);  // the lowest of it
     DOCTEST_CHECK_FALSE(ground_below("a cat", GaussianSet(), views, Up, *rasterizer).has_value());
-    orbit.radius = 0.3;   // so near that hardly anything else is seen
-    DOCTEST_CHECK_FALSE(ground_below("a cat", column_on(-1, 0).set, orbit_views(orbit, 6, 32, 32), Up, *rasterizer).has_value());
+    orbit.radius = 0.3;  // so near that hardly anything else is seen
+    DOCTEST_CHECK_FALSE(
+        ground_below("a cat", column_on(-1, 0).set, orbit_views(orbit, 6, 32, 32), Up, *rasterizer)
+            .has_value());
 }
 
 DOCTEST_TEST_CASE("a picture is moved before the plain ground by what it covers of its background") {
@@ -233,9 +246,12 @@ DOCTEST_TEST_CASE("a picture is moved before the plain ground by what it covers 
     const Image behind = picture_of(plain, camera);
     for (const float alpha : {0.0f, 0.25f, 1.0f}) {
         Image picture(32, 24, 3), covered(32, 24, 1, alpha);
-        for (std::size_t i = 0; i < picture.data.size(); ++i) picture.data[i] = alpha * red[i % 3] + (1 - alpha) * background[i % 3];
+        for (std::size_t i = 0; i < picture.data.size(); ++i)
+            picture.data[i] = alpha * red[i % 3] + (1 - alpha) * background[i % 3];
         const Image shown = before_plain(plain, camera, picture, covered, background);
-        for (std::size_t i = 0; i < shown.data.size(); ++i) DOCTEST_CHECK(shown.data[i] == doctest::Approx(alpha * red[i % 3] + (1 - alpha) * behind.data[i]));
+        for (std::size_t i = 0; i < shown.data.size(); ++i)
+            DOCTEST_CHECK(shown.data[i] ==
+                          doctest::Approx(alpha * red[i % 3] + (1 - alpha) * behind.data[i]));
     }
 }
 

@@ -1,4 +1,5 @@
-// A polish behind redrawn views: it pulls at their end only, and stays only where views that were not redrawn come nearer.
+// A polish behind redrawn views: it pulls at their end only, and stays only where views that were not redrawn
+// come nearer.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -29,7 +30,9 @@ struct Polishing : test::Redrawing {
     edit::Guidance& pull;
     edit::EditTools polishing{*rasterizer, pull, {}, {}};
     explicit Polishing(edit::Guidance& guidance) : pull(guidance) { polishing.views = &oracle; }
-    edit::EditResult polished(const edit::EditRequest& request) { return edit::run_edit(scene.set, plan, request, polishing); }
+    edit::EditResult polished(const edit::EditRequest& request) {
+        return edit::run_edit(scene.set, plan, request, polishing);
+    }
 };
 
 }  // namespace
@@ -55,7 +58,8 @@ DOCTEST_TEST_CASE("a polish that brings held-out views nearer is kept; what came
     DOCTEST_CHECK(!before.polish);
     DOCTEST_REQUIRE(result.history.size() == FitSteps + PolishSteps);
     DOCTEST_CHECK(edit::loop_steps(polished_request(), edit::EditMode::Modify) == FitSteps + PolishSteps);
-    for (std::size_t i = 0; i < before.history.size(); ++i) DOCTEST_CHECK(result.history[i].preservation == before.history[i].preservation);
+    for (std::size_t i = 0; i < before.history.size(); ++i)
+        DOCTEST_CHECK(result.history[i].preservation == before.history[i].preservation);
     DOCTEST_REQUIRE(iterations.size() == PolishSteps);
     DOCTEST_CHECK(iterations.front() == 0);
     DOCTEST_CHECK(iterations.back() == PolishSteps - 1);
@@ -86,7 +90,7 @@ DOCTEST_TEST_CASE("a polish that leads away is dropped again, bit by bit") {
 }
 
 DOCTEST_TEST_CASE("where every view is redrawn nothing tells whether a polish helps, and there is none") {
-    test::Redrawing run;   // its guidance throws when it is asked
+    test::Redrawing run;  // its guidance throws when it is asked
     auto request = polished_request();
     request.edited_views = static_cast<int>(run.plan.views.size());
     log::set_level(log::Level::Off);
@@ -101,7 +105,9 @@ DOCTEST_TEST_CASE("where every view is redrawn nothing tells whether a polish he
     DOCTEST_CHECK(test::same_bytes(result.set, plain.edited(request).set));
 }
 
-DOCTEST_TEST_CASE("a polish that is stopped is judged by what it came to, and goes on from a snapshot without redrawing the round") {
+DOCTEST_TEST_CASE(
+    "a polish that is stopped is judged by what it came to, and goes on from a snapshot without redrawing "
+    "the round") {
     std::stop_source stop;
     test::Redrawing scenes;
     edit::OracleGuidance oracle(scenes.target, scenes.plan.views, {}, *scenes.rasterizer);
@@ -129,7 +135,7 @@ DOCTEST_TEST_CASE("a polish that is stopped is judged by what it came to, and go
     DOCTEST_REQUIRE(result.polish);
     DOCTEST_CHECK(result.iterations == FitSteps + PolishSteps);
     DOCTEST_CHECK(result.polish->steps == PolishSteps - 5);
-    DOCTEST_REQUIRE(again.oracle.asked.size() == 1);   // the views that it is judged by
+    DOCTEST_REQUIRE(again.oracle.asked.size() == 1);  // the views that it is judged by
     DOCTEST_CHECK(again.oracle.asked[0].size() == edit::HeldOutViews);
     DOCTEST_CHECK(again.error_of(result.set) < again.error_of(stopped.set));
 }

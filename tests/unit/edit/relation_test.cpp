@@ -18,7 +18,7 @@ using edit::Relation;
 struct Said {
     std::string sentence, target;
     Relation relation;
-    std::string before;   // the sentence before the edit, of a bear
+    std::string before;  // the sentence before the edit, of a bear
 };
 
 const std::vector<Said>& table() {
@@ -80,7 +80,8 @@ DOCTEST_TEST_CASE("what stands somewhere is added, and the sentence before has n
 DOCTEST_TEST_CASE("compound prepositions name no things") {
     using Things = std::vector<std::string>;
     DOCTEST_CHECK(edit::things_named("a bear next to a ball") == Things{"bear", "ball"});
-    DOCTEST_CHECK(edit::things_named("a bear in front of a tree to the left of a ball") == Things{"bear", "tree", "ball"});
+    DOCTEST_CHECK(edit::things_named("a bear in front of a tree to the left of a ball") ==
+                  Things{"bear", "tree", "ball"});
 }
 
 }  // namespace relation_test

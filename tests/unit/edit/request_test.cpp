@@ -34,16 +34,11 @@ edit::EditMode mode_of(const std::string& source, const std::string& prompt, con
 }
 
 /// Another value that the field's range allows.
-template <class T>
-T changed(const T& value) {
-    if constexpr (std::is_same_v<T, bool>)
-        return !value;
-    else if constexpr (std::is_same_v<T, std::string>)
-        return value + "x";
-    else if constexpr (std::is_floating_point_v<T>)
-        return value > 0 ? value * T(0.9) : T(0.25);
-    else
-        return value + 1;
+template <class T> T changed(const T& value) {
+    if constexpr (std::is_same_v<T, bool>) return !value;
+    else if constexpr (std::is_same_v<T, std::string>) return value + "x";
+    else if constexpr (std::is_floating_point_v<T>) return value > 0 ? value * T(0.9) : T(0.25);
+    else return value + 1;
 }
 
 }  // namespace
@@ -81,12 +76,13 @@ DOCTEST_TEST_CASE("JSON with an unknown name, a wrong type or a value out of ran
     hostile.rate_colour = std::numeric_limits<double>::quiet_NaN();
     DOCTEST_CHECK_THROWS_AS(validated(hostile), Error);
     // A number without limits would let anything pass.
-    EditRequest::visit_fields(request, [](const char* name, const auto& value, const char*, const auto&... range) {
-        using Value = std::remove_cvref_t<decltype(value)>;
-        const bool limited = sizeof...(range) == 1 || !std::is_arithmetic_v<Value> || std::is_same_v<Value, bool> ||
-                             std::string(name) == "seed";
-        DOCTEST_CHECK_MESSAGE(limited, name);
-    });
+    EditRequest::visit_fields(
+        request, [](const char* name, const auto& value, const char*, const auto&... range) {
+            using Value = std::remove_cvref_t<decltype(value)>;
+            const bool limited = sizeof...(range) == 1 || !std::is_arithmetic_v<Value> ||
+                                 std::is_same_v<Value, bool> || std::string(name) == "seed";
+            DOCTEST_CHECK_MESSAGE(limited, name);
+        });
 }
 
 DOCTEST_TEST_CASE("a request is checked in one sentence") {
@@ -136,36 +132,45 @@ DOCTEST_TEST_CASE("the sentence decides whether something is changed or added") 
     DOCTEST_CHECK(edit::decide_mode(request, 1.0).first == EditMode::Add);
 }
 
-DOCTEST_TEST_CASE("another thing in the source's place replaces it, whatever word of its phrase is the new one") {
+DOCTEST_TEST_CASE(
+    "another thing in the source's place replaces it, whatever word of its phrase is the new one") {
     using edit::EditMode;
     const auto thing_of = [](const char* source, const char* prompt, const char* target) {
         return edit::thing_in_place(edit::validated(bear(source, prompt, target)));
     };
-    for (const auto& [source, prompt, target, thing] :
-         std::vector<std::array<const char*, 4>>{
-          {"bear", "a blue dog on the grass", "dog", "dog"}, {"bear", "a red cat on the grass", "red", "cat"},
-          {"bear", "a red cat on the grass", "grass", "cat"}, {"bear", "turn the bear into a wooden dog", "dog", "dog"},
-          {"chair", "a bear on a sofa", "sofa", "sofa"}, {"hat", "a bear wearing a crown", "crown", "crown"},
-          {"teddy bear", "a polar bear on the grass", "polar bear", "polar bear"}, {"car", "a small house", "small", "house"}}) {
+    for (const auto& [source, prompt, target, thing] : std::vector<std::array<const char*, 4>>{
+             {"bear", "a blue dog on the grass", "dog", "dog"},
+             {"bear", "a red cat on the grass", "red", "cat"},
+             {"bear", "a red cat on the grass", "grass", "cat"},
+             {"bear", "turn the bear into a wooden dog", "dog", "dog"},
+             {"chair", "a bear on a sofa", "sofa", "sofa"},
+             {"hat", "a bear wearing a crown", "crown", "crown"},
+             {"teddy bear", "a polar bear on the grass", "polar bear", "polar bear"},
+             {"car", "a small house", "small", "house"}}) {
         const char* sentence = prompt;
         DOCTEST_CAPTURE(sentence);
         DOCTEST_CHECK(thing_of(source, prompt, target) == thing);
         DOCTEST_CHECK(mode_of(source, prompt, target) == EditMode::Replace);
     }
     for (const auto& [source, prompt, target] :
-         std::vector<std::array<const char*, 3>>{
-          {"bear", "a blue bear on the grass", "blue"}, {"grass", "a bear on the snow", "snow"}, {"bear", "a bear made of gold", "gold"},
-          {"statue", "made of gold", "gold"}, {"bear", "turn the bear into stone", "stone"}, {"bear", "a bear wearing a hat", "hat"},
-          {"statue", "golden", "golden"}, {"bear", "a teddy bear on the grass", "teddy bear"}}) {
+         std::vector<std::array<const char*, 3>>{{"bear", "a blue bear on the grass", "blue"},
+                                                 {"grass", "a bear on the snow", "snow"},
+                                                 {"bear", "a bear made of gold", "gold"},
+                                                 {"statue", "made of gold", "gold"},
+                                                 {"bear", "turn the bear into stone", "stone"},
+                                                 {"bear", "a bear wearing a hat", "hat"},
+                                                 {"statue", "golden", "golden"},
+                                                 {"bear", "a teddy bear on the grass", "teddy bear"}}) {
         const char* sentence = prompt;
         DOCTEST_CAPTURE(sentence);
         DOCTEST_CHECK(thing_of(source, prompt, target).empty());
         DOCTEST_CHECK(mode_of(source, prompt, target) != EditMode::Replace);
     }
     auto request = bear("bear", "a red cat on the grass", "cat");
-    for (const char* asked : {"modify", "replace", "add"}) {   // what the artist says wins
+    for (const char* asked : {"modify", "replace", "add"}) {  // what the artist says wins
         request.mode = asked;
-        DOCTEST_CHECK(std::string(edit::mode_name(edit::decide_mode(edit::validated(request), std::nullopt).first)) == asked);
+        DOCTEST_CHECK(std::string(edit::mode_name(
+                          edit::decide_mode(edit::validated(request), std::nullopt).first)) == asked);
         DOCTEST_CHECK(edit::mode_name(*edit::mode_named(asked)) == std::string(asked));
     }
     DOCTEST_CHECK(!edit::mode_named("auto"));
@@ -176,12 +181,14 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     EditRequest request;
     request.method = "auto";
     request.shape_rounds = 2;
-    const auto recolour = edit::round_plan(request, EditMode::Modify), shape = edit::round_plan(request, EditMode::Replace);
+    const auto recolour = edit::round_plan(request, EditMode::Modify),
+               shape = edit::round_plan(request, EditMode::Replace);
     DOCTEST_CHECK(edit::edits_by_views(request));
     DOCTEST_CHECK(!recolour.anew);
     DOCTEST_CHECK(shape.anew);
     DOCTEST_CHECK(edit::loop_steps(request, EditMode::Modify) == request.rounds * request.fit_steps);
-    DOCTEST_CHECK(edit::loop_steps(request, EditMode::Replace) == request.shape_rounds * request.shape_fit_steps);
+    DOCTEST_CHECK(edit::loop_steps(request, EditMode::Replace) ==
+                  request.shape_rounds * request.shape_fit_steps);
     request.shape_strength = 0.9;
     request.shape_again_strength = 0.45;
     DOCTEST_CHECK(recolour.views == request.edited_views);
@@ -192,7 +199,8 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     DOCTEST_CHECK(half.steps_of(1) == 4);
     DOCTEST_CHECK(half.view_steps_within(2 * request.shape_fit_steps) == 12);
     DOCTEST_CHECK(half.view_steps_within(1) == 8);
-    request.shape_guided_until = 0.5;   // of 0.9 in eighths four are above it, of 0.45 in quarters none: the others count half
+    request.shape_guided_until =
+        0.5;  // of 0.9 in eighths four are above it, of 0.45 in quarters none: the others count half
     const auto guided = edit::round_plan(request, EditMode::Replace);
     DOCTEST_CHECK(guided.guided_steps_of(0) == 4 + 4 * 0.5);
     DOCTEST_CHECK(guided.guided_steps_of(1) == 4 * 0.5);
@@ -210,7 +218,8 @@ DOCTEST_TEST_CASE("what gets another shape has rounds of its own; what is set wi
     const EditRequest usual;
     DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true).geometry_share == usual.geometry_share);
     DOCTEST_CHECK(fields_to_json(edit::loop_request(usual, EditMode::Add, false)) == fields_to_json(usual));
-    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Replace, false).geometry_share == 1);   // by the paper's way, too
+    DOCTEST_CHECK(edit::loop_request(usual, EditMode::Replace, false).geometry_share ==
+                  1);  // by the paper's way, too
     // What is shown the scene begins from noise alone, unless it is asked otherwise.
     DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true).view_strength == usual.view_strength);
     DOCTEST_CHECK(edit::loop_request(usual, EditMode::Modify, true, true).view_strength == 1);
@@ -230,20 +239,24 @@ DOCTEST_TEST_CASE("the sentence before an edit lacks what the edit brings") {
     };
     DOCTEST_CHECK(before("a blue bear on the grass", "bear", "blue") == "a bear on the grass");
     DOCTEST_CHECK(before("a bear wearing a red hat on the grass", "bear", "hat") == "a bear on the grass");
-    DOCTEST_CHECK(before("a bear wearing a red hat on the grass", "hat", "red") == "a bear wearing a hat on the grass");
+    DOCTEST_CHECK(before("a bear wearing a red hat on the grass", "hat", "red") ==
+                  "a bear wearing a hat on the grass");
     DOCTEST_CHECK(before("a chair made of stone", "chair", "stone") == "a chair");
     DOCTEST_CHECK(before("a red bear standing on the sand", "bear", "sand") == "a red bear");
     DOCTEST_CHECK(before("turn the bear into a panda", "bear", "panda") == "turn the bear");
     DOCTEST_CHECK(before("a panda on the grass", "bear", "panda") == "a bear on the grass");
     DOCTEST_CHECK(before("a bear", "bear", "bear") == "a bear");
-    DOCTEST_CHECK(before("a small red cat on the grass", "bear", "cat") == "a bear on the grass");   // how the cat looks
+    DOCTEST_CHECK(before("a small red cat on the grass", "bear", "cat") ==
+                  "a bear on the grass");  // how the cat looks
     DOCTEST_CHECK(before("a bear on the deep snow", "grass", "snow") == "a bear on the grass");
 }
 
 DOCTEST_TEST_CASE("the things a sentence names are the heads of its noun phrases, each once") {
     using Things = std::vector<std::string>;
-    DOCTEST_CHECK(edit::things_named("a white dog wearing a golden crown on the snow") == Things{"dog", "crown", "snow"});
-    DOCTEST_CHECK(edit::things_named("A wooden chair in flames, on tiles.") == Things{"chair", "flames", "tiles"});
+    DOCTEST_CHECK(edit::things_named("a white dog wearing a golden crown on the snow") ==
+                  Things{"dog", "crown", "snow"});
+    DOCTEST_CHECK(edit::things_named("A wooden chair in flames, on tiles.") ==
+                  Things{"chair", "flames", "tiles"});
     DOCTEST_CHECK(edit::things_named("a chair made of stone beside a chair") == Things{"chair"});
     DOCTEST_CHECK(edit::things_named("a bear turned into a panda on the grass") == Things{"bear", "grass"});
     DOCTEST_CHECK(edit::things_named("on the") == Things{});
@@ -262,7 +275,8 @@ DOCTEST_TEST_CASE("the target is guessed from the sentence") {
     DOCTEST_CHECK(guessed_target("a golden statue", "statue") == "golden");
     DOCTEST_CHECK(guessed_target("a chair made of stone", "chair") == "stone");
     DOCTEST_CHECK(guessed_target("turn the bear into a panda", "bear") == "panda");
-    for (const char* sentence : {"turn the bear into a golden bear", "the bear is golden", "make the bear golden", "paint the bear golden on the grass"}) {
+    for (const char* sentence : {"turn the bear into a golden bear", "the bear is golden",
+                                 "make the bear golden", "paint the bear golden on the grass"}) {
         edit::EditRequest golden;
         golden.source = "bear";
         golden.prompt = sentence;
@@ -272,7 +286,7 @@ DOCTEST_TEST_CASE("the target is guessed from the sentence") {
         DOCTEST_CHECK_MESSAGE(edit::planned_mode(golden) == edit::EditMode::Modify, sentence);
     }
     DOCTEST_CHECK(guessed_target("a panda on the grass", "bear") == "panda");
-    DOCTEST_CHECK(guessed_target("a bear wearing a golden crown", "hat") == "crown");   // worn for worn
+    DOCTEST_CHECK(guessed_target("a bear wearing a golden crown", "hat") == "crown");  // worn for worn
     DOCTEST_CHECK(guessed_target("a bear wearing a golden crown", "dog") == "bear");
     DOCTEST_CHECK(guessed_target("a bear wearing a red hat", "hat") == "red");
     DOCTEST_CHECK(guessed_target("a photo of a bear", "bear") == "bear");
@@ -285,26 +299,33 @@ DOCTEST_TEST_CASE("all that a sentence says of the source or names may be its ne
     const auto possible = [](const char* sentence, const char* source, const Words& said = {}) {
         return edit::possible_targets(sentence, source, said);
     };
-    DOCTEST_CHECK(possible("a golden bear wearing a red hat on the snow", "bear") == Words{"hat", "golden", "snow"});
-    DOCTEST_CHECK(possible("a golden bear wearing a red hat on the snow", "bear", {"a", "bear", "hat", "red"}) == Words{"golden", "snow"});
-    DOCTEST_CHECK(possible("a golden bear on the snow", "grass") == Words{"snow"});   // ground for ground
+    DOCTEST_CHECK(possible("a golden bear wearing a red hat on the snow", "bear") ==
+                  Words{"hat", "golden", "snow"});
+    DOCTEST_CHECK(possible("a golden bear wearing a red hat on the snow", "bear",
+                           {"a", "bear", "hat", "red"}) == Words{"golden", "snow"});
+    DOCTEST_CHECK(possible("a golden bear on the snow", "grass") == Words{"snow"});  // ground for ground
     DOCTEST_CHECK(possible("a robot on the snow", "ground") == Words{"snow"});
     DOCTEST_CHECK(possible("a golden bear in the wind", "grass") == Words{"bear", "wind"});
-    DOCTEST_CHECK(possible("a red ball beside a bear", "bear") == Words{"bear", "ball"});   // the sentence alone does not tell
+    DOCTEST_CHECK(possible("a red ball beside a bear", "bear") ==
+                  Words{"bear", "ball"});  // the sentence alone does not tell
     DOCTEST_CHECK(possible("a blue bear", "bear", {"a", "blue", "bear"}) == Words{"blue"});
     DOCTEST_CHECK(possible("bear", "bear") == Words{"bear"});
     // What wears the source is there.
-    DOCTEST_CHECK(edit::possible_targets("a bear wearing a red hat on the grass", "hat", {}) == std::vector<std::string>{"red", "grass"});
-    DOCTEST_CHECK(edit::possible_targets("a big bear with a hat", "hat", {}) == std::vector<std::string>{"hat", "bear"});
+    DOCTEST_CHECK(edit::possible_targets("a bear wearing a red hat on the grass", "hat", {}) ==
+                  std::vector<std::string>{"red", "grass"});
+    DOCTEST_CHECK(edit::possible_targets("a big bear with a hat", "hat", {}) ==
+                  std::vector<std::string>{"hat", "bear"});
 }
 
 DOCTEST_TEST_CASE("what applied edits said already is no news") {
     using edit::guessed_target;
     const auto said = [](const std::vector<EditRequest>& applied) { return edit::words_said(applied); };
-    const auto blue = bear("bear", "a blue bear on the grass", "blue"), hat = bear("bear", "a blue bear wearing a hat", "hat");
+    const auto blue = bear("bear", "a blue bear on the grass", "blue"),
+               hat = bear("bear", "a blue bear wearing a hat", "hat");
     DOCTEST_CHECK(guessed_target("a blue bear wearing a hat", "bear", said({blue})) == "hat");
     DOCTEST_CHECK(guessed_target("a golden bear wearing a hat", "bear", said({blue, hat})) == "golden");
-    DOCTEST_CHECK(guessed_target("a blue bear wearing a hat and a scarf", "bear", said({blue, hat})) == "scarf");
+    DOCTEST_CHECK(guessed_target("a blue bear wearing a hat and a scarf", "bear", said({blue, hat})) ==
+                  "scarf");
     DOCTEST_CHECK(guessed_target("a blue bear wearing a red hat", "bear", said({blue, hat})) == "hat");
     // Nothing new: the sentence as it is, so that an edit can be repeated.
     DOCTEST_CHECK(guessed_target("a blue bear on the grass", "bear", said({blue})) == "blue");
@@ -316,7 +337,8 @@ DOCTEST_TEST_CASE("what applied edits said already is no news") {
     DOCTEST_CHECK(said({}).empty());
 }
 
-DOCTEST_TEST_CASE("source and target must be known to a model with a fixed vocabulary, other words need not") {
+DOCTEST_TEST_CASE(
+    "source and target must be known to a model with a fixed vocabulary, other words need not") {
     const std::vector<std::string> known{"a", "in", "the", "on", "bear", "pear", "hat", "golden", "grass"};
     const auto refused = [&](const EditRequest& request, bool by_hand) {
         try {
@@ -331,7 +353,7 @@ DOCTEST_TEST_CASE("source and target must be known to a model with a fixed vocab
     const auto sign = refused(bear("sign", "a golden sign", "golden"), false);
     for (const char* part : {"\"sign\"", "label it by hand instead", "bear", "grass"})
         DOCTEST_CHECK_MESSAGE(sign.find(part) != std::string::npos, sign);
-    DOCTEST_CHECK(sign.find("\"in\"") == std::string::npos);   // no suggestion: it is no thing
+    DOCTEST_CHECK(sign.find("\"in\"") == std::string::npos);  // no suggestion: it is no thing
     DOCTEST_CHECK(refused(bear("sign", "a golden sign", "golden"), true).empty());
     const auto hat = refused(bear("bear", "a bear wearing a sombrero", "sombrero"), true);
     DOCTEST_CHECK_MESSAGE(hat.find("\"sombrero\"") != std::string::npos, hat);
@@ -339,19 +361,22 @@ DOCTEST_TEST_CASE("source and target must be known to a model with a fixed vocab
     DOCTEST_CHECK(edit::nearest_words("bears", known) == std::vector<std::string>{"bear", "pear"});
     DOCTEST_CHECK(edit::nearest_words("hta", known) == std::vector<std::string>{"hat"});
     DOCTEST_CHECK(edit::nearest_words("sign", known).empty());
-    edit::require_known_words(edit::validated(bear("sign", "a jade sign", "jade")), {}, {}, false);   // an open vocabulary
+    edit::require_known_words(edit::validated(bear("sign", "a jade sign", "jade")), {}, {},
+                              false);  // an open vocabulary
 }
 
-DOCTEST_TEST_CASE("room for what is new: by its size where something is added, by pixels where something changes") {
+DOCTEST_TEST_CASE(
+    "room for what is new: by its size where something is added, by pixels where something changes") {
     edit::EditRequest request;
     request.dilate_px = 16;
     request.add_margin = 0.5;
     Mask mask(256, 256);
     for (int x = 40; x < 140; ++x) mask.at(x, 100) = 1;
-    DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Modify, mask) == 8);   // of a 512-pixel picture
+    DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Modify, mask) == 8);  // of a 512-pixel picture
     DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, mask) == 50);
     request.add_margin = 0.1;
-    DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, mask) == 16);     // never less than twice the pixels
+    DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, mask) ==
+                  16);  // never less than twice the pixels
     DOCTEST_CHECK(edit::mask_growth(request, edit::EditMode::Add, Mask(256, 256)) == 16);
 }
 

@@ -9,8 +9,7 @@
 namespace gse::test {
 
 /// Of every labelled row of `set`, all visible; each value from `number()`, lengths on the picture positive.
-template <class Number>
-raster::Gradients row_gradients(const edit::WorkingSet& set, Number&& number) {
+template <class Number> raster::Gradients row_gradients(const edit::WorkingSet& set, Number&& number) {
     raster::Gradients gradients;
     const auto fill = [&](LineFloats& values, std::size_t stride) {
         values.resize(set.labelled() * stride);

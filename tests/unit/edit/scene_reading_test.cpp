@@ -48,13 +48,14 @@ edit::EditRequest sentence() {
     return request;
 }
 
-edit::SceneReading read(const std::vector<std::vector<Image>>& pictures, const std::vector<std::string>& targets = {"hat", "golden", "snow"}) {
+edit::SceneReading read(const std::vector<std::vector<Image>>& pictures,
+                        const std::vector<std::string>& targets = {"hat", "golden", "snow"}) {
     int asked = 0;
     edit::Recognition recognition(std::make_unique<WordScore>(asked), {});
     auto reading = edit::read_scene(recognition, sentence(), targets, pictures);
     std::size_t all = 0;
     for (const auto& group : pictures) all += group.size();
-    DOCTEST_CHECK(asked == static_cast<int>(all));   // each picture once, whatever it is compared with
+    DOCTEST_CHECK(asked == static_cast<int>(all));  // each picture once, whatever it is compared with
     return reading;
 }
 
@@ -65,7 +66,8 @@ DOCTEST_TEST_CASE("the word that the pictures do not show is new") {
     DOCTEST_CHECK(read({{showing(1, 1, 0, 1)}}).target == "hat");
     DOCTEST_CHECK(read({{showing(1, 1, 1, 0)}}).target == "snow");
     // Of several pictures most decide.
-    DOCTEST_CHECK(read({{showing(0, 1, 1, 1), showing(0.01f, 1, 1, 1), showing(1, 0.9f, 0, 1)}}).target == "golden");
+    DOCTEST_CHECK(read({{showing(0, 1, 1, 1), showing(0.01f, 1, 1, 1), showing(1, 0.9f, 0, 1)}}).target ==
+                  "golden");
     // Nothing is new.
     DOCTEST_CHECK(read({{showing(1, 1, 1, 1)}}).target == "hat");
     DOCTEST_CHECK(read({{showing(0, 1, 1, 1)}}, {"snow"}).target == "snow");
@@ -77,14 +79,19 @@ DOCTEST_TEST_CASE("a word that the encoder is not told is new where the pictures
         request.prompt = "a pink bear wearing a hat";
         int asked = 0;
         edit::Recognition recognition(std::make_unique<WordScore>(asked), {});
-        return edit::read_scene(recognition, request, {"hat", "pink"}, {{picture}}, {"a", "bear", "wearing", "hat"}).target;
+        return edit::read_scene(recognition, request, {"hat", "pink"}, {{picture}},
+                                {"a", "bear", "wearing", "hat"})
+            .target;
     };
     DOCTEST_CHECK(read_pink(showing(0, 1, 1, 0)) == "pink");
     DOCTEST_CHECK(read_pink(showing(0, 1, 0, 0)) == "hat");
 }
 
 DOCTEST_TEST_CASE("distances whose pictures fit nearly as well as the best are kept, in their order") {
-    const auto reading = read({{showing(0.9f, 1, 0.5f, 0.2f)}, {showing(0, 1, 0.9f, 1)}, {showing(0, 1, 1, 1)}, {showing(0.3f, 0, 1, 1)}});
+    const auto reading = read({{showing(0.9f, 1, 0.5f, 0.2f)},
+                               {showing(0, 1, 0.9f, 1)},
+                               {showing(0, 1, 1, 1)},
+                               {showing(0.3f, 0, 1, 1)}});
     DOCTEST_CHECK(reading.target == "golden");
     DOCTEST_CHECK(reading.fit == doctest::Approx(1));
     DOCTEST_CHECK(reading.distances == std::vector<std::size_t>{1, 2});

@@ -332,12 +332,14 @@ DOCTEST_TEST_CASE("a label corrected in the middle of a run is taken over") {
     };
     const auto result = edit::run_edit(scene.set, plan, request, tools);
     DOCTEST_CHECK(result.label_changes == 1);
-    DOCTEST_CHECK(result.changed_outside_label == 0);   // against the corrected label: what left it is as it was
+    DOCTEST_CHECK(result.changed_outside_label ==
+                  0);  // against the corrected label: what left it is as it was
     std::size_t changed = 0;
     for (std::size_t row = 0; row < corrected.size(); ++row) {
         const auto now = result.base_to_new[row];
         if (now < 0) continue;
-        const bool same = result.set.sh()[static_cast<std::size_t>(now) * 3 + 2] == scene.set.sh()[row * 3 + 2];
+        const bool same =
+            result.set.sh()[static_cast<std::size_t>(now) * 3 + 2] == scene.set.sh()[row * 3 + 2];
         DOCTEST_CHECK((corrected[row] != 0 || same));
         changed += same ? 0 : 1;
     }
@@ -355,7 +357,7 @@ DOCTEST_TEST_CASE("what was driven to black comes back") {
     test::FunctionGuidance guidance([&](const edit::GuidanceInput& input) {
         edit::GuidanceOutput output;
         output.gradient = Image(input.rendered.width, input.rendered.height, 3);
-        const float goal = input.iteration < 60 ? -1.0f : 0.4f;   // black and darker, then grey
+        const float goal = input.iteration < 60 ? -1.0f : 0.4f;  // black and darker, then grey
         for (std::size_t i = 0; i < output.gradient.data.size(); ++i)
             output.gradient.data[i] = input.rendered.data[i] - goal;
         return output;
@@ -374,7 +376,7 @@ DOCTEST_TEST_CASE("what was driven to black comes back") {
                 }
     }
     DOCTEST_CHECK(count > 0);
-    DOCTEST_CHECK(sum / count < 0.12);   // left behind in the dark it would be 0.4
+    DOCTEST_CHECK(sum / count < 0.12);  // left behind in the dark it would be 0.4
 }
 
 DOCTEST_TEST_CASE("a run goes on from a snapshot: its rows, its iteration, and nothing outside the label") {
@@ -382,11 +384,12 @@ DOCTEST_TEST_CASE("a run goes on from a snapshot: its rows, its iteration, and n
     auto guidance = test::towards({0.1, 0.1, 0.9});
     auto request = short_request();
     std::vector<edit::EditSnapshot> snapshots;
-    run(scene, request, guidance, {1, [&](edit::EditSnapshot snapshot) { snapshots.push_back(std::move(snapshot)); }});
+    run(scene, request, guidance,
+        {1, [&](edit::EditSnapshot snapshot) { snapshots.push_back(std::move(snapshot)); }});
     DOCTEST_REQUIRE(snapshots.size() == 4);
     const auto& start = snapshots[1];
     DOCTEST_REQUIRE(start.iteration == 20);
-    DOCTEST_CHECK(start.size() > scene.set.size());   // rows were born before it
+    DOCTEST_CHECK(start.size() > scene.set.size());  // rows were born before it
     ThreadPool pool(1);
     const auto rasterizer = raster::make_fast_rasterizer(pool);
     const auto plan = test::ball_plan(scene, *rasterizer);
@@ -395,7 +398,7 @@ DOCTEST_TEST_CASE("a run goes on from a snapshot: its rows, its iteration, and n
         tools.start = &from;
         return edit::run_edit(scene.set, plan, request, tools);
     };
-    request.iterations = 20;   // nothing is left: what comes out is what went in, with the rows in their order
+    request.iterations = 20;  // nothing is left: what comes out is what went in, with the rows in their order
     const auto same = go_on(start, guidance);
     DOCTEST_CHECK(same.iterations == 20);
     DOCTEST_CHECK(same.history.empty());
@@ -416,7 +419,8 @@ DOCTEST_TEST_CASE("a run goes on from a snapshot: its rows, its iteration, and n
     // A smaller label: what the snapshot changed outside of it is the base's again.
     auto half = plan;
     std::size_t dropped = 0;
-    for (std::size_t row = 0; row < half.label.size(); row += 2) dropped += half.label[row], half.label[row] = 0;
+    for (std::size_t row = 0; row < half.label.size(); row += 2)
+        dropped += half.label[row], half.label[row] = 0;
     DOCTEST_REQUIRE(dropped > 0);
     edit::EditTools tools{*rasterizer, other, {}, {}};
     tools.start = &start;

@@ -18,7 +18,7 @@ constexpr std::size_t ViewsOfEach = 3;
 
 /// The first views see the red ball alone, the others the green one alone.
 edit::EditPlan separate_plan(const test::BallScene& scene, raster::Rasterizer& rasterizer) {
-    constexpr double narrow = 0.2;   // radians: half a ball
+    constexpr double narrow = 0.2;  // radians: half a ball
     edit::EditPlan plan;
     plan.label = scene.first;
     for (const double x : {-0.55, 0.55})
@@ -42,7 +42,8 @@ edit::EditRequest plain_request(int iterations) {
 }
 
 /// Says `label` before iteration `at`.
-std::function<std::optional<std::vector<std::uint8_t>>()> at_iteration(int at, std::vector<std::uint8_t> label) {
+std::function<std::optional<std::vector<std::uint8_t>>()> at_iteration(int at,
+                                                                       std::vector<std::uint8_t> label) {
     return [at, label, asked = 0]() mutable -> std::optional<std::vector<std::uint8_t>> {
         return asked++ == at ? std::optional(label) : std::nullopt;
     };
@@ -77,7 +78,8 @@ DOCTEST_TEST_CASE("after a corrected label the loop draws the views that see it"
         DOCTEST_CHECK((record.view < ViewsOfEach) == (record.iteration < 12));
     DOCTEST_CHECK(result.changed_outside_label == 0);
     std::size_t changed = 0;
-    for (std::size_t row = 0; row < green.size(); ++row) changed += result.set.sh()[row * 3 + 2] != scene.set.sh()[row * 3 + 2];
+    for (std::size_t row = 0; row < green.size(); ++row)
+        changed += result.set.sh()[row * 3 + 2] != scene.set.sh()[row * 3 + 2];
     DOCTEST_CHECK(changed == static_cast<std::size_t>(std::count(green.begin(), green.end(), 1)));
 }
 
@@ -108,7 +110,7 @@ DOCTEST_TEST_CASE("after a corrected label an edit rests only when every view th
     auto request = plain_request(60);
     request.early_stop = true;
     edit::EditTools tools{*rasterizer, still, {}, {}};
-    constexpr int at = 4;   // before the views of the red ball have been drawn twice
+    constexpr int at = 4;  // before the views of the red ball have been drawn twice
     tools.new_label = at_iteration(at, std::vector<std::uint8_t>(scene.first.size(), 1));
     const auto result = edit::run_edit(scene.set, plan, request, tools);
     DOCTEST_CHECK(result.came_to_rest);
@@ -130,16 +132,17 @@ DOCTEST_TEST_CASE("looking again for what is new does not delay the rest") {
     auto request = plain_request(120);
     request.early_stop = true;
     request.early_stop_change = 0.004;
-    constexpr int moves = 56;   // the first look is after iteration 60, while the pictures still settle
+    constexpr int moves = 56;  // the first look is after iteration 60, while the pictures still settle
     test::FunctionGuidance guidance([](const edit::GuidanceInput& input) {
-        return input.iteration < moves ? test::towards({0.1, 0.9, 0.1}).evaluate(input) : test::still().evaluate(input);
+        return input.iteration < moves ? test::towards({0.1, 0.9, 0.1}).evaluate(input)
+                                       : test::still().evaluate(input);
     });
     BlindAttention attention;
     edit::EditTools tools{*rasterizer, guidance, {}, {}};
     tools.word = "ball";
-    tools.attention = &attention;   // finds nothing, so that nothing is dropped
+    tools.attention = &attention;  // finds nothing, so that nothing is dropped
     const auto looked = edit::run_edit(scene.set, plan, request, tools);
-    DOCTEST_CHECK(attention.calls == 10);   // after iterations 60 and 90, five views each
+    DOCTEST_CHECK(attention.calls == 10);  // after iterations 60 and 90, five views each
     request.look_again = false;
     const auto plain = edit::run_edit(scene.set, plan, request, tools);
     DOCTEST_REQUIRE(plain.came_to_rest);

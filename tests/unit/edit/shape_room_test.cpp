@@ -65,11 +65,12 @@ DOCTEST_TEST_CASE("room for another thing stands where the old one stood, as wid
         low = std::min(low, -p.y), high = std::max(high, -p.y);
         wide = std::max(wide, std::hypot(p.x, p.z));
     }
-    DOCTEST_CHECK(low >= 0);   // not into the ground
+    DOCTEST_CHECK(low >= 0);  // not into the ground
     DOCTEST_CHECK(low < room.side);
     DOCTEST_CHECK(high == doctest::Approx(1.2).epsilon(0.05));
     DOCTEST_CHECK(wide == doctest::Approx(0.6).epsilon(0.08));
-    const auto tall = edit::room_around(post(0.05, 1.0), all, Up, Front, 0);   // a pole gives way to something with a body
+    const auto tall =
+        edit::room_around(post(0.05, 1.0), all, Up, Front, 0);  // a pole gives way to something with a body
     wide = 0;
     for (const auto& p : tall.centres) wide = std::max(wide, std::hypot(p.x, p.z));
     DOCTEST_CHECK(wide > 0.3);
@@ -90,11 +91,13 @@ DOCTEST_TEST_CASE("rows too faint to be seen ask for no room") {
     data.position[0] = 40;
     data.opacity_logit[0] = -9;
     const GaussianSet set(std::move(data));
-    for (const auto& p : edit::room_around(set, std::vector<std::uint8_t>(set.size(), 1), Up, Front, 0.2).centres)
+    for (const auto& p :
+         edit::room_around(set, std::vector<std::uint8_t>(set.size(), 1), Up, Front, 0.2).centres)
         DOCTEST_CHECK(std::abs(p.x) < 1);
 }
 
-DOCTEST_TEST_CASE("holes in the ground are filled from around them, sky stays sky, what is there stays as it is") {
+DOCTEST_TEST_CASE(
+    "holes in the ground are filled from around them, sky stays sky, what is there stays as it is") {
     Mask mask;
     auto backdrop = floor_with_hole(mask);
     const auto before = backdrop;
@@ -114,21 +117,25 @@ DOCTEST_TEST_CASE("holes in the ground are filled from around them, sky stays sk
     DOCTEST_CHECK(edit::fill_holes(backdrop, mask, Image(32, 32, 1, 1.0f)) == 0);
 }
 
-DOCTEST_TEST_CASE("the rim of a hole that is seen through in part is filled, too: its colour is not that of the ground") {
+DOCTEST_TEST_CASE(
+    "the rim of a hole that is seen through in part is filled, too: its colour is not that of the ground") {
     Mask mask;
     auto backdrop = floor_with_hole(mask);
     Image alpha(32, 32, 1, 1.0f);
     for (int y = 19; y < 27; ++y)
         for (int x = 11; x < 21; ++x) {
             alpha.at(x, y, 0) = 0.6f;
-            backdrop.picture.at(x, y, 1) *= 0.6f;   // black behind the scene
+            backdrop.picture.at(x, y, 1) *= 0.6f;  // black behind the scene
         }
     DOCTEST_CHECK(edit::fill_holes(backdrop, mask, alpha) == 10 * 8);
     for (int y = 19; y < 27; ++y)
-        for (int x = 11; x < 21; ++x) DOCTEST_CHECK(backdrop.picture.at(x, y, 1) == doctest::Approx(0.25 + 0.01 * y).epsilon(0.05));
+        for (int x = 11; x < 21; ++x)
+            DOCTEST_CHECK(backdrop.picture.at(x, y, 1) == doctest::Approx(0.25 + 0.01 * y).epsilon(0.05));
 }
 
-DOCTEST_TEST_CASE("the ground that a thing hid is put back as one flat layer, and nothing where a view shows what lies behind") {
+DOCTEST_TEST_CASE(
+    "the ground that a thing hid is put back as one flat layer, and nothing where a view shows what lies "
+    "behind") {
     constexpr int Side = 64;
     OrbitParameters orbit;
     orbit.radius = 3;
@@ -143,7 +150,8 @@ DOCTEST_TEST_CASE("the ground that a thing hid is put back as one flat layer, an
         Mask mask(Side, Side);
         for (int y = 0; y < Side; ++y)
             for (int x = 0; x < Side; ++x) {
-                const Vec3 from = camera.centre(), to = unprojected(camera, x + 0.5, y + 0.5, 1) - from;   // the ground is y = 0
+                const Vec3 from = camera.centre(),
+                           to = unprojected(camera, x + 0.5, y + 0.5, 1) - from;  // the ground is y = 0
                 const Vec3 p = from - to * (from.y / to.y);
                 const bool hole = std::hypot(p.x, p.z) < 0.4;
                 mask.at(x, y) = std::hypot(p.x, p.z) < 0.6 ? 1 : 0;
@@ -159,15 +167,17 @@ DOCTEST_TEST_CASE("the ground that a thing hid is put back as one flat layer, an
     const double pixel = 3.0 / views.front().view.camera.fx;
     double wide = 0;
     for (std::size_t row = 0; row < set.size(); ++row) {
-        DOCTEST_CHECK(std::abs(set.position()[row * 3 + 1]) < pixel);   // on the ground
-        wide = std::max(wide, std::hypot(static_cast<double>(set.position()[row * 3]), static_cast<double>(set.position()[row * 3 + 2])));
+        DOCTEST_CHECK(std::abs(set.position()[row * 3 + 1]) < pixel);  // on the ground
+        wide = std::max(wide, std::hypot(static_cast<double>(set.position()[row * 3]),
+                                         static_cast<double>(set.position()[row * 3 + 2])));
         DOCTEST_CHECK(colour_from_sh(set.sh()[row * 3]) == doctest::Approx(0.5).epsilon(0.01));
-        const Vec3 normal = rotation_matrix(Quat(rows.rotation[row * 4], rows.rotation[row * 4 + 1], rows.rotation[row * 4 + 2],
-                                                 rows.rotation[row * 4 + 3])) * Vec3{0, 0, 1};
+        const Vec3 normal = rotation_matrix(Quat(rows.rotation[row * 4], rows.rotation[row * 4 + 1],
+                                                 rows.rotation[row * 4 + 2], rows.rotation[row * 4 + 3])) *
+                            Vec3{0, 0, 1};
         DOCTEST_CHECK(std::abs(normal.y) > 0.98);
     }
     DOCTEST_CHECK(wide == doctest::Approx(0.4).epsilon(0.15));
-    for (auto& view : views) {   // where all but one show what lies behind there was no ground
+    for (auto& view : views) {  // where all but one show what lies behind there was no ground
         if (&view == &views.front()) continue;
         std::fill(view.backdrop.filled.data.begin(), view.backdrop.filled.data.end(), std::uint8_t{0});
         for (auto& z : view.backdrop.depth.data) z = 10;

@@ -16,7 +16,8 @@ namespace {
 using namespace gse;
 
 constexpr int Side = 64;
-constexpr double Core = 10, Reach = 30;   // attention is 1 within the first radius and falls evenly to 0 at the second
+constexpr double Core = 10,
+                 Reach = 30;  // attention is 1 within the first radius and falls evenly to 0 at the second
 
 double radius_at(int x, int y) { return std::hypot(x + 0.5 - Side / 2, y + 0.5 - Side / 2); }
 
@@ -27,7 +28,8 @@ public:
         Image map(Side, Side, 1);
         for (int y = 0; y < Side; ++y)
             for (int x = 0; x < Side; ++x)
-                map.at(x, y, 0) = static_cast<float>(std::clamp((Reach - radius_at(x, y)) / (Reach - Core), 0.0, 1.0));
+                map.at(x, y, 0) =
+                    static_cast<float>(std::clamp((Reach - radius_at(x, y)) / (Reach - Core), 0.0, 1.0));
         return {map};
     }
     double threshold() const override { return threshold_; }
@@ -68,20 +70,22 @@ double outline_radius(double threshold, Image picture, float backdrop = 0) {
     const Image& after = drawn.images.front();
     double covered = 0;
     for (const float share : outline.data) covered += share;
-    DOCTEST_CHECK(after.at(Side / 2, Side / 2, 0) == before.at(Side / 2, Side / 2, 0));   // the thing stays,
-    DOCTEST_CHECK(after.at(1, 1, 0) == backdrop);                                         // what is beyond it becomes the backdrop
+    DOCTEST_CHECK(after.at(Side / 2, Side / 2, 0) == before.at(Side / 2, Side / 2, 0));  // the thing stays,
+    DOCTEST_CHECK(after.at(1, 1, 0) == backdrop);  // what is beyond it becomes the backdrop
     return std::sqrt(covered / 3.141592653589793);
 }
 
 double radius_of(double attention) { return Reach - attention * (Reach - Core); }
 
-constexpr double Possible = 0.85;   // share of the threshold that does for what differs
-constexpr double Pixel = 1;         // the softened rim is one wide
+constexpr double Possible = 0.85;  // share of the threshold that does for what differs
+constexpr double Pixel = 1;        // the softened rim is one wide
 
 }  // namespace
 
-DOCTEST_TEST_CASE("the new thing reaches as far as it differs from the backdrop, where the word is seen but not clearly") {
-    for (const auto& [threshold, radius] : {std::pair{0.5, 19.0}, std::pair{0.5, 20.5}, std::pair{0.7, 15.0}, std::pair{0.7, 17.0}}) {
+DOCTEST_TEST_CASE(
+    "the new thing reaches as far as it differs from the backdrop, where the word is seen but not clearly") {
+    for (const auto& [threshold, radius] :
+         {std::pair{0.5, 19.0}, std::pair{0.5, 20.5}, std::pair{0.7, 15.0}, std::pair{0.7, 17.0}}) {
         DOCTEST_REQUIRE(radius > radius_of(1.2 * threshold) + Pixel / 2);
         DOCTEST_REQUIRE(radius < radius_of(Possible * threshold) - Pixel / 2);
         const double found = outline_radius(threshold, disc_picture(radius, 0.5f));
@@ -89,7 +93,8 @@ DOCTEST_TEST_CASE("the new thing reaches as far as it differs from the backdrop,
     }
 }
 
-DOCTEST_TEST_CASE("where the model tells what is new in its picture, that is the new thing, whatever the word draws") {
+DOCTEST_TEST_CASE(
+    "where the model tells what is new in its picture, that is the new thing, whatever the word draws") {
     const edit::EditPlan plan;
     edit::EditRequest request;
     request.prompt = "a cat on the grass";
@@ -102,18 +107,21 @@ DOCTEST_TEST_CASE("where the model tells what is new in its picture, that is the
     DOCTEST_REQUIRE(finder.take_out(grey_view(0.25f), drawn, 0, 1, &outline));
     DOCTEST_CHECK(outline.data == told.data);
     DOCTEST_CHECK(drawn.images.front().at(50, 30, 0) == 0.75f);
-    DOCTEST_CHECK(drawn.images.front().at(41, 30, 0) == 0.375f);   // a quarter of it
+    DOCTEST_CHECK(drawn.images.front().at(41, 30, 0) == 0.375f);  // a quarter of it
     DOCTEST_CHECK(drawn.images.front().at(32, 32, 0) == 0.25f);
     edit::RoundTargets empty{{Image(Side, Side, 3, 0.75f)}, {}, {Image(Side, Side, 1, 0.3f)}};
     DOCTEST_CHECK(!finder.take_out(grey_view(0.25f), empty, 0, 1));
 }
 
-DOCTEST_TEST_CASE("what is added reaches a little further into the soft rim of its outlines than what becomes another") {
+DOCTEST_TEST_CASE(
+    "what is added reaches a little further into the soft rim of its outlines than what becomes another") {
     edit::CutOut found;
     for (const auto& view : test::ball_views(8, Side)) {
         edit::HullView outline{view.camera, Image(Side, Side, 1), {}, Image(Side, Side, 3, 0.5f)};
         for (int y = 0; y < Side; ++y)
-            for (int x = 0; x < Side; ++x) outline.inside.at(x, y, 0) = static_cast<float>(std::clamp(1.5 - radius_at(x, y) / 16, 0.0, 1.0));
+            for (int x = 0; x < Side; ++x)
+                outline.inside.at(x, y, 0) =
+                    static_cast<float>(std::clamp(1.5 - radius_at(x, y) / 16, 0.0, 1.0));
         found.outlines.push_back(std::move(outline));
         found.usable.push_back(found.usable.size());
     }
@@ -122,14 +130,15 @@ DOCTEST_TEST_CASE("what is added reaches a little further into the soft rim of i
     const auto reach = [&](edit::EditMode mode) {
         edit::EditPlan plan;
         plan.mode = mode;
-        const auto rows = edit::ShapeFinder(plan, request, "hat", attention).seeds(found, {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}}, 0);
+        const auto rows = edit::ShapeFinder(plan, request, "hat", attention)
+                              .seeds(found, {{-1.5, -1.5, -1.5}, {1.5, 1.5, 1.5}}, 0);
         float most = 0;
         for (const float value : rows.position) most = std::max(most, std::abs(value));
         return most;
     };
     const float another = reach(edit::EditMode::Replace), added = reach(edit::EditMode::Add);
     DOCTEST_CHECK(another > 0);
-    DOCTEST_CHECK(added > 1.03f * another);   // radii of 1.0 and 1.1 times 16 pixels
+    DOCTEST_CHECK(added > 1.03f * another);  // radii of 1.0 and 1.1 times 16 pixels
     DOCTEST_CHECK(added < 1.2f * another);
 }
 
@@ -143,9 +152,10 @@ DOCTEST_TEST_CASE("what differs where the word is not seen is not of the new thi
 DOCTEST_TEST_CASE("a thing of the backdrop's colour is where the word is seen clearly") {
     for (const double threshold : {0.3, 0.5, 0.7}) {
         const double radius = outline_radius(threshold, Image(Side, Side, 3, 0.5f), 0.5f);
-        DOCTEST_CHECK(radius == doctest::Approx(radius_of(std::min(1.2 * threshold, (1 + threshold) / 2))).epsilon(2 * Pixel / radius));
+        DOCTEST_CHECK(radius == doctest::Approx(radius_of(std::min(1.2 * threshold, (1 + threshold) / 2)))
+                                    .epsilon(2 * Pixel / radius));
     }
-    for (const double threshold : {0.85, 0.95, 0.99})   // however high: something of it is left
+    for (const double threshold : {0.85, 0.95, 0.99})  // however high: something of it is left
         DOCTEST_CHECK(outline_radius(threshold, Image(Side, Side, 3, 0.5f), 0.5f) > Core - 2);
 }
 

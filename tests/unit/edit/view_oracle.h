@@ -16,10 +16,13 @@ namespace gse::test {
 /// Knows the answer: the render of another scene from every view.
 class OracleViews : public edit::ViewGuidance {
 public:
-    OracleViews(const GaussianSet& target, raster::Rasterizer& rasterizer) : target_(target), rasterizer_(rasterizer) {}
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) override {
+    OracleViews(const GaussianSet& target, raster::Rasterizer& rasterizer)
+        : target_(target), rasterizer_(rasterizer) {}
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
+                            const JobControl& job) override {
         if (job.stop_requested()) throw Error(ErrorCode::Cancelled, "stopped");
-        if (input.round == fails_in || (fails_alone && views.size() == 1)) throw Error(ErrorCode::Model, "not finite");
+        if (input.round == fails_in || (fails_alone && views.size() == 1))
+            throw Error(ErrorCode::Model, "not finite");
         inputs.push_back(input);
         asked.push_back(views);
         Random random(input.seed);
@@ -40,11 +43,11 @@ public:
         return targets;
     }
     std::vector<edit::RoundInput> inputs;
-    std::vector<std::vector<edit::RoundView>> asked;   // per input
-    int fails_in = -1;                                 // round
-    bool fails_alone = false;                          // where a single view is asked for
-    double least_strength = 0;                         // below it the pictures stay as they are
-    bool noisy = false;                                // another picture for another seed
+    std::vector<std::vector<edit::RoundView>> asked;  // per input
+    int fails_in = -1;                                // round
+    bool fails_alone = false;                         // where a single view is asked for
+    double least_strength = 0;                        // below it the pictures stay as they are
+    bool noisy = false;                               // another picture for another seed
 
 private:
     const GaussianSet& target_;
@@ -55,17 +58,20 @@ private:
 inline GaussianSet blue_ball(const BallScene& scene) {
     GaussianData data = scene.set.to_data();
     for (std::size_t row = 0; row < scene.first.size(); ++row)
-        if (scene.first[row] != 0) std::swap(data.sh[row * data.sh_stride()], data.sh[row * data.sh_stride() + 2]);
+        if (scene.first[row] != 0)
+            std::swap(data.sh[row * data.sh_stride()], data.sh[row * data.sh_stride() + 2]);
     return GaussianSet(std::move(data));
 }
 
-inline double difference(const GaussianSet& a, const GaussianSet& b, const std::vector<View>& views, raster::Rasterizer& rasterizer) {
+inline double difference(const GaussianSet& a, const GaussianSet& b, const std::vector<View>& views,
+                         raster::Rasterizer& rasterizer) {
     double sum = 0;
     for (const auto& view : views) {
         raster::ForwardOutput of_a, of_b;
         rasterizer.forward(a.spans(), view.camera, {}, of_a);
         rasterizer.forward(b.spans(), view.camera, {}, of_b);
-        for (std::size_t i = 0; i < of_a.colour.data.size(); ++i) sum += std::abs(of_a.colour.data[i] - of_b.colour.data[i]);
+        for (std::size_t i = 0; i < of_a.colour.data.size(); ++i)
+            sum += std::abs(of_a.colour.data[i] - of_b.colour.data[i]);
     }
     return sum;
 }
@@ -79,10 +85,13 @@ struct Redrawing {
     edit::EditPlan plan = ball_plan(scene, *rasterizer, 6, side);
     GaussianSet target = blue_ball(scene);
     OracleViews oracle{target, *rasterizer};
-    FunctionGuidance never{[](const edit::GuidanceInput&) -> edit::GuidanceOutput { throw Error(ErrorCode::Model, "asked"); }};
+    FunctionGuidance never{
+        [](const edit::GuidanceInput&) -> edit::GuidanceOutput { throw Error(ErrorCode::Model, "asked"); }};
     edit::EditTools tools{*rasterizer, never, {}, {}};
     explicit Redrawing(int picture_side = 32) : side(picture_side) { tools.views = &oracle; }
-    edit::EditResult edited(const edit::EditRequest& request) { return edit::run_edit(scene.set, plan, request, tools); }
+    edit::EditResult edited(const edit::EditRequest& request) {
+        return edit::run_edit(scene.set, plan, request, tools);
+    }
     double error_of(const GaussianSet& set) { return difference(set, target, plan.views, *rasterizer); }
 };
 

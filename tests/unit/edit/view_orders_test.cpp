@@ -1,4 +1,5 @@
-// What an artist says about redrawn views while the edit runs, and branches that go on with what was redrawn; by oracles.
+// What an artist says about redrawn views while the edit runs, and branches that go on with what was redrawn;
+// by oracles.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -22,7 +23,7 @@ namespace {
 /// An artist who looks at every sheet and says something at given moments.
 struct Artist {
     std::vector<edit::ViewTargets> sheets;
-    std::map<int, std::vector<edit::TargetOrder>> says;   // by how often they were asked
+    std::map<int, std::vector<edit::TargetOrder>> says;  // by how often they were asked
     int asked = 0;
 
     void sit_at(edit::EditTools& tools) {
@@ -57,13 +58,14 @@ edit::EditSnapshot snapshot_at(Redrawing& run, const edit::EditRequest& request,
 
 }  // namespace
 
-DOCTEST_TEST_CASE("redrawn views are shown as soon as they are there, and an artist who says nothing changes nothing") {
+DOCTEST_TEST_CASE(
+    "redrawn views are shown as soon as they are there, and an artist who says nothing changes nothing") {
     Redrawing run, alone;
     Artist artist;
     artist.sit_at(run.tools);
     int steps = 0;
     run.tools.iteration = [&](const edit::IterationRecord&) { ++steps; };
-    std::vector<int> shown_before;   // steps of the fit that were done when a sheet came
+    std::vector<int> shown_before;  // steps of the fit that were done when a sheet came
     run.tools.targets = [&](const edit::ViewTargets& sheet) {
         artist.sheets.push_back(sheet);
         shown_before.push_back(steps);
@@ -82,12 +84,14 @@ DOCTEST_TEST_CASE("redrawn views are shown as soon as they are there, and an art
             DOCTEST_CHECK(target.before->data != target.after->data);
         }
     }
-    DOCTEST_CHECK(artist.sheets[0].views[0].before->data != artist.sheets[1].views[0].before->data);   // the scene has changed
+    DOCTEST_CHECK(artist.sheets[0].views[0].before->data !=
+                  artist.sheets[1].views[0].before->data);  // the scene has changed
     DOCTEST_CHECK(result.redrawn_views == 8);
     DOCTEST_CHECK(same_bytes(alone.edited(view_request(2, 10)).set, result.set));
 }
 
-DOCTEST_TEST_CASE("a view that is dropped before the fit is not fitted to, and one that is accepted again is") {
+DOCTEST_TEST_CASE(
+    "a view that is dropped before the fit is not fitted to, and one that is accepted again is") {
     Redrawing run;
     Artist artist;
     artist.sit_at(run.tools);
@@ -99,11 +103,12 @@ DOCTEST_TEST_CASE("a view that is dropped before the fit is not fitted to, and o
     DOCTEST_CHECK(drawn(result).size() == 3);
     DOCTEST_CHECK(!drawn(result).contains(unwanted));
     DOCTEST_CHECK(artist.sheets.back().views[1].dropped);
-    DOCTEST_CHECK(run.oracle.inputs.size() == 1);   // nothing was redrawn for it
+    DOCTEST_CHECK(run.oracle.inputs.size() == 1);  // nothing was redrawn for it
     // Again, and brought back in the middle.
     artist = {};
     artist.says[0] = {{0, unwanted, TargetChoice::Drop}};
-    artist.says[12] = {{0, unwanted, TargetChoice::Accept}};   // asked twice where there were orders: before the twelfth step
+    artist.says[12] = {
+        {0, unwanted, TargetChoice::Accept}};  // asked twice where there were orders: before the twelfth step
     Redrawing again;
     artist.sit_at(again.tools);
     result = again.edited(view_request(1, 30));
@@ -147,8 +152,9 @@ DOCTEST_TEST_CASE("a view is redrawn anew from what the round began with, each t
     const auto chosen = drawn(Redrawing().edited(view_request(1, 20)));
     const std::size_t wanted = *chosen.begin();
     run.oracle.noisy = true;
-    artist.says[0] = {{0, wanted, TargetChoice::Redo}};                      // before the fit
-    artist.says[8] = {{0, wanted, TargetChoice::Drop}, {0, wanted, TargetChoice::Redo}};   // in the middle: it counts again
+    artist.says[0] = {{0, wanted, TargetChoice::Redo}};  // before the fit
+    artist.says[8] = {{0, wanted, TargetChoice::Drop},
+                      {0, wanted, TargetChoice::Redo}};  // in the middle: it counts again
     const auto result = run.edited(view_request(1, 20));
     const auto& inputs = run.oracle.inputs;
     DOCTEST_REQUIRE(inputs.size() == 3);
@@ -157,7 +163,8 @@ DOCTEST_TEST_CASE("a view is redrawn anew from what the round began with, each t
     DOCTEST_CHECK(inputs[2].round == 0);
     DOCTEST_REQUIRE(run.oracle.asked[1].size() == 1);
     DOCTEST_CHECK(run.oracle.asked[1][0].rendered.data == run.oracle.asked[0][0].rendered.data);
-    DOCTEST_CHECK(run.oracle.asked[2][0].rendered.data == run.oracle.asked[0][0].rendered.data);   // though the scene has changed
+    DOCTEST_CHECK(run.oracle.asked[2][0].rendered.data ==
+                  run.oracle.asked[0][0].rendered.data);  // though the scene has changed
     DOCTEST_CHECK(artist.last(0).attempt == 2);
     DOCTEST_CHECK(!artist.last(0).dropped);
     DOCTEST_CHECK(artist.last(1).attempt == 0);
@@ -170,10 +177,12 @@ DOCTEST_TEST_CASE("a view is redrawn anew from what the round began with, each t
     Artist same;
     same.says = artist.says;
     same.sit_at(again.tools);
-    DOCTEST_CHECK(same_bytes(again.edited(view_request(1, 20)).set, result.set));   // the same words, the same edit
+    DOCTEST_CHECK(
+        same_bytes(again.edited(view_request(1, 20)).set, result.set));  // the same words, the same edit
 }
 
-DOCTEST_TEST_CASE("a view that cannot be redrawn anew stays as it is; a stop while it waits for the artist ends the edit") {
+DOCTEST_TEST_CASE(
+    "a view that cannot be redrawn anew stays as it is; a stop while it waits for the artist ends the edit") {
     Redrawing run;
     Artist artist;
     artist.sit_at(run.tools);
@@ -191,7 +200,7 @@ DOCTEST_TEST_CASE("a view that cannot be redrawn anew stays as it is; a stop whi
     std::stop_source stop;
     stopped.tools.job.stop = stop.get_token();
     stopped.tools.target_orders = [&] {
-        stop.request_stop();   // as cancel does while the artist is waited for
+        stop.request_stop();  // as cancel does while the artist is waited for
         return std::vector<edit::TargetOrder>();
     };
     const auto nothing = stopped.edited(view_request(1, 20));
@@ -206,9 +215,11 @@ DOCTEST_TEST_CASE("a corrected label shows what is fitted to now, and what was d
     const auto chosen = drawn(Redrawing().edited(view_request(1, 20)));
     artist.says[0] = {{0, *chosen.begin(), TargetChoice::Drop}};
     std::vector<std::uint8_t> half = run.scene.first;
-    for (std::size_t row = 0; row < half.size() / 4; ++row) half[row] = 0;   // the upper half of the ball
+    for (std::size_t row = 0; row < half.size() / 4; ++row) half[row] = 0;  // the upper half of the ball
     int asked = 0;
-    run.tools.new_label = [&]() -> std::optional<std::vector<std::uint8_t>> { return asked++ == 5 ? std::optional(half) : std::nullopt; };
+    run.tools.new_label = [&]() -> std::optional<std::vector<std::uint8_t>> {
+        return asked++ == 5 ? std::optional(half) : std::nullopt;
+    };
     const auto result = run.edited(view_request(1, 20));
     DOCTEST_CHECK(result.label_changes == 1);
     DOCTEST_CHECK(!drawn(result).contains(*chosen.begin()));
@@ -226,18 +237,19 @@ DOCTEST_TEST_CASE("a branch redraws nothing that it need not") {
     artist.sit_at(run.tools);
     auto sparse = request;
     sparse.snapshot_every = 10;
-    const auto start = snapshot_at(run, sparse, 10);   // in the middle of the first round
+    const auto start = snapshot_at(run, sparse, 10);  // in the middle of the first round
     run.tools.start = &start;
     Artist later;
     later.sit_at(run.tools);
     const auto branch = run.edited(request);
     DOCTEST_CHECK(branch.iterations == 40);
-    DOCTEST_REQUIRE(run.oracle.inputs.size() == 1);   // the second round
+    DOCTEST_REQUIRE(run.oracle.inputs.size() == 1);  // the second round
     DOCTEST_CHECK(run.oracle.inputs[0].round == 1);
     DOCTEST_REQUIRE(later.sheets.size() == 2);
-    DOCTEST_CHECK(later.sheets[0].views[0].dropped);   // as it was in the snapshot
+    DOCTEST_CHECK(later.sheets[0].views[0].dropped);  // as it was in the snapshot
     DOCTEST_CHECK(later.sheets[0].views[1].after->data == artist.sheets[0].views[1].after->data);
-    for (const auto& line : branch.history) DOCTEST_CHECK((line.view != *chosen.begin() || line.iteration >= 20));
+    for (const auto& line : branch.history)
+        DOCTEST_CHECK((line.view != *chosen.begin() || line.iteration >= 20));
     DOCTEST_CHECK(branch.history.front().iteration == 10);
     // At the end of a round the next one begins; with other settings the round is redrawn.
     Redrawing fresh;
@@ -267,10 +279,10 @@ DOCTEST_TEST_CASE("a branch redraws nothing that it need not") {
 namespace {
 
 /// Another value that passes the field's check.
-template <class T>
-void change(T& value, double low, double high) {
+template <class T> void change(T& value, double low, double high) {
     if constexpr (std::is_same_v<T, bool>) value = !value;
-    else if constexpr (std::is_same_v<T, int>) value = value * 2 <= high ? value * 2 + 1 : static_cast<int>(low) + 1;
+    else if constexpr (std::is_same_v<T, int>)
+        value = value * 2 <= high ? value * 2 + 1 : static_cast<int>(low) + 1;
     else if constexpr (std::is_same_v<T, double>) value = value * 2 <= high ? value * 2 + 0.125 : low + 0.125;
 }
 
@@ -290,23 +302,26 @@ DOCTEST_TEST_CASE("settings that are said to have no effect have none") {
         request.densify_from = 6;
         const auto plain = run(request);
         std::size_t unused = 0;
-        edit::EditRequest::visit_fields(request, [&](const char* name, auto& value, const char*, auto... range) {
-            DOCTEST_CHECK(edit::has_effect(name, by_views) == edit::why_unused(name, by_views).empty());
-            if (edit::has_effect(name, by_views)) return;
-            ++unused;
-            DOCTEST_CAPTURE(name);
-            const auto kept = value;
-            if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>) value = edit::Qualities.back();
-            else if constexpr (sizeof...(range) == 1) change(value, (range.low, ...), (range.high, ...));
-            else change(value, 0, 1e9);
-            DOCTEST_CHECK(value != kept);
-            DOCTEST_CHECK(same_bytes(run(request), plain));
-            value = kept;
-        });
+        edit::EditRequest::visit_fields(
+            request, [&](const char* name, auto& value, const char*, auto... range) {
+                DOCTEST_CHECK(edit::has_effect(name, by_views) == edit::why_unused(name, by_views).empty());
+                if (edit::has_effect(name, by_views)) return;
+                ++unused;
+                DOCTEST_CAPTURE(name);
+                const auto kept = value;
+                if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::string>)
+                    value = edit::Qualities.back();
+                else if constexpr (sizeof...(range) == 1) change(value, (range.low, ...), (range.high, ...));
+                else change(value, 0, 1e9);
+                DOCTEST_CHECK(value != kept);
+                DOCTEST_CHECK(same_bytes(run(request), plain));
+                value = kept;
+            });
         DOCTEST_CHECK(unused == (by_views ? 13 : 16));
     }
     for (const bool by_views : {true, false})
-        for (const char* name : {"seed", "strength", "rate_colour", "snapshot_every", "tau"}) DOCTEST_CHECK(edit::has_effect(name, by_views));
+        for (const char* name : {"seed", "strength", "rate_colour", "snapshot_every", "tau"})
+            DOCTEST_CHECK(edit::has_effect(name, by_views));
 }
 
 DOCTEST_TEST_CASE("large pictures are shown smaller") {

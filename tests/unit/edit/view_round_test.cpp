@@ -1,4 +1,5 @@
-// View guidance without networks: which views are redrawn, noise on the surface, what is blended, and the loop that fits to it.
+// View guidance without networks: which views are redrawn, noise on the surface, what is blended, and the
+// loop that fits to it.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -40,7 +41,7 @@ DOCTEST_TEST_CASE("view guidance: the rows are fitted to what was redrawn, all o
     DOCTEST_CHECK(result.iterations == 80);
     DOCTEST_CHECK(snapshots == std::vector{20, 40, 60, 80});
     DOCTEST_CHECK(result.changed_outside_label == 0);
-    constexpr double most_left = 0.35;   // of the error: noise-free targets, but only eighty steps
+    constexpr double most_left = 0.35;  // of the error: noise-free targets, but only eighty steps
     DOCTEST_CHECK(run.error_of(result.set) < most_left * run.error_of(run.scene.set));
     const auto& inputs = run.oracle.inputs;
     DOCTEST_REQUIRE(inputs.size() == 2);
@@ -50,7 +51,8 @@ DOCTEST_TEST_CASE("view guidance: the rows are fitted to what was redrawn, all o
     DOCTEST_CHECK(result.history[0].guidance.count("broken") == 0);
     std::size_t drawn_from = 0;
     for (std::size_t view = 0; view < run.plan.views.size(); ++view)
-        drawn_from += std::any_of(result.history.begin(), result.history.end(), [&](const auto& line) { return line.view == view; });
+        drawn_from += std::any_of(result.history.begin(), result.history.end(),
+                                  [&](const auto& line) { return line.view == view; });
     DOCTEST_CHECK(drawn_from == 4);
     Redrawing again;
     DOCTEST_CHECK(test::same_bytes(again.edited(request).set.sh(), result.set.sh()));
@@ -61,7 +63,7 @@ DOCTEST_TEST_CASE("view guidance: a stop before the next round keeps what was re
     std::stop_source stop;
     run.tools.job.stop = stop.get_token();
     run.tools.iteration = [&](const edit::IterationRecord& record) {
-        if (record.iteration == 9) stop.request_stop();   // the next round would begin now
+        if (record.iteration == 9) stop.request_stop();  // the next round would begin now
     };
     const auto result = run.edited(view_request(3, 10));
     DOCTEST_CHECK(result.stopped);
@@ -89,7 +91,9 @@ DOCTEST_TEST_CASE("view guidance: a label corrected in the middle is fitted to w
     std::vector<std::uint8_t> half = run.scene.first;
     for (std::size_t row = 0; row < half.size(); row += 2) half[row] = 0;
     int asked = 0;
-    run.tools.new_label = [&]() -> std::optional<std::vector<std::uint8_t>> { return asked++ == 5 ? std::optional(half) : std::nullopt; };
+    run.tools.new_label = [&]() -> std::optional<std::vector<std::uint8_t>> {
+        return asked++ == 5 ? std::optional(half) : std::nullopt;
+    };
     const auto result = run.edited(view_request(1, 20));
     DOCTEST_CHECK(result.label_changes == 1);
     DOCTEST_CHECK(result.iterations == 20);
@@ -101,7 +105,7 @@ DOCTEST_TEST_CASE("redrawn views lie far apart and show what changes") {
     const auto views = test::ball_views(12, 16);
     std::vector<double> covered(12, 0.2);
     covered[5] = 0.5;
-    covered[6] = 0.001;   // hardly seen
+    covered[6] = 0.001;  // hardly seen
     const auto chosen = edit::views_to_redraw(views, covered, 4);
     DOCTEST_REQUIRE(chosen.size() == 4);
     DOCTEST_CHECK(std::is_sorted(chosen.begin(), chosen.end()));
@@ -110,13 +114,16 @@ DOCTEST_TEST_CASE("redrawn views lie far apart and show what changes") {
     const double step = length(views[0].camera.centre() - views[1].camera.centre());
     for (std::size_t i = 0; i < 4; ++i)
         for (std::size_t j = 0; j < i; ++j)
-            DOCTEST_CHECK(length(views[chosen[i]].camera.centre() - views[chosen[j]].camera.centre()) > 1.5 * step);
+            DOCTEST_CHECK(length(views[chosen[i]].camera.centre() - views[chosen[j]].camera.centre()) >
+                          1.5 * step);
     DOCTEST_CHECK(edit::views_to_redraw(views, covered, 50).size() == 11);
     DOCTEST_CHECK(edit::views_to_redraw(views, std::vector<double>(12, 0.0), 4).empty());
-    DOCTEST_CHECK(edit::views_to_redraw(views, std::vector<double>(12, 0.001), 4).size() == 4);   // all are small
+    DOCTEST_CHECK(edit::views_to_redraw(views, std::vector<double>(12, 0.001), 4).size() ==
+                  4);  // all are small
 }
 
-DOCTEST_TEST_CASE("what is blended stays the original outside the mask, bit by bit, and goes over inside it") {
+DOCTEST_TEST_CASE(
+    "what is blended stays the original outside the mask, bit by bit, and goes over inside it") {
     Image original(16, 16, 3, 0.1f), edited(16, 16, 3, 0.9f);
     Mask mask(16, 16);
     for (int y = 0; y < 16; ++y)
@@ -133,7 +140,8 @@ DOCTEST_TEST_CASE("what is blended stays the original outside the mask, bit by b
     DOCTEST_CHECK(edit::blend_inside(edited, original, mask, 0).at(4, 8, 0) == doctest::Approx(0.9));
 }
 
-DOCTEST_TEST_CASE("surface noise: unit variance, no blotches, the same place gets the same noise in every view") {
+DOCTEST_TEST_CASE(
+    "surface noise: unit variance, no blotches, the same place gets the same noise in every view") {
     // A wall across the whole picture; the second camera is moved by a whole number of cells.
     constexpr int side = 96, cells = 16;
     const double wall = 3;
@@ -147,11 +155,14 @@ DOCTEST_TEST_CASE("surface noise: unit variance, no blotches, the same place get
     for (const float value : noise.data) squares += static_cast<double>(value) * value;
     for (int y = 0; y < cells; ++y)
         for (int x = 0; x + 1 < cells; ++x)
-            for (int c = 0; c < 4; ++c, ++pairs) neighbours += static_cast<double>(noise.at(x, y, c)) * noise.at(x + 1, y, c);
-    constexpr double variance_tolerance = 0.15;   // 1,024 samples: three standard errors of a variance are 0.13
+            for (int c = 0; c < 4; ++c, ++pairs)
+                neighbours += static_cast<double>(noise.at(x, y, c)) * noise.at(x + 1, y, c);
+    constexpr double variance_tolerance =
+        0.15;  // 1,024 samples: three standard errors of a variance are 0.13
     DOCTEST_CHECK(std::abs(squares / static_cast<double>(noise.data.size()) - 1) < variance_tolerance);
     DOCTEST_CHECK(std::abs(neighbours / pairs) < 0.15);
-    const double shift = camera.to_camera({2 * cell, 0, 0}).x / cell;   // cells to the side: which way the picture moves
+    const double shift =
+        camera.to_camera({2 * cell, 0, 0}).x / cell;  // cells to the side: which way the picture moves
     const int by = static_cast<int>(std::lround(shift));
     Image here(cells - 2, cells, 4), there(cells - 2, cells, 4);
     for (int y = 0; y < cells; ++y)
@@ -161,12 +172,14 @@ DOCTEST_TEST_CASE("surface noise: unit variance, no blotches, the same place get
                 there.at(x, y, c) = shifted.at(by > 0 ? x : x + 2, y, c);
             }
     DOCTEST_CHECK(correlation(here, there) > 0.9);
-    DOCTEST_CHECK(std::abs(correlation(noise, edit::surface_noise(depth, camera, cells, 4, cell / 2, 8, 0))) < 0.15);
+    DOCTEST_CHECK(std::abs(correlation(noise, edit::surface_noise(depth, camera, cells, 4, cell / 2, 8, 0))) <
+                  0.15);
     DOCTEST_CHECK(edit::surface_noise(depth, camera, cells, 4, cell / 2, 7, 5).data == noise.data);
     // Where nothing is, every view has noise of its own.
     const Image nothing(side, side, 1);
     const Image empty = edit::surface_noise(nothing, camera, cells, 4, cell / 2, 7, 0);
-    DOCTEST_CHECK(std::abs(correlation(empty, edit::surface_noise(nothing, camera, cells, 4, cell / 2, 7, 1))) < 0.15);
+    DOCTEST_CHECK(
+        std::abs(correlation(empty, edit::surface_noise(nothing, camera, cells, 4, cell / 2, 7, 1))) < 0.15);
 }
 
 DOCTEST_TEST_CASE("views that hardly changed are redrawn once more from further off, and only once") {
@@ -185,7 +198,7 @@ DOCTEST_TEST_CASE("views that hardly changed are redrawn once more from further 
     DOCTEST_CHECK(result.redrawn_views == 12);
     DOCTEST_CHECK(run.error_of(result.set) < run.error_of(run.scene.set));
 
-    Redrawing deaf;   // the model does not know the word
+    Redrawing deaf;  // the model does not know the word
     deaf.oracle.least_strength = 2;
     std::vector<std::string> warnings;
     deaf.tools.targets = [&](const edit::ViewTargets& sheet) { warnings = sheet.warnings; };

@@ -1,4 +1,5 @@
-// Parts of views that are redrawn by themselves: where they lie, and that cutting and putting back loses nothing.
+// Parts of views that are redrawn by themselves: where they lie, and that cutting and putting back loses
+// nothing.
 #include <doctest/doctest.h>
 
 #include "engine/base/random.h"
@@ -29,10 +30,12 @@ Image noise_image(int channels, std::uint64_t seed) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("a section holds all of its mask, lies in the picture, and is as large as the mask asks for") {
+DOCTEST_TEST_CASE(
+    "a section holds all of its mask, lies in the picture, and is as large as the mask asks for") {
     Random random(3);
     for (int i = 0; i < 200; ++i) {
-        const int width = 1 + static_cast<int>(random.below(Side)), height = 1 + static_cast<int>(random.below(Side));
+        const int width = 1 + static_cast<int>(random.below(Side)),
+                  height = 1 + static_cast<int>(random.below(Side));
         const int left = static_cast<int>(random.below(static_cast<std::uint64_t>(Side - width + 1)));
         const int top = static_cast<int>(random.below(static_cast<std::uint64_t>(Side - height + 1)));
         const auto section = section_around(box_mask(left, top, width, height));
@@ -76,7 +79,8 @@ DOCTEST_TEST_CASE("a section shows what the view shows there, and goes back to w
     const auto replaced = with_section(view.rendered, other, section);
     for (int y = 0; y < Side; ++y)
         for (int x = 0; x < Side; ++x) {
-            const bool inside = x >= section.left && y >= section.top && x < section.left + section.side && y < section.top + section.side;
+            const bool inside = x >= section.left && y >= section.top && x < section.left + section.side &&
+                                y < section.top + section.side;
             DOCTEST_CHECK(replaced.at(x, y, 0) == (inside ? 0.0f : view.rendered.at(x, y, 0)));
         }
 }

@@ -61,7 +61,8 @@ DOCTEST_TEST_CASE("every array of the table is declared a column, once") {
         },
         table);
     DOCTEST_CHECK(arrays.size() == count);
-    // What is in the table besides arrays: the count of unlabelled rows and two SH degrees. All arrays are equally large.
+    // What is in the table besides arrays: the count of unlabelled rows and two SH degrees. All arrays are
+    // equally large.
     constexpr std::size_t degree = sizeof(GaussianData) - 5 * sizeof(std::vector<float>);
     DOCTEST_CHECK(sizeof(table) == sizeof(std::size_t) + 2 * degree + count * sizeof(std::vector<float>));
 }
@@ -77,7 +78,7 @@ DOCTEST_TEST_CASE("a row dropped, carried over or new has one entry in every col
         DOCTEST_CHECK(table.complete());
     }
     DOCTEST_CHECK(table.position.first.empty());
-    table.position.first.resize(12, 1.0f);   // the first step
+    table.position.first.resize(12, 1.0f);  // the first step
     table.gradient_sum[3] = 5;
     table.append_carried(table, 3);
     DOCTEST_CHECK(table.complete());
@@ -91,7 +92,8 @@ DOCTEST_TEST_CASE("a row dropped, carried over or new has one entry in every col
     DOCTEST_CHECK_FALSE(table.complete());
 }
 
-DOCTEST_TEST_CASE("steps, densifications, corrected labels and dropped seeds leave every column as long as the label") {
+DOCTEST_TEST_CASE(
+    "steps, densifications, corrected labels and dropped seeds leave every column as long as the label") {
     for (const int degree : {0, 3})
         for (const std::size_t seeds : {0u, 20u}) {
             const auto scene = test::ball_scene(100, degree);
@@ -120,7 +122,8 @@ DOCTEST_TEST_CASE("steps, densifications, corrected labels and dropped seeds lea
         }
 }
 
-DOCTEST_TEST_CASE("rows of what the old thing hid are told from those of the new one, and so are their descendants") {
+DOCTEST_TEST_CASE(
+    "rows of what the old thing hid are told from those of the new one, and so are their descendants") {
     const auto scene = test::ball_scene(100, 0);
     GaussianData seeds, hidden;
     for (std::size_t row = 0; row < 30; ++row) seeds.append_row(scene.set.to_data(), row);
@@ -138,9 +141,10 @@ DOCTEST_TEST_CASE("rows of what the old thing hid are told from those of the new
     set.plant(seeds, hidden, -3);
     DOCTEST_CHECK(set.table().complete());
     DOCTEST_CHECK(marked() == 20);
-    const auto before = static_cast<std::size_t>(std::count(set.table().ancestor.begin(), set.table().ancestor.end(), edit::OfSeed));
+    const auto before = static_cast<std::size_t>(
+        std::count(set.table().ancestor.begin(), set.table().ancestor.end(), edit::OfSeed));
     DOCTEST_CHECK(before == 30);
-    set.plant({}, hidden, -3);   // all that is born from here on descends from them, or from the base
+    set.plant({}, hidden, -3);  // all that is born from here on descends from them, or from the base
     Random random(3);
     step(set, request, random, 3);
     const auto count = set.densify(request, random, true);
@@ -148,15 +152,17 @@ DOCTEST_TEST_CASE("rows of what the old thing hid are told from those of the new
     const auto& ancestors = set.table().ancestor;
     DOCTEST_CHECK(std::count(ancestors.begin(), ancestors.end(), edit::OfSeed) == 0);
     DOCTEST_CHECK(marked() != 20);
-    set.plant(seeds, {}, -3);   // the next round has no hole any more
+    set.plant(seeds, {}, -3);  // the next round has no hole any more
     DOCTEST_CHECK(marked() == 0);
 }
 
-DOCTEST_TEST_CASE("after a corrected label, rows born in the run follow the shared colour like the rows they descend from") {
+DOCTEST_TEST_CASE(
+    "after a corrected label, rows born in the run follow the shared colour like the rows they descend "
+    "from") {
     const auto scene = test::ball_scene(60);
     auto request = restless_request();
-    request.colour_coupling = 1;   // colours change together or not at all
-    request.percent_dense = 1;     // clones only: a clone has its parent's colour
+    request.colour_coupling = 1;  // colours change together or not at all
+    request.percent_dense = 1;    // clones only: a clone has its parent's colour
     request.min_opacity = 0;
     edit::WorkingSet set(scene.set, scene.first, {}, request, Extent);
     Random random(5);
@@ -170,7 +176,8 @@ DOCTEST_TEST_CASE("after a corrected label, rows born in the run follow the shar
     std::size_t clones = 0;
     for (std::size_t i = 0; i < set.labelled(); ++i) {
         if (table.origin[i] >= 0) continue;
-        const auto parent = std::find(table.origin.begin(), table.origin.end(), table.ancestor[i]) - table.origin.begin();
+        const auto parent =
+            std::find(table.origin.begin(), table.origin.end(), table.ancestor[i]) - table.origin.begin();
         DOCTEST_REQUIRE(parent < static_cast<std::ptrdiff_t>(set.labelled()));
         ++clones;
         const float* own = &set.rows().sh[(set.first_row() + i) * 3];
@@ -189,17 +196,18 @@ DOCTEST_TEST_CASE("a corrected label changes nothing of what is remembered of ro
     set.densify(request, random, true);
     step(set, request, random, 5);
     auto label = scene.first;
-    label[60] = 1;   // one row of the other ball joins, none leaves
+    label[60] = 1;  // one row of the other ball joins, none leaves
     edit::RowTable before = set.table();
     set.relabel(scene.set, label, request);
     const auto& after = set.table();
     DOCTEST_REQUIRE(after.labelled() == before.labelled() + 1);
-    const auto joined = static_cast<std::size_t>(std::find(after.origin.begin(), after.origin.end(), 60) - after.origin.begin());
+    const auto joined = static_cast<std::size_t>(std::find(after.origin.begin(), after.origin.end(), 60) -
+                                                 after.origin.begin());
     std::vector<std::uint8_t> stayed(after.labelled(), 1);
     stayed[joined] = 0;
     edit::RowTable rest = after;
     rest.keep(stayed);
-    before.anchor = rest.anchor;   // anchors begin anew
+    before.anchor = rest.anchor;  // anchors begin anew
     edit::RowTable::visit(
         [](const edit::Column& column, const auto& was, const auto& is) {
             if (column.kind == edit::ColumnKind::Fact) DOCTEST_CHECK(was == is);

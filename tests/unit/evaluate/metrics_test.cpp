@@ -15,7 +15,7 @@ namespace {
 using namespace gse;
 using namespace gse::evaluate;
 
-constexpr double Rounding = 1e-6;   // pictures are float
+constexpr double Rounding = 1e-6;  // pictures are float
 
 Image noise(std::uint64_t seed) {
     Random random(seed);
@@ -67,7 +67,8 @@ DOCTEST_TEST_CASE("PSNR and leak look at their region only") {
     DOCTEST_CHECK(leak_rate(a, b, {&mask, false}) == 0);
     DOCTEST_CHECK(leak_rate(a, b, {&mask, true}) == 1);
     DOCTEST_CHECK(mean_absolute_error(a, b, {&mask, true}) == doctest::Approx(0.1).epsilon(1e-4));
-    DOCTEST_CHECK(mean_colour_error(a, b, {&mask, true}) == doctest::Approx(0.1 * std::sqrt(3.0)).epsilon(1e-4));
+    DOCTEST_CHECK(mean_colour_error(a, b, {&mask, true}) ==
+                  doctest::Approx(0.1 * std::sqrt(3.0)).epsilon(1e-4));
 }
 
 DOCTEST_TEST_CASE("SSIM is 1 for equal pictures, symmetric, and falls with noise") {
@@ -86,7 +87,7 @@ DOCTEST_TEST_CASE("a changed bit of a counted row is seen") {
     GaussianData data;
     data.resize(4);
     const GaussianSet before(data);
-    data.rotation[2 * 4 + 1] = -0.0f;   // equal as a number, not as bits
+    data.rotation[2 * 4 + 1] = -0.0f;  // equal as a number, not as bits
     const GaussianSet after(data);
     DOCTEST_CHECK(changed_rows(before, after, std::vector<std::uint8_t>{1, 1, 1, 1}) == 1);
     DOCTEST_CHECK(changed_rows(before, after, std::vector<std::uint8_t>{1, 1, 0, 1}) == 0);
@@ -95,8 +96,8 @@ DOCTEST_TEST_CASE("a changed bit of a counted row is seen") {
 DOCTEST_TEST_CASE("a leak is a difference above the tolerance, counted in pixels") {
     const Image a(8, 4, 3, 0.5f);
     Image b = a;
-    b.data[0] += static_cast<float>(0.9 * LeakTolerance);        // below
-    b.data[3 * 5 + 2] -= static_cast<float>(1.5 * LeakTolerance);   // one channel of one pixel
+    b.data[0] += static_cast<float>(0.9 * LeakTolerance);          // below
+    b.data[3 * 5 + 2] -= static_cast<float>(1.5 * LeakTolerance);  // one channel of one pixel
     DOCTEST_CHECK(leak_rate(a, b, {}) == doctest::Approx(1.0 / 32));
     DOCTEST_CHECK(changed_pixels(a, b, LeakTolerance).count() == 1);
     DOCTEST_CHECK(changed_pixels(a, b, LeakTolerance).at(5, 0) == 1);
@@ -106,7 +107,8 @@ DOCTEST_TEST_CASE("a leak is a difference above the tolerance, counted in pixels
 
 DOCTEST_TEST_CASE("the outline tolerance grows with the picture and never vanishes") {
     DOCTEST_CHECK(boundary_tolerance_px(64, 64) == 1);
-    DOCTEST_CHECK(boundary_tolerance_px(512, 512) == doctest::Approx(BoundaryToleranceShare * 512 * std::sqrt(2.0)));
+    DOCTEST_CHECK(boundary_tolerance_px(512, 512) ==
+                  doctest::Approx(BoundaryToleranceShare * 512 * std::sqrt(2.0)));
     DOCTEST_CHECK(boundary_tolerance_px(300, 400) == doctest::Approx(BoundaryToleranceShare * 500));
 }
 
@@ -138,11 +140,15 @@ DOCTEST_TEST_CASE("drift follows the rows through an edit that removes and adds 
     copy(2, 1);
     copy(3, 2);
     const std::vector<std::int64_t> moved{0, -1, 1, 2};
-    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 1, 0, 0}) == 0);
-    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 0, 0, 0}) == 1);
-    edited.opacity_logit[2] = 1;   // row 3 of before
-    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 1, 0, 0}) == 1);
-    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 1, 0, 1}) == 0);
+    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 1, 0, 0}) ==
+                  0);
+    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 0, 0, 0}) ==
+                  1);
+    edited.opacity_logit[2] = 1;  // row 3 of before
+    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 1, 0, 0}) ==
+                  1);
+    DOCTEST_CHECK(drifted_rows(before, GaussianSet(edited), moved, std::vector<std::uint8_t>{0, 1, 0, 1}) ==
+                  0);
 }
 
 }  // namespace metrics_test

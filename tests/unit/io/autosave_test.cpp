@@ -78,7 +78,7 @@ DOCTEST_TEST_CASE("an autosave that was left is offered while its process lives,
     const ProjectData project = random_project({{}, 0, 0, random_set(20, 0, 1)}, 1);
     ProjectWriter writer;
     Autosave autosave(folder.path());
-    autosave.leave();   // nothing was written: nothing happens
+    autosave.leave();  // nothing was written: nothing happens
     autosave.write(project, "", writer);
     const auto left = autosave.path();
     DOCTEST_CHECK(find_recoverable(folder.path()).empty());

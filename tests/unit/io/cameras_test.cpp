@@ -186,7 +186,7 @@ DOCTEST_TEST_CASE("cameras.json that cannot be right is refused") {
 }
 
 DOCTEST_TEST_CASE("transforms.json round trip: pose, focal lengths, principal point and size of every view") {
-    constexpr double Rounding = 1e-9;   // the reader takes a scale out of the matrix, which has none
+    constexpr double Rounding = 1e-9;  // the reader takes a scale out of the matrix, which has none
     ScratchFolder scratch;
     std::vector<View> views;
     for (std::uint64_t i = 0; i < 5; ++i) {
@@ -194,7 +194,7 @@ DOCTEST_TEST_CASE("transforms.json round trip: pose, focal lengths, principal po
         views.back().camera.cx += 3.25 * static_cast<double>(i);
         views.back().camera.width += static_cast<int>(i);
     }
-    views[4].distorted = true;   // its coefficients are not known any more: a pinhole is written
+    views[4].distorted = true;  // its coefficients are not known any more: a pinhole is written
     const auto path = scratch.path() / "transforms.json";
     save_cameras(path, views);
     for (const auto& place : {path, scratch.path()}) {
@@ -219,7 +219,8 @@ DOCTEST_TEST_CASE("cameras are written in the form that the name asks for, and n
         save_cameras(scratch.path() / name, views);
         const bool list = read_file(scratch.path() / name).starts_with("[");
         DOCTEST_CHECK(list != names_transforms(name));
-        DOCTEST_CHECK(largest_difference(load_cameras(scratch.path() / name)[0].camera, views[0].camera) < 1e-9);
+        DOCTEST_CHECK(largest_difference(load_cameras(scratch.path() / name)[0].camera, views[0].camera) <
+                      1e-9);
     }
     for (const char* name : {"cameras.txt", "cameras", "transforms.jsn"}) {
         const auto refused = error_of([&] { save_cameras(scratch.path() / name, views); });
@@ -276,7 +277,8 @@ DOCTEST_TEST_CASE("nerfstudio: distortion, values per frame, the world its splat
     for (const auto& scene : {exported.path(), exported.path() / "splat.ply"})
         DOCTEST_CHECK(length(load_cameras(scratch.path(), scene)[0].camera.centre() - Vec3{2, 4, 6}) < 1e-12);
     const ScratchFolder elsewhere;
-    DOCTEST_CHECK(length(load_cameras(scratch.path(), elsewhere.path() / "splat.ply")[0].camera.centre() - Vec3{0.5, 1, 1.5}) < 1e-12);
+    DOCTEST_CHECK(length(load_cameras(scratch.path(), elsewhere.path() / "splat.ply")[0].camera.centre() -
+                         Vec3{0.5, 1, 1.5}) < 1e-12);
 }
 
 DOCTEST_TEST_CASE("transforms.json that cannot be right is refused") {
@@ -331,7 +333,8 @@ DOCTEST_TEST_CASE("a camera file, and a folder with cameras and no scene, are ca
     const std::vector<View> views{{"a", some_camera(1), false}};
     std::filesystem::create_directories(folder / "sparse/0");
     DOCTEST_CHECK_FALSE(only_cameras(folder));
-    for (const char* part : {"cameras.txt", "images.txt"}) write_file(folder / "sparse/0" / part, "# COLMAP\n");
+    for (const char* part : {"cameras.txt", "images.txt"})
+        write_file(folder / "sparse/0" / part, "# COLMAP\n");
     DOCTEST_CHECK(only_cameras(folder));
     DOCTEST_CHECK(only_cameras(folder / "sparse/0"));
     DOCTEST_CHECK(only_cameras(folder / "sparse/0/images.txt"));
@@ -339,9 +342,9 @@ DOCTEST_TEST_CASE("a camera file, and a folder with cameras and no scene, are ca
     DOCTEST_CHECK(only_cameras(scratch.path() / "cameras.json"));
     DOCTEST_CHECK(only_cameras(scratch.path() / "bear.cameras.json"));
     DOCTEST_CHECK_FALSE(only_cameras(scratch.path() / "meta.json"));
-    DOCTEST_CHECK_FALSE(only_cameras(scratch.path() / "cameras.txt"));   // without its images
+    DOCTEST_CHECK_FALSE(only_cameras(scratch.path() / "cameras.txt"));  // without its images
     save_scene(folder / "scene.ply", random_scene(2, 0, 1));
-    DOCTEST_CHECK_FALSE(only_cameras(folder));   // a scene and its cameras
+    DOCTEST_CHECK_FALSE(only_cameras(folder));  // a scene and its cameras
     DOCTEST_CHECK_FALSE(only_cameras(folder / "scene.ply"));
 }
 

@@ -1,4 +1,5 @@
-// Films: a film that the disk does not take whole never replaces a good one, and every cut of a film is told from a whole one.
+// Films: a film that the disk does not take whole never replaces a good one, and every cut of a film is told
+// from a whole one.
 #include <signal.h>
 #include <sys/resource.h>
 
@@ -45,7 +46,8 @@ DOCTEST_TEST_CASE("a film cut off at any byte is not whole") {
         const std::string bytes = read_file(scratch.path() / name);
         DOCTEST_REQUIRE(bytes.size() > 20000);
         DOCTEST_CHECK(io::film_is_whole(as_bytes(bytes)));
-        for (std::size_t size = 0; size < bytes.size(); size += size < 200 || bytes.size() - size < 3000 ? 1 : 97)
+        for (std::size_t size = 0; size < bytes.size();
+             size += size < 200 || bytes.size() - size < 3000 ? 1 : 97)
             if (io::film_is_whole(as_bytes(bytes).first(size))) {
                 DOCTEST_CAPTURE(size);
                 DOCTEST_CHECK(false);

@@ -14,8 +14,7 @@ using namespace gse::test;
 namespace {
 
 /// Everything the log says while `body` runs, at or above warning.
-template <class F>
-std::string said_by(F&& body) {
+template <class F> std::string said_by(F&& body) {
     std::string said;
     log::set_sink([&](log::Level level, std::string_view text) {
         if (level >= log::Level::Warning) said += std::string(text) + "\n";
@@ -33,7 +32,8 @@ std::string said_of_saving(const Scene& scene, const char* name) {
 /// The number after `words` in the text; -1 when they are not there.
 double number_after(const std::string& text, const std::string& words) {
     std::smatch found;
-    return std::regex_search(text, found, std::regex(words + " up to ([-+0-9.e]+)")) ? std::stod(found[1]) : -1;
+    return std::regex_search(text, found, std::regex(words + " up to ([-+0-9.e]+)")) ? std::stod(found[1])
+                                                                                     : -1;
 }
 
 }  // namespace
@@ -54,7 +54,8 @@ DOCTEST_TEST_CASE("sizes that SPZ clips are told with their factor and number") 
 DOCTEST_TEST_CASE("every lossy field of every format is told, and a plain PLY loses nothing") {
     const Scene scene = random_scene(300, 2, 5);
     DOCTEST_CHECK(said_of_saving(scene, "a.ply") == "");
-    const std::string spz = said_of_saving(scene, "a.spz"), compressed = said_of_saving(scene, "a.compressed.ply");
+    const std::string spz = said_of_saving(scene, "a.spz"),
+                      compressed = said_of_saving(scene, "a.compressed.ply");
     const std::string splat = said_of_saving(scene, "a.splat");
     for (const char* field : {"rotations", "opacities", "colours", "view-dependent colours"})
         for (const std::string& said : {spz, compressed, splat}) {
@@ -76,13 +77,18 @@ DOCTEST_TEST_CASE("what is said of a scene beside its splats is told where the f
     scene.info.up = {0, 0, 1};
     const std::string spz = said_of_saving(scene, "a.spz"), splat = said_of_saving(scene, "a.splat");
     const std::string compressed = said_of_saving(scene, "a.compressed.ply");
-    const auto says = [](const std::string& said, const char* words) { return said.find(words) != std::string::npos; };
-    for (const char* words : {"which way is up", "antialiasing; .ply, .compressed.ply, .spz and .sog do"}) DOCTEST_CHECK(says(splat, words));
-    for (const char* words : {"which way is up", "antialiasing"}) DOCTEST_CHECK_FALSE(says(compressed, words));
+    const auto says = [](const std::string& said, const char* words) {
+        return said.find(words) != std::string::npos;
+    };
+    for (const char* words : {"which way is up", "antialiasing; .ply, .compressed.ply, .spz and .sog do"})
+        DOCTEST_CHECK(says(splat, words));
+    for (const char* words : {"which way is up", "antialiasing"})
+        DOCTEST_CHECK_FALSE(says(compressed, words));
     DOCTEST_CHECK(says(spz, "which way is up in the scene; .ply and .compressed.ply do"));
     DOCTEST_CHECK_FALSE(says(spz, "antialiasing"));
     scene.info.antialiased = scene.info.up_known = false;
-    for (const char* words : {"which way is up", "antialiasing"}) DOCTEST_CHECK_FALSE(says(said_of_saving(scene, "a.splat"), words));
+    for (const char* words : {"which way is up", "antialiasing"})
+        DOCTEST_CHECK_FALSE(says(said_of_saving(scene, "a.splat"), words));
 }
 
 DOCTEST_TEST_CASE("the told errors are those of the file") {
@@ -94,7 +100,8 @@ DOCTEST_TEST_CASE("the told errors are those of the file") {
     for (std::size_t i = 0; i < 500; ++i) {
         double squares = 0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double d = static_cast<double>(scene.gaussians.position()[i * 3 + axis]) - back.gaussians.position()[i * 3 + axis];
+            const double d = static_cast<double>(scene.gaussians.position()[i * 3 + axis]) -
+                             back.gaussians.position()[i * 3 + axis];
             squares += d * d;
         }
         moved = std::max(moved, std::sqrt(squares));

@@ -73,7 +73,8 @@ DOCTEST_TEST_CASE("SPZ round trip stays within its steps, in every version") {
     constexpr double BaseStep = 0.5 / 255 / 0.15 + 1e-5;
     constexpr double ShStep = 0.5 / 128 + 1e-6;
     constexpr double RotationFloor = 1 - 1e-5;  // nine bits per component
-    constexpr double ByteRotationFloor = 0.99;  // seven bits, and w, which is small, from the rest: sqrt(3 / 127.5)
+    constexpr double ByteRotationFloor =
+        0.99;  // seven bits, and w, which is small, from the rest: sqrt(3 / 127.5)
     for (int version = 2; version <= 4; ++version)
         for (int degree = 0; degree <= 3; ++degree) {
             DOCTEST_CAPTURE(version);
@@ -100,25 +101,28 @@ DOCTEST_TEST_CASE("SPZ round trip stays within its steps, in every version") {
             DOCTEST_CHECK(base <= BaseStep);
             DOCTEST_CHECK(rest <= ShStep);
             // A second round changes nothing: the quantised values are fixed points.
-            DOCTEST_CHECK(same_bits(reload(again, "b.spz", options).gaussians.position(), again.gaussians.position()));
+            DOCTEST_CHECK(
+                same_bits(reload(again, "b.spz", options).gaussians.position(), again.gaussians.position()));
         }
 }
 
-DOCTEST_TEST_CASE("SPZ versions 3 and 4 hold the same splats; other versions are refused before anything is written") {
+DOCTEST_TEST_CASE(
+    "SPZ versions 3 and 4 hold the same splats; other versions are refused before anything is written") {
     Scene scene = random_scene(300, 3, 5);
     scene.info.antialiased = true;
     const Scene third = parse_scene(as_bytes(io::write_spz(scene, 3)), "x.spz");
     const std::string newest = io::write_spz(scene, 4);
     const Scene fourth = parse_scene(as_bytes(newest), "x.spz");
     DOCTEST_CHECK(newest.starts_with(std::string("NGSP\4\0\0\0", 8)));
-    DOCTEST_CHECK(newest[15] == 6);   // streams; a scene without view-dependent colour has five
+    DOCTEST_CHECK(newest[15] == 6);  // streams; a scene without view-dependent colour has five
     DOCTEST_CHECK(io::write_spz(random_scene(3, 0, 5), 4)[15] == 5);
     DOCTEST_CHECK(same_bits(third.gaussians, fourth.gaussians));
     DOCTEST_CHECK(fourth.info.antialiased);
     DOCTEST_CHECK(fourth.info.warnings.empty());
     ScratchFolder scratch;
     for (const int version : {-1, 0, 1, 5}) {
-        const auto refused = error_of([&] { save_scene(scratch.path() / "a.spz", scene, {.spz_version = version}); });
+        const auto refused =
+            error_of([&] { save_scene(scratch.path() / "a.spz", scene, {.spz_version = version}); });
         DOCTEST_REQUIRE(refused.has_value());
         DOCTEST_CHECK(refused->code() == ErrorCode::InvalidArgument);
     }
@@ -153,7 +157,7 @@ DOCTEST_TEST_CASE("SPZ honours the coordinate system that the extension names") 
     DOCTEST_CHECK(stored.position()[1] == -usual.position()[1]);
     DOCTEST_CHECK(stored.position()[2] == -usual.position()[2]);
     const Scene strange = with_frame(12);
-    DOCTEST_CHECK(strange.info.warnings.size() == 2);   // and the unknown extension
+    DOCTEST_CHECK(strange.info.warnings.size() == 2);  // and the unknown extension
     DOCTEST_CHECK(same_bits(strange.gaussians, stored));
 }
 
@@ -164,11 +168,13 @@ DOCTEST_TEST_CASE("SPZ: flags and extensions that are not known are told in one 
         std::string file(reinterpret_cast<const char*>(flat.data()), flat.size());
         file[14] = flags;
         if (extension)
-            for (const std::uint32_t word : {0x12345678u, 0u, 0x12345678u, 0u, 0xabcdu, 0u}) io::append_value(file, word);
+            for (const std::uint32_t word : {0x12345678u, 0u, 0x12345678u, 0u, 0xabcdu, 0u})
+                io::append_value(file, word);
         return parse_scene(as_bytes(file), "x.spz").info.warnings;
     };
     const std::string begin = "the SPZ file has parts that are not known and passed over: ";
-    const std::string levels = "flags 0x80 (levels of detail, all drawn at once)", types = "extensions 0xabcd, 0x12345678";
+    const std::string levels = "flags 0x80 (levels of detail, all drawn at once)",
+                      types = "extensions 0xabcd, 0x12345678";
     for (const char flags : {'\0', '\1', '\2', '\3'}) DOCTEST_CHECK(warnings(flags, false).empty());
     DOCTEST_CHECK(warnings('\x81', false) == std::vector<std::string>{begin + levels});
     DOCTEST_CHECK(warnings('\x04', false) == std::vector<std::string>{begin + "flags 0x4"});

@@ -27,13 +27,10 @@ inline std::span<const std::byte> as_bytes(const std::string& text) {
 inline std::filesystem::path data_folder() { return shared_folder() / "data"; }
 
 /// The error that `body` throws, or nothing.
-template <class F>
-std::optional<Error> error_of(F&& body) {
+template <class F> std::optional<Error> error_of(F&& body) {
     try {
         body();
-    } catch (const Error& error) {
-        return error;
-    }
+    } catch (const Error& error) { return error; }
     return std::nullopt;
 }
 

@@ -25,8 +25,7 @@ struct Column {
     std::function<double(std::size_t)> value;
 };
 
-template <class T>
-void append_scalar(std::string& out, T value, bool big_endian) {
+template <class T> void append_scalar(std::string& out, T value, bool big_endian) {
     std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
     if (big_endian) std::reverse(bytes.begin(), bytes.end());
     out += bytes;
@@ -194,10 +193,12 @@ void check_both_readers(const ScratchFolder& scratch, const std::string& bytes, 
 
 DOCTEST_TEST_CASE("a file that is read in pieces is read as one that is read as a whole") {
     ScratchFolder scratch;
-    for (const std::size_t count : {1u, 128u, 4227u, 4228u, 4229u, 10001u}) {   // 4228 rows of 248 bytes are a piece
+    for (const std::size_t count :
+         {1u, 128u, 4227u, 4228u, 4229u, 10001u}) {  // 4228 rows of 248 bytes are a piece
         const GaussianData data = random_gaussians(count, 3, count);
         std::vector<Column> columns = columns_of(data);
-        for (const char* name : {"nx", "ny", "label"}) columns.push_back({name, "float", [](std::size_t row) { return row % 3 == 0 ? 1.0 : 0.0; }});
+        for (const char* name : {"nx", "ny", "label"})
+            columns.push_back({name, "float", [](std::size_t row) { return row % 3 == 0 ? 1.0 : 0.0; }});
         check_both_readers(scratch, make_ply(columns, count, {}), true);
     }
     const GaussianData data = random_gaussians(700, 1, 3);
@@ -209,11 +210,15 @@ DOCTEST_TEST_CASE("a file that is read in pieces is read as one that is read as 
     const std::string good = make_ply(columns, 700, shape);
     check_both_readers(scratch, good, true);
     check_both_readers(scratch, good + "more", true);
-    check_both_readers(scratch, good.substr(0, good.size() - 1), false);   // the whole file tells how many rows there are
+    check_both_readers(scratch, good.substr(0, good.size() - 1),
+                       false);  // the whole file tells how many rows there are
     std::string nameless = good;
     nameless.replace(nameless.find("opacity"), 7, "opaque_");
     check_both_readers(scratch, nameless, true);
-    check_both_readers(scratch, std::string(good).insert(good.find("obj_info"), "comment " + std::string(70000, 'x') + "\r\n"), false);
+    check_both_readers(
+        scratch,
+        std::string(good).insert(good.find("obj_info"), "comment " + std::string(70000, 'x') + "\r\n"),
+        false);
     shape.list_inside = true;
     check_both_readers(scratch, make_ply(columns, 700, shape), false);
     shape = {};
@@ -309,7 +314,8 @@ DOCTEST_TEST_CASE("label columns with other numbers than labels have are taken w
     const Scene weights = read("label_weight", {0, 0.25, 1, 3, -2, std::nan("")});
     DOCTEST_CHECK(*weights.labels.labels.at(0).weight == std::vector<float>{0, 0.25f, 1, 1, 0, 0});
     DOCTEST_REQUIRE(weights.info.warnings.size() == 1);
-    DOCTEST_CHECK(weights.info.warnings[0].find("\"label_weight\" has weights outside of 0 to 1 for 3 splats") != std::string::npos);
+    DOCTEST_CHECK(weights.info.warnings[0].find(
+                      "\"label_weight\" has weights outside of 0 to 1 for 3 splats") != std::string::npos);
     const Scene ids = read("label", {0, 1, 2, 9, 0, 1});
     DOCTEST_CHECK(*ids.labels.labels.at(0).bits == std::vector<std::uint8_t>{0, 1, 1, 1, 0, 1});
     DOCTEST_CHECK(*ids.labels.labels.at(0).weight == std::vector<float>{0, 1, 1, 1, 0, 1});

@@ -46,7 +46,7 @@ inline ProjectData random_project(const SceneSource& source, std::uint64_t seed)
     project.state.labels = {random_label(project.state, seed), random_label(project.state, seed + 1)};
     project.state.labels[0].left_out = "3, 17";
     project.state.labels[0].looked_from = "270";
-    project.state.labels[0].attention_threshold = 0.3125;   // the other was not found by a search
+    project.state.labels[0].attention_threshold = 0.3125;  // the other was not found by a search
     project.state.labels[1].weight = nullptr;
     project.state.labels[1] = with_bits(project.state.labels[1]);
     project.state.active_label = 1;
@@ -79,7 +79,9 @@ inline bool same_label(const NamedLabel& a, const NamedLabel& b) {
                             ? a.absent == b.absent
                             : a.absent->ids == b.absent->ids && a.absent->weight == b.absent->weight &&
                                   a.absent->manual == b.absent->manual;
-    return absent && a.name == b.name && a.threshold == b.threshold && a.attention_threshold == b.attention_threshold && a.left_out == b.left_out && a.looked_from == b.looked_from && same_array(a.weight, b.weight) &&
+    return absent && a.name == b.name && a.threshold == b.threshold &&
+           a.attention_threshold == b.attention_threshold && a.left_out == b.left_out &&
+           a.looked_from == b.looked_from && same_array(a.weight, b.weight) &&
            same_array(a.manual, b.manual) && same_array(a.bits, b.bits);
 }
 
@@ -91,8 +93,8 @@ inline bool same_view(const View& a, const View& b) {
 }
 
 inline bool same_edit(const EditNode& a, const EditNode& b) {
-    return a.id == b.id && a.name == b.name && a.recipe == b.recipe && a.enabled == b.enabled && a.strength == b.strength &&
-           a.seconds == b.seconds && a.psnr_outside_db == b.psnr_outside_db &&
+    return a.id == b.id && a.name == b.name && a.recipe == b.recipe && a.enabled == b.enabled &&
+           a.strength == b.strength && a.seconds == b.seconds && a.psnr_outside_db == b.psnr_outside_db &&
            a.changed_outside_label == b.changed_outside_label && same_delta(*a.delta, *b.delta) &&
            same_picture(a.thumbnail, b.thumbnail);
 }

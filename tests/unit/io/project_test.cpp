@@ -25,8 +25,7 @@ std::string text_of(std::span<const std::byte> bytes) {
 }
 
 /// The project with its description changed by `change`.
-template <class F>
-std::string with_description(const std::string& project, F&& change) {
+template <class F> std::string with_description(const std::string& project, F&& change) {
     const io::ZipReader zip(as_bytes(project), "the project");
     auto json = nlohmann::json::parse(text_of(zip.read("project.json", 1 << 20)));
     const io::ProjectDescription description = io::parse_description(json.dump());
@@ -75,10 +74,8 @@ DOCTEST_TEST_CASE("a writer that knows the arrays writes the same bytes as a new
     ProjectWriter writer;
     DOCTEST_CHECK(writer.pack(path, project) == writer.pack(path, project));
     for (std::uint64_t i = 0; i < 5; ++i) {
-        if (i % 2 == 0)
-            project.state.labels[0] = random_label(project.state, i);
-        else
-            project.state = with_edit(project.state, random_node(project.state, i));
+        if (i % 2 == 0) project.state.labels[0] = random_label(project.state, i);
+        else project.state = with_edit(project.state, random_node(project.state, i));
         const bool same = writer.pack(path, project) == ProjectWriter().pack(path, project);
         DOCTEST_CHECK(same);
     }
@@ -158,7 +155,9 @@ DOCTEST_TEST_CASE("a repaired base is kept as its rows, any other base as a whol
     DOCTEST_CHECK(difference(project.state, load_project(path).state) == "");
 }
 
-DOCTEST_TEST_CASE("a project is a scene, too: what it shows, its active label first; one that is its own scene is refused") {
+DOCTEST_TEST_CASE(
+    "a project is a scene, too: what it shows, its active label first; one that is its own scene is "
+    "refused") {
     const Quiet quiet;
     const ScratchFolder folder;
     const auto source = saved_source(folder.path() / "scene.ply", 100, 2);
@@ -173,7 +172,8 @@ DOCTEST_TEST_CASE("a project is a scene, too: what it shows, its active label fi
     const auto& active = labels[static_cast<std::size_t>(project.state.active_label)];
     DOCTEST_CHECK(scene.labels.labels.front().name == active.name);
     DOCTEST_CHECK(*scene.labels.labels.front().bits == *active.bits);
-    std::filesystem::copy_file(path, folder.path() / "scene.ply", std::filesystem::copy_options::overwrite_existing);
+    std::filesystem::copy_file(path, folder.path() / "scene.ply",
+                               std::filesystem::copy_options::overwrite_existing);
     const auto own = error_of([&] { load_scene(path); });
     DOCTEST_REQUIRE(own);
     DOCTEST_CHECK(own->message().find("refer to each other") != std::string::npos);
@@ -223,7 +223,8 @@ DOCTEST_TEST_CASE("weights of a project's labels that are none are held between 
     DOCTEST_CHECK(*loaded.state.labels[0].weight == weight);
     DOCTEST_CHECK(loaded.state.labels[0].absent->weight == std::vector<float>{0.25f, 1});
     DOCTEST_REQUIRE(loaded.warnings.size() == 2);
-    DOCTEST_CHECK(loaded.warnings[0].starts_with("the label \"label 5\" has weights outside of 0 to 1 for 3 splats"));
+    DOCTEST_CHECK(
+        loaded.warnings[0].starts_with("the label \"label 5\" has weights outside of 0 to 1 for 3 splats"));
 }
 
 DOCTEST_TEST_CASE("damaged descriptions and members are one sentence each") {
@@ -275,7 +276,8 @@ DOCTEST_TEST_CASE("damaged descriptions and members are one sentence each") {
         const auto error = error_of([&] { parse_project(as_bytes(with_description(packed, damages[i]))); });
         DOCTEST_REQUIRE(error);
         DOCTEST_CHECK_FALSE(error->message().empty());
-        if (error->message().starts_with("the camera \"views[")) DOCTEST_CHECK(error->hint().find("an older copy or an autosave") != std::string::npos);
+        if (error->message().starts_with("the camera \"views["))
+            DOCTEST_CHECK(error->hint().find("an older copy or an autosave") != std::string::npos);
     }
 }
 

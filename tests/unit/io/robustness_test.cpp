@@ -45,9 +45,7 @@ std::vector<Sample> samples() {
 bool survives(const std::string& bytes, const std::string& name) {
     try {
         parse_scene(as_bytes(bytes), name);
-    } catch (const Error& error) {
-        return !error.message().empty();
-    }
+    } catch (const Error& error) { return !error.message().empty(); }
     return true;
 }
 
@@ -123,9 +121,10 @@ DOCTEST_TEST_CASE("huge counts are refused without allocating") {
 DOCTEST_TEST_CASE("small files that ask for gigabytes are refused before anything is unpacked") {
     const long before = peak_kilobytes();
     // 400 million splats as zstd frames of zeros would be read in full, were it not for the file's size.
-    io::check_claim({io::splat_bytes(1000000, 3), 1000}, "it");                          // a little may come from nothing
+    io::check_claim({io::splat_bytes(1000000, 3), 1000}, "it");  // a little may come from nothing
     DOCTEST_CHECK(error_of([] { io::check_claim({std::uint64_t{60} << 30, 820}, "it"); }));
-    DOCTEST_CHECK_THROWS_AS(io::check_claim({std::uint64_t{1} << 60, std::uint64_t{1} << 59}, "it"), OutOfMemory);
+    DOCTEST_CHECK_THROWS_AS(io::check_claim({std::uint64_t{1} << 60, std::uint64_t{1} << 59}, "it"),
+                            OutOfMemory);
     const auto folder = data_folder() / "hostile";
     if (!available(folder)) return;
     for (const char* name : {"sog_bomb268M.sog", "spz4_bomb400M.spz"}) {
@@ -141,12 +140,16 @@ DOCTEST_TEST_CASE("small files that ask for gigabytes are refused before anythin
     DOCTEST_CHECK(peak_kilobytes() - before < AllowedKilobytes);
 }
 
-DOCTEST_TEST_CASE("a SOG archive's entry is unpacked to the size that the archive states, and that must be honest") {
-    const std::string meta = R"({"version": 2, "count": 1, "sh0": {"files": ["sh0.webp"]}})", texture(5000, 'x');
-    const std::string honest = io::write_zip(std::vector<io::ZipMember>{{"meta.json", meta, true}, {"sh0.webp", texture, true}});
+DOCTEST_TEST_CASE(
+    "a SOG archive's entry is unpacked to the size that the archive states, and that must be honest") {
+    const std::string meta = R"({"version": 2, "count": 1, "sh0": {"files": ["sh0.webp"]}})",
+                      texture(5000, 'x');
+    const std::string honest =
+        io::write_zip(std::vector<io::ZipMember>{{"meta.json", meta, true}, {"sh0.webp", texture, true}});
     const auto stating = [&](std::uint32_t size) {
         std::string archive = honest;
-        const std::size_t name = archive.rfind("sh0.webp");   // in the directory, whose record has the size 22 bytes before
+        const std::size_t name =
+            archive.rfind("sh0.webp");  // in the directory, whose record has the size 22 bytes before
         std::memcpy(archive.data() + name - 22, &size, sizeof size);
         const auto error = error_of([&] { parse_scene(as_bytes(archive), "x.sog"); });
         return error ? error->message() : std::string();
@@ -166,8 +169,9 @@ DOCTEST_TEST_CASE("a tree of levels names each part once, and none outside of it
     const auto load = [&](const std::string& names) {
         std::filesystem::remove(scratch.path() / "lod-meta.json");
         write_file(scratch.path() / "lod-meta.json",
-                   "{\"filenames\": [" + names + "], \"tree\": {\"children\": [{\"lods\": {\"0\": {\"file\": 0}}}, "
-                   "{\"lods\": {\"0\": {\"file\": 1}}}, {\"lods\": {\"0\": {\"file\": 0}}}]}}");
+                   "{\"filenames\": [" + names +
+                       "], \"tree\": {\"children\": [{\"lods\": {\"0\": {\"file\": 0}}}, "
+                       "{\"lods\": {\"0\": {\"file\": 1}}}, {\"lods\": {\"0\": {\"file\": 0}}}]}}");
         return load_scene(scratch.path()).gaussians.size();
     };
     DOCTEST_CHECK(load("\"part/meta.json\", \"./part/meta.json\"") == 1873);
@@ -258,7 +262,8 @@ DOCTEST_TEST_CASE("an Inria output folder gives its highest iteration") {
 DOCTEST_TEST_CASE("a folder with one scene file is that scene, with several it is asked which") {
     ScratchFolder scratch;
     const auto folder = scratch.path();
-    DOCTEST_CHECK(error_of([&] { load_scene(folder); })->message().find("holds no scene") != std::string::npos);
+    DOCTEST_CHECK(error_of([&] { load_scene(folder); })->message().find("holds no scene") !=
+                  std::string::npos);
     save_scene(folder / "scene.ply", random_scene(11, 0, 1));
     write_file(folder / "cameras.json", "[]");
     write_file(folder / "points3D.ply",

@@ -28,7 +28,7 @@ GaussianSet in_file_order(const GaussianSet& set, const std::vector<std::uint32_
 
 struct Written {
     std::string bytes;
-    GaussianSet before, after;   // in the same order
+    GaussianSet before, after;  // in the same order
 };
 
 Written written(const Scene& scene) {
@@ -54,10 +54,11 @@ nlohmann::json meta_of(const std::string& bytes) {
 
 /// 1 where the positions of axis `axis` agree within half a step of the logarithmic grid.
 bool within_grid(const Written& file, double extent) {
-    const double step = 2 * std::log1p(extent) / 65535;   // of ln(1 + |x|)
+    const double step = 2 * std::log1p(extent) / 65535;  // of ln(1 + |x|)
     for (std::size_t i = 0; i < file.before.position().size(); ++i) {
         const double x = file.before.position()[i];
-        if (std::abs(x - file.after.position()[i]) > (0.5 * step + 1e-6) * (1 + std::abs(x)) * 1.001) return false;
+        if (std::abs(x - file.after.position()[i]) > (0.5 * step + 1e-6) * (1 + std::abs(x)) * 1.001)
+            return false;
     }
     return true;
 }
@@ -66,8 +67,9 @@ bool within_grid(const Written& file, double extent) {
 
 DOCTEST_TEST_CASE("SOG round trip: the same splats in Morton order, within the steps of the format") {
     constexpr double OpacityStep = 0.5 / 255 + 1e-6;
-    constexpr double ScaleStep = 5.0 / 255;            // the log-scales span 5; 256 codes fitted to them are as dense everywhere
-    constexpr double RotationFloor = 1 - 1e-4;         // bytes over +-1/sqrt(2): half a step is 0.0028 per component
+    constexpr double ScaleStep =
+        5.0 / 255;  // the log-scales span 5; 256 codes fitted to them are as dense everywhere
+    constexpr double RotationFloor = 1 - 1e-4;  // bytes over +-1/sqrt(2): half a step is 0.0028 per component
     for (int degree = 0; degree <= 3; ++degree) {
         DOCTEST_CAPTURE(degree);
         const Scene scene = random_scene(700, degree, 60 + static_cast<std::uint64_t>(degree));
@@ -89,7 +91,8 @@ DOCTEST_TEST_CASE("SOG round trip: the same splats in Morton order, within the s
     }
 }
 
-DOCTEST_TEST_CASE("SOG: what was written, read and written again is the same; the bytes do not change either") {
+DOCTEST_TEST_CASE(
+    "SOG: what was written, read and written again is the same; the bytes do not change either") {
     const Scene scene = random_scene(300, 2, 70);
     const std::string bytes = io::write_sog(scene);
     DOCTEST_CHECK(bytes == io::write_sog(scene));
@@ -100,11 +103,13 @@ DOCTEST_TEST_CASE("SOG: what was written, read and written again is the same; th
     DOCTEST_CHECK(same_bits(again.gaussians.log_scale(), expected.log_scale()));
     DOCTEST_CHECK(same_bits(again.gaussians.sh(), expected.sh()));
     DOCTEST_CHECK(same_bits(again.gaussians.opacity_logit(), expected.opacity_logit()));
-    constexpr double Rounding = 1e-5;   // the ends of the grid are float positions again
+    constexpr double Rounding = 1e-5;  // the ends of the grid are float positions again
     DOCTEST_CHECK(largest_difference(again.gaussians.position(), expected.position()) < Rounding);
 }
 
-DOCTEST_TEST_CASE("SOG: meta.json names version, count, textures of the stated sizes, and the model of antialiased scenes") {
+DOCTEST_TEST_CASE(
+    "SOG: meta.json names version, count, textures of the stated sizes, and the model of antialiased "
+    "scenes") {
     Scene scene = random_scene(2500, 3, 71);
     scene.info.antialiased = true;
     const std::string bytes = io::write_sog(scene);
@@ -114,7 +119,7 @@ DOCTEST_TEST_CASE("SOG: meta.json names version, count, textures of the stated s
     DOCTEST_CHECK(meta.at("model") == "antialiased");
     DOCTEST_CHECK(meta.at("shN").at("bands") == 3);
     const auto entries = meta.at("shN").at("count").get<std::size_t>();
-    DOCTEST_CHECK(entries <= 2048);   // the largest power of two within the splats
+    DOCTEST_CHECK(entries <= 2048);  // the largest power of two within the splats
     DOCTEST_CHECK(entries > 1900);
     const auto files = io::open_sog_archive(as_bytes(bytes));
     const auto texture = [&](const char* part, std::size_t index) {
@@ -123,7 +128,7 @@ DOCTEST_TEST_CASE("SOG: meta.json names version, count, textures of the stated s
     };
     for (const char* part : {"means", "scales", "quats", "sh0"}) {
         const io::Texture picture = texture(part, 0);
-        DOCTEST_CHECK(picture.width == 52);   // 4 * ceil(sqrt(2500) / 4)
+        DOCTEST_CHECK(picture.width == 52);  // 4 * ceil(sqrt(2500) / 4)
         DOCTEST_CHECK(picture.height == 52);
     }
     DOCTEST_CHECK(texture("shN", 0).width == 64 * 15);
@@ -144,8 +149,10 @@ DOCTEST_TEST_CASE("SOG holds far, flat, opaque, single and equal splats") {
     const Written file = written(scene);
     DOCTEST_REQUIRE(file.after.size() == 40);
     DOCTEST_CHECK(within_grid(file, 1e6));
-    for (const auto values : {file.after.position(), file.after.log_scale(), file.after.rotation(), file.after.opacity_logit()})
-        DOCTEST_CHECK(std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); }));
+    for (const auto values :
+         {file.after.position(), file.after.log_scale(), file.after.rotation(), file.after.opacity_logit()})
+        DOCTEST_CHECK(
+            std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); }));
     for (const std::size_t count : {1u, 2u, 5u}) {
         GaussianData equal;
         equal.sh_degree = 1;
@@ -159,8 +166,11 @@ DOCTEST_TEST_CASE("SOG holds far, flat, opaque, single and equal splats") {
     DOCTEST_CHECK(error_of([&] { io::write_sog(scene); }).has_value());
 }
 
-DOCTEST_TEST_CASE("SOG: colours that no scene has spoil nothing: every value read is finite, and the colours of others keep their steps") {
-    constexpr float Huge = 9000;   // rows with more than 10,000 are left out by every format (scene/statistics.cpp)
+DOCTEST_TEST_CASE(
+    "SOG: colours that no scene has spoil nothing: every value read is finite, and the colours of others "
+    "keep their steps") {
+    constexpr float Huge =
+        9000;  // rows with more than 10,000 are left out by every format (scene/statistics.cpp)
     GaussianData data = random_gaussians(3000, 1, 74);
     for (std::size_t row = 0; row < 40; ++row)
         for (std::size_t i = 0; i < 12; ++i) data.sh[row * 12 + i] = (row + i) % 2 == 0 ? Huge : -Huge;
@@ -168,9 +178,10 @@ DOCTEST_TEST_CASE("SOG: colours that no scene has spoil nothing: every value rea
     scene.gaussians = GaussianSet(data);
     const Written file = written(scene);
     DOCTEST_REQUIRE(file.after.size() == 3000);
-    DOCTEST_CHECK(std::all_of(file.after.sh().begin(), file.after.sh().end(), [](float value) { return std::isfinite(value); }));
+    DOCTEST_CHECK(std::all_of(file.after.sh().begin(), file.after.sh().end(),
+                              [](float value) { return std::isfinite(value); }));
     DOCTEST_CHECK(within_grid(file, 3));
-    constexpr double BaseStep = 0.02;   // 256 codes, some of them for the ends, over a range of 1.8
+    constexpr double BaseStep = 0.02;  // 256 codes, some of them for the ends, over a range of 1.8
     double worst = 0;
     for (std::size_t i = 0; i < file.before.sh().size(); ++i)
         if (i % 12 < 3 && std::abs(file.before.sh()[i]) < 1)

@@ -82,19 +82,21 @@ double iou(const std::vector<std::uint8_t>& a, const std::vector<std::uint8_t>& 
 class Counting final : public raster::Rasterizer {
 public:
     explicit Counting(raster::Rasterizer& whole) : whole_(whole) {}
-    void forward(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings, raster::ForwardOutput& output) override {
+    void forward(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings,
+                 raster::ForwardOutput& output) override {
         whole_.forward(rows, camera, settings, output);
     }
-    void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row, raster::Gradients& output) override {
+    void backward(const Image& d_colour, const Image& d_alpha, std::size_t first_row,
+                  raster::Gradients& output) override {
         whole_.backward(d_colour, d_alpha, first_row, output);
     }
-    void contributions(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings, const Image& mask,
-                       std::span<double> masked, std::span<double> total) override {
+    void contributions(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings,
+                       const Image& mask, std::span<double> masked, std::span<double> total) override {
         ++rendered;
         whole_.contributions(rows, camera, settings, mask, masked, total);
     }
-    void forward_values(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings, std::span<const float> values,
-                        Image& output) override {
+    void forward_values(const GaussianSpans& rows, const Camera& camera, const raster::Settings& settings,
+                        std::span<const float> values, Image& output) override {
         whole_.forward_values(rows, camera, settings, values, output);
     }
     std::string name() const override { return whole_.name(); }
@@ -107,7 +109,9 @@ private:
 
 }  // namespace
 
-DOCTEST_TEST_CASE("of a view that votes again as before nothing is rendered, and the weights are the same to the last bit") {
+DOCTEST_TEST_CASE(
+    "of a view that votes again as before nothing is rendered, and the weights are the same to the last "
+    "bit") {
     const auto scene = two_balls();
     ThreadPool pool(2);
     const auto fast = raster::make_fast_rasterizer(pool);
@@ -132,7 +136,7 @@ DOCTEST_TEST_CASE("of a view that votes again as before nothing is rendered, and
         check(2);
         views[3].failed = true;
         check(0);
-        std::swap(views[0], views[7]);   // another order of the sum, of the same votes
+        std::swap(views[0], views[7]);  // another order of the sum, of the same votes
         check(0);
         views[0].camera.cx += 0.25;
         views.erase(views.begin() + 4);

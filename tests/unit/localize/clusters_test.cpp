@@ -178,17 +178,19 @@ DOCTEST_TEST_CASE("thresholds are strict") {
 }
 
 DOCTEST_TEST_CASE("holes: what is enclosed is filled, what is open to the edge is not") {
-    const std::vector<std::string> rows{"#####..#", "#...#.##", "#.#.#..#", "#...#.##", "#####..#", ".....###"};
+    const std::vector<std::string> rows{"#####..#", "#...#.##", "#.#.#..#",
+                                        "#...#.##", "#####..#", ".....###"};
     Mask mask(8, 6);
     for (int y = 0; y < 6; ++y)
-        for (int x = 0; x < 8; ++x) mask.at(x, y) = rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)] == '#' ? 1 : 0;
+        for (int x = 0; x < 8; ++x)
+            mask.at(x, y) = rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)] == '#' ? 1 : 0;
     const Mask filled = gse::localize::without_holes(mask);
     for (int y = 0; y < 6; ++y)
         for (int x = 0; x < 8; ++x) {
             const bool enclosed = x > 0 && x < 4 && y > 0 && y < 4;
             DOCTEST_CHECK_MESSAGE(filled.at(x, y) == (enclosed || mask.at(x, y) != 0 ? 1 : 0), x, " ", y);
         }
-    const Mask around = gse::localize::flood_fill(mask, filled);   // all that is set is its own way
+    const Mask around = gse::localize::flood_fill(mask, filled);  // all that is set is its own way
     for (std::size_t i = 0; i < mask.data.size(); ++i) DOCTEST_CHECK(around.data[i] == mask.data[i]);
 }
 

@@ -19,7 +19,8 @@ gse::GaussianSet floor_and_ball(std::vector<std::uint8_t>& bits) {
         const double angle = 0.7 * static_cast<double>(row);
         const bool ball = row >= 400;
         const double height = ball ? std::sin(1.3 * static_cast<double>(row)) : 0;
-        const double reach = ball ? 0.4 * std::sqrt(1 - height * height) : 10 * std::sqrt(static_cast<double>(row) / 400);
+        const double reach =
+            ball ? 0.4 * std::sqrt(1 - height * height) : 10 * std::sqrt(static_cast<double>(row) / 400);
         data.position[row * 3] = static_cast<float>((ball ? 2 : 0) + reach * std::cos(angle));
         data.position[row * 3 + 1] = static_cast<float>(ball ? -0.5 + 0.4 * height : 0);
         data.position[row * 3 + 2] = static_cast<float>((ball ? 1 : 0) + reach * std::sin(angle));
@@ -63,14 +64,14 @@ DOCTEST_TEST_CASE("head room lifts the picture's middle above the region's, alon
     base.radius = 25;
     const auto plain = gse::localize::focus_orbit(set, bits, base);
     gse::localize::FocusParameters framing;
-    framing.head_room = 0.5;   // of the extent: half the ball's height
+    framing.head_room = 0.5;  // of the extent: half the ball's height
     const auto lifted = gse::localize::focus_orbit(set, bits, base, framing);
     const auto shift = lifted.centre - plain.centre;
     DOCTEST_CHECK(lifted.radius == plain.radius);
     DOCTEST_CHECK(gse::dot(shift, gse::normalized(base.up)) == doctest::Approx(gse::length(shift)));
     const auto camera = gse::orbit_camera(lifted, 0, 100, 100);
     const auto middle = camera.to_camera(plain.centre);
-    DOCTEST_CHECK(camera.fy * middle.y / middle.z + camera.cy > 60);   // the ball is in the lower half
+    DOCTEST_CHECK(camera.fy * middle.y / middle.z + camera.cy > 60);  // the ball is in the lower half
 }
 
 DOCTEST_TEST_CASE("without a label, or with everything labelled already in frame, nothing moves") {
@@ -82,7 +83,8 @@ DOCTEST_TEST_CASE("without a label, or with everything labelled already in frame
     DOCTEST_CHECK(gse::localize::focus_orbit(set, none, base).radius == base.radius);
     const std::vector<std::uint8_t> all(500, 1);
     const auto focused = gse::localize::focus_orbit(set, all, base);
-    DOCTEST_CHECK_FALSE(gse::localize::worth_refocusing(focused, gse::localize::focus_orbit(set, all, focused)));
+    DOCTEST_CHECK_FALSE(
+        gse::localize::worth_refocusing(focused, gse::localize::focus_orbit(set, all, focused)));
 }
 
 }  // namespace focus_test

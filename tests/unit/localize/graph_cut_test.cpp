@@ -21,7 +21,7 @@ namespace {
 
 using namespace gse;
 
-constexpr double EnergyTolerance = 1e-9;   // sums of a few dozen doubles
+constexpr double EnergyTolerance = 1e-9;  // sums of a few dozen doubles
 
 struct Rows {
     GaussianData data;
@@ -41,7 +41,8 @@ struct Rows {
     }
 };
 
-/// Two crossed bits of the same thing: a red sheet on the left, a blue one on the right, both of 20 x 20 rows.
+/// Two crossed bits of the same thing: a red sheet on the left, a blue one on the right, both of 20 x 20
+/// rows.
 struct Sheets : Rows {
     static constexpr std::size_t Side = 20;
     Sheets() : Rows(2 * Side * Side) {
@@ -92,7 +93,7 @@ DOCTEST_TEST_CASE("the energy is what its definition says, with every distance m
     Rows rows(count);
     for (auto& value : rows.data.position) value = static_cast<float>(random.uniform(0, 1));
     for (auto& value : rows.data.sh) value = static_cast<float>(random.uniform(0, 1));
-    rows.weights.weight.assign(count, 0.9f);   // all take part, and have one opinion
+    rows.weights.weight.assign(count, 0.9f);  // all take part, and have one opinion
     localize::CutParameters parameters;
     parameters.neighbours = neighbours;
     const auto squared = [&](const std::vector<float>& values, std::size_t a, std::size_t b) {
@@ -100,7 +101,7 @@ DOCTEST_TEST_CASE("the energy is what its definition says, with every distance m
         for (std::size_t c = 0; c < 3; ++c) sum += std::pow(double{values[a * 3 + c]} - values[b * 3 + c], 2);
         return sum;
     };
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;   // from either end
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;  // from either end
     double mean = 0;
     for (std::size_t a = 0; a < count; ++a) {
         std::vector<std::pair<double, std::size_t>> others;
@@ -116,13 +117,15 @@ DOCTEST_TEST_CASE("the energy is what its definition says, with every distance m
     double cut = 0;
     for (std::size_t row = 0; row < count; ++row) some[row] = rows.data.position[row * 3] > 0.5f ? 1 : 0;
     for (const auto& [a, b] : pairs)
-        if (some[a] != some[b]) cut += 0.5 * parameters.smoothness * std::exp(-squared(rows.data.sh, a, b) / mean);
+        if (some[a] != some[b])
+            cut += 0.5 * parameters.smoothness * std::exp(-squared(rows.data.sh, a, b) / mean);
     const auto energy = [&](const std::vector<std::uint8_t>& label) {
         return localize::label_energy(spans(rows.data), parameters, rows.weights, label);
     };
     const std::vector<std::uint8_t> all(count, 1);
     const double labelled = static_cast<double>(std::count(some.begin(), some.end(), 1)) / count;
-    const double opinions = labelled * energy(all) + (1 - labelled) * energy(none);   // one opinion: the same for every row
+    const double opinions =
+        labelled * energy(all) + (1 - labelled) * energy(none);  // one opinion: the same for every row
     DOCTEST_CHECK(cut > 1);
     DOCTEST_CHECK(energy(some) == doctest::Approx(opinions + cut).epsilon(EnergyTolerance));
 }
@@ -130,12 +133,14 @@ DOCTEST_TEST_CASE("the energy is what its definition says, with every distance m
 DOCTEST_TEST_CASE("a hole is closed and a crumb goes, but the other colour stays what it is") {
     Sheets sheets;
     for (std::size_t x = 0; x < 6; ++x)
-        for (std::size_t y = 0; y < 6; ++y) sheets.weights.weight[x * Sheets::Side + y] = 0.35f;     // a corner is missed
+        for (std::size_t y = 0; y < 6; ++y)
+            sheets.weights.weight[x * Sheets::Side + y] = 0.35f;  // a corner is missed
     sheets.weights.weight[(Sheets::Side + 9) * Sheets::Side + 9] = 0.7f;
     const auto changed = localize::cut_label(spans(sheets.data), {}, sheets.weights);
     DOCTEST_CHECK(changed == 37);
     const auto label = sheets.label();
-    for (std::size_t row = 0; row < label.size(); ++row) DOCTEST_CHECK(label[row] == (Sheets::red(row) ? 1 : 0));
+    for (std::size_t row = 0; row < label.size(); ++row)
+        DOCTEST_CHECK(label[row] == (Sheets::red(row) ? 1 : 0));
 }
 
 DOCTEST_TEST_CASE("a part of another colour that the views are sure of is kept") {
@@ -144,11 +149,12 @@ DOCTEST_TEST_CASE("a part of another colour that the views are sure of is kept")
         for (std::size_t y = 8; y < 11; ++y) sheets.colour(x * Sheets::Side + y, 0, 1, 0);
     localize::cut_label(spans(sheets.data), {}, sheets.weights);
     const auto label = sheets.label();
-    for (std::size_t row = 0; row < label.size(); ++row) DOCTEST_CHECK(label[row] == (Sheets::red(row) ? 1 : 0));
+    for (std::size_t row = 0; row < label.size(); ++row)
+        DOCTEST_CHECK(label[row] == (Sheets::red(row) ? 1 : 0));
 }
 
 DOCTEST_TEST_CASE("any number of threads gives the same bits") {
-    constexpr std::size_t count = 20000;   // several of the chunks that threads take
+    constexpr std::size_t count = 20000;  // several of the chunks that threads take
     Random random(11);
     Rows rows(count);
     for (auto& value : rows.data.position) value = static_cast<float>(random.uniform(0, 1));
@@ -177,11 +183,12 @@ DOCTEST_TEST_CASE("a part is cut as it is in the cut of everything") {
         Rows rows(count);
         for (auto& value : rows.data.position) value = static_cast<float>(random.uniform(0, 1));
         for (auto& value : rows.data.sh) value = static_cast<float>(random.uniform(0, 0.3));
-        const double size = random.uniform(0.05, 0.4);   // of a ball, most of whose rows prefer the label
+        const double size = random.uniform(0.05, 0.4);  // of a ball, most of whose rows prefer the label
         for (std::size_t row = 0; row < count; ++row) {
             const float* p = &rows.data.position[row * 3];
             const bool thing = std::hypot(p[0] - 0.5, p[1] - 0.5, p[2] - 0.5) < size;
-            rows.weights.weight[row] = static_cast<float>(random.uniform(0, 1) < 0.9 ? (thing ? 0.8 : 0.2) : random.uniform(0, 1));
+            rows.weights.weight[row] =
+                static_cast<float>(random.uniform(0, 1) < 0.9 ? (thing ? 0.8 : 0.2) : random.uniform(0, 1));
             rows.weights.evidence[row] = random.uniform(0.6, 5);
         }
         for (const double smoothness : {0.5, 1.5, 6.0}) {
@@ -208,16 +215,20 @@ DOCTEST_TEST_CASE("a part is cut as it is in the cut of everything") {
     }
 }
 
-DOCTEST_TEST_CASE("what only the label holds takes it, where that is asked for: no bridge, no ground, nothing large") {
-    // A labelled block of 6^3 rows, ground far beyond it on all sides below, of which the cut sees a piece, and beside it a bumper of another colour.
+DOCTEST_TEST_CASE(
+    "what only the label holds takes it, where that is asked for: no bridge, no ground, nothing large") {
+    // A labelled block of 6^3 rows, ground far beyond it on all sides below, of which the cut sees a piece,
+    // and beside it a bumper of another colour.
     constexpr int Block = 6, Ground = 30;
     const auto scene = [](int bumper_layers, int bridge, double lift) {
         std::vector<std::array<double, 3>> places;
         Random random(8);
         const auto put = [&](double x, double y, double z) {
-            places.push_back({x + random.uniform(-0.05, 0.05), y + random.uniform(-0.05, 0.05), z + random.uniform(-0.05, 0.05)});
+            places.push_back({x + random.uniform(-0.05, 0.05), y + random.uniform(-0.05, 0.05),
+                              z + random.uniform(-0.05, 0.05)});
         };
-        for (int i = 0; i < Block * Block * Block; ++i) put(i % Block, i / Block % Block, i / (Block * Block));
+        for (int i = 0; i < Block * Block * Block; ++i)
+            put(i % Block, i / Block % Block, i / (Block * Block));
         const std::size_t block = places.size();
         for (int layer = 0; layer < bumper_layers; ++layer)
             for (int i = 0; i < 10; ++i) put(Block - 0.8 + 0.2 * layer, lift + 0.2 * (i % 2), 0.25 * (i / 2));
@@ -226,7 +237,8 @@ DOCTEST_TEST_CASE("what only the label holds takes it, where that is asked for: 
         for (int i = 0; i < Ground * Ground; ++i) put(i % Ground - 12, -0.8, i / Ground - 12);
         Rows rows(places.size());
         for (std::size_t row = 0; row < places.size(); ++row) {
-            for (std::size_t axis = 0; axis < 3; ++axis) rows.data.position[row * 3 + axis] = static_cast<float>(places[row][axis]);
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                rows.data.position[row * 3 + axis] = static_cast<float>(places[row][axis]);
             rows.colour(row, row < block ? 1 : 0, row >= bumper ? 1 : 0, 0);
             rows.weights.weight[row] = row < block ? 0.9f : 0.05f;
         }
@@ -237,21 +249,24 @@ DOCTEST_TEST_CASE("what only the label holds takes it, where that is asked for: 
         parameters.island_share = share;
         localize::cut_label(spans(rows.data), parameters, rows.weights);
         const auto bits = rows.label();
-        return std::count(bits.begin() + static_cast<std::ptrdiff_t>(begin), bits.begin() + static_cast<std::ptrdiff_t>(end), 1);
+        return std::count(bits.begin() + static_cast<std::ptrdiff_t>(begin),
+                          bits.begin() + static_cast<std::ptrdiff_t>(end), 1);
     };
-    constexpr double High = 3;   // of the bumper above the block's foot
-    for (const double share : {0.0, 0.05, 0.2, 0.8}) {   // the bumper has 20 rows of 216, the piece of ground some 50
+    constexpr double High = 3;  // of the bumper above the block's foot
+    for (const double share :
+         {0.0, 0.05, 0.2, 0.8}) {  // the bumper has 20 rows of 216, the piece of ground some 50
         DOCTEST_CAPTURE(share);
         auto [rows, block, bumper] = scene(2, 0, High);
         DOCTEST_CHECK_EQ(labelled(rows, share, block, bumper), share >= 0.2 ? 20 : 0);
         DOCTEST_CHECK_EQ(labelled(rows, share, 0, block), static_cast<std::ptrdiff_t>(block));
-        DOCTEST_CHECK_EQ(labelled(rows, share, bumper, rows.weights.weight.size()), 0);   // the ground
+        DOCTEST_CHECK_EQ(labelled(rows, share, bumper, rows.weights.weight.size()), 0);  // the ground
     }
-    auto [held, block, bumper] = scene(2, 22, High);   // it stands on the ground by itself
+    auto [held, block, bumper] = scene(2, 22, High);  // it stands on the ground by itself
     DOCTEST_CHECK_EQ(labelled(held, 0.2, block, held.weights.weight.size()), 0);
-    auto [low, low_block, low_bumper] = scene(2, 0, 0.3);   // the ground is near it, but it has nearer ones
+    auto [low, low_block, low_bumper] = scene(2, 0, 0.3);  // the ground is near it, but it has nearer ones
     DOCTEST_CHECK_EQ(labelled(low, 0.2, low_block, low.weights.weight.size()), 20);
-    auto [far, far_block, far_bumper] = scene(2, 0, High + 40);   // between two parts of the label, away from both, it is not its affair
+    auto [far, far_block, far_bumper] =
+        scene(2, 0, High + 40);  // between two parts of the label, away from both, it is not its affair
     for (std::size_t row = 0; row < far_block / 2; ++row) far.data.position[row * 3 + 1] += 80;
     DOCTEST_CHECK_EQ(labelled(far, 0.2, far_block, far_bumper), 0);
 }

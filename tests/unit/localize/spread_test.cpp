@@ -41,16 +41,20 @@ struct Balls {
 
 double distance_of(const GaussianData& data, std::size_t a, std::size_t b) {
     double sum = 0;
-    for (std::size_t axis = 0; axis < 3; ++axis) sum += std::pow(double{data.position[a * 3 + axis]} - data.position[b * 3 + axis], 2);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        sum += std::pow(double{data.position[a * 3 + axis]} - data.position[b * 3 + axis], 2);
     return std::sqrt(sum);
 }
 
-double plain_reach(const GaussianData& data, const localize::LabelWeights& weights, const localize::SpreadParameters& parameters) {
+double plain_reach(const GaussianData& data, const localize::LabelWeights& weights,
+                   const localize::SpreadParameters& parameters) {
     double squared = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         double low = 1e9, high = -1e9;
         for (std::size_t row = 0; row < weights.weight.size(); ++row) {
-            if (weights.evidence[row] <= parameters.least_evidence_px || weights.weight[row] <= parameters.tau) continue;
+            if (weights.evidence[row] <= parameters.least_evidence_px ||
+                weights.weight[row] <= parameters.tau)
+                continue;
             low = std::min<double>(low, data.position[row * 3 + axis]);
             high = std::max<double>(high, data.position[row * 3 + axis]);
         }
@@ -68,7 +72,8 @@ DOCTEST_TEST_CASE("unseen rows take the opinion of their own ball") {
     const auto label = localize::label_from_weights("ball", balls.weights, 0.5, 0.5);
     for (std::size_t row = 0; row < 2 * PerBall; ++row) {
         DOCTEST_CHECK((*label.bits)[row] == (row < PerBall ? 1 : 0));
-        if (row % 3 != 0) DOCTEST_CHECK(balls.weights.weight[row] == before.weight[row]);   // seen rows keep their own
+        if (row % 3 != 0)
+            DOCTEST_CHECK(balls.weights.weight[row] == before.weight[row]);  // seen rows keep their own
     }
     DOCTEST_CHECK(balls.weights.evidence == before.evidence);
 }
@@ -84,8 +89,8 @@ DOCTEST_TEST_CASE("no opinion comes from out of reach, and broken rows ask nobod
 }
 
 DOCTEST_TEST_CASE("the opinion is that of the nearest within reach, as measuring all distances tells") {
-    constexpr double FloatWeight = 1e-5;   // sums of eight opinions over distances in single precision
-    std::array<int, 3> of_kind{};   // rows with none of the eight in reach, some, all
+    constexpr double FloatWeight = 1e-5;  // sums of eight opinions over distances in single precision
+    std::array<int, 3> of_kind{};         // rows with none of the eight in reach, some, all
     for (const double share : {0.05, 0.1, 0.15}) {
         Balls balls;
         localize::SpreadParameters parameters;
@@ -96,7 +101,9 @@ DOCTEST_TEST_CASE("the opinion is that of the nearest within reach, as measuring
         for (std::size_t row = 0; row < 2 * PerBall; row += 3) {
             std::vector<std::pair<double, std::size_t>> seen;
             for (std::size_t other = 0; other < 2 * PerBall; ++other)
-                if (const double far = distance_of(balls.data, row, other); before.evidence[other] > 0 && far <= reach) seen.emplace_back(far, other);
+                if (const double far = distance_of(balls.data, row, other);
+                    before.evidence[other] > 0 && far <= reach)
+                    seen.emplace_back(far, other);
             std::sort(seen.begin(), seen.end());
             of_kind[seen.empty() ? 0 : seen.size() < 8 ? 1 : 2] += 1;
             seen.resize(std::min<std::size_t>(8, seen.size()));
@@ -106,7 +113,9 @@ DOCTEST_TEST_CASE("the opinion is that of the nearest within reach, as measuring
                 voices += before.evidence[other] / (far + 1e-3 * reach);
             }
             DOCTEST_CHECK(balls.weights.inferred[row] == (seen.empty() ? 0 : 1));
-            if (!seen.empty()) DOCTEST_CHECK(balls.weights.weight[row] == doctest::Approx(opinion / voices).epsilon(FloatWeight));
+            if (!seen.empty())
+                DOCTEST_CHECK(balls.weights.weight[row] ==
+                              doctest::Approx(opinion / voices).epsilon(FloatWeight));
         }
     }
     for (const int rows : of_kind) DOCTEST_CHECK(rows > 10);

@@ -11,7 +11,7 @@ namespace {
 
 using namespace gse;
 
-constexpr double Tolerance = 1e-12;   // relative to the matrix: some dozen roundings of double
+constexpr double Tolerance = 1e-12;  // relative to the matrix: some dozen roundings of double
 
 void check(const Mat3& a) {
     const SymmetricEigen eigen = symmetric_eigen(a);
@@ -20,7 +20,8 @@ void check(const Mat3& a) {
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) {
             double sum = 0;
-            for (std::size_t k = 0; k < 3; ++k) sum += eigen.value[k] * eigen.axis[k][row] * eigen.axis[k][column];
+            for (std::size_t k = 0; k < 3; ++k)
+                sum += eigen.value[k] * eigen.axis[k][row] * eigen.axis[k][column];
             DOCTEST_CHECK(std::abs(sum - a(row, column)) <= Tolerance * size);
         }
     for (std::size_t i = 0; i < 3; ++i)
@@ -38,7 +39,8 @@ DOCTEST_TEST_CASE("symmetric matrices are the sum of their axes") {
         Mat3 a;
         const double scale = std::exp(random.uniform(-200, 200));
         for (int row = 0; row < 3; ++row)
-            for (int column = row; column < 3; ++column) a(row, column) = a(column, row) = scale * random.normal();
+            for (int column = row; column < 3; ++column)
+                a(row, column) = a(column, row) = scale * random.normal();
         check(a);
     }
 }
@@ -46,9 +48,9 @@ DOCTEST_TEST_CASE("symmetric matrices are the sum of their axes") {
 DOCTEST_TEST_CASE("flat, round and empty matrices") {
     check(Mat3{});
     check(Mat3::identity());
-    check(Mat3::from_rows({1, 1, 1, 1, 1, 1, 1, 1, 1}));                     // one axis only
-    check(Mat3::from_rows({2, 0, 0, 0, 5, 0, 0, 0, 3}));                     // in the wrong order
-    check(Mat3::from_rows({1, 1e-14, 0, 1e-14, 1, 1e-300, 0, 1e-300, 1}));   // nearly round
+    check(Mat3::from_rows({1, 1, 1, 1, 1, 1, 1, 1, 1}));                    // one axis only
+    check(Mat3::from_rows({2, 0, 0, 0, 5, 0, 0, 0, 3}));                    // in the wrong order
+    check(Mat3::from_rows({1, 1e-14, 0, 1e-14, 1, 1e-300, 0, 1e-300, 1}));  // nearly round
 }
 
 }  // namespace eigen_test

@@ -27,15 +27,15 @@ Quat random_quaternion(Random& random) {
 
 double largest(const Mat3& a, const Mat3& b) {
     double difference = 0;
-    for (std::size_t i = 0; i < 9; ++i) difference = std::max(difference, std::abs(a.rows()[i] - b.rows()[i]));
+    for (std::size_t i = 0; i < 9; ++i)
+        difference = std::max(difference, std::abs(a.rows()[i] - b.rows()[i]));
     return difference;
 }
 
 double determinant(const Mat3& m) { return dot(m.row(0), cross(m.row(1), m.row(2))); }
 
 /// A T without values, in memory that was not empty.
-template <class T>
-T without_values() {
+template <class T> T without_values() {
     alignas(T) std::array<std::byte, sizeof(T)> place;
     place.fill(std::byte{0x5a});
     return *new (place.data()) T;
@@ -53,7 +53,7 @@ DOCTEST_TEST_CASE("what is given no values is zero, and a quaternion no turn") {
 
 DOCTEST_TEST_CASE("matrices are indexed by row and column") {
     const double c = std::cos(0.3), s = std::sin(0.3);
-    const std::array<double, 9> rows{c, -s, 0, s, c, 0, 0, 0, 1};   // about z
+    const std::array<double, 9> rows{c, -s, 0, s, c, 0, 0, 0, 1};  // about z
     const Mat3 turn = Mat3::from_rows(rows);
     DOCTEST_CHECK(turn.rows() == rows);
     DOCTEST_CHECK(turn(0, 1) == -s);
@@ -67,7 +67,8 @@ DOCTEST_TEST_CASE("matrices are indexed by row and column") {
     const Quat same{std::cos(0.15), 0, 0, std::sin(0.15)};
     DOCTEST_CHECK(largest(rotation_matrix(same), turn) < Tolerance);
     DOCTEST_CHECK(length(quaternion(turn) - same) < Tolerance);
-    const Mat3 a = Mat3::from_rows({1, 2, 3, 4, 5, 6, 7, 8, 9}), b = Mat3::from_rows({0, 1, 0, 0, 0, 2, 3, 0, 0});
+    const Mat3 a = Mat3::from_rows({1, 2, 3, 4, 5, 6, 7, 8, 9}),
+               b = Mat3::from_rows({0, 1, 0, 0, 0, 2, 3, 0, 0});
     DOCTEST_CHECK((a * b).rows() == std::array<double, 9>{9, 1, 4, 18, 4, 10, 27, 7, 16});
 }
 

@@ -1,4 +1,5 @@
-// The starter's trainer on a toy world: it learns, resumes to the same bits, and writes a folder that can be read.
+// The starter's trainer on a toy world: it learns, resumes to the same bits, and writes a folder that can be
+// read.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -81,7 +82,8 @@ public:
         return picture;
     }
     /// `more`: words beside those of its captions. `blank`: what there is to see before its squares.
-    explicit ToySource(std::vector<std::string> more = {}, const StarterSource* blank = nullptr) : more_(std::move(more)), blank_(blank) {}
+    explicit ToySource(std::vector<std::string> more = {}, const StarterSource* blank = nullptr)
+        : more_(std::move(more)), blank_(blank) {}
     const StarterSource* before() const override { return blank_; }
     bool has_outlines() const override { return blank_ != nullptr; }
     StarterCaption caption(std::uint64_t index, std::uint64_t, bool) const override {
@@ -160,15 +162,17 @@ DOCTEST_TEST_CASE("an interrupted training run resumes to the same weights") {
         job.progress = [&](std::string_view name, int step, int) {
             if (name == "training " + stage && step >= 500) stop.request_stop();
         };
-        DOCTEST_CHECK_THROWS_AS(
-            train_starter(toy_parameters(), source, scratch.path() / "work2", scratch.path() / "resumed", job),
-            gse::Error);
+        DOCTEST_CHECK_THROWS_AS(train_starter(toy_parameters(), source, scratch.path() / "work2",
+                                              scratch.path() / "resumed", job),
+                                gse::Error);
     }
     train_starter(toy_parameters(), source, scratch.path() / "work2", scratch.path() / "resumed", {});
-    for (const char* file : {"vae/diffusion_pytorch_model.safetensors", "unet/diffusion_pytorch_model.safetensors",
-                             "text_encoder/model.safetensors", "clip/model.safetensors", "clip/config.json", "gseditpro.json",
-                             "tokenizer/vocab.json"})
-        DOCTEST_CHECK_MESSAGE(gse::read_file(straight / file) == gse::read_file(scratch.path() / "resumed" / file), file);
+    for (const char* file :
+         {"vae/diffusion_pytorch_model.safetensors", "unet/diffusion_pytorch_model.safetensors",
+          "text_encoder/model.safetensors", "clip/model.safetensors", "clip/config.json", "gseditpro.json",
+          "tokenizer/vocab.json"})
+        DOCTEST_CHECK_MESSAGE(
+            gse::read_file(straight / file) == gse::read_file(scratch.path() / "resumed" / file), file);
 }
 
 DOCTEST_TEST_CASE("a run goes on from a finished model and keeps the parts it has no time for") {
@@ -216,7 +220,8 @@ DOCTEST_TEST_CASE("a run that knows more words keeps what the model before it ma
     parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 0;
     train_starter(parameters, ToySource({"left", "right"}), scratch.path() / "work2", second, {});
 
-    const auto before = read_json_file(first / "tokenizer/vocab.json"), now = read_json_file(second / "tokenizer/vocab.json");
+    const auto before = read_json_file(first / "tokenizer/vocab.json"),
+               now = read_json_file(second / "tokenizer/vocab.json");
     DOCTEST_CHECK(now.contains("left</w>"));
     DOCTEST_CHECK(now.size() > before.size());
     for (const char* file : {"text_encoder/model.safetensors", "clip/model.safetensors"}) {
@@ -228,16 +233,22 @@ DOCTEST_TEST_CASE("a run that knows more words keeps what the model before it ma
             }
             const auto rows_before = a.tensor(name), rows_now = b.tensor(name);
             for (const auto& [token, id] : before.items())
-                DOCTEST_CHECK_MESSAGE(torch::equal(rows_before[id.get<std::int64_t>()], rows_now[now.at(token).get<std::int64_t>()]), token);
+                DOCTEST_CHECK_MESSAGE(torch::equal(rows_before[id.get<std::int64_t>()],
+                                                   rows_now[now.at(token).get<std::int64_t>()]),
+                                      token);
         }
     }
     // What it was taught it says of itself; the first one was not.
-    DOCTEST_CHECK(read_json_file(second / "gseditpro.json").at("profile").at("request").at("sided_view_words") == Json(true));
+    DOCTEST_CHECK(
+        read_json_file(second / "gseditpro.json").at("profile").at("request").at("sided_view_words") ==
+        Json(true));
     DOCTEST_CHECK(!read_json_file(first / "gseditpro.json").contains("profile"));
 
     // The other way words would be lost.
     parameters.initial = second.string();
-    const auto forget = [&] { train_starter(parameters, ToySource(), scratch.path() / "work3", scratch.path() / "third", {}); };
+    const auto forget = [&] {
+        train_starter(parameters, ToySource(), scratch.path() / "work3", scratch.path() / "third", {});
+    };
     DOCTEST_CHECK_THROWS_WITH_AS(forget(), doctest::Contains("\"right\""), gse::Error);
 }
 
@@ -248,28 +259,34 @@ DOCTEST_TEST_CASE("a LoRA for shapes leaves the model beside it as it is") {
     parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 2;
     train_starter(parameters, ToySource(), scratch.path() / "work1", first, {});
     parameters.shapes = true;
-    DOCTEST_CHECK_THROWS_WITH_AS(train_starter(parameters, ToySource(), scratch.path() / "none", second, {}), doctest::Contains("beside"),
-                                 gse::Error);
+    DOCTEST_CHECK_THROWS_WITH_AS(train_starter(parameters, ToySource(), scratch.path() / "none", second, {}),
+                                 doctest::Contains("beside"), gse::Error);
     parameters.initial = first.string();
-    parameters.unet_steps = 4;   // what is asked of the other stages does not count
+    parameters.unet_steps = 4;  // what is asked of the other stages does not count
     train_starter(parameters, ToySource({"left", "right"}), scratch.path() / "work2", second, {});
 
-    for (const char* file : {"vae/diffusion_pytorch_model.safetensors", "unet/diffusion_pytorch_model.safetensors"})
+    for (const char* file :
+         {"vae/diffusion_pytorch_model.safetensors", "unet/diffusion_pytorch_model.safetensors"})
         DOCTEST_CHECK_MESSAGE(gse::read_file(first / file) == gse::read_file(second / file), file);
-    const auto before = read_json_file(first / "tokenizer/vocab.json"), now = read_json_file(second / "tokenizer/vocab.json");
-    const SafetensorsFile a(first / "text_encoder/model.safetensors"), b(second / "text_encoder/model.safetensors");
+    const auto before = read_json_file(first / "tokenizer/vocab.json"),
+               now = read_json_file(second / "tokenizer/vocab.json");
+    const SafetensorsFile a(first / "text_encoder/model.safetensors"),
+        b(second / "text_encoder/model.safetensors");
     for (const auto& [name, entry] : a.entries()) {
         if (!name.ends_with("token_embedding.weight")) {
             DOCTEST_CHECK_MESSAGE(torch::equal(a.tensor(name), b.tensor(name)), name);
             continue;
         }
         for (const auto& [token, id] : before.items())
-            DOCTEST_CHECK_MESSAGE(torch::equal(a.tensor(name)[id.get<std::int64_t>()], b.tensor(name)[now.at(token).get<std::int64_t>()]), token);
+            DOCTEST_CHECK_MESSAGE(torch::equal(a.tensor(name)[id.get<std::int64_t>()],
+                                               b.tensor(name)[now.at(token).get<std::int64_t>()]),
+                                  token);
     }
     auto facts = read_json_file(second / "gseditpro.json");
     const auto lora = read_lora(second / facts.at("shape_lora").get<std::string>());
     DOCTEST_CHECK(lora.text.empty());
-    DOCTEST_CHECK(!SafetensorsFile(second / "shape_cameras.safetensors").contains("outline.conv_2.weight"));   // none was shown
+    DOCTEST_CHECK(!SafetensorsFile(second / "shape_cameras.safetensors")
+                       .contains("outline.conv_2.weight"));  // none was shown
     DOCTEST_CHECK(lora.unet.size() > 10);
     for (const auto& factor : lora.unet) DOCTEST_CHECK(factor.rank() <= parameters.shape_rank);
     // Words that only tell it a side are none that it knows things by.
@@ -277,7 +294,8 @@ DOCTEST_TEST_CASE("a LoRA for shapes leaves the model beside it as it is") {
     DOCTEST_CHECK(!facts.contains("profile"));
 }
 
-DOCTEST_TEST_CASE("training of new shapes goes on from those that the model has, and shows it what was there") {
+DOCTEST_TEST_CASE(
+    "training of new shapes goes on from those that the model has, and shows it what was there") {
     const gse::test::ScratchFolder scratch;
     const auto folder = [&](const char* name) { return scratch.path() / name; };
     auto parameters = toy_parameters();
@@ -285,7 +303,7 @@ DOCTEST_TEST_CASE("training of new shapes goes on from those that the model has,
     train_starter(parameters, ToySource(), folder("work1"), folder("first"), {});
     const ToyTwins blank;
     parameters.shapes = true;
-    parameters.shape_rank = 1024;   // holds all of the change
+    parameters.shape_rank = 1024;  // holds all of the change
     parameters.unet_steps = 4;
     parameters.initial = folder("first").string();
     train_starter(parameters, ToySource({}, &blank), folder("work2"), folder("second"), {});
@@ -297,20 +315,29 @@ DOCTEST_TEST_CASE("training of new shapes goes on from those that the model has,
     parameters.unet_steps = 1;
     parameters.initial = folder("second").string();
     train_starter(parameters, ToySource({}, &blank), folder("work3"), folder("third"), {});
-    const auto second = read_lora(folder("second") / "shapes.safetensors"), third = read_lora(folder("third") / "shapes.safetensors");
+    const auto second = read_lora(folder("second") / "shapes.safetensors"),
+               third = read_lora(folder("third") / "shapes.safetensors");
     DOCTEST_REQUIRE(second.unet.size() == third.unet.size());
-    constexpr double Half = 2e-3;   // both factors are written with 11 bits
+    constexpr double Half = 2e-3;  // both factors are written with 11 bits
     for (std::size_t i = 0; i < second.unet.size(); ++i) {
-        const auto change = [](const LoraFactor& f) { return f.scale() * torch::matmul(f.up.flatten(1).to(torch::kFloat), f.down.flatten(1).to(torch::kFloat)); };
+        const auto change = [](const LoraFactor& f) {
+            return f.scale() *
+                   torch::matmul(f.up.flatten(1).to(torch::kFloat), f.down.flatten(1).to(torch::kFloat));
+        };
         const auto a = change(second.unet[i]), b = change(third.unet[i]);
-        DOCTEST_CHECK_MESSAGE((a - b).norm().item<double>() <= Half * a.norm().item<double>() + 1e-6, second.unet[i].layer);
+        DOCTEST_CHECK_MESSAGE((a - b).norm().item<double>() <= Half * a.norm().item<double>() + 1e-6,
+                              second.unet[i].layer);
     }
     const SafetensorsFile kept(folder("third") / "shape_cameras.safetensors");
     for (const auto& [name, entry] : inputs.entries())
-        DOCTEST_CHECK_MESSAGE(torch::allclose(inputs.tensor(name).to(torch::kFloat), kept.tensor(name).to(torch::kFloat), Half, 1e-6), name);
+        DOCTEST_CHECK_MESSAGE(torch::allclose(inputs.tensor(name).to(torch::kFloat),
+                                              kept.tensor(name).to(torch::kFloat), Half, 1e-6),
+                              name);
 }
 
-DOCTEST_TEST_CASE("training of new shapes goes on from a network of their own, and what trains another part takes it along") {
+DOCTEST_TEST_CASE(
+    "training of new shapes goes on from a network of their own, and what trains another part takes it "
+    "along") {
     const gse::test::ScratchFolder scratch;
     const auto folder = [&](const char* name) { return scratch.path() / name; };
     auto parameters = toy_parameters();
@@ -323,31 +350,34 @@ DOCTEST_TEST_CASE("training of new shapes goes on from a network of their own, a
     facts["shape_unet"] = "own";
     facts["shape_views"] = 6;
     facts["viewpoint"] = "seen";
-    const std::string classifier = "what tells viewpoints";   // no run looks into it
+    const std::string classifier = "what tells viewpoints";  // no run looks into it
     gse::write_file(folder("first") / "seen/model.safetensors", classifier);
     gse::write_file(folder("first") / "gseditpro.json", facts.dump());
 
     const ToyTwins blank;
     parameters.initial = folder("first").string();
     parameters.shapes = true;
-    parameters.unet_lr = 1e-12;   // so small a step goes nowhere
+    parameters.unet_lr = 1e-12;  // so small a step goes nowhere
     parameters.unet_steps = 1;
     train_starter(parameters, ToySource({}, &blank), folder("work2"), folder("second"), {});
     facts = read_json_file(folder("second") / "gseditpro.json");
-    DOCTEST_CHECK((facts.at("shape_unet") == "shapes" && facts.at("shape_views") == 6 && !facts.contains("shape_lora")));
-    const auto before = load_shape_unet(folder("first") / "own")->named_parameters(), after = load_shape_unet(folder("second") / "shapes")->named_parameters();
+    DOCTEST_CHECK((facts.at("shape_unet") == "shapes" && facts.at("shape_views") == 6 &&
+                   !facts.contains("shape_lora")));
+    const auto before = load_shape_unet(folder("first") / "own")->named_parameters(),
+               after = load_shape_unet(folder("second") / "shapes")->named_parameters();
     DOCTEST_REQUIRE(before.size() == after.size());
-    for (const auto& item : before) DOCTEST_CHECK_MESSAGE(torch::allclose(item.value(), after[item.key()], 1e-3, 1e-6), item.key());
+    for (const auto& item : before)
+        DOCTEST_CHECK_MESSAGE(torch::allclose(item.value(), after[item.key()], 1e-3, 1e-6), item.key());
 
     parameters.initial = folder("second").string();
     parameters.shapes = false;
-    parameters.vae_steps = parameters.unet_steps = 0;   // the image-text encoder alone
+    parameters.vae_steps = parameters.unet_steps = 0;  // the image-text encoder alone
     parameters.vae_minutes = parameters.unet_minutes = 0;
     train_starter(parameters, ToySource({}, &blank), folder("work3"), folder("third"), {});
     DOCTEST_CHECK(read_json_file(folder("third") / "gseditpro.json").at("shape_unet") == "shapes");
     const char* const file = "shapes/diffusion_pytorch_model.safetensors";
     DOCTEST_CHECK(gse::read_file(folder("second") / file) == gse::read_file(folder("third") / file));
-    parameters.unet_steps = 1;   // another UNet beside it
+    parameters.unet_steps = 1;  // another UNet beside it
     train_starter(parameters, ToySource({}, &blank), folder("work4"), folder("fourth"), {});
     DOCTEST_CHECK(!read_json_file(folder("fourth") / "gseditpro.json").contains("shape_unet"));
     for (const char* name : {"second", "third", "fourth"}) {
@@ -365,9 +395,11 @@ DOCTEST_TEST_CASE("mixed precision trains nearly as float does, and is not the s
     train_starter(parameters, source, scratch.path() / "float", scratch.path() / "out1", {});
     parameters.bf16 = true;
     train_starter(parameters, source, scratch.path() / "mixed", scratch.path() / "out2", {});
-    const auto single = column(scratch.path() / "float/unet.tsv", 4), mixed = column(scratch.path() / "mixed/unet.tsv", 4);
+    const auto single = column(scratch.path() / "float/unet.tsv", 4),
+               mixed = column(scratch.path() / "mixed/unet.tsv", 4);
     DOCTEST_REQUIRE(single.size() == mixed.size());
-    constexpr double EightBits = 1.0 / 64;   // bfloat16 has 8 bits; products of hundreds of them are summed in float
+    constexpr double EightBits =
+        1.0 / 64;  // bfloat16 has 8 bits; products of hundreds of them are summed in float
     for (std::size_t i = 0; i < single.size(); ++i) {
         DOCTEST_CHECK(mixed[i] == doctest::Approx(single[i]).epsilon(EightBits));
         DOCTEST_CHECK(mixed[i] != single[i]);
@@ -377,7 +409,8 @@ DOCTEST_TEST_CASE("mixed precision trains nearly as float does, and is not the s
 DOCTEST_TEST_CASE("two models trained from one another are averaged, weight by weight") {
     const ToySource source;
     const gse::test::ScratchFolder scratch;
-    const auto first = scratch.path() / "first", second = scratch.path() / "second", mean = scratch.path() / "mean";
+    const auto first = scratch.path() / "first", second = scratch.path() / "second",
+               mean = scratch.path() / "mean";
     auto parameters = toy_parameters();
     parameters.vae_steps = parameters.unet_steps = parameters.clip_steps = 2;
     train_starter(parameters, source, scratch.path() / "work1", first, {});
@@ -389,19 +422,24 @@ DOCTEST_TEST_CASE("two models trained from one another are averaged, weight by w
     parameters.unet_steps = 0;
     parameters.average = second.string();
     train_starter(parameters, source, scratch.path() / "work3", mean, {});
-    constexpr double half_precision = 1e-3;   // weights are stored as 16-bit floats
+    constexpr double half_precision = 1e-3;  // weights are stored as 16-bit floats
     for (const char* file : {"unet/diffusion_pytorch_model.safetensors", "text_encoder/model.safetensors"}) {
         const SafetensorsFile a(first / file), b(second / file), c(mean / file);
         for (const auto& [name, entry] : c.entries()) {
             if (!at::isFloatingType(entry.dtype)) continue;
-            const auto expected = (a.tensor(name).to(torch::kFloat64) + b.tensor(name).to(torch::kFloat64)) / 2;
-            DOCTEST_CHECK_MESSAGE(torch::allclose(c.tensor(name).to(torch::kFloat64), expected, half_precision, 1e-6), name);
+            const auto expected =
+                (a.tensor(name).to(torch::kFloat64) + b.tensor(name).to(torch::kFloat64)) / 2;
+            DOCTEST_CHECK_MESSAGE(
+                torch::allclose(c.tensor(name).to(torch::kFloat64), expected, half_precision, 1e-6), name);
         }
-        for (const auto& one : {first, second}) DOCTEST_CHECK(gse::read_file(one / file) != gse::read_file(mean / file));
+        for (const auto& one : {first, second})
+            DOCTEST_CHECK(gse::read_file(one / file) != gse::read_file(mean / file));
     }
 
     parameters.initial.clear();
-    const auto train = [&] { train_starter(parameters, source, scratch.path() / "work4", scratch.path() / "none", {}); };
+    const auto train = [&] {
+        train_starter(parameters, source, scratch.path() / "work4", scratch.path() / "none", {});
+    };
     parameters.vae_steps = parameters.unet_steps = 1;
     DOCTEST_CHECK_THROWS_WITH_AS(train(), doctest::Contains("average"), gse::Error);
     const auto other = scratch.path() / "other";
@@ -423,7 +461,9 @@ DOCTEST_TEST_CASE("an initial model of another structure is refused before any w
     train_starter(parameters, source, scratch.path() / "work1", scratch.path() / "first", {});
     parameters.initial = (scratch.path() / "first").string();
     parameters.unet_channels = 160;
-    const auto train = [&] { train_starter(parameters, source, scratch.path() / "work2", scratch.path() / "second", {}); };
+    const auto train = [&] {
+        train_starter(parameters, source, scratch.path() / "work2", scratch.path() / "second", {});
+    };
     DOCTEST_CHECK_THROWS_WITH_AS(train(), doctest::Contains("attention_head_dim"), gse::Error);
     parameters.unet_channels = toy_parameters().unet_channels;
     parameters.initial = (scratch.path() / "nowhere").string();
@@ -447,20 +487,22 @@ DOCTEST_TEST_CASE("training lowers every loss on the toy world") {
     train_starter(parameters, source, scratch.path() / "work", scratch.path() / "model", {});
     const auto vae = column(scratch.path() / "work/vae.tsv", 4);
     DOCTEST_CHECK(vae.back() < vae.front());
-    for (const std::size_t loss : {5u, 6u}) {         // diffusion, place
+    for (const std::size_t loss : {5u, 6u}) {  // diffusion, place
         const auto values = column(scratch.path() / "work/unet.tsv", loss);
         DOCTEST_CHECK(values.back() < 0.8 * values.front());
     }
     const auto clip = scratch.path() / "work/clip.tsv";
-    DOCTEST_CHECK(column(clip, 5).back() < column(clip, 5).front());   // contrast
-    DOCTEST_CHECK(column(clip, 7).back() > 0.5);                       // direction
-    DOCTEST_CHECK(column(clip, 8).back() > 0.8);                       // a sentence told from the same with another word
+    DOCTEST_CHECK(column(clip, 5).back() < column(clip, 5).front());  // contrast
+    DOCTEST_CHECK(column(clip, 7).back() > 0.5);                      // direction
+    DOCTEST_CHECK(column(clip, 8).back() > 0.8);  // a sentence told from the same with another word
 }
 
 DOCTEST_TEST_CASE("every word of a vocabulary becomes one token") {
-    const auto vocabulary = build_vocabulary({"bear", "beard", "ear", "a", "golden", "gold", "old", "wearing"});
+    const auto vocabulary =
+        build_vocabulary({"bear", "beard", "ear", "a", "golden", "gold", "old", "wearing"});
     const auto json = nlohmann::json::parse(vocabulary.vocab_json);
-    for (const char* word : {"bear</w>", "beard</w>", "ear</w>", "a</w>", "golden</w>", "gold</w>", "old</w>"})
+    for (const char* word :
+         {"bear</w>", "beard</w>", "ear</w>", "a</w>", "golden</w>", "gold</w>", "old</w>"})
         DOCTEST_CHECK_MESSAGE(json.contains(word), word);
     DOCTEST_CHECK(static_cast<int>(json.size()) == vocabulary.size);
     DOCTEST_CHECK(json["<|endoftext|>"] == vocabulary.eos);

@@ -14,7 +14,9 @@ using namespace gse::neural;
 
 namespace {
 
-torch::Tensor tensor_of(std::size_t bytes) { return torch::empty({static_cast<std::int64_t>(bytes)}, torch::kUInt8); }
+torch::Tensor tensor_of(std::size_t bytes) {
+    return torch::empty({static_cast<std::int64_t>(bytes)}, torch::kUInt8);
+}
 
 /// Sanitizers bring their own allocators, under which buffers are not kept.
 bool keeps() {
@@ -28,7 +30,8 @@ bool keeps() {
     return false;
 }
 
-/// Flags that the system shows of the mapping around an address, as in /proc/self/smaps; empty where it shows none.
+/// Flags that the system shows of the mapping around an address, as in /proc/self/smaps; empty where it shows
+/// none.
 std::string mapping_flags(const void* address) {
     const auto wanted = reinterpret_cast<std::uintptr_t>(address);
     std::ifstream maps("/proc/self/smaps");
@@ -36,7 +39,8 @@ std::string mapping_flags(const void* address) {
     for (std::string line; std::getline(maps, line);) {
         std::uintptr_t begin = 0, end = 0;
         char dash = 0;
-        if (std::istringstream range(line); range >> std::hex >> begin >> dash >> end && dash == '-') inside = begin <= wanted && wanted < end;
+        if (std::istringstream range(line); range >> std::hex >> begin >> dash >> end && dash == '-')
+            inside = begin <= wanted && wanted < end;
         if (inside && line.starts_with("VmFlags:")) return line + ' ';
     }
     return {};
@@ -61,7 +65,8 @@ DOCTEST_TEST_CASE("a large tensor asks for huge pages") {
     DOCTEST_CHECK_MESSAGE(flags.find(" hg ") != std::string::npos, flags);
 }
 
-DOCTEST_TEST_CASE("a large tensor's memory is used again for the next one of its size, aligned as torch promises") {
+DOCTEST_TEST_CASE(
+    "a large tensor's memory is used again for the next one of its size, aligned as torch promises") {
     if (!keeps()) return;
     constexpr std::size_t bytes = 2 * LeastKeptBuffer;
     void* first = nullptr;
@@ -75,7 +80,7 @@ DOCTEST_TEST_CASE("a large tensor's memory is used again for the next one of its
     {
         const auto next = tensor_of(bytes - 1000);
         DOCTEST_CHECK(next.data_ptr() == first);
-        const auto beside = tensor_of(bytes);   // the first is in use
+        const auto beside = tensor_of(bytes);  // the first is in use
         DOCTEST_CHECK(beside.data_ptr() != first);
     }
     DOCTEST_CHECK(buffer_use().reused == kept.reused + 1);
@@ -105,7 +110,7 @@ DOCTEST_TEST_CASE("no more is kept than the limit, the longest unused goes first
     DOCTEST_CHECK(buffer_use().kept <= MostKeptBytes);
     DOCTEST_CHECK(buffer_use().kept >= MostKeptBytes / 2);
     DOCTEST_CHECK(tensor_of(bytes).data_ptr() == last);
-    { const auto more = tensor_of(2 * MostKeptBytes); }   // longer than all that may be kept
+    { const auto more = tensor_of(2 * MostKeptBytes); }  // longer than all that may be kept
     DOCTEST_CHECK(buffer_use().kept <= MostKeptBytes);
     release_buffers();
     DOCTEST_CHECK(buffer_use().kept == 0);

@@ -17,7 +17,8 @@ namespace {
 
 const WeightOptions Described{torch::kMeta, torch::kFloat32, false};
 
-/// A safetensors file of these tensors, all of whose numbers are a hole in the file: it takes no space, whatever its size.
+/// A safetensors file of these tensors, all of whose numbers are a hole in the file: it takes no space,
+/// whatever its size.
 void write_hollow(const std::filesystem::path& path, const KeyShapes& shapes) {
     nlohmann::json header;
     std::uint64_t end = 0;
@@ -42,8 +43,7 @@ KeyShapes shapes_of(const torch::nn::Module& module) {
     return shapes;
 }
 
-template <class Load>
-void needs_memory(Load load, const std::string& begin) {
+template <class Load> void needs_memory(Load load, const std::string& begin) {
     try {
         load();
         DOCTEST_FAIL("it was read");
@@ -62,7 +62,8 @@ DOCTEST_TEST_CASE("weights of more memory than there is are one sentence, before
     tiny.channels = 1 << 16;
     tiny.encoder_blocks = tiny.decoder_blocks = {1, 1};
     write_file(scratch.path() / "config.json", tiny.to_json().dump());
-    write_hollow(scratch.path() / "diffusion_pytorch_model.safetensors", shapes_of(*TinyAutoencoder(tiny, Described)));
+    write_hollow(scratch.path() / "diffusion_pytorch_model.safetensors",
+                 shapes_of(*TinyAutoencoder(tiny, Described)));
     needs_memory([&] { load_tiny_autoencoder(scratch.path()); }, "the tiny autoencoder");
 
     SamVitShape vit;
@@ -71,8 +72,9 @@ DOCTEST_TEST_CASE("weights of more memory than there is are one sentence, before
     write_hollow(file, shapes_of(*SamModel(SamShape{vit, {}, "SAM"}, Described)));
     needs_memory([&] { load_sam(file, torch::kCPU); }, "the segmenter");
 
-    constexpr std::int64_t terabyte = std::int64_t{1} << 38;   // numbers
-    write_hollow(file, {{"lora_unet_mid_block_x.lora_down.weight", {1, terabyte}}, {"lora_unet_mid_block_x.lora_up.weight", {terabyte, 1}}});
+    constexpr std::int64_t terabyte = std::int64_t{1} << 38;  // numbers
+    write_hollow(file, {{"lora_unet_mid_block_x.lora_down.weight", {1, terabyte}},
+                        {"lora_unet_mid_block_x.lora_up.weight", {terabyte, 1}}});
     needs_memory([&] { read_lora(file); }, "the LoRA \"model.safetensors\"");
 }
 
@@ -82,9 +84,13 @@ DOCTEST_TEST_CASE("numbers in names of tensors and tokens may have any length, o
     DOCTEST_CHECK_FALSE(plan.ignore(blocks + "11.ln_1.weight"));
     DOCTEST_CHECK(plan.ignore(blocks + "12.ln_1.weight"));
     DOCTEST_CHECK(plan.ignore(blocks + "99999999999999999999999999.ln_1.weight"));
-    for (const char* odd : {"", "x", "-1.ln_1.weight", "-99999999999999999999999999"}) DOCTEST_CHECK_FALSE(plan.ignore(blocks + odd));
+    for (const char* odd : {"", "x", "-1.ln_1.weight", "-99999999999999999999999999"})
+        DOCTEST_CHECK_FALSE(plan.ignore(blocks + odd));
 
     const TinyModel model;
-    write_file(model.path() / "tokenizer/tokenizer_config.json", R"({"added_tokens_decoder": {"": {"content": "<none>"}, "99999999999": {"content": "<far>"}}})");
-    DOCTEST_CHECK(Tokenizer(model.path() / "tokenizer").vocabulary_size() == Tokenizer(TinyModel().path() / "tokenizer").vocabulary_size());
+    write_file(
+        model.path() / "tokenizer/tokenizer_config.json",
+        R"({"added_tokens_decoder": {"": {"content": "<none>"}, "99999999999": {"content": "<far>"}}})");
+    DOCTEST_CHECK(Tokenizer(model.path() / "tokenizer").vocabulary_size() ==
+                  Tokenizer(TinyModel().path() / "tokenizer").vocabulary_size());
 }

@@ -1,4 +1,5 @@
-// DreamBooth on tiny models: what it learns, what it keeps, that it repeats, can be stopped and undone; LoRA files.
+// DreamBooth on tiny models: what it learns, what it keeps, that it repeats, can be stopped and undone; LoRA
+// files.
 #include <cmath>
 #include <limits>
 
@@ -91,7 +92,8 @@ DOCTEST_TEST_CASE("dreambooth: without class pictures there is no prior") {
     DOCTEST_CHECK(report.instance_losses.size() == 3);
 }
 
-DOCTEST_TEST_CASE("dreambooth: one seed, one result, with one thread or two; the model itself is never written to") {
+DOCTEST_TEST_CASE(
+    "dreambooth: one seed, one result, with one thread or two; the model itself is never written to") {
     const TinyModel model;
     const auto bundle = load_bundle(model.path());
     const auto before = tensors_of(bundle.unet);
@@ -122,7 +124,8 @@ DOCTEST_TEST_CASE("dreambooth: one seed, one result, with one thread or two; the
         DOCTEST_CHECK_MESSAGE(torch::equal(copies[i], before[i].second), before[i].first);
 }
 
-DOCTEST_TEST_CASE("dreambooth: tuning gives another model; the one it was asked of stays as it was, also on a stop") {
+DOCTEST_TEST_CASE(
+    "dreambooth: tuning gives another model; the one it was asked of stays as it was, also on a stop") {
     const TinyModel model;
     const auto loaded = load_model(model.path(), "cpu");
     const auto pictures = scene_pictures();
@@ -137,7 +140,8 @@ DOCTEST_TEST_CASE("dreambooth: tuning gives another model; the one it was asked 
             if (at == stage && step > 0) stop.request_stop();
         };
         DOCTEST_CHECK(contains(
-            message_of([&] { loaded->tune(parameters, pictures, InstancePrompt, ClassPrompt, job); }), "stopped"));
+            message_of([&] { loaded->tune(parameters, pictures, InstancePrompt, ClassPrompt, job); }),
+            "stopped"));
         DOCTEST_CHECK(sample_of(*loaded).data == original);
     }
     const auto old_guidance = loaded->guidance(ClassPrompt, SdsParameters{});
@@ -184,19 +188,24 @@ DOCTEST_TEST_CASE("dreambooth: a step that is not finite is left out and counted
     DOCTEST_CHECK(trainer.loss_of(batch) == loss);
     DOCTEST_CHECK(!trainer.step(batch, nullptr).skipped);
     DOCTEST_CHECK(trainer.loss_of(batch) != loss);
-    DOCTEST_CHECK(
-        contains(message_of([&] { run_dreambooth(bundle, parameters, {{}, InstancePrompt, ClassPrompt}, {}); }), "pictures"));
+    DOCTEST_CHECK(contains(message_of([&] {
+                               run_dreambooth(bundle, parameters, {{}, InstancePrompt, ClassPrompt}, {});
+                           }),
+                           "pictures"));
     std::vector<Image> pictures = scene_pictures();
     pictures[1].at(3, 3, 1) = std::numeric_limits<float>::quiet_NaN();
-    DOCTEST_CHECK(contains(
-        message_of([&] { run_dreambooth(bundle, parameters, {pictures, InstancePrompt, ClassPrompt}, {}); }), "finite"));
+    DOCTEST_CHECK(
+        contains(message_of([&] {
+                     run_dreambooth(bundle, parameters, {pictures, InstancePrompt, ClassPrompt}, {});
+                 }),
+                 "finite"));
 }
 
 DOCTEST_TEST_CASE("dreambooth: one gradient value that is not finite costs one step, which is counted") {
     const TinyModel model;
     const auto bundle = load_bundle(model.path());
-    TuningBatch batch{bundle.token_ids({InstancePrompt}), seeded_noise({1, 4, 8, 8}, 1), seeded_noise({1, 4, 8, 8}, 2),
-                      torch::tensor({std::int64_t{300}})};
+    TuningBatch batch{bundle.token_ids({InstancePrompt}), seeded_noise({1, 4, 8, 8}, 1),
+                      seeded_noise({1, 4, 8, 8}, 2), torch::tensor({std::int64_t{300}})};
     for (const int rank : {0, 2}) {
         auto parameters = small_parameters();
         parameters.rank = rank;
@@ -224,7 +233,8 @@ DOCTEST_TEST_CASE("dreambooth: one gradient value that is not finite costs one s
     }
 }
 
-DOCTEST_TEST_CASE("dreambooth: a tuning most of whose steps are not finite ends in an error that says so, and early") {
+DOCTEST_TEST_CASE(
+    "dreambooth: a tuning most of whose steps are not finite ends in an error that says so, and early") {
     const TinyModel model;
     const auto bundle = load_bundle(model.path());
     auto parameters = small_parameters();
@@ -234,13 +244,15 @@ DOCTEST_TEST_CASE("dreambooth: a tuning most of whose steps are not finite ends 
     JobControl job;
     job.progress = [&](std::string_view, int step, int) { last = step; };
     const auto pictures = scene_pictures();
-    const auto message =
-        message_of([&] { run_dreambooth(bundle, parameters, {pictures, InstancePrompt, ClassPrompt}, job); });
+    const auto message = message_of([&] {
+        run_dreambooth(bundle, parameters, {pictures, InstancePrompt, ClassPrompt}, job);
+    });
     DOCTEST_CHECK_MESSAGE(contains(message, "21 of the first 22 tuning steps were not finite"), message);
     DOCTEST_CHECK(last == 21);
 }
 
-DOCTEST_TEST_CASE("lora: learns, changes the attention projections only, and W + alpha/r up down is what comes out") {
+DOCTEST_TEST_CASE(
+    "lora: learns, changes the attention projections only, and W + alpha/r up down is what comes out") {
     const TinyModel model;
     const auto bundle = load_bundle(model.path());
     auto parameters = small_parameters();
@@ -318,7 +330,9 @@ DOCTEST_TEST_CASE("lora: a convolution's change is the composition of its two") 
     DOCTEST_CHECK((actual - expected).abs().max().item<double>() <= Tolerance);
 }
 
-DOCTEST_TEST_CASE("lora: merged weights are of the type that they were loaded in, and what does not change is not stored twice") {
+DOCTEST_TEST_CASE(
+    "lora: merged weights are of the type that they were loaded in, and what does not change is not stored "
+    "twice") {
     const TinyModel model;
     auto bundle = load_bundle(model.path());
     bundle.unet->to(torch::kBFloat16);
@@ -334,5 +348,6 @@ DOCTEST_TEST_CASE("lora: merged weights are of the type that they were loaded in
         if (now.data_ptr() != item.value().data_ptr()) ++changed;
     }
     DOCTEST_CHECK(changed == 1);
-    DOCTEST_CHECK(merged.text_encoder->parameters().front().data_ptr() == bundle.text_encoder->parameters().front().data_ptr());
+    DOCTEST_CHECK(merged.text_encoder->parameters().front().data_ptr() ==
+                  bundle.text_encoder->parameters().front().data_ptr());
 }

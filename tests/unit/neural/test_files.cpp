@@ -7,22 +7,26 @@ using namespace gse;
 using namespace gse::neural;
 using namespace gse::test;
 
-DOCTEST_TEST_CASE("the change between two networks is what is merged to get from one to the other, as far as the rank holds it") {
+DOCTEST_TEST_CASE(
+    "the change between two networks is what is merged to get from one to the other, as far as the rank "
+    "holds it") {
     const TinyModel model;
     const auto bundle = load_bundle(model.path());
-    const auto other = [&](std::int64_t rank) {   // the network with the change of that rank, against the changed one
-        torch::manual_seed(3);
-        const torch::NoGradGuard no_grad;
-        auto changed = load_bundle(model.path()), merged = load_bundle(model.path());
-        for (auto& parameter : changed.unet->parameters())
-            if (parameter.dim() >= 2) parameter.add_(0.1 * torch::randn_like(parameter));
-        merge_lora(*merged.unet, lora_between(*bundle.unet, *changed.unet, rank), 1);
-        double most = 0;
-        const auto a = merged.unet->parameters(), b = changed.unet->parameters();
-        for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).abs().max().item<double>());
-        return most;
-    };
-    constexpr double rounding = 1e-5;   // of a decomposition in fp32
+    const auto other =
+        [&](std::int64_t rank) {  // the network with the change of that rank, against the changed one
+            torch::manual_seed(3);
+            const torch::NoGradGuard no_grad;
+            auto changed = load_bundle(model.path()), merged = load_bundle(model.path());
+            for (auto& parameter : changed.unet->parameters())
+                if (parameter.dim() >= 2) parameter.add_(0.1 * torch::randn_like(parameter));
+            merge_lora(*merged.unet, lora_between(*bundle.unet, *changed.unet, rank), 1);
+            double most = 0;
+            const auto a = merged.unet->parameters(), b = changed.unet->parameters();
+            for (std::size_t i = 0; i < a.size(); ++i)
+                most = std::max(most, (a[i] - b[i]).abs().max().item<double>());
+            return most;
+        };
+    constexpr double rounding = 1e-5;  // of a decomposition in fp32
     DOCTEST_CHECK(other(1024) < rounding);
     DOCTEST_CHECK(other(2) > 100 * rounding);
     DOCTEST_CHECK(lora_between(*bundle.unet, *bundle.unet, 4).empty());
@@ -55,11 +59,14 @@ DOCTEST_TEST_CASE("safetensors: what is written is read back bit for bit") {
     DOCTEST_CHECK(contains(message_of([&] { file.tensor("nothing"); }), "\"nothing\""));
 }
 
-DOCTEST_TEST_CASE("safetensors: weights in eight bits are off by half a step at most, row by row, and vectors by none of these") {
+DOCTEST_TEST_CASE(
+    "safetensors: weights in eight bits are off by half a step at most, row by row, and vectors by none of "
+    "these") {
     const ScratchFolder scratch;
     const auto path = scratch.path() / "weights.safetensors";
     torch::manual_seed(11);
-    auto matrix = torch::randn({5, 7}), kernel = torch::randn({4, 3, 3, 3}) * torch::tensor({1e-4, 1.0, 30.0, 0.0}).view({4, 1, 1, 1});
+    auto matrix = torch::randn({5, 7}),
+         kernel = torch::randn({4, 3, 3, 3}) * torch::tensor({1e-4, 1.0, 30.0, 0.0}).view({4, 1, 1, 1});
     const auto vector = torch::randn({9}).to(torch::kHalf).to(torch::kFloat);
     write_safetensors(path, quantized({{"matrix", matrix}, {"kernel", kernel}, {"vector", vector}}));
     const SafetensorsFile file(path);
@@ -69,15 +76,17 @@ DOCTEST_TEST_CASE("safetensors: weights in eight bits are off by half a step at 
         file.copy_to(name, read);
         const auto rows = values.flatten(1), error = (read.flatten(1) - rows).abs();
         const auto step = rows.abs().amax(1, true) / 127;
-        constexpr double Half = 0.5 + 1e-4;   // products are rounded once more
+        constexpr double Half = 0.5 + 1e-4;  // products are rounded once more
         DOCTEST_CHECK_MESSAGE((error <= Half * step).all().item<bool>(), name);
         DOCTEST_CHECK(error.max().item<double>() > 0);
     }
     auto same = torch::zeros_like(vector);
     file.copy_to("vector", same);
     DOCTEST_CHECK(torch::equal(same, vector));
-    write_safetensors(path, {{"matrix", torch::ones({5, 7}, torch::kInt8)}, {std::string("matrix") + QuantizationScale, torch::ones({4})}});
-    DOCTEST_CHECK_THROWS_WITH_AS(SafetensorsFile(path).copy_to("matrix", matrix), doctest::Contains("one per row"), Error);
+    write_safetensors(path, {{"matrix", torch::ones({5, 7}, torch::kInt8)},
+                             {std::string("matrix") + QuantizationScale, torch::ones({4})}});
+    DOCTEST_CHECK_THROWS_WITH_AS(SafetensorsFile(path).copy_to("matrix", matrix),
+                                 doctest::Contains("one per row"), Error);
 }
 
 DOCTEST_TEST_CASE("safetensors: a place that cannot be written leaves nothing behind") {

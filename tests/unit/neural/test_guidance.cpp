@@ -40,7 +40,8 @@ edit::GuidanceInput input_at(const Image& image, const View& view, int iteration
 }  // namespace
 
 DOCTEST_TEST_CASE(
-    "attention source: one map per word, at the image's size, repeatable, and of one scale for all pictures") {
+    "attention source: one map per word, at the image's size, repeatable, and of one scale for all "
+    "pictures") {
     const TinyModel model;
     const Image image = gradient_image(50, 40);
     for (const char* method : {"probes", "img2img"}) {
@@ -58,7 +59,8 @@ DOCTEST_TEST_CASE(
             DOCTEST_CHECK(map.height == image.height);
             DOCTEST_CHECK(*std::min_element(map.data.begin(), map.data.end()) >= 0.0f);
             DOCTEST_CHECK(*std::max_element(map.data.begin(), map.data.end()) > 0.0f);
-            DOCTEST_CHECK(*std::max_element(map.data.begin(), map.data.end()) != 1.0f);   // not divided by its own maximum
+            DOCTEST_CHECK(*std::max_element(map.data.begin(), map.data.end()) !=
+                          1.0f);  // not divided by its own maximum
         }
         DOCTEST_CHECK(source.locate(query)[0].data == maps[0].data);
         query.seed = 1;
@@ -83,7 +85,8 @@ DOCTEST_TEST_CASE("attention source: a sentence is encoded once, whatever pictur
     BundleAttentionSource source(bundle, {}), fresh(bundle, {});
     const edit::AttentionQuery first{image, "a red bear", {"bear"}}, second{other, "a red bear", {"bear"}};
     std::vector<Image> maps;
-    const double whole = arithmetic([&] { source.locate(first); }), rest = arithmetic([&] { maps = source.locate(second); });
+    const double whole = arithmetic([&] { source.locate(first); }),
+                 rest = arithmetic([&] { maps = source.locate(second); });
     DOCTEST_CHECK(encoding > 0);
     DOCTEST_CHECK(whole - rest == doctest::Approx(encoding));
     DOCTEST_CHECK(maps[0].data == fresh.locate(second)[0].data);
@@ -93,19 +96,24 @@ DOCTEST_TEST_CASE("attention: words that a model of a fixed vocabulary was not t
     const TinyModel model;
     const auto bundle = load_shared(model);
     DOCTEST_CHECK(bundle->told("A shiny red * bear, front view") == "a red * bear, front view");
-    DOCTEST_CHECK(torch::equal(bundle->token_ids({"a very shiny red bear"}), bundle->token_ids({"a red bear"})));
+    DOCTEST_CHECK(
+        torch::equal(bundle->token_ids({"a very shiny red bear"}), bundle->token_ids({"a red bear"})));
     BundleAttentionSource source(bundle, {});
     const Image picture = gradient_image(32, 32);
-    const auto maps = [&](const std::string& sentence) { return source.locate({picture, sentence, {"bear"}})[0].data; };
+    const auto maps = [&](const std::string& sentence) {
+        return source.locate({picture, sentence, {"bear"}})[0].data;
+    };
     DOCTEST_CHECK(maps("a shiny red bear") == maps("a red bear"));
     DOCTEST_CHECK(maps("a blue bear") != maps("a red bear"));
     auto open = load_bundle(model.path());
-    open.facts.vocabulary.clear();   // it takes any word
+    open.facts.vocabulary.clear();  // it takes any word
     DOCTEST_CHECK(open.told("A shiny red bear") == "A shiny red bear");
     DOCTEST_CHECK(!torch::equal(open.token_ids({"a shiny red bear"}), open.token_ids({"a red bear"})));
 }
 
-DOCTEST_TEST_CASE("attention source: the noise levels that are named are those looked at; others are refused in a sentence") {
+DOCTEST_TEST_CASE(
+    "attention source: the noise levels that are named are those looked at; others are refused in a "
+    "sentence") {
     const TinyModel model;
     const edit::AttentionQuery query{gradient_image(32, 32), "a red bear", {"bear"}};
     const auto looked = [&](const std::string& levels) {
@@ -113,7 +121,7 @@ DOCTEST_TEST_CASE("attention source: the noise levels that are named are those l
         parameters.levels = levels;
         return BundleAttentionSource(load_shared(model), parameters).locate(query)[0].data;
     };
-    DOCTEST_CHECK(looked("") == looked(" 0.45"));   // what is looked at where neither model nor recipe says
+    DOCTEST_CHECK(looked("") == looked(" 0.45"));  // what is looked at where neither model nor recipe says
     DOCTEST_CHECK(looked("0.3 0.5 0.7") != looked("0.45"));
     for (const char* wrong : {"1.5", "half", "0.5,0.7", "nan"})
         DOCTEST_CHECK(contains(message_of([&] { looked(wrong); }), "noise level"));
@@ -135,21 +143,23 @@ DOCTEST_TEST_CASE("attention accumulator: a hand-made map comes back") {
     DOCTEST_CHECK(mean[0][3][3].item<float>() == doctest::Approx(0.25));
 }
 
-DOCTEST_TEST_CASE("attention accumulator: refinement gives a map what its pixels attend to; the largest affinity counts") {
+DOCTEST_TEST_CASE(
+    "attention accumulator: refinement gives a map what its pixels attend to; the largest affinity counts") {
     AttentionAccumulator sum(2, 1);
     const auto seen = torch::tensor({1.0f, 0.0f, 0.5f, 0.0f}).reshape({1, 1, 4, 1});
     std::vector<AttentionCapture::Map> maps = {{"a", 2, 2, seen}};
     sum.take(maps);
-    DOCTEST_CHECK(torch::equal(sum.refined(2), sum.mean()));   // nothing to refine with
-    const auto pairs = torch::tensor({0.5f, 0.5f, 0.0f, 0.0f, 0.5f, 0.5f, 0.0f, 0.0f,
-                                      0.0f, 0.0f, 0.5f, 0.5f, 0.0f, 0.0f, 0.5f, 0.5f}).reshape({1, 4, 4});
+    DOCTEST_CHECK(torch::equal(sum.refined(2), sum.mean()));  // nothing to refine with
+    const auto pairs = torch::tensor({0.5f, 0.5f, 0.0f, 0.0f, 0.5f, 0.5f, 0.0f, 0.0f, 0.0f, 0.0f, 0.5f, 0.5f,
+                                      0.0f, 0.0f, 0.5f, 0.5f})
+                           .reshape({1, 4, 4});
     std::vector<AttentionCapture::Map> affinities = {{"a", 1, 1, torch::ones({1, 1, 1})}, {"b", 2, 2, pairs}};
     sum.take_affinities(affinities);
     DOCTEST_CHECK(affinities.empty());
     DOCTEST_CHECK(torch::equal(sum.refined(0), sum.mean()));
     const auto expected = torch::tensor({0.5f, 0.5f, 0.25f, 0.25f}).reshape({1, 2, 2});
     DOCTEST_CHECK(torch::allclose(sum.refined(1), expected));
-    DOCTEST_CHECK(torch::allclose(sum.refined(3), expected));   // pairs share all they have already
+    DOCTEST_CHECK(torch::allclose(sum.refined(3), expected));  // pairs share all they have already
 }
 
 DOCTEST_TEST_CASE("sds guidance: repeatable gradient at the render's size, silent when nothing is asked") {
@@ -174,7 +184,8 @@ DOCTEST_TEST_CASE("sds guidance: repeatable gradient at the render's size, silen
     }
 }
 
-DOCTEST_TEST_CASE("sds guidance: a picture that makes the model overflow gives a gradient that says so, and no error") {
+DOCTEST_TEST_CASE(
+    "sds guidance: a picture that makes the model overflow gives a gradient that says so, and no error") {
     const TinyModel model;
     const auto bundle = load_shared(model);
     Image image = gradient_image(48, 40);
@@ -187,9 +198,10 @@ DOCTEST_TEST_CASE("sds guidance: a picture that makes the model overflow gives a
     DOCTEST_CHECK(std::none_of(output.gradient.data.begin(), output.gradient.data.end(),
                                [](float v) { return std::isfinite(v); }));
     DOCTEST_CHECK(output.scalars.count("loss") == 0);
-    const Image sound = gradient_image(48, 40);   // the next step is as if nothing had been
-    DOCTEST_CHECK(guidance.evaluate(input_at(sound, view, 4)).gradient.data ==
-                  SdsGuidance(bundle, "a red bear", SdsParameters{}).evaluate(input_at(sound, view, 4)).gradient.data);
+    const Image sound = gradient_image(48, 40);  // the next step is as if nothing had been
+    DOCTEST_CHECK(
+        guidance.evaluate(input_at(sound, view, 4)).gradient.data ==
+        SdsGuidance(bundle, "a red bear", SdsParameters{}).evaluate(input_at(sound, view, 4)).gradient.data);
 }
 
 DOCTEST_TEST_CASE("sds guidance: the pull on the unedited picture is taken off") {
@@ -199,7 +211,8 @@ DOCTEST_TEST_CASE("sds guidance: the pull on the unedited picture is taken off")
     Image changed = original;
     for (auto& value : changed.data) value = 1 - value;
     const View view;
-    const auto gradient = [&](const Image& shown, const Image* before, const std::string& sentence, double delta) {
+    const auto gradient = [&](const Image& shown, const Image* before, const std::string& sentence,
+                              double delta) {
         SdsParameters parameters;
         parameters.clamp = 0;  // what is clamped does not add up
         parameters.before_prompt = sentence;
@@ -211,7 +224,8 @@ DOCTEST_TEST_CASE("sds guidance: the pull on the unedited picture is taken off")
     const auto plain = gradient(changed, nullptr, "a bear", 1).gradient.data;
     DOCTEST_CHECK(gradient(changed, &original, "", 1).gradient.data == plain);
     DOCTEST_CHECK(gradient(changed, &original, "a bear", 0).gradient.data == plain);
-    DOCTEST_CHECK(gradient(changed, &original, "a red bear", 1).gradient.data == plain);  // the sentence says nothing
+    DOCTEST_CHECK(gradient(changed, &original, "a red bear", 1).gradient.data ==
+                  plain);  // the sentence says nothing
     // An unedited picture under a sentence of the same words has nothing left to change.
     constexpr double Rounding = 1e-5;  // of the plain gradient: one forward pass more in fp32
     DOCTEST_CHECK(gradient(original, &original, "A red bear", 1).scalars.at("gradient_norm") <=

@@ -1,4 +1,5 @@
-// Kinds of models on tiny random weights: how they are told apart, how each redraws views, and what it asks of the networks.
+// Kinds of models on tiny random weights: how they are told apart, how each redraws views, and what it asks
+// of the networks.
 #include "engine/neural/conditioning.h"
 #include "engine/neural/model.h"
 #include "engine/neural/model_profile.h"
@@ -26,7 +27,8 @@ UNetConfig tiny_lcm_config() {
 }
 
 /// TAESD's structure for the tiny VAE, written as diffusers does.
-TinyAutoencoderConfig write_tiny_autoencoder(const std::filesystem::path& folder, std::vector<std::int64_t> levels = {1, 1, 1}) {
+TinyAutoencoderConfig write_tiny_autoencoder(const std::filesystem::path& folder,
+                                             std::vector<std::int64_t> levels = {1, 1, 1}) {
     TinyAutoencoderConfig config;
     config.channels = 8;
     config.encoder_blocks = config.decoder_blocks = std::move(levels);
@@ -50,22 +52,28 @@ UNetConfig channels(std::int64_t in, std::int64_t out) {
     return config;
 }
 
-std::uint64_t unet_passes(const std::shared_ptr<const ModelBundle>& bundle, const SdsParameters& parameters, const edit::RoundInput& input) {
+std::uint64_t unet_passes(const std::shared_ptr<const ModelBundle>& bundle, const SdsParameters& parameters,
+                          const edit::RoundInput& input) {
     DiffusionViews guidance(bundle, "a red bear", parameters);
     const auto before = thread_use();
     const auto targets = guidance.edit(wall_views(), input, {});
     for (const auto& image : targets.images)
-        DOCTEST_CHECK(std::all_of(image.data.begin(), image.data.end(), [](float v) { return v >= 0 && v <= 1; }));
+        DOCTEST_CHECK(
+            std::all_of(image.data.begin(), image.data.end(), [](float v) { return v >= 0 && v <= 1; }));
     return (thread_use() - before).unet;
 }
 
-std::shared_ptr<const ModelBundle> shared(ModelBundle bundle) { return std::make_shared<const ModelBundle>(std::move(bundle)); }
+std::shared_ptr<const ModelBundle> shared(ModelBundle bundle) {
+    return std::make_shared<const ModelBundle>(std::move(bundle));
+}
 
 }  // namespace
 
-DOCTEST_TEST_CASE("kinds: what the configurations tell, what may be stated, and what is refused with what it is") {
+DOCTEST_TEST_CASE(
+    "kinds: what the configurations tell, what may be stated, and what is refused with what it is") {
     const auto ddim = scheduler_of("DDIMScheduler");
-    const auto kind = [](const UNetConfig& unet, const SchedulerConfig& scheduler, const std::string& stated = {}) {
+    const auto kind = [](const UNetConfig& unet, const SchedulerConfig& scheduler,
+                         const std::string& stated = {}) {
         return bundle_kind(unet, scheduler, 4, stated, "model");
     };
     UNetConfig embeds;
@@ -74,7 +82,8 @@ DOCTEST_TEST_CASE("kinds: what the configurations tell, what may be stated, and 
     DOCTEST_CHECK(kind(embeds, ddim) == BundleKind::Lcm);
     DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("LCMScheduler")) == BundleKind::Lcm);
     DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("TCDScheduler")) == BundleKind::Tcd);
-    DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("EulerDiscreteScheduler", "trailing")) == BundleKind::Turbo);
+    DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("EulerDiscreteScheduler", "trailing")) ==
+                  BundleKind::Turbo);
     DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("EulerDiscreteScheduler")) == BundleKind::Plain);
     DOCTEST_CHECK(kind(UNetConfig{}, scheduler_of("DDIMScheduler", "trailing")) == BundleKind::Plain);
     DOCTEST_CHECK(kind(channels(8, 4), ddim) == BundleKind::InstructPix2Pix);
@@ -87,12 +96,15 @@ DOCTEST_TEST_CASE("kinds: what the configurations tell, what may be stated, and 
     DOCTEST_CHECK(contains(message_of([&] { kind(channels(5, 4), ddim); }), "depth"));
     DOCTEST_CHECK(contains(message_of([&] { kind(channels(7, 4), ddim); }), "upscaler"));
     DOCTEST_CHECK(contains(message_of([&] { kind(channels(8, 8), ddim); }), "8 channels"));
-    for (std::size_t i = 0; i < BundleKindNames.size(); ++i) DOCTEST_CHECK(!std::string(kind_name(static_cast<BundleKind>(i))).empty());
+    for (std::size_t i = 0; i < BundleKindNames.size(); ++i)
+        DOCTEST_CHECK(!std::string(kind_name(static_cast<BundleKind>(i))).empty());
 }
 
 DOCTEST_TEST_CASE("kinds: a model is loaded as what it is, and refused before a weight is read") {
-    DOCTEST_CHECK(load_model(TinyModel("epsilon", tiny_editor_config()).path(), "cpu")->kind() == BundleKind::InstructPix2Pix);
-    DOCTEST_CHECK(load_model(TinyModel("epsilon", tiny_lcm_config(), "LCMScheduler").path(), "cpu")->kind() == BundleKind::Lcm);
+    DOCTEST_CHECK(load_model(TinyModel("epsilon", tiny_editor_config()).path(), "cpu")->kind() ==
+                  BundleKind::InstructPix2Pix);
+    DOCTEST_CHECK(load_model(TinyModel("epsilon", tiny_lcm_config(), "LCMScheduler").path(), "cpu")->kind() ==
+                  BundleKind::Lcm);
     auto inpainting = tiny_unet_config();
     inpainting.in_channels = 9;
     const TinyModel other("epsilon", inpainting);
@@ -105,9 +117,12 @@ DOCTEST_TEST_CASE("kinds: a model is loaded as what it is, and refused before a 
     DOCTEST_CHECK(turbo.schedule.config().timestep_spacing == "trailing");
 }
 
-DOCTEST_TEST_CASE("kinds: levels of a redrawn view are those the model knows, and go down from its strength") {
+DOCTEST_TEST_CASE(
+    "kinds: levels of a redrawn view are those the model knows, and go down from its strength") {
     const NoiseSchedule schedule{SchedulerConfig{}};
-    const auto levels = [&](BundleKind kind, double strength, int steps) { return redraw_levels(kind, schedule, strength, steps); };
+    const auto levels = [&](BundleKind kind, double strength, int steps) {
+        return redraw_levels(kind, schedule, strength, steps);
+    };
     using Levels = std::vector<std::int64_t>;
     DOCTEST_CHECK(levels(BundleKind::Lcm, 1, 4) == Levels{999, 759, 499, 259});
     DOCTEST_CHECK(levels(BundleKind::Lcm, 0.8, 4) == Levels{799, 599, 399, 199});
@@ -116,7 +131,8 @@ DOCTEST_TEST_CASE("kinds: levels of a redrawn view are those the model knows, an
     DOCTEST_CHECK(levels(BundleKind::Turbo, 0.5, 2) == Levels{499, 249});
     DOCTEST_CHECK(levels(BundleKind::Turbo, 1, 4) == Levels{999, 749, 499, 249});
     DOCTEST_CHECK(levels(BundleKind::Plain, 0.75, 3) == redraw_timesteps(0.75, 3, 1000));
-    for (const auto kind : {BundleKind::Plain, BundleKind::Lcm, BundleKind::Tcd, BundleKind::Turbo, BundleKind::InstructPix2Pix})
+    for (const auto kind : {BundleKind::Plain, BundleKind::Lcm, BundleKind::Tcd, BundleKind::Turbo,
+                            BundleKind::InstructPix2Pix})
         for (const double strength : {0.02, 0.3, 0.75, 1.0})
             for (const int steps : {1, 2, 5, 30, 100}) {
                 const auto some = levels(kind, strength, steps);
@@ -136,7 +152,8 @@ DOCTEST_TEST_CASE("kinds: two rows do for InstructPix2Pix at image scale 1 what 
     const auto bundle = load_bundle(model.path());
     const torch::NoGradGuard no_grad;
     torch::manual_seed(5);
-    Conditioning conditioning{bundle.encode_prompts({"", "a red bear"}).unsqueeze(0), 5, torch::randn({1, 4, 8, 8}), 1};
+    Conditioning conditioning{bundle.encode_prompts({"", "a red bear"}).unsqueeze(0), 5,
+                              torch::randn({1, 4, 8, 8}), 1};
     const auto x = torch::randn({1, 4, 8, 8}), t = torch::full({1}, 400.0);
     const auto two = guided_output(bundle.unet, x, t, conditioning);
     conditioning.image_guidance_scale = 1 + 1e-9;
@@ -145,7 +162,8 @@ DOCTEST_TEST_CASE("kinds: two rows do for InstructPix2Pix at image scale 1 what 
     constexpr double rounding = 1e-4;
     DOCTEST_CHECK((two - three).abs().max().item<double>() < rounding);
     conditioning.picture = torch::zeros_like(conditioning.picture);
-    DOCTEST_CHECK((two - guided_output(bundle.unet, x, t, conditioning)).abs().max().item<double>() > rounding);   // it is seen
+    DOCTEST_CHECK((two - guided_output(bundle.unet, x, t, conditioning)).abs().max().item<double>() >
+                  rounding);  // it is seen
 }
 
 DOCTEST_TEST_CASE("kinds: each redraws views with as few calls as it needs") {
@@ -157,13 +175,13 @@ DOCTEST_TEST_CASE("kinds: each redraws views with as few calls as it needs") {
     const TinyModel editor("epsilon", tiny_editor_config());
     const auto editing = shared(load_bundle(editor.path()));
     parameters.image_guidance_scale = 1;
-    DOCTEST_CHECK(unet_passes(editing, parameters, input) == 2 * 3 * 2);   // views, steps, rows
+    DOCTEST_CHECK(unet_passes(editing, parameters, input) == 2 * 3 * 2);  // views, steps, rows
     parameters.image_guidance_scale = 1.5;
     DOCTEST_CHECK(unet_passes(editing, parameters, input) == 2 * 3 * 3);
     parameters.delta = 0;
     const TinyModel consistency("epsilon", tiny_lcm_config(), "LCMScheduler");
     const auto embedding = shared(load_bundle(consistency.path()));
-    for (const double scale : {1.0, 8.5}) {   // it is built in
+    for (const double scale : {1.0, 8.5}) {  // it is built in
         parameters.view_guidance_scale = scale;
         DOCTEST_CHECK(unet_passes(embedding, parameters, input) == 2 * 3);
     }
@@ -172,14 +190,14 @@ DOCTEST_TEST_CASE("kinds: each redraws views with as few calls as it needs") {
     lcm.kind = BundleKind::Lcm;
     parameters.view_guidance_scale = 1;
     DOCTEST_CHECK(unet_passes(shared(lcm), parameters, input) == 2 * 3);
-    parameters.view_guidance_scale = 1.5;   // a LoRA takes ordinary guidance
+    parameters.view_guidance_scale = 1.5;  // a LoRA takes ordinary guidance
     DOCTEST_CHECK(unet_passes(shared(lcm), parameters, input) == 2 * 3 * 2);
     auto diffusion = shared(load_bundle(plain.path()));
-    input.guided_until = 0.5;   // of the levels 0.8, 0.53 and 0.27 the last is not guided
+    input.guided_until = 0.5;  // of the levels 0.8, 0.53 and 0.27 the last is not guided
     DOCTEST_CHECK(unet_passes(diffusion, parameters, input) == 2 * (2 + 2 + 1));
     DOCTEST_CHECK(unet_passes(embedding, parameters, input) == 2 * 3);
     parameters.image_guidance_scale = 1;
-    DOCTEST_CHECK(unet_passes(editing, parameters, input) == 2 * 3 * 2);   // its other row is the picture's
+    DOCTEST_CHECK(unet_passes(editing, parameters, input) == 2 * 3 * 2);  // its other row is the picture's
 }
 
 DOCTEST_TEST_CASE("kinds: between the steps an LCM takes fresh noise, TCD none; both repeat with the seed") {
@@ -192,16 +210,20 @@ DOCTEST_TEST_CASE("kinds: between the steps an LCM takes fresh noise, TCD none; 
         input.seed = seed;
         SdsParameters parameters;
         parameters.delta = 0;
-        return DiffusionViews(shared(bundle), "a red bear", parameters).edit(wall_views(), input, {}).images[0].data;
+        return DiffusionViews(shared(bundle), "a red bear", parameters)
+            .edit(wall_views(), input, {})
+            .images[0]
+            .data;
     };
     const auto lcm = redrawn(BundleKind::Lcm, 3, 3);
     DOCTEST_CHECK(lcm == redrawn(BundleKind::Lcm, 3, 3));
     DOCTEST_CHECK(lcm != redrawn(BundleKind::Lcm, 4, 3));
     DOCTEST_CHECK(lcm != redrawn(BundleKind::Tcd, 3, 3));
-    DOCTEST_CHECK(redrawn(BundleKind::Lcm, 3, 1) == redrawn(BundleKind::Tcd, 3, 1));   // nothing comes between
+    DOCTEST_CHECK(redrawn(BundleKind::Lcm, 3, 1) == redrawn(BundleKind::Tcd, 3, 1));  // nothing comes between
 }
 
-DOCTEST_TEST_CASE("kinds: InstructPix2Pix keeps to the unedited view, pulls and locates; it cannot learn a scene") {
+DOCTEST_TEST_CASE(
+    "kinds: InstructPix2Pix keeps to the unedited view, pulls and locates; it cannot learn a scene") {
     const TinyModel editor("epsilon", tiny_editor_config());
     const auto bundle = shared(load_bundle(editor.path()));
     SdsParameters parameters;
@@ -215,8 +237,10 @@ DOCTEST_TEST_CASE("kinds: InstructPix2Pix keeps to the unedited view, pulls and 
     DOCTEST_CHECK(guidance.edit(views, input, {}).images[0].data != one);
     const auto model = load_model(editor.path(), "cpu");
     const auto sds = model->guidance("make it red", parameters);
-    const auto gradient = sds->evaluate({views[0].rendered, views[0].view, 0, "", 0, 10, 7, &views[0].original}).gradient;
-    DOCTEST_CHECK(std::all_of(gradient.data.begin(), gradient.data.end(), [](float v) { return std::isfinite(v); }));
+    const auto gradient =
+        sds->evaluate({views[0].rendered, views[0].view, 0, "", 0, 10, 7, &views[0].original}).gradient;
+    DOCTEST_CHECK(
+        std::all_of(gradient.data.begin(), gradient.data.end(), [](float v) { return std::isfinite(v); }));
     for (const char* method : {"probes", "img2img"}) {
         AttentionParameters attention;
         attention.method = method;
@@ -234,7 +258,8 @@ DOCTEST_TEST_CASE("kinds: InstructPix2Pix keeps to the unedited view, pulls and 
     DOCTEST_CHECK(contains(message_of([&] { model->tune({}, pictures, "a * bear", "a bear", {}); }), "ip2p"));
 }
 
-DOCTEST_TEST_CASE("tiny autoencoder: beside the weights, by a setting, or not; for everything but the last round") {
+DOCTEST_TEST_CASE(
+    "tiny autoencoder: beside the weights, by a setting, or not; for everything but the last round") {
     const TinyModel model;
     DOCTEST_CHECK(!load_bundle(model.path()).has_tiny());
     write_tiny_autoencoder(model.path() / "taesd");
@@ -245,12 +270,16 @@ DOCTEST_TEST_CASE("tiny autoencoder: beside the weights, by a setting, or not; f
     std::filesystem::rename(model.path() / "taesd", elsewhere.path() / "small");
     DOCTEST_CHECK(!load_bundle(model.path()).has_tiny());
     DOCTEST_CHECK(load_bundle(model.path(), torch::kCPU, (elsewhere.path() / "small").string()).has_tiny());
-    DOCTEST_CHECK(contains(message_of([&] { load_bundle(model.path(), torch::kCPU, "/not/there"); }), "TAESD"));
-    write_file(model.path() / "gseditpro.json", "{\"taesd\": \"" + (elsewhere.path() / "small").string() + "\"}");
+    DOCTEST_CHECK(
+        contains(message_of([&] { load_bundle(model.path(), torch::kCPU, "/not/there"); }), "TAESD"));
+    write_file(model.path() / "gseditpro.json",
+               "{\"taesd\": \"" + (elsewhere.path() / "small").string() + "\"}");
     DOCTEST_CHECK(load_bundle(model.path()).has_tiny());
     DOCTEST_CHECK(!load_bundle(model.path(), torch::kCPU, "none").has_tiny());
-    write_tiny_autoencoder(elsewhere.path() / "large", {1, 1, 1, 1});   // 8 pixels per cell, the VAE has 4
-    DOCTEST_CHECK(contains(message_of([&] { load_bundle(model.path(), torch::kCPU, (elsewhere.path() / "large").string()); }), "pixels per cell"));
+    write_tiny_autoencoder(elsewhere.path() / "large", {1, 1, 1, 1});  // 8 pixels per cell, the VAE has 4
+    DOCTEST_CHECK(contains(
+        message_of([&] { load_bundle(model.path(), torch::kCPU, (elsewhere.path() / "large").string()); }),
+        "pixels per cell"));
 
     const auto config = TinyAutoencoderConfig{};
     DOCTEST_CHECK(TinyAutoencoderConfig::from_json(config.to_json(), "x").to_json() == config.to_json());
@@ -267,20 +296,22 @@ DOCTEST_TEST_CASE("tiny autoencoder: beside the weights, by a setting, or not; f
         DOCTEST_CHECK(use.decoder == 2 * 2);
         return use.flop;
     };
-    const auto flop_of = [&](Codec codec) {   // of one picture there and back
+    const auto flop_of = [&](Codec codec) {  // of one picture there and back
         const auto before = thread_use();
         latents_to_image(*bundle, image_to_latents(*bundle, torch::zeros({1, 3, 32, 32}), codec), codec);
         return (thread_use() - before).flop;
     };
     DOCTEST_CHECK(flop_of(Codec::Quick) != flop_of(Codec::Full));
-    DOCTEST_CHECK(arithmetic(0) != arithmetic(1));   // the last round has the VAE's decoder
+    DOCTEST_CHECK(arithmetic(0) != arithmetic(1));  // the last round has the VAE's decoder
     const auto before = thread_use();
-    const auto attention = load_model(model.path(), ModelOptions{"cpu", {}, (elsewhere.path() / "small").string()})->attention();
+    const auto attention =
+        load_model(model.path(), ModelOptions{"cpu", {}, (elsewhere.path() / "small").string()})->attention();
     attention->locate({wall_views()[0].rendered, "a bear", {"bear"}});
     DOCTEST_CHECK((thread_use() - before).encoder == 1);
 }
 
-DOCTEST_TEST_CASE("profile: a kind brings its steps, rounds and guidance, also by a LoRA that was distilled") {
+DOCTEST_TEST_CASE(
+    "profile: a kind brings its steps, rounds and guidance, also by a LoRA that was distilled") {
     const auto value = [](const ModelProfile& profile, const std::string& part, const std::string& field) {
         for (const auto& entry : profile.entries)
             if (entry.part == part && entry.field == field) return entry.value;
@@ -296,7 +327,8 @@ DOCTEST_TEST_CASE("profile: a kind brings its steps, rounds and guidance, also b
     DOCTEST_CHECK(value(editor, "request", "method") == "views");
     const TinyModel plain;
     DOCTEST_CHECK(model_profile(plain.path()).entries.empty());
-    write_safetensors(plain.path() / "tcd lora.safetensors", {{"lora_unet_x.lora_up.weight", torch::ones({1, 1})}});
+    write_safetensors(plain.path() / "tcd lora.safetensors",
+                      {{"lora_unet_x.lora_up.weight", torch::ones({1, 1})}});
     const auto marked = model_profile(plain.path(), {{plain.path() / "tcd lora.safetensors", 1}});
     DOCTEST_CHECK(marked.bundle == BundleKind::Tcd);
     DOCTEST_CHECK(value(marked, "guidance", "view_guidance_scale") == 1.0);

@@ -91,11 +91,14 @@ DOCTEST_TEST_CASE("unet: a pass that stops after the last wanted layer captures 
     const torch::NoGradGuard no_grad;
     torch::manual_seed(2);
     const UNet unet(tiny_unet_config());
-    const auto x = torch::randn({2, 4, 8, 8}), context = torch::randn({2, 6, 16}), t = torch::tensor({10, 500});
+    const auto x = torch::randn({2, 4, 8, 8}), context = torch::randn({2, 6, 16}),
+               t = torch::tensor({10, 500});
     for (const std::string part : {"down_blocks", "mid_block", "up_blocks.1.attentions.0"}) {
         DOCTEST_INFO(part);
         AttentionCapture whole, stopped;
-        whole.wants = stopped.wants = [&](std::string_view layer, std::int64_t, std::int64_t) { return layer.starts_with(part); };
+        whole.wants = stopped.wants = [&](std::string_view layer, std::int64_t, std::int64_t) {
+            return layer.starts_with(part);
+        };
         stopped.stop_after_last = true;
         const double before = thread_use().flop;
         DOCTEST_CHECK(unet->forward(x, t, context, &whole).defined());
@@ -108,24 +111,27 @@ DOCTEST_TEST_CASE("unet: a pass that stops after the last wanted layer captures 
     }
 }
 
-DOCTEST_TEST_CASE("unet: affinities are kept up to the side asked for; every pixel shares one whole among the others") {
+DOCTEST_TEST_CASE(
+    "unet: affinities are kept up to the side asked for; every pixel shares one whole among the others") {
     const torch::NoGradGuard no_grad;
     torch::manual_seed(2);
     const UNet unet(tiny_unet_config());
-    const auto x = torch::randn({2, 4, 8, 8}), context = torch::randn({2, 6, 16}), t = torch::tensor({10, 500});
+    const auto x = torch::randn({2, 4, 8, 8}), context = torch::randn({2, 6, 16}),
+               t = torch::tensor({10, 500});
     const auto plain = unet->forward(x, t, context);
     AttentionCapture capture;
     capture.self_attention_side = 8;
     DOCTEST_CHECK(torch::allclose(unet->forward(x, t, context, &capture), plain, 1e-5, 1e-5));
-    DOCTEST_REQUIRE(capture.affinities.size() == 4);   // 1 down, 1 middle, 2 up
+    DOCTEST_REQUIRE(capture.affinities.size() == 4);  // 1 down, 1 middle, 2 up
     for (const auto& map : capture.affinities) {
-        DOCTEST_CHECK(map.probabilities.sizes().vec() == std::vector<std::int64_t>{2, map.height * map.width, map.height * map.width});
+        DOCTEST_CHECK(map.probabilities.sizes().vec() ==
+                      std::vector<std::int64_t>{2, map.height * map.width, map.height * map.width});
         DOCTEST_CHECK(torch::allclose(map.probabilities.sum(2), torch::ones({2, map.height * map.width})));
     }
     AttentionCapture small;
     small.self_attention_side = 4;
     unet->forward(x, t, context, &small);
-    DOCTEST_CHECK(small.affinities.size() == 1);   // the middle
+    DOCTEST_CHECK(small.affinities.size() == 1);  // the middle
 }
 
 DOCTEST_TEST_CASE("unet: gradients flow through captured probabilities only when asked") {

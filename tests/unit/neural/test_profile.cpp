@@ -42,12 +42,14 @@ Json value_of(const ModelProfile& profile, const std::string& part, const std::s
 }
 
 /// A checkpoint with the tensors that tell the kind.
-void write_checkpoint(const std::filesystem::path& path, std::int64_t width, std::int64_t text_width, bool linear) {
+void write_checkpoint(const std::filesystem::path& path, std::int64_t width, std::int64_t text_width,
+                      bool linear) {
     const std::string prefix = "model.diffusion_model.input_blocks.";
-    write_safetensors(path, {{prefix + "0.0.weight", torch::zeros({width, 4, 3, 3})},
-                             {prefix + "1.1.proj_in.weight",
-                              linear ? torch::zeros({width, width}) : torch::zeros({width, width, 1, 1})},
-                             {prefix + "1.1.transformer_blocks.0.attn2.to_k.weight", torch::zeros({width, text_width})}});
+    write_safetensors(
+        path, {{prefix + "0.0.weight", torch::zeros({width, 4, 3, 3})},
+               {prefix + "1.1.proj_in.weight",
+                linear ? torch::zeros({width, width}) : torch::zeros({width, width, 1, 1})},
+               {prefix + "1.1.transformer_blocks.0.attn2.to_k.weight", torch::zeros({width, text_width})}});
 }
 
 }  // namespace
@@ -70,7 +72,8 @@ DOCTEST_TEST_CASE("profile: kinds are told apart by their configurations") {
     DOCTEST_CHECK(model_profile(source_folder() / "assets/models/starter").entries.empty());
 }
 
-DOCTEST_TEST_CASE("profile: kinds of checkpoints are told apart by shapes, and by configurations beside them") {
+DOCTEST_TEST_CASE(
+    "profile: kinds of checkpoints are told apart by shapes, and by configurations beside them") {
     const ScratchFolder scratch;
     const auto path = scratch.path() / "model.safetensors";
     write_checkpoint(path, 320, 768, false);
@@ -96,7 +99,8 @@ DOCTEST_TEST_CASE("profile: a kind's values, and over them those of gseditpro.js
     DOCTEST_CHECK(value_of(built_in, "dreambooth", "learning_rate") == 5e-6);
     DOCTEST_CHECK(value_of(built_in, "job", "threads") >= 1);
     DOCTEST_CHECK(value_of(built_in, "request", "tau") == 0.5);
-    model.state(R"({"name": "mine", "profile": {"request": {"image_size": 384}, "attention": {"steps": 20}}})");
+    model.state(
+        R"({"name": "mine", "profile": {"request": {"image_size": 384}, "attention": {"steps": 20}}})");
     const auto stated = model_profile(model.path());
     DOCTEST_REQUIRE(entry_of(stated, "request", "image_size") != nullptr);
     DOCTEST_CHECK(entry_of(stated, "request", "image_size")->value == 384);
@@ -106,7 +110,8 @@ DOCTEST_TEST_CASE("profile: a kind's values, and over them those of gseditpro.js
     DOCTEST_CHECK(stated.entries.size() == built_in.entries.size() + 1);
     // A checkpoint's file is in its folder.
     write_checkpoint(model.path() / "model.safetensors", 320, 768, false);
-    DOCTEST_CHECK(value_of(model_profile(model.path() / "model.safetensors"), "request", "image_size") == 384);
+    DOCTEST_CHECK(value_of(model_profile(model.path() / "model.safetensors"), "request", "image_size") ==
+                  384);
 }
 
 DOCTEST_TEST_CASE("profile: what is stated of no setting, or out of its range, is refused by its name") {
@@ -122,7 +127,8 @@ DOCTEST_TEST_CASE("profile: what is stated of no setting, or out of its range, i
         return std::string();
     };
     DOCTEST_CHECK(contains(refusal(R"({"request": {"image_sise": 512}})"), "image_sise"));
-    DOCTEST_CHECK(contains(refusal(R"({"request": {"image_size": 100000}})"), "\"image_size\" must be a number from 16 to 1024"));
+    DOCTEST_CHECK(contains(refusal(R"({"request": {"image_size": 100000}})"),
+                           "\"image_size\" must be a number from 16 to 1024"));
     DOCTEST_CHECK(contains(refusal(R"({"guidance": {"clamp": "much"}})"), "\"clamp\""));
     DOCTEST_CHECK(contains(refusal(R"({"dreambooth": {"steps": -1}})"), "\"steps\""));
     DOCTEST_CHECK(contains(refusal(R"({"attention": {"steps": 0}})"), "\"steps\""));

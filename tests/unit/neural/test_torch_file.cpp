@@ -18,7 +18,9 @@ namespace {
 
 using namespace gse::neural;
 
-std::string corpus(const std::string& name) { return read_file(source_folder() / "tests/fuzz/corpus/torch_pickle" / name); }
+std::string corpus(const std::string& name) {
+    return read_file(source_folder() / "tests/fuzz/corpus/torch_pickle" / name);
+}
 
 void refuses(const std::string& pickle, ErrorCode code, const std::string& part) {
     try {
@@ -31,7 +33,8 @@ void refuses(const std::string& pickle, ErrorCode code, const std::string& part)
 }
 
 /// A zip archive as torch.save makes them, with these entries.
-void write_archive(const std::filesystem::path& path, const std::vector<std::pair<std::string, std::string>>& entries) {
+void write_archive(const std::filesystem::path& path,
+                   const std::vector<std::pair<std::string, std::string>>& entries) {
     std::filesystem::remove(path);
     int error = 0;
     zip_t* archive = zip_open(path.c_str(), ZIP_CREATE, &error);
@@ -85,12 +88,17 @@ DOCTEST_TEST_CASE("a pickled state dictionary is a list of tensors, also one lev
 DOCTEST_TEST_CASE("a pickle that calls something is refused by its name") {
     refuses(corpus("call.pkl"), ErrorCode::Unsupported, "posix system");
     refuses(corpus("protocol4.pkl"), ErrorCode::Unsupported, "no dictionary of tensors");
-    refuses(std::string("\x80\x02" "cbuiltins\neval\nX\x01\0\0\0" "1\x85R.", 27), ErrorCode::Unsupported, "builtins eval");
+    refuses(std::string("\x80\x02"
+                        "cbuiltins\neval\nX\x01\0\0\0"
+                        "1\x85R.",
+                        27),
+            ErrorCode::Unsupported, "builtins eval");
 }
 
 DOCTEST_TEST_CASE("a damaged pickle is refused, wherever it ends and whatever it says of sizes") {
     const auto whole = corpus("state_dict.pkl");
-    for (std::size_t size = 0; size < whole.size(); ++size) DOCTEST_CHECK_THROWS_AS(read_tensor_pickle(whole.substr(0, size), "x"), Error);
+    for (std::size_t size = 0; size < whole.size(); ++size)
+        DOCTEST_CHECK_THROWS_AS(read_tensor_pickle(whole.substr(0, size), "x"), Error);
     auto longer = whole;
     const auto at = longer.find("K\x02K\x03");
     DOCTEST_REQUIRE(at != std::string::npos);
@@ -100,11 +108,12 @@ DOCTEST_TEST_CASE("a damaged pickle is refused, wherever it ends and whatever it
 
 DOCTEST_TEST_CASE("a text that is taken up again is not copied, and what is copied is short") {
     const long before = peak_kilobytes();
-    std::string large("\x80\x02X\0\0\x10\0", 7);   // a megabyte of text, remembered, and in a list four thousand times
+    std::string large("\x80\x02X\0\0\x10\0",
+                      7);  // a megabyte of text, remembered, and in a list four thousand times
     large += std::string(1 << 20, 'x') + std::string("q\0](", 4);
     for (int i = 0; i < 4000; ++i) large += std::string("h\0", 2);
     refuses(large + "e.", ErrorCode::Unsupported, "no dictionary of tensors");
-    constexpr long AllowedKilobytes = 64 * 1024;   // without sharing, four gigabytes
+    constexpr long AllowedKilobytes = 64 * 1024;  // without sharing, four gigabytes
     DOCTEST_CHECK(peak_kilobytes() - before < AllowedKilobytes);
     std::string joined("\x80\x02X\0\x10\0\0", 7);
     joined += std::string(4096, 'x') + std::string("q\0h\0\x93.", 6);
@@ -115,7 +124,7 @@ DOCTEST_TEST_CASE("a text that is taken up again is not copied, and what is copi
 
 DOCTEST_TEST_CASE("dictionaries that name each other thousands of times are looked into once") {
     std::string nested("\x80\x02X\5\0\0\0modelq\0}q\1", 17);
-    for (char level = 1; level < 6; ++level) {   // without that, 10^15 visits
+    for (char level = 1; level < 6; ++level) {  // without that, 10^15 visits
         nested += "}(";
         for (int i = 0; i < 1000; ++i) nested += std::string("h\0h", 3) + level;
         nested += std::string("uq") + static_cast<char>(level + 1);
@@ -125,10 +134,11 @@ DOCTEST_TEST_CASE("dictionaries that name each other thousands of times are look
 
 DOCTEST_TEST_CASE("a tensor of more numbers than its storage has is refused") {
     auto spread = corpus("state_dict.pkl");
-    const auto at = spread.find("K\x03K\x01\x86");   // the strides of [2, 3]
+    const auto at = spread.find("K\x03K\x01\x86");  // the strides of [2, 3]
     DOCTEST_REQUIRE(at != std::string::npos);
     spread.replace(at, 4, std::string("K\0K\0", 4));
-    DOCTEST_CHECK(read_tensor_pickle(spread, "x").at("weight").strides == std::vector<std::int64_t>{0, 0});   // six of six
+    DOCTEST_CHECK(read_tensor_pickle(spread, "x").at("weight").strides ==
+                  std::vector<std::int64_t>{0, 0});  // six of six
     const auto shape = spread.find("K\x02K\x03");
     auto terabytes = spread;
     terabytes.replace(shape, 4, "J\xff\xff\xff\x7fJ\xff\xff\xff\x7f");
@@ -163,7 +173,7 @@ DOCTEST_TEST_CASE("the archive around it: numbers as they were saved, and every 
     file_refused(path, ErrorCode::Malformed);
     write_archive(path, {{"any/other", "x"}});
     file_refused(path, ErrorCode::Unsupported);
-    write_file(path, pickle);   // as before PyTorch 1.6
+    write_file(path, pickle);  // as before PyTorch 1.6
     file_refused(path, ErrorCode::Unsupported);
     write_file(path, "PK\x03\x04 and no more");
     file_refused(path, ErrorCode::Malformed);

@@ -1,4 +1,5 @@
-// View guidance on a tiny random model: properties that hold for any weights, and what it asks of the networks.
+// View guidance on a tiny random model: properties that hold for any weights, and what it asks of the
+// networks.
 #include <cmath>
 
 #include "engine/edit/method_fields.h"
@@ -46,14 +47,16 @@ DOCTEST_TEST_CASE("redrawn views: repeatable, of the size that came in, and coun
     const auto before = thread_use();
     const auto targets = guidance.edit(views, input, {});
     const auto use = thread_use() - before;
-    DOCTEST_CHECK(use.unet == 2 * 3 * 2);   // views, steps, two halves; the sentence before the edit is not asked about
-    DOCTEST_CHECK(use.encoder == 2);        // the render is the original
+    DOCTEST_CHECK(use.unet ==
+                  2 * 3 * 2);  // views, steps, two halves; the sentence before the edit is not asked about
+    DOCTEST_CHECK(use.encoder == 2);  // the render is the original
     DOCTEST_CHECK(use.decoder == 2 * 2);
     DOCTEST_CHECK(use.flop > 0);
     DOCTEST_REQUIRE(targets.images.size() == 2);
     for (const auto& image : targets.images) {
         DOCTEST_CHECK(image.width == 40);
-        DOCTEST_CHECK(std::all_of(image.data.begin(), image.data.end(), [](float value) { return value >= 0 && value <= 1; }));
+        DOCTEST_CHECK(std::all_of(image.data.begin(), image.data.end(),
+                                  [](float value) { return value >= 0 && value <= 1; }));
     }
     DOCTEST_CHECK(guidance.edit(views, input, {}).images[0].data == targets.images[0].data);
     auto other = input;
@@ -65,11 +68,13 @@ DOCTEST_TEST_CASE("redrawn views: repeatable, of the size that came in, and coun
     DOCTEST_CHECK(mean_change(guidance.edit(views, weak, {}), views) < mean_change(targets, views));
     auto closed = views;
     for (auto& view : closed) view.mask = Mask(40, 40);
-    constexpr double none = 1e-5;   // both pictures go through the decoder
+    constexpr double none = 1e-5;  // both pictures go through the decoder
     DOCTEST_CHECK(mean_change(guidance.edit(closed, input, {}), closed) < none);
 }
 
-DOCTEST_TEST_CASE("redrawn views: from less noise another seed draws less that is different; only what is drawn anew takes less") {
+DOCTEST_TEST_CASE(
+    "redrawn views: from less noise another seed draws less that is different; only what is drawn anew takes "
+    "less") {
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     const auto views = wall_views();
@@ -92,12 +97,14 @@ DOCTEST_TEST_CASE("redrawn views: from less noise another seed draws less that i
     };
     DOCTEST_CHECK(differ(0) == 0);
     DOCTEST_CHECK(differ(0.3) > 0);
-    constexpr double hardly = 0.001;   // of a network that nobody trained only the limit is known: it is continuous
+    constexpr double hardly =
+        0.001;  // of a network that nobody trained only the limit is known: it is continuous
     DOCTEST_CHECK(differ(hardly) < differ(1));
     DOCTEST_CHECK(differ(hardly) < differ(0.3));
 }
 
-DOCTEST_TEST_CASE("redrawn views: settings of the guidance that are said to have no effect have none, the others do") {
+DOCTEST_TEST_CASE(
+    "redrawn views: settings of the guidance that are said to have no effect have none, the others do") {
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     const auto views = wall_views();
@@ -105,12 +112,15 @@ DOCTEST_TEST_CASE("redrawn views: settings of the guidance that are said to have
     input.steps = 2;
     SdsParameters parameters;
     parameters.before_prompt = "a bear";
-    const auto drawn = [&] { return DiffusionViews(bundle, "a red bear", parameters).edit(views, input, {}).images[0].data; };
+    const auto drawn = [&] {
+        return DiffusionViews(bundle, "a red bear", parameters).edit(views, input, {}).images[0].data;
+    };
     SdsParameters::visit_fields(parameters, [&](const char* name, auto& value, const char*, auto...) {
         using Value = std::remove_reference_t<decltype(value)>;
-        if (std::string_view(name) == "image_guidance_scale") return;   // counts with models that are told what to do
-        if (std::string_view(name).starts_with("restyle")) return;   // with those that restyle
-        if (std::string_view(name) == "plain_ground") return;         // with what the views are shown
+        if (std::string_view(name) == "image_guidance_scale")
+            return;  // counts with models that are told what to do
+        if (std::string_view(name).starts_with("restyle")) return;  // with those that restyle
+        if (std::string_view(name) == "plain_ground") return;       // with what the views are shown
         input.anew = std::string_view(name) == "shape_guidance_scale";
         const auto plain = drawn();
         const Value kept = value;
@@ -123,7 +133,8 @@ DOCTEST_TEST_CASE("redrawn views: settings of the guidance that are said to have
     });
 }
 
-DOCTEST_TEST_CASE("redrawn views: what was learned for new things draws only those, and is told the side exactly") {
+DOCTEST_TEST_CASE(
+    "redrawn views: what was learned for new things draws only those, and is told the side exactly") {
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     LoraWeights learned;
@@ -135,7 +146,12 @@ DOCTEST_TEST_CASE("redrawn views: what was learned for new things draws only tho
     auto views = wall_views();
     edit::RoundInput input;
     input.steps = 2;
-    const auto drawn = [&](bool with) { return DiffusionViews(bundle, "a bear", {}, with ? shapes : nullptr).edit(views, input, {}).images[0].data; };
+    const auto drawn = [&](bool with) {
+        return DiffusionViews(bundle, "a bear", {}, with ? shapes : nullptr)
+            .edit(views, input, {})
+            .images[0]
+            .data;
+    };
     DOCTEST_CHECK(drawn(true) == drawn(false));
     input.anew = true;
     DOCTEST_CHECK(drawn(true) != drawn(false));
@@ -150,7 +166,8 @@ DOCTEST_TEST_CASE("redrawn views: what was learned for new things draws only tho
     DOCTEST_CHECK(at(sector / 2, "a bear") != at(sector, "a bear"));
 }
 
-DOCTEST_TEST_CASE("redrawn views: those in which a new thing comes to be see each other where the model says so") {
+DOCTEST_TEST_CASE(
+    "redrawn views: those in which a new thing comes to be see each other where the model says so") {
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     const auto second = [&](std::int64_t together, float seen_by_the_other, bool anew) {
@@ -161,14 +178,19 @@ DOCTEST_TEST_CASE("redrawn views: those in which a new thing comes to be see eac
         edit::RoundInput input;
         input.steps = 2;
         input.anew = anew;
-        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(std::move(shapes))).edit(views, input, {}).images[1].data;
+        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(std::move(shapes)))
+            .edit(views, input, {})
+            .images[1]
+            .data;
     };
     DOCTEST_CHECK(second(2, 1.0f, true) != second(2, 0.3f, true));
     DOCTEST_CHECK(second(1, 1.0f, true) == second(1, 0.3f, true));
-    DOCTEST_CHECK(second(2, 1.0f, false) == second(2, 0.3f, false));   // what was there is redrawn view by view
+    DOCTEST_CHECK(second(2, 1.0f, false) ==
+                  second(2, 0.3f, false));  // what was there is redrawn view by view
 }
 
-DOCTEST_TEST_CASE("redrawn views: what draws new things is shown what lies behind them, where the model takes that") {
+DOCTEST_TEST_CASE(
+    "redrawn views: what draws new things is shown what lies behind them, where the model takes that") {
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     const auto drawn = [&](bool takes, float behind, bool anew) {
@@ -183,14 +205,20 @@ DOCTEST_TEST_CASE("redrawn views: what draws new things is shown what lies behin
         edit::RoundInput input;
         input.steps = 2;
         input.anew = anew;
-        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(std::move(shapes))).edit(views, input, {}).images[1].data;
+        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(std::move(shapes)))
+            .edit(views, input, {})
+            .images[1]
+            .data;
     };
     DOCTEST_CHECK(drawn(true, 0.2f, true) != drawn(true, 0.7f, true));
     DOCTEST_CHECK(drawn(false, 0.2f, true) == drawn(false, 0.7f, true));
-    DOCTEST_CHECK(drawn(true, 0.2f, false) == drawn(true, 0.7f, false));   // what was there is redrawn as it is
+    DOCTEST_CHECK(drawn(true, 0.2f, false) ==
+                  drawn(true, 0.7f, false));  // what was there is redrawn as it is
 }
 
-DOCTEST_TEST_CASE("redrawn views: what restyles is shown the unedited view, changes nothing beside the mask, and tells of nothing new") {
+DOCTEST_TEST_CASE(
+    "redrawn views: what restyles is shown the unedited view, changes nothing beside the mask, and tells of "
+    "nothing new") {
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     auto shapes = *bundle;
@@ -219,15 +247,18 @@ DOCTEST_TEST_CASE("redrawn views: what restyles is shown the unedited view, chan
     harder.restyle_guidance_scale = 4;
     auto grey = wall_views();
     for (auto& view : grey) view.original = Image(40, 40, 3, 0.2f);
-    DOCTEST_CHECK(DiffusionViews(bundle, "a bear", harder, scene, true).edit(grey, input, {}).images[1].data != restyled.images[1].data);
-    auto views = wall_views();   // nothing may change: nothing does, whatever the autoencoder loses
+    DOCTEST_CHECK(
+        DiffusionViews(bundle, "a bear", harder, scene, true).edit(grey, input, {}).images[1].data !=
+        restyled.images[1].data);
+    auto views = wall_views();  // nothing may change: nothing does, whatever the autoencoder loses
     for (auto& view : views) std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{0});
     const auto kept = DiffusionViews(bundle, "a bear", {}, scene, true).edit(views, input, {});
     for (std::size_t i = 0; i < views[0].rendered.data.size(); ++i)
         DOCTEST_REQUIRE(std::abs(kept.images[0].data[i] - views[0].rendered.data[i]) < 1e-5f);
 }
 
-DOCTEST_TEST_CASE("redrawn views: where the model knows what lies behind a view, it tells what is new in it") {
+DOCTEST_TEST_CASE(
+    "redrawn views: where the model knows what lies behind a view, it tells what is new in it") {
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     auto shapes = *bundle;
@@ -235,25 +266,30 @@ DOCTEST_TEST_CASE("redrawn views: where the model knows what lies behind a view,
     auto views = wall_views();
     for (auto& view : views) view.backdrop.picture = view.original;
     const auto change_of = [&](bool anew, bool may_change, bool tells = true) {
-        for (auto& view : views) std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{may_change});
+        for (auto& view : views)
+            std::fill(view.mask.data.begin(), view.mask.data.end(), std::uint8_t{may_change});
         edit::RoundInput input;
         input.steps = 2;
         input.strength = 1;
         input.anew = anew;
         input.tells_changes = tells;
-        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(shapes)).edit(views, input, {}).changes;
+        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(shapes))
+            .edit(views, input, {})
+            .changes;
     };
     DOCTEST_CHECK(change_of(false, true).empty());
     DOCTEST_CHECK(change_of(true, true, false).empty());
     const auto all = change_of(true, true), none = change_of(true, false);
     DOCTEST_REQUIRE((all.size() == views.size() && none.size() == views.size()));
-    for (const auto& change : none)   // the surroundings stay as they are: nothing differs, whatever the autoencoder loses of them
+    for (const auto& change :
+         none)  // the surroundings stay as they are: nothing differs, whatever the autoencoder loses of them
         DOCTEST_CHECK(*std::max_element(change.data.begin(), change.data.end()) < 1e-5f);
     DOCTEST_CHECK((all[0].width == views[0].rendered.width && all[0].channels == 1));
     DOCTEST_CHECK(*std::max_element(all[0].data.begin(), all[0].data.end()) > 0.01f);
 }
 
-DOCTEST_TEST_CASE("redrawn views: where the model knows outlines it tells them, and changes need not be decoded") {
+DOCTEST_TEST_CASE(
+    "redrawn views: where the model knows outlines it tells them, and changes need not be decoded") {
     const TinyModel model;
     const auto bundle = std::make_shared<const ModelBundle>(load_bundle(model.path()));
     auto shapes = *bundle;
@@ -263,15 +299,19 @@ DOCTEST_TEST_CASE("redrawn views: where the model knows outlines it tells them, 
     edit::RoundInput input;
     input.steps = 2;
     input.tells_changes = true;
-    const auto drawn = [&] { return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(shapes)).edit(views, input, {}); };
-    DOCTEST_CHECK(drawn().outlines.empty());   // nothing is new
+    const auto drawn = [&] {
+        return DiffusionViews(bundle, "a bear", {}, std::make_shared<const ModelBundle>(shapes))
+            .edit(views, input, {});
+    };
+    DOCTEST_CHECK(drawn().outlines.empty());  // nothing is new
     input.anew = true;
     const auto targets = drawn();
     DOCTEST_CHECK(targets.changes.empty());
     DOCTEST_REQUIRE(targets.outlines.size() == views.size());
     for (const auto& outline : targets.outlines) {
         DOCTEST_CHECK((outline.width == views[0].rendered.width && outline.channels == 1));
-        for (const float share : outline.data) DOCTEST_REQUIRE((share >= 0 && share < 0.5f));   // it has learned of none
+        for (const float share : outline.data)
+            DOCTEST_REQUIRE((share >= 0 && share < 0.5f));  // it has learned of none
     }
     shapes.unet = with_scene_inputs(bundle->unet, false);
     DOCTEST_CHECK((drawn().outlines.empty() && drawn().changes.size() == views.size()));
@@ -280,12 +320,14 @@ DOCTEST_TEST_CASE("redrawn views: where the model knows outlines it tells them, 
 DOCTEST_TEST_CASE("a model that names a LoRA for new things and has none is refused at once") {
     const TinyModel model;
     for (const char* key : {"shape_lora", "shape_cameras", "shape_unet"}) {
-        gse::write_file(model.path() / "gseditpro.json", std::string("{\"") + key + "\": \"gone.safetensors\"}");
+        gse::write_file(model.path() / "gseditpro.json",
+                        std::string("{\"") + key + "\": \"gone.safetensors\"}");
         DOCTEST_CHECK_THROWS_WITH_AS(load_bundle(model.path()), doctest::Contains("gone.safetensors"), Error);
     }
 }
 
-DOCTEST_TEST_CASE("a model with a network of its own draws new things with it, and everything else as before") {
+DOCTEST_TEST_CASE(
+    "a model with a network of its own draws new things with it, and everything else as before") {
     const TinyModel model;
     const auto plain = load_model(model.path(), "cpu");
     DOCTEST_CHECK_FALSE(plain->knows_scene());
@@ -308,18 +350,21 @@ DOCTEST_TEST_CASE("a model with a network of its own draws new things with it, a
     const auto with = load_model(model.path(), "cpu");
     DOCTEST_CHECK(with->knows_scene());
     const auto same = drawn(*with, false), shapes = drawn(*with, true);
-    for (std::size_t v = 0; v < views.size(); ++v) DOCTEST_CHECK(same.images[v].data == redrawn.images[v].data);
+    for (std::size_t v = 0; v < views.size(); ++v)
+        DOCTEST_CHECK(same.images[v].data == redrawn.images[v].data);
     DOCTEST_CHECK((same.outlines.empty() && shapes.outlines.size() == views.size()));
     DOCTEST_CHECK(shapes.images[0].data != drawn(*plain, true).images[0].data);
     DOCTEST_CHECK_FALSE((with->restyles() || plain->restyles()));
-    gse::write_file(model.path() / "gseditpro.json", R"({"shape_unet": "own", "shape_views": 2, "shape_restyles": true})");
+    gse::write_file(model.path() / "gseditpro.json",
+                    R"({"shape_unet": "own", "shape_views": 2, "shape_restyles": true})");
     const auto restyling = load_model(model.path(), "cpu");
     DOCTEST_CHECK(restyling->restyles());
     DOCTEST_CHECK(restyling->views("a bear", {})->restyles());
     DOCTEST_CHECK(drawn(*restyling, false).images[0].data != redrawn.images[0].data);
     // What was tuned, or merged with a LoRA, draws by itself.
     LoraWeights style;
-    for (const auto& factor : new_lora(lora_targets(*load_bundle(model.path()).unet), 2, 7)) style.unet.push_back(factor);
+    for (const auto& factor : new_lora(lora_targets(*load_bundle(model.path()).unet), 2, 7))
+        style.unet.push_back(factor);
     write_lora(model.path() / "style.safetensors", style);
     DOCTEST_CHECK_FALSE(restyling->load_lora(model.path() / "style.safetensors")->restyles());
     ModelOptions merged;
@@ -346,12 +391,14 @@ DOCTEST_TEST_CASE("the arithmetic of a UNet pass is counted as its layers do it"
     const auto context = bundle.encode_prompts({"a bear"});
     const auto pass = [&](std::int64_t batch) {
         const auto before = thread_use();
-        bundle.unet->forward(x.expand({batch, 4, 8, 8}).contiguous(), torch::full({1}, 10.0), context.expand({batch, -1, -1}).contiguous());
+        bundle.unet->forward(x.expand({batch, 4, 8, 8}).contiguous(), torch::full({1}, 10.0),
+                             context.expand({batch, -1, -1}).contiguous());
         return thread_use() - before;
     };
     const auto one = pass(1), two = pass(2);
     DOCTEST_CHECK(one.unet == 1);
     DOCTEST_CHECK(two.unet == 2);
-    DOCTEST_CHECK(two.flop == doctest::Approx(2 * one.flop).epsilon(0.02));   // the time embedding may be shared
+    DOCTEST_CHECK(two.flop ==
+                  doctest::Approx(2 * one.flop).epsilon(0.02));  // the time embedding may be shared
     DOCTEST_CHECK(one.encoder + one.decoder == 0);
 }

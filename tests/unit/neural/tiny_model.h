@@ -51,8 +51,7 @@ inline neural::TextEncoderConfig tiny_text_config() {
     return config;
 }
 
-template <class Holder>
-neural::NamedTensors tensors_of(const Holder& module) {
+template <class Holder> neural::NamedTensors tensors_of(const Holder& module) {
     neural::NamedTensors tensors;
     for (const auto& item : module->named_parameters())
         tensors.emplace_back(item.key(), item.value().detach());
@@ -61,11 +60,13 @@ neural::NamedTensors tensors_of(const Holder& module) {
 
 /// What the tiny model says it knows: the words of the tests' sentences.
 inline std::vector<std::string> tiny_words() {
-    return {"bear", "hat", "dog", "square", "a", "of", "photo", "red", "blue", "sks", "make", "it", "front", "side", "back", "left", "right", "view"};
+    return {"bear", "hat",  "dog", "square", "a",    "of",   "photo", "red",   "blue",
+            "sks",  "make", "it",  "front",  "side", "back", "left",  "right", "view"};
 }
 
 struct TinyModel {
-    explicit TinyModel(const std::string& prediction = "epsilon", const neural::UNetConfig& unet_config = tiny_unet_config(),
+    explicit TinyModel(const std::string& prediction = "epsilon",
+                       const neural::UNetConfig& unet_config = tiny_unet_config(),
                        const std::string& scheduler_class = "DDIMScheduler") {
         const auto root = scratch.path();
         torch::manual_seed(7);
@@ -83,8 +84,8 @@ struct TinyModel {
         write_file(root / "tokenizer/merges.txt", tiny_merges());
         write_file(root / "tokenizer/tokenizer_config.json", "{\"model_max_length\": 24}");
         write_file(root / "model_index.json", "{}");
-        write_file(root / "gseditpro.json",
-                   R"({"name": "tiny", "attention_sizes": [8], "vocabulary": )" + nlohmann::json(tiny_words()).dump() + "}");
+        write_file(root / "gseditpro.json", R"({"name": "tiny", "attention_sizes": [8], "vocabulary": )" +
+                                                nlohmann::json(tiny_words()).dump() + "}");
     }
     void write_weights() const {
         neural::write_safetensors(path() / "unet/diffusion_pytorch_model.safetensors", unet);
@@ -98,13 +99,10 @@ struct TinyModel {
 };
 
 /// The message of the Error that `work` throws, or "".
-template <class Work>
-std::string message_of(Work&& work) {
+template <class Work> std::string message_of(Work&& work) {
     try {
         work();
-    } catch (const Error& error) {
-        return error.message();
-    }
+    } catch (const Error& error) { return error.message(); }
     return {};
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using namespace gse::neural;
 
-constexpr float SumTolerance = 1e-5f;   // of shares in fp32
+constexpr float SumTolerance = 1e-5f;  // of shares in fp32
 
 /// A folder with an untrained classifier.
 struct TinyFolder {
@@ -48,9 +48,7 @@ gse::Image stripes(int width, int height, int left) {
 bool refused(const TinyFolder& folder, gse::ErrorCode code) {
     try {
         ViewpointReader reader(folder.path(), torch::kCPU);
-    } catch (const gse::Error& error) {
-        return error.code() == code;
-    }
+    } catch (const gse::Error& error) { return error.code() == code; }
     return false;
 }
 
@@ -66,7 +64,8 @@ DOCTEST_TEST_CASE("pictures of any size get shares of all sectors") {
         DOCTEST_CHECK(*std::min_element(shares.begin(), shares.end()) >= 0);
     }
     DOCTEST_CHECK(reader.shares(stripes(24, 24, 0)) != reader.shares(stripes(24, 24, 1)));
-    DOCTEST_CHECK(reader.shares(stripes(24, 24, -3)) == reader.shares(stripes(30, 24, 0)));   // the middle of a wide one
+    DOCTEST_CHECK(reader.shares(stripes(24, 24, -3)) ==
+                  reader.shares(stripes(30, 24, 0)));  // the middle of a wide one
 }
 
 DOCTEST_TEST_CASE("a classifier that is not whole is refused") {
@@ -76,15 +75,18 @@ DOCTEST_TEST_CASE("a classifier that is not whole is refused") {
         DOCTEST_CHECK(refused(folder, gse::ErrorCode::NotFound));
     }
     const std::vector<std::pair<std::function<void(Json&)>, gse::ErrorCode>> changes{
-        {[](Json& json) { json["widths"] = {8, 18}; }, gse::ErrorCode::Model},            // no whole groups
+        {[](Json& json) {
+             json["widths"] = {8, 18};
+         },
+         gse::ErrorCode::Model},  // no whole groups
         {[](Json& json) { json["widths"] = Json::array(); }, gse::ErrorCode::Model},
         {[](Json& json) { json["widths"] = "wide"; }, gse::ErrorCode::Malformed},
-        {[](Json& json) { json["image_size"] = 18; }, gse::ErrorCode::Model},             // cannot be halved twice
+        {[](Json& json) { json["image_size"] = 18; }, gse::ErrorCode::Model},  // cannot be halved twice
         {[](Json& json) { json["image_size"] = 1 << 30; }, gse::ErrorCode::Model},
         {[](Json& json) { json["sectors"] = 0; }, gse::ErrorCode::Model},
         {[](Json& json) { json["groups"] = 0; }, gse::ErrorCode::Model},
         {[](Json& json) { json["hidden"] = -1; }, gse::ErrorCode::Model},
-        {[](Json& json) { json["hidden"] = 24; }, gse::ErrorCode::Model}};                // not what the weights are
+        {[](Json& json) { json["hidden"] = 24; }, gse::ErrorCode::Model}};  // not what the weights are
     for (std::size_t i = 0; i < changes.size(); ++i) {
         TinyFolder folder;
         changes[i].first(folder.json);

@@ -14,7 +14,8 @@ inline std::vector<edit::RoundView> wall_views() {
         edit::RoundView view;
         view.view.camera = Camera::look_at({x, 0, 3}, {x, 0, 0}, {0, -1, 0}, 0.9, 40, 40);
         view.rendered = Image(40, 40, 3);
-        for (std::size_t i = 0; i < view.rendered.data.size(); ++i) view.rendered.data[i] = static_cast<float>(i % 37) / 37.0f;
+        for (std::size_t i = 0; i < view.rendered.data.size(); ++i)
+            view.rendered.data[i] = static_cast<float>(i % 37) / 37.0f;
         view.original = view.rendered;
         view.depth = Image(40, 40, 1, 3.0f);
         view.mask = Mask(40, 40);

@@ -31,12 +31,16 @@ GaussianSet ball_and_wall() {
         const bool ball = row < BallRows;
         float* at = &data.position[row * 3];
         if (ball) {
-            const double z = random.uniform(-1, 1), turn = random.uniform(0, 6.2832), r = std::sqrt(1 - z * z);
-            at[0] = static_cast<float>(0.5 * r * std::cos(turn)), at[1] = static_cast<float>(0.5 * r * std::sin(turn)), at[2] = static_cast<float>(0.5 * z);
+            const double z = random.uniform(-1, 1), turn = random.uniform(0, 6.2832),
+                         r = std::sqrt(1 - z * z);
+            at[0] = static_cast<float>(0.5 * r * std::cos(turn)),
+            at[1] = static_cast<float>(0.5 * r * std::sin(turn)), at[2] = static_cast<float>(0.5 * z);
         } else {
-            at[0] = static_cast<float>(random.uniform(-2, 2)), at[1] = static_cast<float>(random.uniform(-2, 2)), at[2] = 1.5f;
+            at[0] = static_cast<float>(random.uniform(-2, 2)),
+            at[1] = static_cast<float>(random.uniform(-2, 2)), at[2] = 1.5f;
         }
-        for (int axis = 0; axis < 3; ++axis) data.log_scale[row * 3 + static_cast<std::size_t>(axis)] = ball ? -3.2f : -2.8f;
+        for (int axis = 0; axis < 3; ++axis)
+            data.log_scale[row * 3 + static_cast<std::size_t>(axis)] = ball ? -3.2f : -2.8f;
         data.rotation[row * 4] = 1;
         data.opacity_logit[row] = 4;
         data.sh[row * 3] = ball ? 1.5f : -1.2f;
@@ -47,13 +51,13 @@ GaussianSet ball_and_wall() {
 }
 
 /// The same in other colours (DC coefficients), by position and whether it is the ball.
-template <class Colour>
-GaussianSet with_colours(const GaussianSet& set, const Colour& colour) {
+template <class Colour> GaussianSet with_colours(const GaussianSet& set, const Colour& colour) {
     auto data = set.to_data();
     for (std::size_t row = 0; row < BallRows + WallRows; ++row) {
         const float* at = &data.position[row * 3];
         const Vec3 value = colour(Vec3{at[0], at[1], at[2]}, row < BallRows);
-        for (std::size_t c = 0; c < 3; ++c) data.sh[row * 3 + c] = static_cast<float>(value[static_cast<int>(c)]);
+        for (std::size_t c = 0; c < 3; ++c)
+            data.sh[row * 3 + c] = static_cast<float>(value[static_cast<int>(c)]);
     }
     return GaussianSet(std::move(data));
 }
@@ -62,19 +66,24 @@ GaussianSet with_colours(const GaussianSet& set, const Colour& colour) {
 CutOutRequest around_ball() {
     CutOutRequest request;
     request.camera = Camera::look_at({0, 0, -3}, {0, 0, 0}, {0, -1, 0}, 0.9, 900, 700);
-    const double half = 0.62 * request.camera.fx / 3;   // the ball's outline is at 0.5 / sqrt(8.75)
+    const double half = 0.62 * request.camera.fx / 3;  // the ball's outline is at 0.5 / sqrt(8.75)
     const auto cx = request.camera.cx, cy = request.camera.cy;
-    for (const auto& [x, y] : {std::pair{-1.0, -1.0}, std::pair{1.0, -1.0}, std::pair{1.0, 1.0}, std::pair{-1.0, 1.0}})
-        request.area.polygon.push_back({static_cast<float>(cx + x * half), static_cast<float>(cy + y * half)});
+    for (const auto& [x, y] :
+         {std::pair{-1.0, -1.0}, std::pair{1.0, -1.0}, std::pair{1.0, 1.0}, std::pair{-1.0, 1.0}})
+        request.area.polygon.push_back(
+            {static_cast<float>(cx + x * half), static_cast<float>(cy + y * half)});
     return request;
 }
 
 std::size_t count(const std::vector<std::uint8_t>& rows, std::size_t begin, std::size_t end) {
-    return static_cast<std::size_t>(std::count(rows.begin() + static_cast<std::ptrdiff_t>(begin), rows.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{1}));
+    return static_cast<std::size_t>(std::count(rows.begin() + static_cast<std::ptrdiff_t>(begin),
+                                               rows.begin() + static_cast<std::ptrdiff_t>(end),
+                                               std::uint8_t{1}));
 }
 
 /// Corners of a box around what the rows with value 1 show, with a margin as a hand leaves it.
-std::vector<std::array<float, 2>> box_around(const GaussianSet& set, const std::vector<float>& values, const Camera& camera) {
+std::vector<std::array<float, 2>> box_around(const GaussianSet& set, const std::vector<float>& values,
+                                             const Camera& camera) {
     Painter painter;
     Image shown;
     painter.rasterizer().forward_values(set.spans(), camera, {}, values, shown);
@@ -104,7 +113,8 @@ std::vector<double> seen_from_around(const synth::SynthScene& scene) {
 
 class Fails final : public edit::Segmenter {
 public:
-    Mask segment(const Image& image, const std::vector<edit::PointPrompt>&, const std::optional<edit::BoxPrompt>& box, const Image&) override {
+    Mask segment(const Image& image, const std::vector<edit::PointPrompt>&,
+                 const std::optional<edit::BoxPrompt>& box, const Image&) override {
         DOCTEST_CHECK(box.has_value());
         return Mask(image.width, image.height);
     }
@@ -119,7 +129,7 @@ DOCTEST_TEST_CASE("a box around a thing selects all its sides, and not what is b
     const auto request = around_ball();
     const auto rows = cut_out(set, request, nullptr);
     DOCTEST_CHECK(count(rows, 0, BallRows) > BallRows * 95 / 100);
-    DOCTEST_CHECK(count(rows, BallRows, rows.size()) < count(rows, 0, BallRows) / 50);   // at the soft outline
+    DOCTEST_CHECK(count(rows, BallRows, rows.size()) < count(rows, 0, BallRows) / 50);  // at the soft outline
     // The box alone would have taken the wall behind and beside the ball, too.
     const auto box = rows_in_area(set, request.camera, request.area);
     DOCTEST_CHECK(count(box, BallRows, box.size()) > WallRows / 20);
@@ -135,7 +145,8 @@ DOCTEST_TEST_CASE("a thing that other views cannot see still has the side that t
     data.resize(first + walls);
     for (std::size_t row = first; row < first + walls; ++row) {
         const double turn = random.uniform(0, 6.2832);
-        data.position[row * 3] = static_cast<float>(std::cos(turn)), data.position[row * 3 + 1] = static_cast<float>(std::sin(turn));
+        data.position[row * 3] = static_cast<float>(std::cos(turn)),
+                            data.position[row * 3 + 1] = static_cast<float>(std::sin(turn));
         data.position[row * 3 + 2] = static_cast<float>(random.uniform(-0.7, 1.5));
         for (int axis = 0; axis < 3; ++axis) data.log_scale[row * 3 + static_cast<std::size_t>(axis)] = -2.8f;
         data.rotation[row * 4] = 1;
@@ -143,14 +154,15 @@ DOCTEST_TEST_CASE("a thing that other views cannot see still has the side that t
         for (int c = 0; c < 3; ++c) data.sh[row * 3 + static_cast<std::size_t>(c)] = 1.5f;
     }
     const auto rows = cut_out(GaussianSet(std::move(data)), request, nullptr);
-    DOCTEST_CHECK(count(rows, 0, BallRows) > BallRows / 3);   // nearly half of it faces the camera
-    DOCTEST_CHECK(count(rows, BallRows, rows.size()) < count(rows, 0, BallRows) / 10);   // at the soft outline
+    DOCTEST_CHECK(count(rows, 0, BallRows) > BallRows / 3);  // nearly half of it faces the camera
+    DOCTEST_CHECK(count(rows, BallRows, rows.size()) < count(rows, 0, BallRows) / 10);  // at the soft outline
 }
 
 DOCTEST_TEST_CASE("things of all kinds are cut out whole from any side") {
     if (!edit::grabcut_available()) return;
     constexpr int Things = 6;
-    constexpr double LeastIou = 0.95;   // pooled over the pixels that the rows make up; 0.99 was measured over twelve things
+    constexpr double LeastIou =
+        0.95;  // pooled over the pixels that the rows make up; 0.99 was measured over twelve things
     double both = 0, any = 0;
     for (int i = 0; i < Things; ++i) {
         Random random(900 + static_cast<std::uint64_t>(i));
@@ -159,9 +171,11 @@ DOCTEST_TEST_CASE("things of all kinds are cut out whole from any side") {
         const auto scene = synth::generate(spec);
         const auto& set = scene.scene.gaussians;
         CutOutRequest request;
-        request.camera = synth::scene_camera(scene, random.uniform(-3.1, 3.1), random.uniform(0.1, 0.5), 1, 1000, 700);
+        request.camera =
+            synth::scene_camera(scene, random.uniform(-3.1, 3.1), random.uniform(0.1, 0.5), 1, 1000, 700);
         std::vector<float> thing(set.size());
-        for (std::size_t row = 0; row < set.size(); ++row) thing[row] = scene.parts[row] == synth::Part::Object ? 1.0f : 0.0f;
+        for (std::size_t row = 0; row < set.size(); ++row)
+            thing[row] = scene.parts[row] == synth::Part::Object ? 1.0f : 0.0f;
         request.area.polygon = box_around(set, thing, request.camera);
         const auto rows = cut_out(set, request, nullptr);
         const auto evidence = seen_from_around(scene);
@@ -175,21 +189,27 @@ DOCTEST_TEST_CASE("things of all kinds are cut out whole from any side") {
 
 DOCTEST_TEST_CASE("what is dark before a dark nothing has an outline all the same") {
     if (!edit::grabcut_available()) return;
-    const auto set = with_colours(ball_and_wall(), [](const Vec3& at, bool ball) { return ball && at[0] > -0.1 ? Vec3{1.5, -1.2, -1.2} : Vec3{-1.7, -1.7, -1.7}; });
+    const auto set = with_colours(ball_and_wall(), [](const Vec3& at, bool ball) {
+        return ball && at[0] > -0.1 ? Vec3{1.5, -1.2, -1.2} : Vec3{-1.7, -1.7, -1.7};
+    });
     std::vector<std::uint8_t> ball(set.size(), 0);
     std::fill_n(ball.begin(), BallRows, std::uint8_t{1});
     const auto rows = cut_out(set.filtered(ball), around_ball(), nullptr);
-    DOCTEST_CHECK(count(rows, 0, BallRows) == BallRows);   // no crumbs are left: they would hang on nothing
+    DOCTEST_CHECK(count(rows, 0, BallRows) == BallRows);  // no crumbs are left: they would hang on nothing
 }
 
-DOCTEST_TEST_CASE("a panel that looks like what is behind is the thing's, and what is seen through a hole is not") {
+DOCTEST_TEST_CASE(
+    "a panel that looks like what is behind is the thing's, and what is seen through a hole is not") {
     if (!edit::grabcut_available()) return;
-    const auto dark = [](const Vec3& at, bool ball) { return ball && !(std::hypot(at[0], at[1]) < 0.22 && at[2] < 0) ? Vec3{1.5, -1.2, -1.2} : Vec3{-1.2, -1.2, -1.2}; };
+    const auto dark = [](const Vec3& at, bool ball) {
+        return ball && !(std::hypot(at[0], at[1]) < 0.22 && at[2] < 0) ? Vec3{1.5, -1.2, -1.2}
+                                                                       : Vec3{-1.2, -1.2, -1.2};
+    };
     const auto rows = cut_out(with_colours(ball_and_wall(), dark), around_ball(), nullptr);
     DOCTEST_CHECK(count(rows, 0, BallRows) > BallRows * 95 / 100);
     DOCTEST_CHECK(count(rows, BallRows, rows.size()) < count(rows, 0, BallRows) / 50);
     auto data = ball_and_wall().to_data();
-    for (std::size_t row = 0; row < BallRows; ++row) {   // the ball as a ring
+    for (std::size_t row = 0; row < BallRows; ++row) {  // the ball as a ring
         float* at = &data.position[row * 3];
         const float radius = std::max(1e-6f, std::hypot(at[0], at[1]));
         const float to = (0.42f + 0.16f * (radius - 0.25f)) / radius;
@@ -203,15 +223,16 @@ DOCTEST_TEST_CASE("a panel that looks like what is behind is the thing's, and wh
 DOCTEST_TEST_CASE("holes are closed where it is possible, and not what the picture's rim opens") {
     Mask mask(7, 5), possible(7, 5);
     for (int y = 0; y < 5; ++y)
-        for (int x = 0; x < 7; ++x) mask.at(x, y) = x == 0 || x == 3 || x == 6 || y == 0 || (y == 4 && x < 4) ? 1 : 0;
+        for (int x = 0; x < 7; ++x)
+            mask.at(x, y) = x == 0 || x == 3 || x == 6 || y == 0 || (y == 4 && x < 4) ? 1 : 0;
     std::fill(possible.data.begin(), possible.data.end(), std::uint8_t{1});
     possible.at(1, 2) = 0;
     auto closed = mask;
     close_holes(closed, possible);
     DOCTEST_CHECK(closed.at(1, 1) == 1);
     DOCTEST_CHECK(closed.at(2, 3) == 1);
-    DOCTEST_CHECK(closed.at(1, 2) == 0);   // something else is seen there
-    DOCTEST_CHECK(closed.at(5, 2) == 0);   // open below
+    DOCTEST_CHECK(closed.at(1, 2) == 0);  // something else is seen there
+    DOCTEST_CHECK(closed.at(5, 2) == 0);  // open below
     DOCTEST_CHECK(closed.count() == mask.count() + 5);
 }
 
@@ -235,10 +256,13 @@ DOCTEST_TEST_CASE("cutting out stops when it is told to") {
     source.request_stop();
     JobControl control;
     control.stop = source.get_token();
-    DOCTEST_CHECK_THROWS_WITH_AS(cut_out(ball_and_wall(), around_ball(), nullptr, control), doctest::Contains("stopped"), Error);
+    DOCTEST_CHECK_THROWS_WITH_AS(cut_out(ball_and_wall(), around_ball(), nullptr, control),
+                                 doctest::Contains("stopped"), Error);
 }
 
-DOCTEST_TEST_CASE("a box in words is the one in the picture that the render command makes, and anything else is said to be none") {
+DOCTEST_TEST_CASE(
+    "a box in words is the one in the picture that the render command makes, and anything else is said to be "
+    "none") {
     Scene scene;
     scene.gaussians = ball_and_wall();
     const auto plain = cut_out_request("0.25,0.1,0.75,0.9", scene, "auto");
@@ -252,7 +276,8 @@ DOCTEST_TEST_CASE("a box in words is the one in the picture that the render comm
     other.azimuth = 180, other.elevation = 20, other.zoom = 2;
     const auto turned = cut_out_request("0.25,0.1,0.75,0.9,180,20,2", scene, "auto");
     DOCTEST_CHECK(length(turned.camera.centre() - choose_camera(scene, {}, other).centre()) == 0);
-    for (const char* wrong : {"", "1", "a,b,c,d", "0.1,0.2,0.3", "0.1,0.2,0.3,0.4,", "0.1,0.2,0.3,0.4,5", "nan,0,1,1", "0,0,1,inf", "0.5,0,0.4,1", "-0.1,0,1,1", "0,0,1,1.1",
+    for (const char* wrong : {"", "1", "a,b,c,d", "0.1,0.2,0.3", "0.1,0.2,0.3,0.4,", "0.1,0.2,0.3,0.4,5",
+                              "nan,0,1,1", "0,0,1,inf", "0.5,0,0.4,1", "-0.1,0,1,1", "0,0,1,1.1",
                               "0,0,1,1,0,95,1", "0,0,1,1,0,0,0", "0 0 1 1"})
         DOCTEST_CHECK_THROWS_AS(cut_out_request(wrong, scene, "auto"), Error);
 }

@@ -33,9 +33,10 @@ EditRecipe bear_recipe(bool learns, std::uint64_t seed = 0) {
     return recipe;
 }
 
-std::unique_ptr<EditJob> job_on(const std::shared_ptr<neural::TextToImage>& model, const Scene& scene, bool learns,
-                                std::uint64_t seed = 0) {
-    auto job = std::make_unique<EditJob>(bear_recipe(learns, seed), EditJobInput{scene, {}, model}, JobControl{});
+std::unique_ptr<EditJob> job_on(const std::shared_ptr<neural::TextToImage>& model, const Scene& scene,
+                                bool learns, std::uint64_t seed = 0) {
+    auto job =
+        std::make_unique<EditJob>(bear_recipe(learns, seed), EditJobInput{scene, {}, model}, JobControl{});
     if (learns) job->tune();
     return job;
 }
@@ -62,20 +63,23 @@ DOCTEST_TEST_CASE("edit job: a scene that one job learned is unknown to the next
     const auto second = picture_of(other->model());
     DOCTEST_CHECK(second != first);
     DOCTEST_CHECK(picture_of(learned->model()) == first);
-    const auto given = [&](bool learns) {   // what `learned` learned
-        return EditJob(bear_recipe(learns), EditJobInput{scene, {}, model, {}, {}, learned->tuned()}, JobControl{});
+    const auto given = [&](bool learns) {  // what `learned` learned
+        return EditJob(bear_recipe(learns), EditJobInput{scene, {}, model, {}, {}, learned->tuned()},
+                       JobControl{});
     };
     auto heir = given(true), other_way = given(false);
     DOCTEST_CHECK(heir.tuning().has_value());
     DOCTEST_CHECK(picture_of(heir.model()) == first);
     DOCTEST_CHECK(!other_way.tuning().has_value());
     DOCTEST_CHECK(picture_of(other_way.model()) == untouched);
-    learned.reset();   // the end of one tuning takes nothing from another
+    learned.reset();  // the end of one tuning takes nothing from another
     DOCTEST_CHECK(picture_of(other->model()) == second);
     DOCTEST_CHECK(picture_of(plain->model()) == untouched);
 }
 
-DOCTEST_TEST_CASE("edit job: the word that is new is read off the scene, which is looked at from where the model knows it") {
+DOCTEST_TEST_CASE(
+    "edit job: the word that is new is read off the scene, which is looked at from where the model knows "
+    "it") {
     const auto model = load_recipe_model({});
     synth::SceneSpec spec;
     spec.object = "bear";
@@ -84,7 +88,8 @@ DOCTEST_TEST_CASE("edit job: the word that is new is read off the scene, which i
     spec.ground = "snow";
     spec.seed = 5;
     const auto scene = synth::generate(spec);
-    const auto read = [&](const char* source, const char* sentence, const std::vector<std::string>& said = {}) {
+    const auto read = [&](const char* source, const char* sentence,
+                          const std::vector<std::string>& said = {}) {
         EditRecipe recipe;
         recipe.request.source = source;
         recipe.request.prompt = sentence;
@@ -94,7 +99,8 @@ DOCTEST_TEST_CASE("edit job: the word that is new is read off the scene, which i
         job.locate();
         DOCTEST_CHECK(job.target_read());
         DOCTEST_CHECK(job.found());
-        DOCTEST_CHECK(length(job.views()[0].camera.centre()) < 0.6 * fitted);   // most of the fitted picture is ground
+        DOCTEST_CHECK(length(job.views()[0].camera.centre()) <
+                      0.6 * fitted);  // most of the fitted picture is ground
         return job.recipe().request.target;
     };
     DOCTEST_CHECK(read("bear", "a golden bear wearing a hat on the snow") == "golden");
@@ -105,8 +111,11 @@ DOCTEST_TEST_CASE("edit job: the word that is new is read off the scene, which i
     DOCTEST_CHECK(read("bear", "a golden shiny bear", {"a", "shiny", "red", "bear"}) == "golden");
 }
 
-DOCTEST_TEST_CASE("edit job: what takes the place of a thing, or is worn, is drawn from where the starter learned to draw things") {
-    constexpr double Near = 0.09;   // of the figure: what is nearer to the aim than a twentieth of the distance is not framed anew
+DOCTEST_TEST_CASE(
+    "edit job: what takes the place of a thing, or is worn, is drawn from where the starter learned to draw "
+    "things") {
+    constexpr double Near =
+        0.09;  // of the figure: what is nearer to the aim than a twentieth of the distance is not framed anew
     struct Case {
         std::string object, prompt;
         double height;
@@ -115,7 +124,8 @@ DOCTEST_TEST_CASE("edit job: what takes the place of a thing, or is worn, is dra
     const auto model = load_recipe_model({});
     for (const auto& [object, prompt, height, mode] :
          {Case{"tree", "a red bear on the snow", 0.98, edit::EditMode::Replace},
-          Case{"car", "a red bear on the snow", 0.97, edit::EditMode::Replace},   // low, but as wide as a figure is that high
+          Case{"car", "a red bear on the snow", 0.97,
+               edit::EditMode::Replace},  // low, but as wide as a figure is that high
           Case{"dog", "a blue dog wearing sunglasses on the snow", 0.98, edit::EditMode::Add}}) {
         DOCTEST_CAPTURE(object);
         synth::SceneSpec spec;
@@ -133,18 +143,21 @@ DOCTEST_TEST_CASE("edit job: what takes the place of a thing, or is worn, is dra
         DOCTEST_REQUIRE(job.found());
         DOCTEST_REQUIRE(job.located().mode == mode);
         for (const auto& view : job.views()) {
-            // synth::scene_camera() aims at 0.59 of a figure's height and sees 0.87 of it to either side of there.
+            // synth::scene_camera() aims at 0.59 of a figure's height and sees 0.87 of it to either side of
+            // there.
             const Vec3 aim = view.camera.to_camera({0, -0.59 * height, 0});
             DOCTEST_CHECK(std::abs(aim.x) < Near * height);
             DOCTEST_CHECK(std::abs(aim.y) < Near * height);
-            DOCTEST_CHECK(0.5 * view.camera.width / view.camera.fx * aim.z == doctest::Approx(0.87 * height).epsilon(2 * Near));
+            DOCTEST_CHECK(0.5 * view.camera.width / view.camera.fx * aim.z ==
+                          doctest::Approx(0.87 * height).epsilon(2 * Near));
         }
     }
 }
 
-DOCTEST_TEST_CASE("edit job: what reaches beyond the pictures of the thing that wears it is looked for from farther off") {
+DOCTEST_TEST_CASE(
+    "edit job: what reaches beyond the pictures of the thing that wears it is looked for from farther off") {
     synth::SceneSpec spec;
-    spec.object = "vase";   // its neck is of another colour: the label ends below it
+    spec.object = "vase";  // its neck is of another colour: the label ends below it
     spec.material = "blue";
     spec.ground = "snow";
     spec.seed = 5;
@@ -160,12 +173,13 @@ DOCTEST_TEST_CASE("edit job: what reaches beyond the pictures of the thing that 
     for (const auto& view : job.located().views) {
         int rim = 0;
         for (int x = 0; x < view.mask.width; ++x) rim += view.mask.at(x, 0) != 0 ? 1 : 0;
-        cut += rim * 7 >= view.mask.width ? 1 : 0;   // a seventh of the picture's top
+        cut += rim * 7 >= view.mask.width ? 1 : 0;  // a seventh of the picture's top
     }
-    DOCTEST_CHECK(cut < 3);   // of 6
+    DOCTEST_CHECK(cut < 3);  // of 6
 }
 
-DOCTEST_TEST_CASE("edit job: what is worn is found from as far as its wearer is known, and what wears it is no news") {
+DOCTEST_TEST_CASE(
+    "edit job: what is worn is found from as far as its wearer is known, and what wears it is no news") {
     synth::SceneSpec spec;
     spec.object = "bear";
     spec.material = "red";
@@ -174,7 +188,8 @@ DOCTEST_TEST_CASE("edit job: what is worn is found from as far as its wearer is 
     spec.seed = 7;
     const auto scene = synth::generate(spec);
     EditRecipe recipe;
-    recipe.request.source = "hat";   // fills the pictures where it is framed alone: there the network looks for one above it
+    recipe.request.source =
+        "hat";  // fills the pictures where it is framed alone: there the network looks for one above it
     recipe.request.prompt = "a bear wearing a green hat on the grass";
     EditJob job(recipe, EditJobInput{scene.scene, {}, load_recipe_model({})}, JobControl{});
     job.locate();
@@ -196,10 +211,12 @@ DOCTEST_TEST_CASE("edit job: what is worn is found from as far as its wearer is 
     DOCTEST_REQUIRE(other.found());
     DOCTEST_CHECK(other.located().mode == edit::EditMode::Replace);
     DOCTEST_CHECK(other.recipe().request.target == "crown");
-    DOCTEST_CHECK(other.located().confidence.value >= 0);   // it was looked for
+    DOCTEST_CHECK(other.located().confidence.value >= 0);  // it was looked for
 }
 
-DOCTEST_TEST_CASE("edit job: a word finds all of a thing that was cut out of its surroundings, and shows the model a ground below it") {
+DOCTEST_TEST_CASE(
+    "edit job: a word finds all of a thing that was cut out of its surroundings, and shows the model a "
+    "ground below it") {
     const auto model = load_recipe_model({});
     for (const std::string object : {"dog", "mushroom"}) {
         synth::SceneSpec spec;
@@ -220,7 +237,7 @@ DOCTEST_TEST_CASE("edit job: a word finds all of a thing that was cut out of its
         DOCTEST_REQUIRE(job->found());
         const auto& bits = *job->located().label.bits;
         DOCTEST_CHECK(std::count(bits.begin(), bits.end(), std::uint8_t{1}) * 10 >= std::ssize(bits) * 8);
-        DOCTEST_CHECK(job->located().confidence.share < 0.7);   // the ground is seen, too
+        DOCTEST_CHECK(job->located().confidence.share < 0.7);  // the ground is seen, too
         // Least blue of a corner: the sky's, or that of the background or of the thing from near by.
         const auto sky = [](const EditJob& of) {
             float least = 1;
@@ -239,14 +256,16 @@ DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it op
     EditRecipe recipe = bear_recipe(false);
     recipe.request.views = 8;
     recipe.request = edit::validated(recipe.request);
-    Workplace workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}), recipe.job);
+    Workplace workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
+                        recipe.job);
     const auto found = [&](const std::string& front) {
         recipe.job.front = front;
         return locate(workplace, recipe, choose_views(workplace.scene(), recipe, {}), {}, {}).views;
     };
     const Views read = found("");
     DOCTEST_REQUIRE(read.front_read);
-    DOCTEST_CHECK(std::abs(std::remainder(*read.front_read, 360 * Degree)) < 45 * Degree);   // the bear looks at the first view
+    DOCTEST_CHECK(std::abs(std::remainder(*read.front_read, 360 * Degree)) <
+                  45 * Degree);  // the bear looks at the first view
     DOCTEST_CHECK(read.words.size() == read.views.size());
     const Views said = found("90");
     DOCTEST_CHECK(!said.front_read);
@@ -255,7 +274,9 @@ DOCTEST_TEST_CASE("the front is read off the scene where the recipe leaves it op
     DOCTEST_CHECK(found("none").words.empty());
 }
 
-DOCTEST_TEST_CASE("the side that the artist looks at is the front of what is searched for, where the pictures are not sure of one") {
+DOCTEST_TEST_CASE(
+    "the side that the artist looks at is the front of what is searched for, where the pictures are not sure "
+    "of one") {
     const auto model = load_recipe_model({});
     const auto front_of = [&](const std::string& object, const std::string& looked_from) {
         synth::SceneSpec spec;
@@ -272,15 +293,17 @@ DOCTEST_TEST_CASE("the side that the artist looks at is the front of what is sea
         job.locate();
         DOCTEST_CHECK(job.found());
         DOCTEST_REQUIRE(job.front_read());
-        DOCTEST_CHECK(job.film_front() == *job.front_read());   // films and thumbnails begin there
+        DOCTEST_CHECK(job.film_front() == *job.front_read());  // films and thumbnails begin there
         return *job.front_read() / Degree;
     };
-    DOCTEST_CHECK(front_of("mushroom", "120") == doctest::Approx(120));   // round, and alike from all sides
+    DOCTEST_CHECK(front_of("mushroom", "120") == doctest::Approx(120));  // round, and alike from all sides
     DOCTEST_CHECK(std::abs(front_of("mushroom", "") - 120) > 30);
     DOCTEST_CHECK(std::abs(front_of("house", "120")) < 45);
 }
 
-DOCTEST_TEST_CASE("what is worn stays what it was found to be with its wearer around it, though from near by the model takes it for the wearer") {
+DOCTEST_TEST_CASE(
+    "what is worn stays what it was found to be with its wearer around it, though from near by the model "
+    "takes it for the wearer") {
     const auto model = load_recipe_model({});
     for (const std::uint64_t seed : {7, 8}) {
         synth::SceneSpec spec;
@@ -298,7 +321,8 @@ DOCTEST_TEST_CASE("what is worn stays what it was found to be with its wearer ar
         DOCTEST_REQUIRE(job.found());
         double both = 0, either = 0;
         for (std::size_t row = 0; row < made.parts.size(); ++row) {
-            const bool hat = made.parts[row] == synth::Part::Accessory, labelled = (*job.located().label.bits)[row] != 0;
+            const bool hat = made.parts[row] == synth::Part::Accessory,
+                       labelled = (*job.located().label.bits)[row] != 0;
             both += hat && labelled ? 1 : 0;
             either += hat || labelled ? 1 : 0;
         }
@@ -306,8 +330,9 @@ DOCTEST_TEST_CASE("what is worn stays what it was found to be with its wearer ar
     }
 }
 
-DOCTEST_TEST_CASE("what takes the place of something worn is drawn on its wearer, from where that is seen as a figure") {
-    constexpr double Near = 0.09;   // as for things that are framed themselves
+DOCTEST_TEST_CASE(
+    "what takes the place of something worn is drawn on its wearer, from where that is seen as a figure") {
+    constexpr double Near = 0.09;  // as for things that are framed themselves
     const auto model = load_recipe_model({});
     synth::SceneSpec spec;
     spec.object = "bear";
@@ -320,7 +345,8 @@ DOCTEST_TEST_CASE("what takes the place of something worn is drawn on its wearer
         double top = 0;
         for (std::size_t row = 0; row < made.parts.size(); ++row) {
             hat.push_back(made.parts[row] == synth::Part::Accessory ? 1 : 0);
-            if (made.parts[row] == synth::Part::Object) top = std::max(top, -double{made.scene.gaussians.position()[row * 3 + 1]});
+            if (made.parts[row] == synth::Part::Object)
+                top = std::max(top, -double{made.scene.gaussians.position()[row * 3 + 1]});
         }
         EditRecipe recipe;
         recipe.request.source = "hat";
@@ -334,7 +360,8 @@ DOCTEST_TEST_CASE("what takes the place of something worn is drawn on its wearer
         for (const auto& view : job.views()) {
             const Vec3 aim = view.camera.to_camera({0, -0.59 * top, 0});
             DOCTEST_CHECK(std::abs(aim.y) < Near * top);
-            DOCTEST_CHECK(0.5 * view.camera.width / view.camera.fx * aim.z == doctest::Approx(0.87 * top).epsilon(2 * Near));
+            DOCTEST_CHECK(0.5 * view.camera.width / view.camera.fx * aim.z ==
+                          doctest::Approx(0.87 * top).epsilon(2 * Near));
         }
     }
 }
@@ -351,7 +378,7 @@ DOCTEST_TEST_CASE("what is worn elsewhere than what it takes the place of goes t
     recipe.request.prompt = "a blue bear wearing a yellow scarf on the grass";
     recipe.job.use_label = true;
     std::vector<std::uint8_t> hat;
-    double brim = 0;   // height of the hat's lowest splat
+    double brim = 0;  // height of the hat's lowest splat
     for (std::size_t row = 0; row < made.parts.size(); ++row) {
         hat.push_back(made.parts[row] == synth::Part::Accessory ? 1 : 0);
         const double height = -made.scene.gaussians.position()[row * 3 + 1];
@@ -373,7 +400,9 @@ DOCTEST_TEST_CASE("what is worn elsewhere than what it takes the place of goes t
     DOCTEST_CHECK(below > 0.95 * seen);
 }
 
-DOCTEST_TEST_CASE("a label that is not what the words find is looked at itself; one that is a part of it corrects what they find") {
+DOCTEST_TEST_CASE(
+    "a label that is not what the words find is looked at itself; one that is a part of it corrects what "
+    "they find") {
     const auto model = load_recipe_model({});
     synth::SceneSpec spec;
     spec.object = "bear";
@@ -394,7 +423,7 @@ DOCTEST_TEST_CASE("a label that is not what the words find is looked at itself; 
         DOCTEST_REQUIRE(job.found());
         return *job.located().label.bits == label;
     };
-    DOCTEST_CHECK(locate_with(synth::Part::Accessory, 1));   // the words find the bear without its hat
+    DOCTEST_CHECK(locate_with(synth::Part::Accessory, 1));  // the words find the bear without its hat
     DOCTEST_CHECK_FALSE(locate_with(synth::Part::Object, 0.5));
 }
 
@@ -405,12 +434,13 @@ DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and 
     recipe.request.views = 6;
     recipe.request.iterations = 3;
     recipe.request = edit::validated(recipe.request);
-    Workplace workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}), recipe.job);
+    Workplace workplace(load_scene(assets_path() / "scenes/bear/scene.ply"), load_recipe_model({}),
+                        recipe.job);
     const Views views = choose_views(workplace.scene(), recipe, {});
     DOCTEST_CHECK(choose_views(workplace.scene(), recipe, {}).key == views.key);
     EditRecipe turned = recipe;
     turned.job.front = "90";
-    DOCTEST_CHECK(choose_views(workplace.scene(), turned, {}).key != views.key);   // the views have words now
+    DOCTEST_CHECK(choose_views(workplace.scene(), turned, {}).key != views.key);  // the views have words now
     DOCTEST_CHECK(views_on(nearer(views.orbit, 0.7), recipe).key != views.key);
 
     const Located located = locate(workplace, recipe, views, {}, {});
@@ -420,10 +450,10 @@ DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and 
     EditRecipe stricter = located.recipe;
     stricter.request.attention_threshold = workplace.stated_threshold() + 0.2;
     const Located again = locate_again(workplace, located, stricter, {});
-    DOCTEST_CHECK(workplace.questions() == asked);   // no network is asked for a threshold
+    DOCTEST_CHECK(workplace.questions() == asked);  // no network is asked for a threshold
     DOCTEST_CHECK(again.key != located.key);
     DOCTEST_CHECK(*again.result.label.bits != bits);
-    DOCTEST_CHECK(*located.result.label.bits == bits);   // a value stays what it is
+    DOCTEST_CHECK(*located.result.label.bits == bits);  // a value stays what it is
     DOCTEST_CHECK(locate_again(workplace, again, located.recipe, {}).key == located.key);
     DOCTEST_CHECK(with_label(located, std::vector<std::uint8_t>(bits.size(), 1)).key != located.key);
 
@@ -434,7 +464,8 @@ DOCTEST_TEST_CASE("stages: each is a value that names what it follows from, and 
     slower.request.rate_colour *= 0.5;
     const Edited other = edit_scene(workplace, located, plan, slower, {}, {});
     DOCTEST_CHECK(other.key != edited.key);
-    DOCTEST_CHECK(!std::equal(other.result.set.sh().begin(), other.result.set.sh().end(), edited.result.set.sh().begin()));
+    DOCTEST_CHECK(!std::equal(other.result.set.sh().begin(), other.result.set.sh().end(),
+                              edited.result.set.sh().begin()));
 }
 #endif
 

@@ -63,10 +63,10 @@ DOCTEST_TEST_CASE("a search that moves in begins with empty places") {
     ArrivingViews arriving;
     std::vector<pipeline::SeenView> views;
     for (std::size_t v = 0; v < 3; ++v) arriving.add(view_at(static_cast<double>(v)), v, 3, attended(0.1f));
-    arriving.add(view_at(50), 0, 3, attended(0.9f));   // as many views, from elsewhere
+    arriving.add(view_at(50), 0, 3, attended(0.9f));  // as many views, from elsewhere
     DOCTEST_REQUIRE(arriving.take(views));
     DOCTEST_CHECK(here(views) == 1);
-    arriving.add(view_at(50), 0, 5, attended(0.9f));   // from there, but more
+    arriving.add(view_at(50), 0, 5, attended(0.9f));  // from there, but more
     DOCTEST_REQUIRE(arriving.take(views));
     DOCTEST_CHECK(views.size() == 5);
     DOCTEST_CHECK(here(views) == 1);
@@ -78,13 +78,15 @@ DOCTEST_TEST_CASE("several threads may tell of views at once") {
     std::vector<std::thread> threads;
     for (std::size_t t = 0; t < 4; ++t)
         threads.emplace_back([&arriving, t] {
-            for (std::size_t v = t; v < count; v += 4) arriving.add(view_at(static_cast<double>(v)), v, count, attended(0.5f));
+            for (std::size_t v = t; v < count; v += 4)
+                arriving.add(view_at(static_cast<double>(v)), v, count, attended(0.5f));
         });
     for (auto& thread : threads) thread.join();
     std::vector<pipeline::SeenView> views;
     DOCTEST_REQUIRE(arriving.take(views));
     DOCTEST_CHECK(here(views) == static_cast<std::ptrdiff_t>(count));
-    for (std::size_t v = 0; v < count; ++v) DOCTEST_CHECK(views[v].camera.translation.x == static_cast<double>(v));
+    for (std::size_t v = 0; v < count; ++v)
+        DOCTEST_CHECK(views[v].camera.translation.x == static_cast<double>(v));
 }
 
 }  // namespace evidence_test

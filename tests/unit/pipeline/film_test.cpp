@@ -16,8 +16,10 @@ using namespace gse;
 
 namespace {
 
-std::string key_text(const std::string& time, const std::string& more = R"(, "easing": 0)", const std::string& focal = "36") {
-    return R"({"time": )" + time + R"(, "position": [)" + time + R"(, 0, 0], "rotation": [1, 0, 0, 0], "focal_length_mm": )" + focal + more + "}";
+std::string key_text(const std::string& time, const std::string& more = R"(, "easing": 0)",
+                     const std::string& focal = "36") {
+    return R"({"time": )" + time + R"(, "position": [)" + time +
+           R"(, 0, 0], "rotation": [1, 0, 0, 0], "focal_length_mm": )" + focal + more + "}";
 }
 
 std::string path_text(const std::string& first, const std::string& second) {
@@ -59,25 +61,31 @@ DOCTEST_TEST_CASE("a path whose times ask for billions of frames is one sentence
             DOCTEST_CHECK(error.message().find("a film has 1000000 at most") != std::string::npos);
         }
     }
-    DOCTEST_CHECK(pipeline::path_cameras(file.load(path_text(key_text("0"), key_text("2"))), 10, 64, 48).size() == 21);
+    DOCTEST_CHECK(
+        pipeline::path_cameras(file.load(path_text(key_text("0"), key_text("2"))), 10, 64, 48).size() == 21);
 }
 
 DOCTEST_TEST_CASE("times that do not increase and numbers that are none are refused") {
     const PathFile file;
     for (const auto& [first, second] : {std::pair{"0", "0"}, {"1", "0"}, {"-1", "-1.5"}})
-        DOCTEST_CHECK(file.refused(path_text(key_text(first), key_text(second))) == "the cameras of this path are not in the order of time");
+        DOCTEST_CHECK(file.refused(path_text(key_text(first), key_text(second))) ==
+                      "the cameras of this path are not in the order of time");
     for (const char* focal : {"0", "-5", "1.5e308"})
-        DOCTEST_CHECK(file.refused(path_text(key_text("0"), key_text("1", "", focal))) == "a camera of this path is not valid");
-    const auto huge = R"({"time": 2, "position": [1e308, 1e308, 0], "rotation": [1, 0, 0, 0], "focal_length_mm": 36})";
+        DOCTEST_CHECK(file.refused(path_text(key_text("0"), key_text("1", "", focal))) ==
+                      "a camera of this path is not valid");
+    const auto huge =
+        R"({"time": 2, "position": [1e308, 1e308, 0], "rotation": [1, 0, 0, 0], "focal_length_mm": 36})";
     DOCTEST_CHECK(file.refused(path_text(key_text("0"), huge)) == "a camera of this path is not valid");
-    const auto turned = R"({"time": 2, "position": [0, 0, 0], "rotation": [1e200, 0, 0, 1e200], "focal_length_mm": 36})";
+    const auto turned =
+        R"({"time": 2, "position": [0, 0, 0], "rotation": [1e200, 0, 0, 1e200], "focal_length_mm": 36})";
     DOCTEST_CHECK(file.refused(path_text(key_text("0"), turned)) == "a camera of this path is not valid");
 }
 
 DOCTEST_TEST_CASE("easing is walked as the file says, kept, and refused where it is unknown") {
     const PathFile file;
-    const auto middle = [&](const std::string& easing) {   // a quarter of the way from 0 to 1 in time
-        const auto cameras = pipeline::path_cameras(file.load(path_text(key_text("0", easing), key_text("1"))), 4, 64, 48);
+    const auto middle = [&](const std::string& easing) {  // a quarter of the way from 0 to 1 in time
+        const auto cameras =
+            pipeline::path_cameras(file.load(path_text(key_text("0", easing), key_text("1"))), 4, 64, 48);
         return cameras.at(1).centre().x;
     };
     const double linear = middle("");
@@ -87,7 +95,9 @@ DOCTEST_TEST_CASE("easing is walked as the file says, kept, and refused where it
     DOCTEST_CHECK(middle(R"(, "easing": 2)") > linear);
     DOCTEST_CHECK(middle(R"(, "easing": 3)") < linear);
     for (const char* unknown : {R"(, "easing": 4)", R"(, "easing": "bounce")", R"(, "easing": [])"})
-        DOCTEST_CHECK(file.refused(path_text(key_text("0", unknown), key_text("1"))).find("0 to 3 are known") != std::string::npos);
+        DOCTEST_CHECK(
+            file.refused(path_text(key_text("0", unknown), key_text("1"))).find("0 to 3 are known") !=
+            std::string::npos);
     const auto keys = file.load(path_text(key_text("0", R"(, "easing": 2)"), key_text("1")));
     const auto again = file.scratch.path() / "again.json";
     pipeline::save_camera_path(again, keys);
@@ -116,7 +126,8 @@ Scene pole(const std::vector<float>& heights) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("what stands tall is whole in a turn around it and in a picture, also on a foot of few splats") {
+DOCTEST_TEST_CASE(
+    "what stands tall is whole in a turn around it and in a picture, also on a foot of few splats") {
     std::vector<float> even, footed;
     for (int row = 0; row < 200; ++row) even.push_back(static_cast<float>(row) / 20);
     for (int row = 0; row < 190; ++row) footed.push_back(static_cast<float>(row) / 95);
@@ -136,21 +147,25 @@ DOCTEST_TEST_CASE("what stands tall is whole in a turn around it and in a pictur
         const Scene scene = pole(heights);
         render.height = 90;
         int cut = 0;
-        for (const auto& camera : pipeline::turn_cameras(pipeline::scene_orbit(scene, render), {}, 0, render.width, render.height))
+        for (const auto& camera :
+             pipeline::turn_cameras(pipeline::scene_orbit(scene, render), {}, 0, render.width, render.height))
             cut += cut_off(heights, camera);
         DOCTEST_CHECK(cut > 0);
-        for (const auto& camera : pipeline::turn_cameras(pipeline::whole_orbit(scene, render), {}, 0, render.width, render.height))
+        for (const auto& camera :
+             pipeline::turn_cameras(pipeline::whole_orbit(scene, render), {}, 0, render.width, render.height))
             DOCTEST_CHECK(cut_off(heights, camera) == 0);
         const Camera one = pipeline::choose_camera(scene, {}, render);
         DOCTEST_CHECK(cut_off(heights, one) == 0);
-        render.zoom = 2;   // half as far from the same middle
+        render.zoom = 2;  // half as far from the same middle
         const Vec3 middle = pipeline::whole_orbit(scene, render).centre;
-        DOCTEST_CHECK(length(pipeline::choose_camera(scene, {}, render).centre() - middle) == doctest::Approx(0.5 * length(one.centre() - middle)));
+        DOCTEST_CHECK(length(pipeline::choose_camera(scene, {}, render).centre() - middle) ==
+                      doctest::Approx(0.5 * length(one.centre() - middle)));
         render.zoom = 1;
     }
-    render.height = 160;   // where it fits, nothing moves
+    render.height = 160;  // where it fits, nothing moves
     const Scene scene = pole(even);
-    DOCTEST_CHECK(pipeline::whole_orbit(scene, render).radius == doctest::Approx(pipeline::scene_orbit(scene, render).radius));
+    DOCTEST_CHECK(pipeline::whole_orbit(scene, render).radius ==
+                  doctest::Approx(pipeline::scene_orbit(scene, render).radius));
 }
 
 }  // namespace film_test

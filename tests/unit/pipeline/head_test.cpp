@@ -1,4 +1,5 @@
-// What of a thing wears something new: the head, where it is smaller than those of the figures that the model learned from.
+// What of a thing wears something new: the head, where it is smaller than those of the figures that the model
+// learned from.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -31,7 +32,8 @@ std::vector<std::uint8_t> thing_bits(const synth::SynthScene& made) {
 /// A person 1.8 high on a ground, arms out, with some haze above and around that is too faint to be one.
 test::BoxRows person() {
     test::BoxRows rows;
-    rows.box(-0.09, 0.09, 1.55, 1.8, -0.1, 0.1, 400, true).box(-0.05, 0.05, 1.45, 1.55, -0.05, 0.05, 100, true);
+    rows.box(-0.09, 0.09, 1.55, 1.8, -0.1, 0.1, 400, true)
+        .box(-0.05, 0.05, 1.45, 1.55, -0.05, 0.05, 100, true);
     rows.box(-0.5, 0.5, 1.2, 1.45, -0.12, 0.12, 900, true).box(-0.2, 0.2, 0, 1.2, -0.12, 0.12, 1500, true);
     rows.box(-3, 3, -0.01, 0.01, -3, 3, 3000, false);
     return rows;
@@ -73,36 +75,43 @@ DOCTEST_TEST_CASE("a person's hat goes to the head, a scarf to head and neck, wi
     const auto rows = person();
     const auto set = rows.set();
     const auto bust = edit::bust_of(set, rows.bits, Up, Front);
-    DOCTEST_CHECK(bust.head * 1.8 < 0.3);   // the head is 0.25 high
+    DOCTEST_CHECK(bust.head * 1.8 < 0.3);  // the head is 0.25 high
     const auto whole = edit::wearer_of(wearing("wings"), set, rows.bits, Up, Front, true);
     DOCTEST_CHECK(whole.bits == rows.bits);
     DOCTEST_CHECK(whole.standing.height == doctest::Approx(1.8).epsilon(0.05));
-    DOCTEST_CHECK(edit::wearer_of(wearing("hat"), set, rows.bits, Up, Front, false).bits == rows.bits);   // nothing is drawn into the views
+    DOCTEST_CHECK(edit::wearer_of(wearing("hat"), set, rows.bits, Up, Front, false).bits ==
+                  rows.bits);  // nothing is drawn into the views
     const auto hat = edit::wearer_of(wearing("red hat"), set, rows.bits, Up, Front, true);
     DOCTEST_CHECK(hat.bits == bust.bits);
     DOCTEST_CHECK(lowest(set, hat.bits) > 1.45);
-    DOCTEST_CHECK(hat.standing.height < 0.3);   // the shoulders below are no ground that it stands on
+    DOCTEST_CHECK(hat.standing.height < 0.3);  // the shoulders below are no ground that it stands on
     const auto scarf = edit::wearer_of(wearing("scarf"), set, rows.bits, Up, Front, true);
     DOCTEST_CHECK(lowest(set, scarf.bits) < 1.45);
     DOCTEST_CHECK(lowest(set, scarf.bits) > 1.2);
 }
 
-DOCTEST_TEST_CASE("rows of a label that are too faint to be seen are no part of the head, nor is the head made of them") {
+DOCTEST_TEST_CASE(
+    "rows of a label that are too faint to be seen are no part of the head, nor is the head made of them") {
     auto rows = person();
     const auto before = edit::bust_of(rows.set(), rows.bits, Up, Front);
     const auto seen = rows.bits.size();
     rows.box(-0.8, 0.8, 0, 2.4, -0.8, 0.8, 500, true);
     GaussianData data = rows.data;
-    for (std::size_t row = seen; row < rows.bits.size(); ++row) data.opacity_logit[row] = -4;   // opacity 0.018
+    for (std::size_t row = seen; row < rows.bits.size(); ++row)
+        data.opacity_logit[row] = -4;  // opacity 0.018
     const GaussianSet hazy(std::move(data));
     const auto after = edit::bust_of(hazy, rows.bits, Up, Front);
     DOCTEST_CHECK(after.head == before.head);
-    DOCTEST_CHECK(std::vector<std::uint8_t>(after.bits.begin(), after.bits.begin() + static_cast<std::ptrdiff_t>(seen)) == before.bits);
-    DOCTEST_CHECK(std::count(after.bits.begin() + static_cast<std::ptrdiff_t>(seen), after.bits.end(), 1) == 0);
+    DOCTEST_CHECK(std::vector<std::uint8_t>(after.bits.begin(),
+                                            after.bits.begin() + static_cast<std::ptrdiff_t>(seen)) ==
+                  before.bits);
+    DOCTEST_CHECK(std::count(after.bits.begin() + static_cast<std::ptrdiff_t>(seen), after.bits.end(), 1) ==
+                  0);
 }
 
 #ifdef GSE_NEURAL
-DOCTEST_TEST_CASE("a person's hat is drawn around the head, and the film shows the person from head to foot") {
+DOCTEST_TEST_CASE(
+    "a person's hat is drawn around the head, and the film shows the person from head to foot") {
     const auto rows = person();
     Scene scene;
     scene.gaussians = rows.set();
@@ -119,7 +128,7 @@ DOCTEST_TEST_CASE("a person's hat is drawn around the head, and the film shows t
     job.locate();
     DOCTEST_REQUIRE(job.found());
     DOCTEST_REQUIRE(job.located().mode == edit::EditMode::Add);
-    const Camera near = job.views().front().camera;   // a head of 0.25 in a picture of 1.74 times its height
+    const Camera near = job.views().front().camera;  // a head of 0.25 in a picture of 1.74 times its height
     DOCTEST_CHECK(near.width / near.fx * near.to_camera({0, -1.7, 0}).z < 1);
     job.run({});
     const Camera film = orbit_camera(job.film_orbit(), 0, 100, 100);
@@ -142,7 +151,7 @@ DOCTEST_TEST_CASE("only what is worn takes the place of something worn, and only
     DOCTEST_CHECK(edit::moves_worn_place(request, edit::EditMode::Replace));
     DOCTEST_CHECK_FALSE(edit::moves_worn_place(request, edit::EditMode::Modify));
     request.source = "ball";
-    DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Replace));   // a crown on the ground
+    DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Replace));  // a crown on the ground
     request.source = "hat";
     request.target = "ball";
     DOCTEST_CHECK_FALSE(edit::takes_worn_place(request, edit::EditMode::Replace));

@@ -21,9 +21,11 @@ namespace fs = std::filesystem;
 using HeaderJson = nlohmann::json;
 
 /// Tensors of these shapes, none of their numbers: only the header counts.
-void write_checkpoint(const fs::path& path, const std::vector<std::pair<std::string, std::vector<int>>>& tensors) {
+void write_checkpoint(const fs::path& path,
+                      const std::vector<std::pair<std::string, std::vector<int>>>& tensors) {
     HeaderJson header;
-    for (const auto& [name, shape] : tensors) header[name] = {{"dtype", "F16"}, {"shape", shape}, {"data_offsets", {0, 0}}};
+    for (const auto& [name, shape] : tensors)
+        header[name] = {{"dtype", "F16"}, {"shape", shape}, {"data_offsets", {0, 0}}};
     const std::string text = header.dump();
     std::string bytes;
     for (int i = 0; i < 8; ++i) bytes.push_back(static_cast<char>((text.size() >> (8 * i)) & 255));
@@ -36,14 +38,16 @@ std::vector<std::pair<std::string, std::vector<int>>> whole_model(int channels, 
 }
 
 FoundModel found_at(const std::vector<FoundModel>& models, const fs::path& path) {
-    const auto row = std::find_if(models.begin(), models.end(), [&](const auto& model) { return model.path == path.string(); });
+    const auto row = std::find_if(models.begin(), models.end(),
+                                  [&](const auto& model) { return model.path == path.string(); });
     DOCTEST_REQUIRE_MESSAGE(row != models.end(), path.string());
     return *row;
 }
 
 }  // namespace
 
-DOCTEST_TEST_CASE("model catalogue: checkpoints are told apart by their headers, and say why they cannot be used") {
+DOCTEST_TEST_CASE(
+    "model catalogue: checkpoints are told apart by their headers, and say why they cannot be used") {
     const test::ScratchFolder folder;
     const auto file = [&](const char* name) { return folder.path() / name; };
     write_checkpoint(file("one.safetensors"), whole_model(4, 768));
@@ -65,13 +69,16 @@ DOCTEST_TEST_CASE("model catalogue: checkpoints are told apart by their headers,
     struct Expected {
         const char* name;
         const char* structure;
-        const char* problem;   // part of it; "" = usable
+        const char* problem;  // part of it; "" = usable
     };
     for (const auto& [name, structure, problem] :
-         {Expected{"one.safetensors", "Stable Diffusion 1.x", ""}, Expected{"two.safetensors", "Stable Diffusion 2.x", ""},
+         {Expected{"one.safetensors", "Stable Diffusion 1.x", ""},
+          Expected{"two.safetensors", "Stable Diffusion 2.x", ""},
           Expected{"told.safetensors", "Stable Diffusion 1.x, InstructPix2Pix", ""},
-          Expected{"inpaint.safetensors", "Stable Diffusion 1.x inpainting", "inpainting models are not supported"},
-          Expected{"lora.safetensors", "LoRA", "no whole model"}, Expected{"xl.safetensors", "Stable Diffusion XL", "SDXL is not"},
+          Expected{"inpaint.safetensors", "Stable Diffusion 1.x inpainting",
+                   "inpainting models are not supported"},
+          Expected{"lora.safetensors", "LoRA", "no whole model"},
+          Expected{"xl.safetensors", "Stable Diffusion XL", "SDXL is not"},
           Expected{"noise.safetensors", "", "not a safetensors file"}, Expected{"old.ckpt", "", "pickled"},
           Expected{"gone", "", "not there any more"}}) {
         const FoundModel model = found_at(models, file(name));
@@ -81,7 +88,8 @@ DOCTEST_TEST_CASE("model catalogue: checkpoints are told apart by their headers,
         DOCTEST_CHECK(model.problem.find(wanted) != std::string::npos);
         DOCTEST_CHECK(model.problem.empty() == wanted.empty());
     }
-    DOCTEST_CHECK(std::none_of(models.begin(), models.end(), [](const auto& model) { return model.path.ends_with("readme.txt"); }));
+    DOCTEST_CHECK(std::none_of(models.begin(), models.end(),
+                               [](const auto& model) { return model.path.ends_with("readme.txt"); }));
 }
 
 DOCTEST_TEST_CASE("model catalogue: a folder names itself and the parts that it lacks") {

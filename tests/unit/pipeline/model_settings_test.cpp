@@ -2,8 +2,8 @@
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
-#include "engine/pipeline/model_settings.h"
 #include "engine/base/file.h"
+#include "engine/pipeline/model_settings.h"
 #include "tests/test_paths.h"
 
 namespace model_settings_test {
@@ -14,7 +14,8 @@ using namespace gse;
 using namespace gse::pipeline;
 
 neural::ModelProfile wide_profile() {
-    return {neural::ModelKind::Sd1, neural::BundleKind::Plain,
+    return {neural::ModelKind::Sd1,
+            neural::BundleKind::Plain,
             {{"request", "image_size", 512, "model"},
              {"request", "iterations", 4000, "model"},
              {"guidance", "guidance_scale", 7.5, "model"},
@@ -26,13 +27,15 @@ neural::ModelProfile wide_profile() {
 /// "value from source", or "" of a field that is not listed.
 std::string listed(const EditRecipe& recipe, const std::string& field) {
     for (const auto& entry : settings_from(recipe))
-        if (entry["field"] == field) return entry["value"].dump() + " from " + entry["source"].get<std::string>();
+        if (entry["field"] == field)
+            return entry["value"].dump() + " from " + entry["source"].get<std::string>();
     return {};
 }
 
 }  // namespace
 
-DOCTEST_TEST_CASE("model settings: a model's values replace the program's, and what the user set replaces both") {
+DOCTEST_TEST_CASE(
+    "model settings: a model's values replace the program's, and what the user set replaces both") {
     EditRecipe recipe;
     recipe.request.iterations = 30;
     recipe.guidance.clamp = 2;
@@ -51,7 +54,7 @@ DOCTEST_TEST_CASE("model settings: a model's values replace the program's, and w
     DOCTEST_CHECK(listed(recipe, "attention.steps") == "20 from file gseditpro.json");
     DOCTEST_CHECK(listed(recipe, "job.threads") == "8 from model");
     DOCTEST_CHECK(listed(recipe, "request.views").empty());
-    DOCTEST_CHECK(listed(recipe, "dreambooth.steps").empty());   // nothing is learned
+    DOCTEST_CHECK(listed(recipe, "dreambooth.steps").empty());  // nothing is learned
     recipe.use_dreambooth = true;
     DOCTEST_CHECK(listed(recipe, "dreambooth.steps") == "400 from file gseditpro.json");
 }
@@ -63,7 +66,7 @@ DOCTEST_TEST_CASE("model settings: a small model changes no recipe") {
     DOCTEST_CHECK(recipe_to_json(recipe) == before);
     DOCTEST_CHECK(settings_from(recipe).empty());
     DOCTEST_CHECK(!before.contains("attention"));
-    apply_profile(profile_of(recipe.job), recipe, {});   // the starter's
+    apply_profile(profile_of(recipe.job), recipe, {});  // the starter's
     DOCTEST_CHECK(recipe_to_json(recipe) == before);
 }
 
@@ -93,12 +96,14 @@ DOCTEST_TEST_CASE("model settings: with another model, only what nobody changed 
     DOCTEST_CHECK(request.prompt == "a red bear");
     EditRecipe chosen = wide;
     chosen.request = request;
-    DOCTEST_CHECK(changed_settings(chosen, wide) == std::set<std::string>{"request.iterations", "request.prompt"});
-    chosen.job.threads += 1;
-    chosen.job.front = "90";   // of the scene, no setting
-    chosen.guidance.guidance_scale += 1;
     DOCTEST_CHECK(changed_settings(chosen, wide) ==
-                  std::set<std::string>{"guidance.guidance_scale", "job.threads", "request.iterations", "request.prompt"});
+                  std::set<std::string>{"request.iterations", "request.prompt"});
+    chosen.job.threads += 1;
+    chosen.job.front = "90";  // of the scene, no setting
+    chosen.guidance.guidance_scale += 1;
+    DOCTEST_CHECK(changed_settings(chosen, wide) == std::set<std::string>{"guidance.guidance_scale",
+                                                                          "job.threads", "request.iterations",
+                                                                          "request.prompt"});
     move_defaults(request, wide.request, small.request);
     DOCTEST_CHECK(request.image_size == small.request.image_size);
     DOCTEST_CHECK(request.iterations == 30);

@@ -45,15 +45,18 @@ Scene small_scene() {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("the parameters of a picture: sentence, source, seed and model, then what is not as usual") {
+DOCTEST_TEST_CASE(
+    "the parameters of a picture: sentence, source, seed and model, then what is not as usual") {
     EditRecipe recipe = some_recipe();
-    DOCTEST_CHECK(parameters_text(recipe) == "a bear, wearing a \"top hat\"\nSource: bear, Seed: 42, Model: starter");
+    DOCTEST_CHECK(parameters_text(recipe) ==
+                  "a bear, wearing a \"top hat\"\nSource: bear, Seed: 42, Model: starter");
     recipe.request.views = 11;
     recipe.request.target = "hat, top";
     recipe.job.model = "/models/sd15.safetensors";
     recipe.job.lora = {"/loras/ink.safetensors:0.5"};
     const std::string text = parameters_text(recipe);
-    for (const char* part : {"Model: sd15.safetensors", ", views: 11", ", target: \"hat, top\"", "ink.safetensors:0.5"}) {
+    for (const char* part :
+         {"Model: sd15.safetensors", ", views: 11", ", target: \"hat, top\"", "ink.safetensors:0.5"}) {
         DOCTEST_CAPTURE(part);
         DOCTEST_CHECK(text.find(part) != std::string::npos);
     }
@@ -78,17 +81,20 @@ DOCTEST_TEST_CASE("a picture carries its parameters, and the report of it shows 
     DOCTEST_CHECK(shown.find("5 x 4") != std::string::npos);
     DOCTEST_CHECK(shown.find("wearing a \"top hat\"") != std::string::npos);
     DOCTEST_CHECK(shown.find("Seed: 42") != std::string::npos);
-    for (std::size_t begin = 0, end = 0; begin < shown.size(); begin = end + 1) {   // the recipe does not fill the screen
+    for (std::size_t begin = 0, end = 0; begin < shown.size();
+         begin = end + 1) {  // the recipe does not fill the screen
         end = std::min(shown.find('\n', begin), shown.size());
         DOCTEST_CHECK(end - begin < 300);
     }
     DOCTEST_CHECK(report.at("text").at("Recipe") == recipe_to_json(recipe).dump());
     DOCTEST_CHECK(recipe_to_json(read_recipe(path)) == recipe_to_json(recipe));
     write_png(scratch.path() / "plain.png", Image(5, 4, 3), {});
-    DOCTEST_CHECK_THROWS_WITH_AS(read_recipe(scratch.path() / "plain.png"), doctest::Contains("carries no recipe"), Error);
+    DOCTEST_CHECK_THROWS_WITH_AS(read_recipe(scratch.path() / "plain.png"),
+                                 doctest::Contains("carries no recipe"), Error);
 }
 
-DOCTEST_TEST_CASE("the report of a picture lets no text through that a terminal would obey, and refuses what is no PNG") {
+DOCTEST_TEST_CASE(
+    "the report of a picture lets no text through that a terminal would obey, and refuses what is no PNG") {
     ScratchFolder scratch;
     write_png(scratch.path() / "a.png", Image(1, 1, 3), {{"parameters", "red\x1b[31m\nline"}});
     const std::string shown = report_text(scene_report(scratch.path() / "a.png"));
@@ -98,9 +104,7 @@ DOCTEST_TEST_CASE("the report of a picture lets no text through that a terminal 
         bool refused = false;
         try {
             scene_report(scratch.path() / name);
-        } catch (const Error& error) {
-            refused = !error.message().empty();
-        }
+        } catch (const Error& error) { refused = !error.message().empty(); }
         DOCTEST_CHECK(refused);
     }
 }
@@ -112,9 +116,7 @@ DOCTEST_TEST_CASE("viewpoints come from a camera file, from beside a scene, or f
     bool refused = false;
     try {
         viewpoints_of(scene);
-    } catch (const Error& error) {
-        refused = error.code() == ErrorCode::NotFound;
-    }
+    } catch (const Error& error) { refused = error.code() == ErrorCode::NotFound; }
     DOCTEST_CHECK(refused);
     const auto orbit = viewpoints_of(scene, 7);
     DOCTEST_CHECK(orbit.size() == 7);

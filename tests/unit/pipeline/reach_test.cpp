@@ -35,13 +35,17 @@ edit::EditRequest about(const std::string& source, const std::string& target) {
 
 }  // namespace
 
-DOCTEST_TEST_CASE("a label made by hand drives the edit of its own word, and of one that the model cannot find") {
+DOCTEST_TEST_CASE(
+    "a label made by hand drives the edit of its own word, and of one that the model cannot find") {
     DOCTEST_CHECK(label_says(painted("hat"), about("hat", "golden"), Known, {}));
     DOCTEST_CHECK(label_says(painted("hat"), about("Hat", "golden"), Known, {}));
-    DOCTEST_CHECK_FALSE(label_says(painted("hat"), about("bear", "golden"), Known, {}));   // what an addition left
+    DOCTEST_CHECK_FALSE(
+        label_says(painted("hat"), about("bear", "golden"), Known, {}));  // what an addition left
     DOCTEST_CHECK(label_says(painted("label"), about("crane", "golden"), Known, {}));
-    DOCTEST_CHECK_FALSE(label_says(painted("label"), about("bear", "golden"), {}, {}));     // a model that takes any word
-    DOCTEST_CHECK_FALSE(label_says(empty_label("hat", 4), about("hat", "golden"), Known, {}));   // nothing in it
+    DOCTEST_CHECK_FALSE(
+        label_says(painted("label"), about("bear", "golden"), {}, {}));  // a model that takes any word
+    DOCTEST_CHECK_FALSE(
+        label_says(empty_label("hat", 4), about("hat", "golden"), Known, {}));  // nothing in it
     DOCTEST_CHECK(label_says(painted("label"), about("", "crane"), Known, {}));
     DOCTEST_CHECK_FALSE(label_says(painted("label"), about("", "golden"), Known, {}));
 }
@@ -63,12 +67,16 @@ DOCTEST_TEST_CASE("a label that was found belongs to its word under any name") {
 
 DOCTEST_TEST_CASE("the label of a thing that the model drew and cannot find says where it is") {
     using pipeline::stands_alone;
-    DOCTEST_CHECK(label_says(found("rabbit", "bear"), about("rabbit", "pink"), Known, {}));   // named after what came in the bear's place
+    DOCTEST_CHECK(label_says(found("rabbit", "bear"), about("rabbit", "pink"), Known,
+                             {}));  // named after what came in the bear's place
     DOCTEST_CHECK(stands_alone(found("rabbit", "bear"), about("rabbit", "pink"), Known));
     DOCTEST_CHECK(stands_alone(found("rabbit", "bear"), about("Rabbit", "pink"), Known));
-    DOCTEST_CHECK_FALSE(stands_alone(found("rabbit", "bear"), about("bear", "golden"), Known));   // that is looked for
-    DOCTEST_CHECK_FALSE(stands_alone(found("rabbit", "bear"), about("horse", "pink"), Known));    // of another thing
-    DOCTEST_CHECK_FALSE(stands_alone(found("rabbit", "bear"), about("rabbit", "pink"), {}));      // a model that takes any word
+    DOCTEST_CHECK_FALSE(
+        stands_alone(found("rabbit", "bear"), about("bear", "golden"), Known));  // that is looked for
+    DOCTEST_CHECK_FALSE(
+        stands_alone(found("rabbit", "bear"), about("horse", "pink"), Known));  // of another thing
+    DOCTEST_CHECK_FALSE(
+        stands_alone(found("rabbit", "bear"), about("rabbit", "pink"), {}));  // a model that takes any word
     DOCTEST_CHECK(stands_alone(painted("label"), about("bear", "golden"), Known));
 }
 

@@ -27,31 +27,31 @@ pipeline::EditRecipe plain() {
 /// Another value of the same type.
 void change(bool& value) { value = !value; }
 void change(std::string& value) { value += "x"; }
-template <class Number>
-void change(Number& value) {
-    value = value == 0 ? Number{1} : value / 2;
-}
+template <class Number> void change(Number& value) { value = value == 0 ? Number{1} : value / 2; }
 
-template <class Part>
-std::set<std::string> names() {
+template <class Part> std::set<std::string> names() {
     std::set<std::string> found;
     const Part part{};
-    Part::visit_fields(part, [&](const char* name, const auto&, const char*, const auto&...) { found.insert(name); });
+    Part::visit_fields(
+        part, [&](const char* name, const auto&, const char*, const auto&...) { found.insert(name); });
     return found;
 }
 
 }  // namespace
 
-DOCTEST_TEST_CASE("the words and the settings of the search decide what is found, those of the loop and the thresholds do not") {
+DOCTEST_TEST_CASE(
+    "the words and the settings of the search decide what is found, those of the loop and the thresholds do "
+    "not") {
     auto searched = names<edit::EditWords>();
     searched.merge(names<edit::SearchSettings>());
     const auto before = pipeline::search_key(plain());
     std::size_t checked = 0;
     for (const auto& name : names<edit::EditRequest>()) {
         auto recipe = plain();
-        edit::EditRequest::visit_fields(recipe.request, [&](const char* field, auto& value, const char*, const auto&...) {
-            if (field == name) change(value);
-        });
+        edit::EditRequest::visit_fields(recipe.request,
+                                        [&](const char* field, auto& value, const char*, const auto&...) {
+                                            if (field == name) change(value);
+                                        });
         DOCTEST_CAPTURE(name);
         DOCTEST_CHECK((pipeline::search_key(recipe) != before) == searched.contains(name));
         ++checked;
@@ -71,8 +71,8 @@ DOCTEST_TEST_CASE("every field of a request belongs to one part of it") {
 
 DOCTEST_TEST_CASE("another model, up axis, front or set of cameras looks again; the film's size does not") {
     const auto before = pipeline::search_key(plain());
-    for (const auto field : {&pipeline::JobParameters::model, &pipeline::JobParameters::up, &pipeline::JobParameters::front,
-                             &pipeline::JobParameters::cameras}) {
+    for (const auto field : {&pipeline::JobParameters::model, &pipeline::JobParameters::up,
+                             &pipeline::JobParameters::front, &pipeline::JobParameters::cameras}) {
         auto recipe = plain();
         recipe.job.*field = "other";
         DOCTEST_CHECK(pipeline::search_key(recipe) != before);
@@ -83,7 +83,7 @@ DOCTEST_TEST_CASE("another model, up axis, front or set of cameras looks again; 
     auto recipe = plain();
     recipe.job.rasterizer = "cuda";
     DOCTEST_CHECK(pipeline::search_key(recipe) != before);
-    recipe.job.rasterizer = "cpu";   // which "auto" is
+    recipe.job.rasterizer = "cpu";  // which "auto" is
     recipe.job.turntable_frames = 7;
     DOCTEST_CHECK(pipeline::search_key(recipe) == before);
     recipe.use_dreambooth = true;

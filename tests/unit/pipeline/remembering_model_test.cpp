@@ -1,4 +1,5 @@
-// Models that remember on the disk: the same answers bit by bit, without networks, for the same question only.
+// Models that remember on the disk: the same answers bit by bit, without networks, for the same question
+// only.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -34,8 +35,8 @@ constexpr std::uint64_t Room = std::uint64_t{256} << 20;
 /// How often a model was loaded and asked.
 struct Asked {
     int loads = 0, maps = 0, pictures = 0, sentences = 0, viewpoints = 0, drawn = 0;
-    bool broken = false;   // its maps hold values that are not finite
-    bool outlines = false; // its views tell outlines, not changes
+    bool broken = false;    // its maps hold values that are not finite
+    bool outlines = false;  // its views tell outlines, not changes
 };
 
 class FakeAttention final : public edit::AttentionSource {
@@ -46,7 +47,8 @@ public:
         std::vector<Image> maps;
         for (const auto& word : query.words)
             maps.emplace_back(query.image.width, query.image.height, 1,
-                              asked_.broken ? std::numeric_limits<float>::quiet_NaN() : 1.0f / static_cast<float>(word.size()));
+                              asked_.broken ? std::numeric_limits<float>::quiet_NaN()
+                                            : 1.0f / static_cast<float>(word.size()));
         return maps;
     }
     double threshold() const override { return 0.37; }
@@ -79,7 +81,8 @@ private:
 class FakeViews final : public edit::ViewGuidance {
 public:
     explicit FakeViews(Asked& asked) : asked_(asked) {}
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput&, const JobControl&) override {
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput&,
+                            const JobControl&) override {
         ++asked_.drawn;
         edit::RoundTargets targets;
         for (const auto& view : views) {
@@ -100,8 +103,12 @@ public:
     std::unique_ptr<edit::AttentionSource> attention(const neural::AttentionParameters&) const override {
         return std::make_unique<FakeAttention>(asked_);
     }
-    std::unique_ptr<edit::Guidance> guidance(const std::string&, const neural::SdsParameters&) const override { return nullptr; }
-    std::unique_ptr<edit::ViewGuidance> views(const std::string&, const neural::SdsParameters&) const override {
+    std::unique_ptr<edit::Guidance> guidance(const std::string&,
+                                             const neural::SdsParameters&) const override {
+        return nullptr;
+    }
+    std::unique_ptr<edit::ViewGuidance> views(const std::string&,
+                                              const neural::SdsParameters&) const override {
         return std::make_unique<FakeViews>(asked_);
     }
     bool knows_scene() const override { return true; }
@@ -112,9 +119,11 @@ public:
     neural::BundleKind kind() const override { return neural::BundleKind::Tcd; }
     Image sample(const neural::SampleRequest&) const override { return {}; }
     Image img2img(const Image& image, const neural::SampleRequest&) const override { return image; }
-    std::unique_ptr<edit::TextImageScore> text_image_score() const override { return std::make_unique<FakeScore>(asked_); }
-    neural::TunedModel tune(const neural::DreamBoothParameters&, std::span<const Image>, const std::string&, const std::string&,
-                            const JobControl&, AnswerMemory*) const override {
+    std::unique_ptr<edit::TextImageScore> text_image_score() const override {
+        return std::make_unique<FakeScore>(asked_);
+    }
+    neural::TunedModel tune(const neural::DreamBoothParameters&, std::span<const Image>, const std::string&,
+                            const std::string&, const JobControl&, AnswerMemory*) const override {
         return {};
     }
     bool save_tuning(const fs::path&, std::uint64_t) const override { return false; }
@@ -127,7 +136,8 @@ private:
 };
 
 /// As after a restart: nothing is left but the folder.
-std::shared_ptr<RememberingModel> fake(const fs::path& folder, Asked& asked, const std::string& identity = "a model") {
+std::shared_ptr<RememberingModel> fake(const fs::path& folder, Asked& asked,
+                                       const std::string& identity = "a model") {
     return std::make_shared<RememberingModel>(std::make_shared<DiskCache>(folder, Room), identity, [&asked] {
         ++asked.loads;
         return std::make_shared<FakeModel>(asked);
@@ -138,7 +148,8 @@ std::uint64_t passes(const neural::NetworkUse& use) { return use.unet + use.enco
 
 }  // namespace
 
-DOCTEST_TEST_CASE("remembering model: what it is and what it answered is known after a restart without loading it") {
+DOCTEST_TEST_CASE(
+    "remembering model: what it is and what it answered is known after a restart without loading it") {
     const test::ScratchFolder folder;
     Asked asked;
     const Image picture(8, 6, 3, 0.5f);
@@ -161,12 +172,14 @@ DOCTEST_TEST_CASE("remembering model: what it is and what it answered is known a
         DOCTEST_CHECK(model->known_words() == std::vector<std::string>{"bear", "caf\xc3\xa9"});
     };
     ask();
-    DOCTEST_CHECK((asked.loads == 1 && asked.maps == 1 && asked.pictures == 1 && asked.sentences == 1 && asked.viewpoints == 1));
+    DOCTEST_CHECK((asked.loads == 1 && asked.maps == 1 && asked.pictures == 1 && asked.sentences == 1 &&
+                   asked.viewpoints == 1));
     const auto first = maps;
     const auto first_seen = seen, first_told = told, first_viewpoint = viewpoint;
     const auto before = network_use();
     ask();
-    DOCTEST_CHECK((asked.loads == 1 && asked.maps == 1 && asked.pictures == 1 && asked.sentences == 1 && asked.viewpoints == 1));
+    DOCTEST_CHECK((asked.loads == 1 && asked.maps == 1 && asked.pictures == 1 && asked.sentences == 1 &&
+                   asked.viewpoints == 1));
     DOCTEST_CHECK((network_use() - before).cached == 3);
     DOCTEST_REQUIRE(maps.size() == 2);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -179,13 +192,15 @@ DOCTEST_TEST_CASE("remembering model: what it is and what it answered is known a
     DOCTEST_CHECK((asked.loads == 2 && asked.maps == 2 && asked.pictures == 2 && asked.sentences == 2));
 }
 
-DOCTEST_TEST_CASE("remembering model: everything that an attention map follows from is part of the question") {
+DOCTEST_TEST_CASE(
+    "remembering model: everything that an attention map follows from is part of the question") {
     const test::ScratchFolder folder;
     Asked asked;
     Image picture(8, 8, 3, 0.5f), other = picture, wide(16, 4, 3, 0.5f);
     other.data[77] = std::nextafter(0.5f, 1.0f);
     const edit::AttentionQuery query{picture, "a bear", {"bear"}};
-    const auto ask = [&](const edit::AttentionQuery& asked_for, const neural::AttentionParameters& parameters = {},
+    const auto ask = [&](const edit::AttentionQuery& asked_for,
+                         const neural::AttentionParameters& parameters = {},
                          const std::string& identity = "a model") {
         const int before = asked.maps;
         fake(folder.path(), asked, identity)->attention(parameters)->locate(asked_for);
@@ -209,18 +224,20 @@ DOCTEST_TEST_CASE("remembering model: everything that an attention map follows f
     DOCTEST_CHECK(ask({wide, "a bear", {"bear"}}));
     DOCTEST_CHECK(ask(query, {}, "another model"));
     const neural::AttentionParameters usual;
-    neural::AttentionParameters::visit_fields(usual, [&](const char* name, const auto&, const char*, const auto&...) {
-        neural::AttentionParameters parameters;
-        neural::AttentionParameters::visit_fields(parameters, [&](const char* own, auto& value, const char*, const auto&...) {
-            using Value = std::remove_cvref_t<decltype(value)>;
-            if (std::strcmp(own, name) != 0) return;
-            if constexpr (std::is_same_v<Value, bool>) value = !value;
-            else if constexpr (std::is_arithmetic_v<Value>) value += 1;
-            else if constexpr (std::is_same_v<Value, std::string>) value += "x";
-            else value.push_back("x");
+    neural::AttentionParameters::visit_fields(
+        usual, [&](const char* name, const auto&, const char*, const auto&...) {
+            neural::AttentionParameters parameters;
+            neural::AttentionParameters::visit_fields(
+                parameters, [&](const char* own, auto& value, const char*, const auto&...) {
+                    using Value = std::remove_cvref_t<decltype(value)>;
+                    if (std::strcmp(own, name) != 0) return;
+                    if constexpr (std::is_same_v<Value, bool>) value = !value;
+                    else if constexpr (std::is_arithmetic_v<Value>) value += 1;
+                    else if constexpr (std::is_same_v<Value, std::string>) value += "x";
+                    else value.push_back("x");
+                });
+            DOCTEST_CHECK(ask(query, parameters));
         });
-        DOCTEST_CHECK(ask(query, parameters));
-    });
     const int threads = network_threads();
     set_network_threads(threads + 1);
     DOCTEST_CHECK(ask(query));
@@ -228,7 +245,7 @@ DOCTEST_TEST_CASE("remembering model: everything that an attention map follows f
     DOCTEST_CHECK(!ask(query));
     asked.broken = true;
     DOCTEST_CHECK(ask({picture, "a sick bear", {"bear"}}));
-    DOCTEST_CHECK(ask({picture, "a sick bear", {"bear"}}));   // what is not finite is not kept
+    DOCTEST_CHECK(ask({picture, "a sick bear", {"bear"}}));  // what is not finite is not kept
 }
 
 DOCTEST_TEST_CASE("remembering model: views drawn to find a place are kept, by all that they follow from") {
@@ -281,11 +298,12 @@ DOCTEST_TEST_CASE("remembering model: views drawn to find a place are kept, by a
     DOCTEST_CHECK(changed([&] { input.anew = true; }));
     DOCTEST_CHECK(changed([&] { input.guided_until = 0.5; }));
     DOCTEST_CHECK(changed([&] { input.noise = 0.5; }));
-    input.keep = false;   // of the loop: asked every time
+    input.keep = false;  // of the loop: asked every time
     DOCTEST_CHECK((draws() && draws()));
 }
 
-DOCTEST_TEST_CASE("remembering model: damaged entries are asked anew; a model that cannot be loaded says so every time") {
+DOCTEST_TEST_CASE(
+    "remembering model: damaged entries are asked anew; a model that cannot be loaded says so every time") {
     const test::ScratchFolder folder;
     Asked asked;
     const Image picture(4, 4, 3, 0.5f);
@@ -299,17 +317,21 @@ DOCTEST_TEST_CASE("remembering model: damaged entries are asked anew; a model th
     DOCTEST_CHECK(fake(folder.path(), asked)->attention()->locate(query)[0].data == maps[0].data);
     DOCTEST_CHECK((asked.loads == 2 && asked.maps == 2));
     int tries = 0;
-    const auto broken = std::make_shared<RememberingModel>(std::make_shared<DiskCache>(folder.path(), Room), "broken", [&]() -> std::shared_ptr<neural::TextToImage> {
-        ++tries;
-        throw Error(ErrorCode::Model, "it is broken", "");
-    });
+    const auto broken =
+        std::make_shared<RememberingModel>(std::make_shared<DiskCache>(folder.path(), Room), "broken",
+                                           [&]() -> std::shared_ptr<neural::TextToImage> {
+                                               ++tries;
+                                               throw Error(ErrorCode::Model, "it is broken", "");
+                                           });
     DOCTEST_CHECK_THROWS_AS(broken->name(), Error);
     DOCTEST_CHECK_THROWS_AS(broken->sample({}), Error);
     DOCTEST_CHECK(tries == 2);
     DOCTEST_CHECK(!broken->load());
 }
 
-DOCTEST_TEST_CASE("model identity: contents of every file, settings of loading and the version count; places and times do not") {
+DOCTEST_TEST_CASE(
+    "model identity: contents of every file, settings of loading and the version count; places and times do "
+    "not") {
     const test::ScratchFolder folder;
     DiskCache memory(folder.path() / "cache", Room);
     const auto model = folder.path() / "one" / "model";
@@ -319,7 +341,9 @@ DOCTEST_TEST_CASE("model identity: contents of every file, settings of loading a
     write_file(folder.path() / "style.safetensors", "low rank");
     JobParameters job;
     job.model = model.string();
-    const auto identity = [&](const JobParameters& of, int version = AnswersVersion) { return model_identity(of, memory, version); };
+    const auto identity = [&](const JobParameters& of, int version = AnswersVersion) {
+        return model_identity(of, memory, version);
+    };
     const auto first = identity(job);
     DOCTEST_CHECK(identity(job) == first);
     fs::create_directories(folder.path() / "two");
@@ -339,7 +363,8 @@ DOCTEST_TEST_CASE("model identity: contents of every file, settings of loading a
     DOCTEST_CHECK(changed([](auto& j) { j.precision = "bf16"; }));
     DOCTEST_CHECK(changed([](auto& j) { j.taesd = "none"; }));
     DOCTEST_CHECK(changed([&](auto& j) { j.lora = {(folder.path() / "style.safetensors").string()}; }));
-    DOCTEST_CHECK(changed([&](auto& j) { j.lora = {(folder.path() / "style.safetensors").string() + ":0.5"}; }));
+    DOCTEST_CHECK(
+        changed([&](auto& j) { j.lora = {(folder.path() / "style.safetensors").string() + ":0.5"}; }));
     write_file(folder.path() / "style.safetensors", "low RANK");
     DOCTEST_CHECK(changed([&](auto& j) { j.lora = {(folder.path() / "style.safetensors").string()}; }));
     const auto weights = model / "unet" / "weights.safetensors";
@@ -347,7 +372,7 @@ DOCTEST_TEST_CASE("model identity: contents of every file, settings of loading a
     auto bytes = read_file(weights);
     bytes[2999999] = 'W';
     write_file(weights, bytes);
-    fs::last_write_time(weights, time);   // as some tools copy: the size and the time of change stay
+    fs::last_write_time(weights, time);  // as some tools copy: the size and the time of change stay
     DOCTEST_CHECK(is_new(identity(job)));
     write_file(model / "gseditpro.json", "{}");
     DOCTEST_CHECK(is_new(identity(job)));
@@ -389,11 +414,14 @@ struct Found {
 Found start(const EditRecipe& recipe, const fs::path& cache, bool samples = false) {
     static const Scene scene = load_scene(assets_path() / "scenes/bear/scene.ply");
     const auto before = network_use();
-    const auto model = open_recipe_model(recipe.job, cache.empty() ? nullptr : std::make_shared<DiskCache>(cache, Room));
+    const auto model =
+        open_recipe_model(recipe.job, cache.empty() ? nullptr : std::make_shared<DiskCache>(cache, Room));
     EditJob job(recipe, EditJobInput{scene, {}, model}, JobControl{});
     job.locate();
-    Found found{*job.located().label.bits, {}, {}, job.located().confidence.value, network_use() - before, load_of(*model).has_value()};
-    for (const auto& view : job.located().views) found.weights.insert(found.weights.end(), view.map.data.begin(), view.map.data.end());
+    Found found{*job.located().label.bits,  {}, {}, job.located().confidence.value, network_use() - before,
+                load_of(*model).has_value()};
+    for (const auto& view : job.located().views)
+        found.weights.insert(found.weights.end(), view.map.data.begin(), view.map.data.end());
     if (samples) {
         neural::SampleRequest request;
         request.prompt = "a red bear";
@@ -405,7 +433,9 @@ Found start(const EditRecipe& recipe, const fs::path& cache, bool samples = fals
 
 }  // namespace
 
-DOCTEST_TEST_CASE("cache: the second search after a restart gives the same label bit by bit, with no pass and nothing loaded") {
+DOCTEST_TEST_CASE(
+    "cache: the second search after a restart gives the same label bit by bit, with no pass and nothing "
+    "loaded") {
     const test::ScratchFolder folder;
     const auto plain = start(bear(false), {});
     const auto first = start(bear(false), folder.path()), second = start(bear(false), folder.path());
@@ -426,7 +456,8 @@ DOCTEST_TEST_CASE("cache: the second search after a restart gives the same label
     DOCTEST_CHECK(passes(start(other, folder.path()).use) > 0);
 }
 
-DOCTEST_TEST_CASE("cache: a tuning is learned once; another one from the same class draws no picture of it again") {
+DOCTEST_TEST_CASE(
+    "cache: a tuning is learned once; another one from the same class draws no picture of it again") {
     for (const int rank : {0, 2}) {
         const test::ScratchFolder folder;
         auto recipe = bear(true);
@@ -440,10 +471,11 @@ DOCTEST_TEST_CASE("cache: a tuning is learned once; another one from the same cl
         DOCTEST_CHECK(!second.loaded);
         DOCTEST_CHECK(second.label == plain.label);
         DOCTEST_CHECK(second.weights == plain.weights);
-        DOCTEST_CHECK(start(recipe, folder.path(), true).picture == plain.picture);   // the tuned weights, read back
+        DOCTEST_CHECK(start(recipe, folder.path(), true).picture ==
+                      plain.picture);  // the tuned weights, read back
         recipe.dreambooth.steps = 3;
         const auto plainer = start(recipe, {}, true), again = start(recipe, folder.path(), true);
-        DOCTEST_CHECK(again.use.cached >= 2);   // two batches of the class
+        DOCTEST_CHECK(again.use.cached >= 2);  // two batches of the class
         DOCTEST_CHECK(again.picture == plainer.picture);
         DOCTEST_CHECK(again.picture != plain.picture);
     }

@@ -1,4 +1,5 @@
-// What hardly comes out as asked is drawn in other ways before anything is fitted, and the best of them is used.
+// What hardly comes out as asked is drawn in other ways before anything is fitted, and the best of them is
+// used.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <doctest/doctest.h>
 
@@ -27,14 +28,15 @@ using namespace gse::pipeline;
 class Idle final : public edit::ViewGuidance {
 public:
     explicit Idle(bool restyles) : restyles_(restyles) {}
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput&, const JobControl&) override {
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput&,
+                            const JobControl&) override {
         ++rounds;
         edit::RoundTargets targets;
         for (const auto& view : views) targets.images.push_back(view.rendered);
         return targets;
     }
     bool restyles() const override { return restyles_; }
-    static inline int rounds = 0;   // of all that were asked
+    static inline int rounds = 0;  // of all that were asked
 
 private:
     bool restyles_;
@@ -44,9 +46,16 @@ private:
 class Misled : public neural::TextToImage {
 public:
     Misled(std::shared_ptr<neural::TextToImage> model, bool both) : model_(std::move(model)), both_(both) {}
-    std::unique_ptr<edit::AttentionSource> attention(const neural::AttentionParameters& parameters) const override { return model_->attention(parameters); }
-    std::unique_ptr<edit::Guidance> guidance(const std::string& prompt, const neural::SdsParameters& parameters) const override { return model_->guidance(prompt, parameters); }
-    std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const neural::SdsParameters& parameters) const override {
+    std::unique_ptr<edit::AttentionSource> attention(
+        const neural::AttentionParameters& parameters) const override {
+        return model_->attention(parameters);
+    }
+    std::unique_ptr<edit::Guidance> guidance(const std::string& prompt,
+                                             const neural::SdsParameters& parameters) const override {
+        return model_->guidance(prompt, parameters);
+    }
+    std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt,
+                                              const neural::SdsParameters& parameters) const override {
         asked.push_back(parameters.restyle);
         if (parameters.restyle || both_) return std::make_unique<Idle>(parameters.restyle);
         return model_->views(prompt, parameters);
@@ -59,18 +68,30 @@ public:
     std::string name() const override { return model_->name(); }
     neural::BundleKind kind() const override { return model_->kind(); }
     Image sample(const neural::SampleRequest& request) const override { return model_->sample(request); }
-    Image img2img(const Image& image, const neural::SampleRequest& request) const override { return model_->img2img(image, request); }
-    std::unique_ptr<edit::TextImageScore> text_image_score() const override { return model_->text_image_score(); }
-    neural::TunedModel tune(const neural::DreamBoothParameters& parameters, std::span<const Image> instance, const std::string& instance_prompt,
-                            const std::string& class_prompt, const JobControl& job, AnswerMemory* memory) const override {
+    Image img2img(const Image& image, const neural::SampleRequest& request) const override {
+        return model_->img2img(image, request);
+    }
+    std::unique_ptr<edit::TextImageScore> text_image_score() const override {
+        return model_->text_image_score();
+    }
+    neural::TunedModel tune(const neural::DreamBoothParameters& parameters, std::span<const Image> instance,
+                            const std::string& instance_prompt, const std::string& class_prompt,
+                            const JobControl& job, AnswerMemory* memory) const override {
         return model_->tune(parameters, instance, instance_prompt, class_prompt, job, memory);
     }
-    bool save_tuning(const std::filesystem::path& path, std::uint64_t most_bytes) const override { return model_->save_tuning(path, most_bytes); }
-    std::shared_ptr<neural::TextToImage> load_tuning(const std::filesystem::path& path) const override { return model_->load_tuning(path); }
+    bool save_tuning(const std::filesystem::path& path, std::uint64_t most_bytes) const override {
+        return model_->save_tuning(path, most_bytes);
+    }
+    std::shared_ptr<neural::TextToImage> load_tuning(const std::filesystem::path& path) const override {
+        return model_->load_tuning(path);
+    }
     void save_lora(const std::filesystem::path& path) const override { model_->save_lora(path); }
-    std::shared_ptr<neural::TextToImage> load_lora(const std::filesystem::path& path, double strength) const override { return model_->load_lora(path, strength); }
+    std::shared_ptr<neural::TextToImage> load_lora(const std::filesystem::path& path,
+                                                   double strength) const override {
+        return model_->load_lora(path, strength);
+    }
 
-    mutable std::vector<bool> asked;   // whether views were to be restyled, each time
+    mutable std::vector<bool> asked;  // whether views were to be restyled, each time
 
 protected:
     std::shared_ptr<neural::TextToImage> model_;
@@ -81,21 +102,24 @@ protected:
 class Shy final : public edit::ViewGuidance {
 public:
     explicit Shy(std::unique_ptr<edit::ViewGuidance> guidance) : guidance_(std::move(guidance)) {}
-    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input, const JobControl& job) override {
+    edit::RoundTargets edit(const std::vector<edit::RoundView>& views, const edit::RoundInput& input,
+                            const JobControl& job) override {
         const auto& first = views.front();
         if (first.rendered.data == first.backdrop.picture.data) return guidance_->edit(views, input, job);
         edit::RoundTargets targets;
         for (const auto& view : views) {
             targets.images.push_back(draws_lumps ? view.rendered : view.backdrop.picture);
             if (draws_lumps)
-                for (std::size_t i = 0; i + 2 < targets.images.back().data.size(); i += 3) std::swap(targets.images.back().data[i], targets.images.back().data[i + 2]);
+                for (std::size_t i = 0; i + 2 < targets.images.back().data.size(); i += 3)
+                    std::swap(targets.images.back().data[i], targets.images.back().data[i + 2]);
             targets.outlines.emplace_back(view.mask.width, view.mask.height, 1);
-            if (draws_outlines) std::copy(view.mask.data.begin(), view.mask.data.end(), targets.outlines.back().data.begin());
+            if (draws_outlines)
+                std::copy(view.mask.data.begin(), view.mask.data.end(), targets.outlines.back().data.begin());
         }
         return targets;
     }
     bool restyles() const override { return guidance_->restyles(); }
-    bool draws_outlines = true, draws_lumps = false;   // what was there, red for blue
+    bool draws_outlines = true, draws_lumps = false;  // what was there, red for blue
 
 private:
     std::unique_ptr<edit::ViewGuidance> guidance_;
@@ -105,7 +129,8 @@ class ShyModel final : public Misled {
 public:
     ShyModel(std::shared_ptr<neural::TextToImage> model, bool draws_outlines, bool draws_lumps = false)
         : Misled(std::move(model), false), draws_outlines_(draws_outlines), draws_lumps_(draws_lumps) {}
-    std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt, const neural::SdsParameters& parameters) const override {
+    std::unique_ptr<edit::ViewGuidance> views(const std::string& prompt,
+                                              const neural::SdsParameters& parameters) const override {
         asked.push_back(parameters.restyle);
         auto shy = std::make_unique<Shy>(model_->views(prompt, parameters));
         shy->draws_outlines = draws_outlines_;
@@ -137,13 +162,16 @@ struct Outcome {
 };
 
 Outcome edited(const EditRecipe& recipe, const std::shared_ptr<Misled>& model) {
-    EditJob job(recipe, EditJobInput{load_scene(assets_path() / "scenes/bear/scene.ply"), {}, model}, JobControl{});
+    EditJob job(recipe, EditJobInput{load_scene(assets_path() / "scenes/bear/scene.ply"), {}, model},
+                JobControl{});
     job.locate();
     DOCTEST_REQUIRE(job.found());
-    model->asked.clear();   // by the search
+    model->asked.clear();  // by the search
     Outcome outcome;
     EditObserver observer;
-    observer.judged = [&](const Verdict& verdict, const edit::ViewTargets&) { outcome.judged.push_back(verdict); };
+    observer.judged = [&](const Verdict& verdict, const edit::ViewTargets&) {
+        outcome.judged.push_back(verdict);
+    };
     job.run(observer);
     DOCTEST_CHECK(job.result().changed_outside_label == 0);
     outcome.set = job.result().set;
@@ -151,19 +179,25 @@ Outcome edited(const EditRecipe& recipe, const std::shared_ptr<Misled>& model) {
     return outcome;
 }
 
-Outcome edited(const EditRecipe& recipe, bool both) { return edited(recipe, std::make_shared<Misled>(load_recipe_model({}), both)); }
+Outcome edited(const EditRecipe& recipe, bool both) {
+    return edited(recipe, std::make_shared<Misled>(load_recipe_model({}), both));
+}
 
 bool same(const GaussianSet& a, const GaussianSet& b) {
-    return a.size() == b.size() && std::equal(a.sh().begin(), a.sh().end(), b.sh().begin()) && std::equal(a.position().begin(), a.position().end(), b.position().begin());
+    return a.size() == b.size() && std::equal(a.sh().begin(), a.sh().end(), b.sh().begin()) &&
+           std::equal(a.position().begin(), a.position().end(), b.position().begin());
 }
 
 }  // namespace
 
-DOCTEST_TEST_CASE("what restyles and hardly shows what was asked gives way to the model itself, before anything is fitted") {
+DOCTEST_TEST_CASE(
+    "what restyles and hardly shows what was asked gives way to the model itself, before anything is "
+    "fitted") {
     if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
     const auto found = edited(blue_bear(), false);
-    DOCTEST_CHECK(found.asked == std::vector<bool>{true, true, false});   // in the scene, on a plain ground, by itself
-    DOCTEST_REQUIRE(found.judged.size() == 1);   // the artist sees the pictures that are used
+    DOCTEST_CHECK(found.asked ==
+                  std::vector<bool>{true, true, false});  // in the scene, on a plain ground, by itself
+    DOCTEST_REQUIRE(found.judged.size() == 1);            // the artist sees the pictures that are used
     DOCTEST_CHECK_FALSE(found.judged[0].warns);
     auto itself = blue_bear();
     itself.guidance.restyle = false;
@@ -174,13 +208,13 @@ DOCTEST_TEST_CASE("what restyles and hardly shows what was asked gives way to th
 
 DOCTEST_TEST_CASE("a ground that the model cannot restyle gets the colour that such a ground has") {
     if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
-    for (const char* word : {"snow", "ice"}) {   // the encoder has a word for the first only
+    for (const char* word : {"snow", "ice"}) {  // the encoder has a word for the first only
         auto recipe = blue_bear();
         recipe.request.source = "grass";
         recipe.request.prompt = std::string("a bear on the ") + word;
         recipe.request.target = word;
         const auto found = edited(recipe, false);
-        DOCTEST_CHECK(found.asked == std::vector<bool>{true, true});   // never the model itself
+        DOCTEST_CHECK(found.asked == std::vector<bool>{true, true});  // never the model itself
         DOCTEST_REQUIRE(found.judged.size() == 1);
         DOCTEST_CHECK_FALSE(found.judged[0].is_poor());
         DOCTEST_CHECK(found.judged[0].score.has_value() == (recipe.request.target == "snow"));
@@ -191,7 +225,8 @@ DOCTEST_TEST_CASE("where the model itself does no better the first pictures are 
     if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
     Idle::rounds = 0;
     const auto found = edited(blue_bear(), true);
-    // One each in the scene and on a plain ground, for the model itself another with more strength; none for what was drawn already.
+    // One each in the scene and on a plain ground, for the model itself another with more strength; none for
+    // what was drawn already.
     DOCTEST_CHECK(Idle::rounds <= 4);
     DOCTEST_CHECK(Idle::rounds >= 3);
     DOCTEST_CHECK(found.asked.size() <= 4);
@@ -200,12 +235,14 @@ DOCTEST_TEST_CASE("where the model itself does no better the first pictures are 
     DOCTEST_CHECK(found.judged[0].warns);
 }
 
-DOCTEST_TEST_CASE("a thing that the model cannot draw into the scene is drawn on a plain ground, and nothing of that reaches the scene") {
+DOCTEST_TEST_CASE(
+    "a thing that the model cannot draw into the scene is drawn on a plain ground, and nothing of that "
+    "reaches the scene") {
     if (neural_library().empty() || !test::available(starter_model_path() / "model_index.json")) return;
     auto recipe = blue_bear();
     recipe.request.prompt = "a yellow mushroom on the grass";
     recipe.request.target = "mushroom";
-    for (const bool draws_outlines : {true, false}) {   // without any it "drew into 0 of 4 views"
+    for (const bool draws_outlines : {true, false}) {  // without any it "drew into 0 of 4 views"
         const auto found = edited(recipe, std::make_shared<ShyModel>(load_recipe_model({}), draws_outlines));
         DOCTEST_CHECK(found.asked.size() == 2);
         DOCTEST_REQUIRE(found.judged.size() == 1);

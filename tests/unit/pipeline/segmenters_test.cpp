@@ -43,9 +43,13 @@ struct TinyClipSeg {
     TinyClipSeg() {
         const auto golden = test::goldens_folder() / "clipseg";
         const auto words = test::source_folder() / "assets/models/starter/tokenizer";
-        if (neural_library().empty() || !test::available(golden / "config.json") || !test::available(words / "merges.txt")) return;
-        for (const char* file : {"config.json", "model.safetensors"}) std::filesystem::copy(golden / file, scratch.path() / file);
-        for (const auto& entry : std::filesystem::directory_iterator(words)) std::filesystem::copy(entry.path(), scratch.path() / entry.path().filename());
+        if (neural_library().empty() || !test::available(golden / "config.json") ||
+            !test::available(words / "merges.txt"))
+            return;
+        for (const char* file : {"config.json", "model.safetensors"})
+            std::filesystem::copy(golden / file, scratch.path() / file);
+        for (const auto& entry : std::filesystem::directory_iterator(words))
+            std::filesystem::copy(entry.path(), scratch.path() / entry.path().filename());
         job.text_segmenter = scratch.path().string();
     }
     bool ready() const { return !job.text_segmenter.empty(); }
@@ -72,12 +76,14 @@ private:
 class PartOfBox final : public edit::Segmenter {
 public:
     explicit PartOfBox(double share) : share_(share) {}
-    Mask segment(const Image& image, const std::vector<edit::PointPrompt>& points, const std::optional<edit::BoxPrompt>& box, const Image&) override {
+    Mask segment(const Image& image, const std::vector<edit::PointPrompt>& points,
+                 const std::optional<edit::BoxPrompt>& box, const Image&) override {
         DOCTEST_CHECK(points.empty());
         DOCTEST_REQUIRE(box.has_value());
         Mask mask(image.width, image.height);
         for (int y = 0; y < image.height; ++y)
-            for (int x = 0; x < image.width; ++x) mask.at(x, y) = x >= box->x0 && x < box->x1 && y < box->y0 + share_ * (box->y1 - box->y0);
+            for (int x = 0; x < image.width; ++x)
+                mask.at(x, y) = x >= box->x0 && x < box->x1 && y < box->y0 + share_ * (box->y1 - box->y0);
         return mask;
     }
     std::string name() const override { return "part of a box"; }
@@ -90,7 +96,9 @@ const std::vector<edit::PointPrompt> Clicks{{40.5, 30.5, true}, {5.5, 5.5, false
 
 }  // namespace
 
-DOCTEST_TEST_CASE("without weights a job has no segmenter of its own") { DOCTEST_CHECK(open_segmenters({}, nullptr).clicks == nullptr); }
+DOCTEST_TEST_CASE("without weights a job has no segmenter of its own") {
+    DOCTEST_CHECK(open_segmenters({}, nullptr).clicks == nullptr);
+}
 
 DOCTEST_TEST_CASE("masks are remembered: the same picture and clicks ask no network, other clicks do") {
     const auto job = tiny_sam();
@@ -193,7 +201,7 @@ DOCTEST_TEST_CASE("a folder that is no CLIPSeg is refused") {
     };
     std::filesystem::remove(tiny.scratch.path() / "model.safetensors");
     refused();
-    std::filesystem::remove(tiny.scratch.path() / "config.json");   // a copy of what may not be written to
+    std::filesystem::remove(tiny.scratch.path() / "config.json");  // a copy of what may not be written to
     write_file(tiny.scratch.path() / "config.json", "{\"model_type\": \"clip\"}");
     refused();
     tiny.job.text_segmenter = (tiny.scratch.path() / "merges.txt").string();
@@ -210,7 +218,8 @@ DOCTEST_TEST_CASE("a word's mask is sharpened where both mean the same thing") {
     DOCTEST_CHECK(sharp.first.at(0, 0) == 1);
     const auto other = sharpened(sure, std::make_shared<PartOfBox>(0.3))->segment(image, "bear");
     DOCTEST_CHECK(other.first.data == own.data);
-    const auto unsure = sharpened(std::make_shared<LeftHalf>(0.1), std::make_shared<PartOfBox>(0.8))->segment(image, "bear");
+    const auto unsure =
+        sharpened(std::make_shared<LeftHalf>(0.1), std::make_shared<PartOfBox>(0.8))->segment(image, "bear");
     DOCTEST_CHECK(unsure.first.data == own.data);
     DOCTEST_CHECK(sharpened(sure, nullptr) == sure);
 }

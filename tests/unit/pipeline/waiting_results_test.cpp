@@ -46,14 +46,15 @@ DOCTEST_TEST_CASE("results that wait: the last one is shown, any can be, and the
     DOCTEST_CHECK_FALSE(results);
 }
 
-DOCTEST_TEST_CASE("results that wait: what is set aside for another edit comes back where that comes to nothing") {
+DOCTEST_TEST_CASE(
+    "results that wait: what is set aside for another edit comes back where that comes to nothing") {
     WaitingResults results;
     for (const std::uint64_t seed : {1, 2, 3}) results.add(result_with(seed));
     results.show(1);
     results.set_aside();
     DOCTEST_CHECK_FALSE(results);
     DOCTEST_REQUIRE(results.kept() != nullptr);
-    DOCTEST_CHECK(results.kept()->seed == 2);   // what is saved meanwhile
+    DOCTEST_CHECK(results.kept()->seed == 2);  // what is saved meanwhile
     results.come_back();
     DOCTEST_CHECK(results->seed == 2);
     results.set_aside();
@@ -71,7 +72,8 @@ DOCTEST_TEST_CASE("results that wait: the oldest go where there are too many") {
     DOCTEST_CHECK(results->seed == WaitingResults::Most + 2);
 }
 
-DOCTEST_TEST_CASE("a label that has its thing's name takes that of what the thing became, where no other has it") {
+DOCTEST_TEST_CASE(
+    "a label that has its thing's name takes that of what the thing became, where no other has it") {
     const auto names_after = [](const std::vector<std::string>& names, const Renamed& renamed) {
         GaussianData rows;
         rows.resize(2);
@@ -83,9 +85,11 @@ DOCTEST_TEST_CASE("a label that has its thing's name takes that of what the thin
         result.renamed = renamed;
         EditNode node;
         node.id = 1;
-        node.delta = std::make_shared<const SceneDelta>(make_delta(state.current, *state.row_ids, GaussianSet(rows), std::vector<std::int64_t>{0, 1}, node.id));
+        node.delta = std::make_shared<const SceneDelta>(make_delta(
+            state.current, *state.row_ids, GaussianSet(rows), std::vector<std::int64_t>{0, 1}, node.id));
         std::vector<std::string> after;
-        for (const auto& label : with_result(state, std::move(node), result).labels) after.push_back(label.name);
+        for (const auto& label : with_result(state, std::move(node), result).labels)
+            after.push_back(label.name);
         return after;
     };
     using Names = std::vector<std::string>;

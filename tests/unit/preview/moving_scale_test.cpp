@@ -21,7 +21,8 @@ struct Load {
 }  // namespace
 
 DOCTEST_TEST_CASE("resolution falls until a frame takes at most 50 ms, and no farther") {
-    for (const Load load : {Load{5, 20}, Load{5, 100}, Load{20, 100}, Load{30, 400}, Load{10, 2000}, Load{45, 900}}) {
+    for (const Load load :
+         {Load{5, 20}, Load{5, 100}, Load{20, 100}, Load{30, 400}, Load{10, 2000}, Load{45, 900}}) {
         DOCTEST_CAPTURE(load.full);
         MovingScale scale;
         for (int frame = 0; frame < 12; ++frame) scale.learn(load.at(scale.scale()), scale.scale());
@@ -30,7 +31,7 @@ DOCTEST_TEST_CASE("resolution falls until a frame takes at most 50 ms, and no fa
             settled.insert(scale.scale());
             scale.learn(load.at(scale.scale()), scale.scale());
         }
-        DOCTEST_CHECK(settled.size() == 1);   // no flicker between sizes
+        DOCTEST_CHECK(settled.size() == 1);  // no flicker between sizes
         const double share = *settled.begin();
         DOCTEST_CHECK((load.at(share) <= MovingScale::FrameMs || share < 0.25));
         DOCTEST_CHECK((share == 1 || load.at(share * 1.42) > 0.8 * MovingScale::FrameMs));
@@ -52,7 +53,9 @@ DOCTEST_TEST_CASE("other work makes it fall at once, and it comes back when that
     DOCTEST_CHECK(scale.scale() == 1);
 }
 
-DOCTEST_TEST_CASE("a picture at rest that was slow lowers the first one that moves, and numbers that are none teach nothing") {
+DOCTEST_TEST_CASE(
+    "a picture at rest that was slow lowers the first one that moves, and numbers that are none teach "
+    "nothing") {
     MovingScale scale;
     scale.learn(800, 1);
     DOCTEST_CHECK(scale.scale() < 0.51);

@@ -28,7 +28,8 @@ double value_of(std::uint16_t half) {
 
 DOCTEST_TEST_CASE("halfs are the nearest ones, in long and in short runs") {
     Random random(1);
-    std::vector<float> values{0, -0.0f, 1, -1, 65504, 65520, 1e9f, -1e9f, 5.9604645e-8f, 2.9e-8f, 6.1e-5f, 0.333333f};
+    std::vector<float> values{0,     -0.0f,         1,       -1,      65504,    65520, 1e9f,
+                              -1e9f, 5.9604645e-8f, 2.9e-8f, 6.1e-5f, 0.333333f};
     for (int i = 0; i < 5000; ++i)
         values.push_back(static_cast<float>(random.normal() * std::exp2(random.uniform(-26, 17))));
     std::vector<std::uint16_t> long_run(values.size());
@@ -38,7 +39,8 @@ DOCTEST_TEST_CASE("halfs are the nearest ones, in long and in short runs") {
         preview::to_half(&values[i], 1, &single);  // the plain version
         DOCTEST_CHECK(single == long_run[i]);
         const double limited = std::min(std::max(static_cast<double>(values[i]), -65504.0), 65504.0);
-        const double step = std::max(std::exp2(std::floor(std::log2(std::abs(limited) + 1e-300)) - 10), std::exp2(-24));
+        const double step =
+            std::max(std::exp2(std::floor(std::log2(std::abs(limited) + 1e-300)) - 10), std::exp2(-24));
         DOCTEST_CHECK(std::abs(value_of(single) - limited) <= step / 2);
     }
 }

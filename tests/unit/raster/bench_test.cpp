@@ -34,8 +34,8 @@ DOCTEST_TEST_CASE("the raster bench measures time and error") {
     DOCTEST_CHECK(bench.pairs_reached <= bench.pairs);
     DOCTEST_CHECK(bench.block_pairs >= bench.pairs_reached);
     DOCTEST_CHECK(bench.block_pairs <= 16 * bench.pairs_reached);
-    DOCTEST_CHECK(16 * bench.block_pairs >= bench.blended_pairs);   // a block is 16 pixels
-    DOCTEST_CHECK(bench.floor_ratio == 0);                          // was not asked for
+    DOCTEST_CHECK(16 * bench.block_pairs >= bench.blended_pairs);  // a block is 16 pixels
+    DOCTEST_CHECK(bench.floor_ratio == 0);                         // was not asked for
 }
 
 DOCTEST_TEST_CASE("the raster bench measures the floor, with every instruction set and number of threads") {
@@ -67,7 +67,7 @@ DOCTEST_TEST_CASE("the raster bench measures the floor, with every instruction s
 DOCTEST_TEST_CASE("the floor is the counted work times the times of the loops") {
     raster::KernelFloor kernel;
     kernel.forward_ns = 6;
-    kernel.backward_ns = {28, 20, 17, 15, 14};   // of 1, 2, 4, 8, 16 blocks
+    kernel.backward_ns = {28, 20, 17, 15, 14};  // of 1, 2, 4, 8, 16 blocks
     kernel.mask_ns = 10, kernel.gather_ns = 1, kernel.scene_gather_ns = 5;
     kernel.gigabytes_per_second = 24;
     const auto step = [&](std::size_t pairs, std::size_t blocks) {
@@ -75,10 +75,10 @@ DOCTEST_TEST_CASE("the floor is the counted work times the times of the loops") 
     };
     const auto even = step(250000, 1000000);
     DOCTEST_CHECK(even.forward_blend == doctest::Approx(3));
-    DOCTEST_CHECK(even.backward_blend == doctest::Approx(8.5));   // 4 blocks per pair
-    DOCTEST_CHECK(even.lists == doctest::Approx(3.75));           // forward and backward
+    DOCTEST_CHECK(even.backward_blend == doctest::Approx(8.5));  // 4 blocks per pair
+    DOCTEST_CHECK(even.lists == doctest::Approx(3.75));          // forward and backward
     DOCTEST_CHECK(even.lists_in_cache == doctest::Approx(2.75));
-    DOCTEST_CHECK(even.parameters == doctest::Approx(236 * 0.1 / 24));   // bytes of 100,000 splats
+    DOCTEST_CHECK(even.parameters == doctest::Approx(236 * 0.1 / 24));  // bytes of 100,000 splats
     DOCTEST_CHECK(even.parameter_gradients == doctest::Approx(2 * even.parameters));
     DOCTEST_CHECK(even.total() == doctest::Approx(3 + 8.5 + 3.75 + 3 * even.parameters));
     DOCTEST_CHECK(step(1000000, 1000000).backward_blend == doctest::Approx(14));
@@ -110,7 +110,7 @@ DOCTEST_TEST_CASE("the bench of the skips compares what it times, and the skips 
     DOCTEST_CHECK(benches[0].pairs < benches[0].full_pairs);
     DOCTEST_CHECK(benches[0].kept_mib > 0);
     DOCTEST_CHECK(benches[1].labelled == 800);
-    DOCTEST_CHECK(benches[1].pairs == benches[1].full_pairs);   // nothing stays: rendered in full
+    DOCTEST_CHECK(benches[1].pairs == benches[1].full_pairs);  // nothing stays: rendered in full
     DOCTEST_CHECK(benches[1].kept_mib == 0);
 }
 

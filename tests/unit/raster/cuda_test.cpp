@@ -1,4 +1,5 @@
-// The CUDA version up to the device: the kernels' text, the driver behind a stand-in, what is refused and in which words.
+// The CUDA version up to the device: the kernels' text, the driver behind a stand-in, what is refused and in
+// which words.
 #define DOCTEST_CONFIG_NO_SHORT_MACRO_NAMES
 #include <dlfcn.h>
 #include <doctest/doctest.h>
@@ -41,20 +42,20 @@ public:
     Wrong& operator=(const Wrong&) = delete;
 };
 
-std::unique_ptr<Rasterizer> by_stand_in() { return cuda::make_checked_rasterizer(cuda::open_cuda_device(GSE_FAKE_CUDA_DRIVER)); }
+std::unique_ptr<Rasterizer> by_stand_in() {
+    return cuda::make_checked_rasterizer(cuda::open_cuda_device(GSE_FAKE_CUDA_DRIVER));
+}
 
 std::string refusal(const char* what) {
     const Wrong wrong(what);
     try {
         by_stand_in();
-    } catch (const Error& error) {
-        return error.what();
-    }
+    } catch (const Error& error) { return error.what(); }
     return "nothing was refused";
 }
 
 int leaks() {
-    void* library = dlopen(GSE_FAKE_CUDA_DRIVER, RTLD_NOW);   // the very same as long as it is open
+    void* library = dlopen(GSE_FAKE_CUDA_DRIVER, RTLD_NOW);  // the very same as long as it is open
     DOCTEST_REQUIRE(library != nullptr);
     const auto count = reinterpret_cast<int (*)()>(dlsym(library, "fake_driver_leaks"));
     DOCTEST_REQUIRE(static_cast<bool>(count));
@@ -82,15 +83,17 @@ DOCTEST_TEST_CASE("the kernels' text has every kernel and needs nothing that it 
     for (auto at = text.find(".entry"); at != std::string::npos; at = text.find(".entry", at + 1)) ++entries;
     DOCTEST_CHECK(entries == std::size(cuda::KernelNames));
     DOCTEST_CHECK(text.find(".target sm_60") != std::string::npos);
-    DOCTEST_CHECK(text.find(".extern") == std::string::npos);   // a function of a library that no device has
-    DOCTEST_CHECK(text.find(".func") == std::string::npos);     // all is in the kernels
-    DOCTEST_CHECK(text.find(".local") == std::string::npos);    // no array that had to leave the registers
+    DOCTEST_CHECK(text.find(".extern") == std::string::npos);  // a function of a library that no device has
+    DOCTEST_CHECK(text.find(".func") == std::string::npos);    // all is in the kernels
+    DOCTEST_CHECK(text.find(".local") == std::string::npos);   // no array that had to leave the registers
     DOCTEST_CHECK(text.find("fma.rn.f64") != std::string::npos);
-    DOCTEST_CHECK(text.find("mul.f64") == std::string::npos);   // the driver would be free to fuse these
+    DOCTEST_CHECK(text.find("mul.f64") == std::string::npos);  // the driver would be free to fuse these
     DOCTEST_CHECK(text.find("mul.f32") == std::string::npos);
 }
 
-DOCTEST_TEST_CASE("the CUDA rasterizer through a driver draws what the emulation draws, on any thread, and gives everything back") {
+DOCTEST_TEST_CASE(
+    "the CUDA rasterizer through a driver draws what the emulation draws, on any thread, and gives "
+    "everything back") {
     if (!has_kernels()) return;
     void* keep = dlopen(GSE_FAKE_CUDA_DRIVER, RTLD_NOW);
     DOCTEST_REQUIRE(keep != nullptr);
@@ -124,13 +127,19 @@ DOCTEST_TEST_CASE("the CUDA rasterizer through a driver draws what the emulation
 
 DOCTEST_TEST_CASE("what a driver cannot do is said in one sentence") {
     if (!has_kernels()) return;
-    DOCTEST_CHECK(refusal("no device") == "the CUDA driver finds no device on this machine; use the rasterizer \"cpu\"");
-    DOCTEST_CHECK(refusal("empty") == "the CUDA driver finds no device on this machine; use the rasterizer \"cpu\"");
-    DOCTEST_CHECK(refusal("old") == "Fake 9000 has compute capability 5.2, but the kernels need 6.0; use the rasterizer \"cpu\"");
+    DOCTEST_CHECK(refusal("no device") ==
+                  "the CUDA driver finds no device on this machine; use the rasterizer \"cpu\"");
+    DOCTEST_CHECK(refusal("empty") ==
+                  "the CUDA driver finds no device on this machine; use the rasterizer \"cpu\"");
+    DOCTEST_CHECK(
+        refusal("old") ==
+        "Fake 9000 has compute capability 5.2, but the kernels need 6.0; use the rasterizer \"cpu\"");
     DOCTEST_CHECK(refusal("memory").starts_with("Fake 9000 has no 1 MiB of memory left; "));
-    DOCTEST_CHECK(refusal("launch").starts_with("the CUDA driver cannot launch gse_blend: something is wrong"));
+    DOCTEST_CHECK(
+        refusal("launch").starts_with("the CUDA driver cannot launch gse_blend: something is wrong"));
     const std::string text = refusal("text");
-    DOCTEST_CHECK(text.starts_with("the CUDA driver cannot translate the kernels for Fake 9000 (ptxas: line 7"));
+    DOCTEST_CHECK(
+        text.starts_with("the CUDA driver cannot translate the kernels for Fake 9000 (ptxas: line 7"));
     DOCTEST_CHECK(text.find('\n') == std::string::npos);
     DOCTEST_CHECK(text.find("CUDA_ERROR_INVALID_PTX") != std::string::npos);
 }
@@ -139,20 +148,24 @@ DOCTEST_TEST_CASE("a device that computes something else is refused, with figure
     if (!has_kernels()) return;
     const std::string said = refusal("result");
     DOCTEST_CAPTURE(said);
-    DOCTEST_CHECK(said.starts_with("Fake 9000 draws a test scene otherwise than the processor does: picture "));
+    DOCTEST_CHECK(
+        said.starts_with("Fake 9000 draws a test scene otherwise than the processor does: picture "));
     DOCTEST_CHECK(said.find("gradients ") != std::string::npos);
     DOCTEST_CHECK(said.find("report these figures") != std::string::npos);
 }
 
-DOCTEST_TEST_CASE("without a driver CUDA is refused in one sentence, and the choice by name knows three names") {
+DOCTEST_TEST_CASE(
+    "without a driver CUDA is refused in one sentence, and the choice by name knows three names") {
     if (!has_kernels()) return;
     try {
         cuda::open_cuda_device("libgse_no_such_driver.so.1");
         DOCTEST_FAIL("a driver that is not there was opened");
     } catch (const Error& error) {
         DOCTEST_CHECK(error.code() == ErrorCode::NotFound);
-        DOCTEST_CHECK(std::string(error.what()) == "there is no CUDA driver (libgse_no_such_driver.so.1) on this machine; install NVIDIA's "
-                                                   "driver, or use the rasterizer \"cpu\"");
+        DOCTEST_CHECK(
+            std::string(error.what()) ==
+            "there is no CUDA driver (libgse_no_such_driver.so.1) on this machine; install NVIDIA's "
+            "driver, or use the rasterizer \"cpu\"");
     }
     ThreadPool pool(1);
     const std::string usual = make_fast_rasterizer(pool)->name();
@@ -168,7 +181,8 @@ DOCTEST_TEST_CASE("without a driver CUDA is refused in one sentence, and the cho
     }
 }
 
-DOCTEST_TEST_CASE("sums and sorting on the device are those of the processor, over several levels of blocks") {
+DOCTEST_TEST_CASE(
+    "sums and sorting on the device are those of the processor, over several levels of blocks") {
     const auto device = cuda::make_emulated_device();
     cuda::DeviceScan scan(*device);
     cuda::DeviceSort sort(*device);

@@ -26,8 +26,7 @@ struct Wide {
           log_scale(data.log_scale.begin(), data.log_scale.end()),
           rotation(data.rotation.begin(), data.rotation.end()),
           opacity_logit(data.opacity_logit.begin(), data.opacity_logit.end()),
-          sh(data.sh.begin(), data.sh.end()),
-          sh_degree(data.sh_degree) {}
+          sh(data.sh.begin(), data.sh.end()), sh_degree(data.sh_degree) {}
     plain::Inputs inputs() const {
         return {opacity_logit.size(), sh_degree, position, log_scale, rotation, opacity_logit, sh};
     }

@@ -16,11 +16,12 @@ using namespace gse;
 
 namespace {
 
-constexpr double Rounding = 1e-5;   // of single precision, at coefficients of a few units
+constexpr double Rounding = 1e-5;  // of single precision, at coefficients of a few units
 const Vec3 Luma{0.213, 0.715, 0.072};
 
 Vec3 base_colour(const GaussianSet& set, std::size_t row) {
-    const auto sh = set.sh().subspan(row * static_cast<std::size_t>(sh_coefficient_count(set.sh_degree())) * 3, 3);
+    const auto sh =
+        set.sh().subspan(row * static_cast<std::size_t>(sh_coefficient_count(set.sh_degree())) * 3, 3);
     return {colour_from_sh(sh[0]), colour_from_sh(sh[1]), colour_from_sh(sh[2])};
 }
 
@@ -28,7 +29,8 @@ GaussianSet one_row(const Vec3& colour, float logit = 0) {
     GaussianData data;
     data.resize(1);
     data.rotation[0] = 1;
-    for (std::size_t c = 0; c < 3; ++c) data.sh[c] = static_cast<float>(sh_from_colour(colour[static_cast<int>(c)]));
+    for (std::size_t c = 0; c < 3; ++c)
+        data.sh[c] = static_cast<float>(sh_from_colour(colour[static_cast<int>(c)]));
     data.opacity_logit[0] = logit;
     return GaussianSet(std::move(data));
 }
@@ -50,7 +52,8 @@ Vec3 colour_after(const Vec3& colour, const ColourAdjustment& adjustment) {
 double opacity_after(double opacity, double density) {
     ColourAdjustment adjustment;
     adjustment.density = density;
-    const auto set = adjusted(one_row({0, 0, 0}, static_cast<float>(std::log(opacity / (1 - opacity)))), std::vector<std::uint8_t>{1}, adjustment);
+    const auto set = adjusted(one_row({0, 0, 0}, static_cast<float>(std::log(opacity / (1 - opacity)))),
+                              std::vector<std::uint8_t>{1}, adjustment);
     return 1 / (1 + std::exp(-static_cast<double>(set.opacity_logit()[0])));
 }
 
@@ -70,7 +73,8 @@ DOCTEST_TEST_CASE("each control does what it says, and leaves the rest") {
     adjustment.hue = 120;
     const Vec3 turned = colour_after(red, adjustment);
     DOCTEST_CHECK(turned.y > turned.x);
-    DOCTEST_CHECK(dot(turned, Luma) == doctest::Approx(luma).epsilon(2e-3));   // the matrix is given to three digits
+    DOCTEST_CHECK(dot(turned, Luma) ==
+                  doctest::Approx(luma).epsilon(2e-3));  // the matrix is given to three digits
     check_near(colour_after(grey, adjustment), grey);
     adjustment = {};
     adjustment.brightness = 0.5;
@@ -93,8 +97,10 @@ DOCTEST_TEST_CASE("density is optical depth: twice of it is two splats behind ea
     DOCTEST_CHECK(opacity_after(1e-14, 2) == doctest::Approx(2e-14).epsilon(1e-5));
     ColourAdjustment most;
     most.density = 3;
-    for (const float logit : {-std::numeric_limits<float>::max(), -90.0f, 90.0f, std::numeric_limits<float>::max()})
-        DOCTEST_CHECK(std::isfinite(adjusted(one_row({0, 0, 0}, logit), std::vector<std::uint8_t>{1}, most).opacity_logit()[0]));
+    for (const float logit :
+         {-std::numeric_limits<float>::max(), -90.0f, 90.0f, std::numeric_limits<float>::max()})
+        DOCTEST_CHECK(std::isfinite(
+            adjusted(one_row({0, 0, 0}, logit), std::vector<std::uint8_t>{1}, most).opacity_logit()[0]));
 }
 
 DOCTEST_TEST_CASE("an adjustment holds for the colour from every side, and only for its rows") {
@@ -107,7 +113,8 @@ DOCTEST_TEST_CASE("an adjustment holds for the colour from every side, and only 
     const auto map = colour_map(adjustment);
     constexpr std::size_t Coefficients = 16;
     for (std::size_t row = 0; row < rows.size(); ++row) {
-        const auto a = set.sh().subspan(row * Coefficients * 3, Coefficients * 3), b = after.sh().subspan(row * Coefficients * 3, Coefficients * 3);
+        const auto a = set.sh().subspan(row * Coefficients * 3, Coefficients * 3),
+                   b = after.sh().subspan(row * Coefficients * 3, Coefficients * 3);
         if (rows[row] == 0) {
             DOCTEST_CHECK(same_row(set.spans(), row, after.spans(), row));
             continue;
@@ -122,7 +129,8 @@ DOCTEST_TEST_CASE("an adjustment holds for the colour from every side, and only 
         check_near(side_after, map.linear * side_before + map.offset);
     }
     DOCTEST_CHECK(std::equal(set.position().begin(), set.position().end(), after.position().begin()));
-    DOCTEST_CHECK(std::equal(set.opacity_logit().begin(), set.opacity_logit().end(), after.opacity_logit().begin()));
+    DOCTEST_CHECK(
+        std::equal(set.opacity_logit().begin(), set.opacity_logit().end(), after.opacity_logit().begin()));
 }
 
 DOCTEST_TEST_CASE("what is not finite stays as it is, and numbers out of range are refused by name") {
@@ -138,7 +146,8 @@ DOCTEST_TEST_CASE("what is not finite stays as it is, and numbers out of range a
     DOCTEST_CHECK(adjustment_text({}).empty());
 }
 
-DOCTEST_TEST_CASE("an adjustment is an edit of the stack: it can be switched off, and one that changes nothing is none") {
+DOCTEST_TEST_CASE(
+    "an adjustment is an edit of the stack: it can be switched off, and one that changes nothing is none") {
     Scene scene;
     scene.gaussians = plain_set(6, 1, 9);
     const DocumentState state = initial_state(scene, {});

@@ -24,10 +24,12 @@ GaussianData ball(std::size_t count, const Vec3& centre, double radius, std::uin
     GaussianData data;
     data.resize(count);
     for (std::size_t row = 0; row < count; ++row) {
-        const Vec3 at = centre + normalized({random.normal(), random.normal(), random.normal()}) * radius * std::cbrt(random.uniform());
+        const Vec3 at = centre + normalized({random.normal(), random.normal(), random.normal()}) * radius *
+                                     std::cbrt(random.uniform());
         for (int axis = 0; axis < 3; ++axis) {
             data.position[row * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(at[axis]);
-            data.log_scale[row * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(std::log(radius * 0.02));
+            data.log_scale[row * 3 + static_cast<std::size_t>(axis)] =
+                static_cast<float>(std::log(radius * 0.02));
         }
         data.rotation[row * 4] = 1;
         data.opacity_logit[row] = 2;
@@ -35,10 +37,13 @@ GaussianData ball(std::size_t count, const Vec3& centre, double radius, std::uin
     return data;
 }
 
-Camera looking(const Vec3& eye, const Vec3& target) { return Camera::look_at(eye, target, {0, -1, 0}, 0.9, 300, 200); }
+Camera looking(const Vec3& eye, const Vec3& target) {
+    return Camera::look_at(eye, target, {0, -1, 0}, 0.9, 300, 200);
+}
 
 void place(GaussianData& data, std::size_t row, const Vec3& at) {
-    for (int axis = 0; axis < 3; ++axis) data.position[row * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(at[axis]);
+    for (int axis = 0; axis < 3; ++axis)
+        data.position[row * 3 + static_cast<std::size_t>(axis)] = static_cast<float>(at[axis]);
 }
 
 }  // namespace
@@ -61,11 +66,13 @@ DOCTEST_TEST_CASE("the near plane follows the camera to a small thing in a large
     DOCTEST_CHECK(near < 0.1);
 }
 
-DOCTEST_TEST_CASE("floaters before the camera, splats that are not seen and numbers that are none do not count") {
+DOCTEST_TEST_CASE(
+    "floaters before the camera, splats that are not seen and numbers that are none do not count") {
     GaussianData data = ball(1000, {}, 1);
     const Camera camera = looking({0, 0, -3}, {});
     const double clean = fitted_near_plane(spans(data), camera);
-    constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
+                    infinity = std::numeric_limits<float>::infinity();
     for (std::size_t row = 0; row < 10; ++row) place(data, row * 100, {0, 0, -2.99});
     for (std::size_t row = 1; row < 300; ++row) {
         place(data, row, {0, 0, -2.9});
@@ -79,8 +86,8 @@ DOCTEST_TEST_CASE("floaters before the camera, splats that are not seen and numb
 DOCTEST_TEST_CASE("there is a near plane for little and for nothing") {
     GaussianData one = ball(1, {0, 0, 2}, 0);
     DOCTEST_CHECK(fitted_near_plane(spans(one), looking({0, 0, 0}, {0, 0, 1})) == doctest::Approx(0.2));
-    DOCTEST_CHECK(fitted_near_plane(spans(one), looking({0, 0, 4}, {0, 0, 5})) == 0);    // behind
-    DOCTEST_CHECK(fitted_near_plane(spans(one), looking({0, 0, 0}, {3, 0, 1})) > 0);     // beside the picture
+    DOCTEST_CHECK(fitted_near_plane(spans(one), looking({0, 0, 4}, {0, 0, 5})) == 0);  // behind
+    DOCTEST_CHECK(fitted_near_plane(spans(one), looking({0, 0, 0}, {3, 0, 1})) > 0);   // beside the picture
     DOCTEST_CHECK(fitted_near_plane(spans(GaussianData{}), looking({0, 0, 0}, {0, 0, 1})) == 0);
 }
 
@@ -108,7 +115,8 @@ DOCTEST_TEST_CASE("what is framed holds the scene and its splats but no floaters
 
 DOCTEST_TEST_CASE("thin ends of a thing are framed") {
     GaussianData data = ball(2000, {}, 1);
-    for (std::size_t row = 0; row < 12; ++row) place(data, row, {0, -1 - 0.02 * static_cast<double>(row), 0});   // an ear
+    for (std::size_t row = 0; row < 12; ++row)
+        place(data, row, {0, -1 - 0.02 * static_cast<double>(row), 0});  // an ear
     DOCTEST_CHECK(framing_bounds(GaussianSet(data)).low.y < -1.15);
 }
 

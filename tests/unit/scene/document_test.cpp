@@ -165,10 +165,8 @@ DOCTEST_TEST_CASE("undo and redo walk like a plain list of copies") {
             const auto what = random.below(5);
             if (what < 2) {
                 DocumentState next = document.state();
-                if (random.below(2) == 0)
-                    next = with_edit(next, random_node(next, random.next()));
-                else
-                    next.labels.push_back(random_label(next, random.next()));
+                if (random.below(2) == 0) next = with_edit(next, random_node(next, random.next()));
+                else next.labels.push_back(random_label(next, random.next()));
                 document.apply("step", next);
                 model.resize(position + 1);
                 model.push_back(picture_of(next));
@@ -185,8 +183,10 @@ DOCTEST_TEST_CASE("undo and redo walk like a plain list of copies") {
                 position = position - document.position() + to;
                 document.go_to(to);
             }
-            const auto any = static_cast<std::size_t>(step * 7) % document.names().size();   // looked at without going there
-            DOCTEST_REQUIRE(same(picture_of(document.state_at(any)), model[position - document.position() + any]));
+            const auto any = static_cast<std::size_t>(step * 7) %
+                             document.names().size();  // looked at without going there
+            DOCTEST_REQUIRE(
+                same(picture_of(document.state_at(any)), model[position - document.position() + any]));
             DOCTEST_CHECK(document.revision_at(document.position()) == document.revision());
             DOCTEST_REQUIRE(same(picture_of(document.state()), model[position]));
             DOCTEST_CHECK(document.undo_bytes() <= limits.bytes);

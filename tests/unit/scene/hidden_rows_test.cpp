@@ -33,9 +33,9 @@ DOCTEST_TEST_CASE("hidden rows are known by identity: others that come and go do
     hidden.hide(ids, Bits{0, 1, 0, 1});
     hidden.hide(ids, Bits{0, 1, 1, 0});
     DOCTEST_CHECK(hidden.rows(ids) == Bits{0, 1, 1, 1});
-    const std::vector<RowId> later{0, 2, RowId{7} << EditIdShift, 3};   // 1 was deleted, an edit has added one
+    const std::vector<RowId> later{0, 2, RowId{7} << EditIdShift, 3};  // 1 was deleted, an edit has added one
     DOCTEST_CHECK(hidden.rows(later) == Bits{0, 1, 0, 1});
-    DOCTEST_CHECK(hidden.rows(ids) == Bits{0, 1, 1, 1});   // the deletion undone: 1 is still hidden
+    DOCTEST_CHECK(hidden.rows(ids) == Bits{0, 1, 1, 1});  // the deletion undone: 1 is still hidden
     hidden.show_all();
     DOCTEST_CHECK(hidden.empty());
     DOCTEST_CHECK(hidden.rows(ids) == Bits{0, 0, 0, 0});
@@ -47,7 +47,7 @@ DOCTEST_TEST_CASE("isolating shows what was hidden of the label, and hides all e
     hidden.hide(ids, Bits{1, 1, 0, 0});
     hidden.isolate(ids, Bits{0, 1, 1, 0});
     DOCTEST_CHECK(hidden.rows(ids) == Bits{1, 0, 0, 1});
-    hidden.isolate(std::vector<RowId>{5, 6}, Bits{0, 1});   // 4 and 9 are off at present
+    hidden.isolate(std::vector<RowId>{5, 6}, Bits{0, 1});  // 4 and 9 are off at present
     DOCTEST_CHECK(hidden.rows(ids) == Bits{1, 1, 0, 1});
 }
 

@@ -127,13 +127,14 @@ DOCTEST_TEST_CASE("rows outside a mask of the view do not count, at any resoluti
     const Camera camera = camera_at(4);
     ScreenArea all;
     all.polygon = {{-10, -10}, {1000, -10}, {1000, 1000}, {-10, 1000}};
-    Mask upper(80, 60);   // a fifth of the resolution
+    Mask upper(80, 60);  // a fifth of the resolution
     for (int y = 0; y < 30; ++y)
         for (int x = 0; x < 80; ++x) upper.at(x, y) = 1;
     PickOptions options;
     options.mask = &upper;
     const auto rows = rows_in_area(set, camera, all, options), every = rows_in_area(set, camera, all);
-    for (std::size_t row = 0; row < set.size(); ++row) DOCTEST_CHECK((rows[row] != 0) == (every[row] != 0 && project(set, camera, row).y < 150));
+    for (std::size_t row = 0; row < set.size(); ++row)
+        DOCTEST_CHECK((rows[row] != 0) == (every[row] != 0 && project(set, camera, row).y < 150));
     DOCTEST_CHECK(std::count(rows.begin(), rows.end(), std::uint8_t{1}) > 500);
 }
 
@@ -172,7 +173,8 @@ DOCTEST_TEST_CASE("rows that an edit added belong to its label, and are nobody's
     found.weight = std::make_shared<const std::vector<float>>(std::vector<float>{0.9f, 0.2f, 0, 0});
     found = with_added(with_bits(found), std::vector<std::uint8_t>{0, 0, 0, 1});
     DOCTEST_CHECK(*found.bits == std::vector<std::uint8_t>{1, 0, 0, 1});
-    DOCTEST_CHECK((found.manual == nullptr || std::all_of(found.manual->begin(), found.manual->end(), [](auto by_hand) { return by_hand == 0; })));
+    DOCTEST_CHECK((found.manual == nullptr || std::all_of(found.manual->begin(), found.manual->end(),
+                                                          [](auto by_hand) { return by_hand == 0; })));
     DOCTEST_CHECK(count_labelled(with_threshold(found, 0.95f)) == 1);
     const NamedLabel painted = with_added(empty_label("hat", 4), std::vector<std::uint8_t>{0, 0, 0, 1});
     DOCTEST_CHECK(count_labelled(painted) == 1);

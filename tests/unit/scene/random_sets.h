@@ -17,16 +17,11 @@ namespace gse::test {
 /// Mostly ordinary numbers; some NaN, infinite, denormal and negative zero, whose bits must survive.
 inline float awkward(Random& random) {
     switch (random.below(40)) {
-        case 0:
-            return std::numeric_limits<float>::quiet_NaN();
-        case 1:
-            return -std::numeric_limits<float>::infinity();
-        case 2:
-            return -0.0f;
-        case 3:
-            return std::numeric_limits<float>::denorm_min();
-        default:
-            return static_cast<float>(random.normal());
+        case 0: return std::numeric_limits<float>::quiet_NaN();
+        case 1: return -std::numeric_limits<float>::infinity();
+        case 2: return -0.0f;
+        case 3: return std::numeric_limits<float>::denorm_min();
+        default: return static_cast<float>(random.normal());
     }
 }
 

@@ -78,8 +78,8 @@ DOCTEST_TEST_CASE("what cannot be drawn is hidden, and everything else stays as 
     data.sh[data.sh_stride() * 3] = 1e10f;
     data.log_scale[3 * 4] = 1e30f;
     data.opacity_logit[5] = Nan;
-    data.log_scale[3 * 6] = -1e30f;   // flat: legal
-    data.opacity_logit[7] = 1e30f;    // opaque: legal
+    data.log_scale[3 * 6] = -1e30f;  // flat: legal
+    data.opacity_logit[7] = 1e30f;   // opaque: legal
     const GaussianSet set(data);
     const SceneStatistics statistics = compute_statistics(set);
     DOCTEST_CHECK(statistics.nan_rows == 2);
@@ -91,7 +91,8 @@ DOCTEST_TEST_CASE("what cannot be drawn is hidden, and everything else stays as 
     DOCTEST_CHECK(compute_statistics(drawn).nan_rows + compute_statistics(drawn).infinite_rows == 0);
     for (std::size_t row = 0; row < 6; ++row) DOCTEST_CHECK(drawn.opacity_logit()[row] < -50);
     for (std::size_t i = 3 * 6; i < 300; ++i) DOCTEST_CHECK(drawn.position()[i] == set.position()[i]);
-    for (std::size_t row = 6; row < 100; ++row) DOCTEST_CHECK(drawn.opacity_logit()[row] == set.opacity_logit()[row]);
+    for (std::size_t row = 6; row < 100; ++row)
+        DOCTEST_CHECK(drawn.opacity_logit()[row] == set.opacity_logit()[row]);
     const GaussianSet clean(box_of_splats(100, {5, 6, 7}, 3));
     DOCTEST_CHECK(drawable(clean).shares_all_with(clean));
 }
@@ -183,7 +184,8 @@ DOCTEST_TEST_CASE("the Morton order has every point once, cell by cell, broken p
     for (int x = 0; x < 4; ++x)
         for (int y = 0; y < 4; ++y)
             for (int z = 0; z < 4; ++z)
-                position.insert(position.end(), {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
+                position.insert(position.end(),
+                                {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)});
     position[5 * 3] = std::numeric_limits<float>::quiet_NaN();
     const auto order = gse::morton_order(position);
     std::vector<std::uint32_t> sorted = order;
@@ -192,7 +194,8 @@ DOCTEST_TEST_CASE("the Morton order has every point once, cell by cell, broken p
     DOCTEST_CHECK((order[0] == 5 || order[1] == 5));
     const auto octant = [&](std::size_t i) {
         int code = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) code |= (position[order[i] * 3 + axis] >= 2 ? 1 : 0) << axis;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            code |= (position[order[i] * 3 + axis] >= 2 ? 1 : 0) << axis;
         return code;
     };
     for (std::size_t i = 8; i < order.size(); ++i) DOCTEST_CHECK(octant(i) == static_cast<int>(i / 8));

@@ -35,7 +35,8 @@ EditNode adding(const DocumentState& state, std::uint64_t id) {
     for (std::size_t row = 0; row < count; ++row) kept[row] = static_cast<std::int64_t>(row);
     EditNode node;
     node.id = id;
-    node.delta = std::make_shared<const SceneDelta>(make_delta(state.current, *state.row_ids, GaussianSet(rows(count + 2)), kept, id));
+    node.delta = std::make_shared<const SceneDelta>(
+        make_delta(state.current, *state.row_ids, GaussianSet(rows(count + 2)), kept, id));
     return node;
 }
 
@@ -63,7 +64,8 @@ DOCTEST_TEST_CASE("what an edit added belongs to the active label, or to one of 
     DOCTEST_REQUIRE(nothing_active.labels.size() == 1);
     DOCTEST_CHECK(nothing_active.labels[0].name == "hat");
     DOCTEST_CHECK(*nothing_active.labels[0].bits == std::vector<std::uint8_t>{0, 0, 0, 0, 1, 1});
-    state.labels = {combine(empty_label("bear", 4), std::vector<std::uint8_t>{1, 0, 0, 0}, LabelOperation::Add)};
+    state.labels = {
+        combine(empty_label("bear", 4), std::vector<std::uint8_t>{1, 0, 0, 0}, LabelOperation::Add)};
     state.active_label = 0;
     const auto grown = with_edit(state, adding(state, 7), "hat", false);
     DOCTEST_REQUIRE(grown.labels.size() == 1);
@@ -72,8 +74,9 @@ DOCTEST_TEST_CASE("what an edit added belongs to the active label, or to one of 
     DOCTEST_REQUIRE(beside.labels.size() == 2);
     DOCTEST_CHECK(beside.active_label == 1);
     DOCTEST_CHECK(count_labelled(beside.labels[0]) == 1);
-    const auto only_less = with_edit(state, removal_of(state, std::vector<std::uint8_t>{0, 0, 0, 1}, 8), "hat", true);
-    DOCTEST_CHECK(only_less.labels.size() == 1);   // nothing was added
+    const auto only_less =
+        with_edit(state, removal_of(state, std::vector<std::uint8_t>{0, 0, 0, 1}, 8), "hat", true);
+    DOCTEST_CHECK(only_less.labels.size() == 1);  // nothing was added
     DOCTEST_CHECK(only_less.current.size() == 3);
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 using namespace gse;
 
-constexpr double Rounding = 1e-5;   // of float values near one that went through a logarithm
+constexpr double Rounding = 1e-5;  // of float values near one that went through a logarithm
 
 double opacity(float logit) { return 1 / (1 + std::exp(-static_cast<double>(logit))); }
 
@@ -30,9 +30,10 @@ struct Case {
         data.sh_degree = 1;
         data.resize(5);
         for (std::size_t i = 0; i < data.sh.size(); ++i) data.sh[i] = 0.01f * static_cast<float>(i % 7);
-        for (std::size_t i = 0; i < data.position.size(); ++i) data.position[i] = 0.3f * static_cast<float>(i);
+        for (std::size_t i = 0; i < data.position.size(); ++i)
+            data.position[i] = 0.3f * static_cast<float>(i);
         for (std::size_t row = 0; row < 5; ++row) {
-            data.rotation[row * 4] = 2;   // files need not hold unit quaternions
+            data.rotation[row * 4] = 2;  // files need not hold unit quaternions
             data.opacity_logit[row] = 1;
         }
         before = GaussianSet(GaussianData(data));
@@ -43,7 +44,7 @@ struct Case {
         edited.log_scale[0] += 0.5f;
         edited.rotation[0] = 0;
         edited.rotation[1] = -1;
-        edited.opacity_logit[0] = 30;   // 1 in floating point, yet on the way it must not be
+        edited.opacity_logit[0] = 30;  // 1 in floating point, yet on the way it must not be
         edited.sh[0] += 0.4f;
         edited.sh[3] += 0.2f;
         after = GaussianSet(std::move(edited));
@@ -60,7 +61,8 @@ DOCTEST_TEST_CASE("an edit at strength 1 is the edit, at 0 it is none") {
     const Case edit;
     const auto [full, full_ids] = edit.at(1);
     DOCTEST_REQUIRE(full.size() == edit.after.size());
-    for (std::size_t row = 0; row < full.size(); ++row) DOCTEST_CHECK(same_row(full.spans(), row, edit.after.spans(), row));
+    for (std::size_t row = 0; row < full.size(); ++row)
+        DOCTEST_CHECK(same_row(full.spans(), row, edit.after.spans(), row));
     const auto [none, none_ids] = edit.at(0);
     DOCTEST_CHECK(none.shares_all_with(edit.before));
     DOCTEST_CHECK(none_ids == edit.ids);
@@ -91,7 +93,8 @@ DOCTEST_TEST_CASE("below 1 rows lie between before and after, come in and go awa
         double length = 0;
         for (std::size_t i = 0; i < 4; ++i) length += std::pow(set.rotation()[i], 2);
         DOCTEST_CHECK(std::abs(length - 1) < Rounding);
-        for (std::size_t row = 2; row < 5; ++row) DOCTEST_CHECK(same_row(set.spans(), row, edit.before.spans(), row));
+        for (std::size_t row = 2; row < 5; ++row)
+            DOCTEST_CHECK(same_row(set.spans(), row, edit.before.spans(), row));
     }
 }
 
@@ -104,9 +107,10 @@ DOCTEST_TEST_CASE("above 1 only colours go on, and no further than a colour can"
     DOCTEST_CHECK(set.sh()[3] > edit.after.sh()[3]);
     for (std::size_t i = 0; i < 3; ++i) DOCTEST_CHECK(set.position()[i] == edit.after.position()[i]);
     DOCTEST_CHECK(set.opacity_logit()[0] == edit.after.opacity_logit()[0]);
-    for (std::size_t row = 1; row < set.size(); ++row) DOCTEST_CHECK(same_row(set.spans(), row, edit.after.spans(), row));
+    for (std::size_t row = 1; row < set.size(); ++row)
+        DOCTEST_CHECK(same_row(set.spans(), row, edit.after.spans(), row));
     SceneDelta bright = edit.delta;
-    bright.changed_rows.sh[0] = 1.5f;   // nearly white
+    bright.changed_rows.sh[0] = 1.5f;  // nearly white
     const auto brighter = with_strength(edit.before, edit.ids, bright, MostStrength);
     DOCTEST_CHECK(brighter.changed_rows.sh[0] >= 1.5f);
     DOCTEST_CHECK(colour_from_sh(brighter.changed_rows.sh[0]) <= 1 + Rounding);

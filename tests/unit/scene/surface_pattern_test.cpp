@@ -22,7 +22,8 @@ Colours colours_of(const SurfacePattern& pattern) {
     Random random(6);
     Colours colours;
     for (int i = 0; i < 2000; ++i) {
-        const Vec3 colour = colour_at(pattern, {random.uniform(-0.5, 0.5), random.uniform(0, 1), random.uniform(-0.5, 0.5)});
+        const Vec3 colour =
+            colour_at(pattern, {random.uniform(-0.5, 0.5), random.uniform(0, 1), random.uniform(-0.5, 0.5)});
         colours.insert({colour.x, colour.y, colour.z});
     }
     return colours;
@@ -40,13 +41,14 @@ DOCTEST_TEST_CASE("every pattern has colours that can be shown, more than one, a
         DOCTEST_CHECK(colours == colours_of(*pattern));
         for (const auto& [r, g, b] : colours) {
             DOCTEST_CHECK(std::min({r, g, b}) >= 0);
-            DOCTEST_CHECK(std::max({r, g, b}) <= 1.1);   // grain may be a little brighter than what it is on
+            DOCTEST_CHECK(std::max({r, g, b}) <= 1.1);  // grain may be a little brighter than what it is on
         }
     }
     DOCTEST_CHECK_FALSE(pattern_named("red"));
 }
 
-DOCTEST_TEST_CASE("stripes, spots and squares are of the two colours that they are given, and of nothing else") {
+DOCTEST_TEST_CASE(
+    "stripes, spots and squares are of the two colours that they are given, and of nothing else") {
     for (const auto& word : pattern_words()) {
         auto pattern = *pattern_named(word);
         if (!takes_colours(pattern.kind)) continue;

@@ -295,7 +295,7 @@ DOCTEST_TEST_CASE("unknown words are refused with the known ones") {
 
 DOCTEST_TEST_CASE("a thing shows its front to the azimuth at which it is turned to") {
     SceneSpec spec;
-    spec.object = "dog";   // its face is before its middle
+    spec.object = "dog";  // its face is before its middle
     for (const std::uint64_t seed : {1, 2, 3}) {
         spec.seed = seed;
         spec.heading = 0;
@@ -308,12 +308,14 @@ DOCTEST_TEST_CASE("a thing shows its front to the azimuth at which it is turned 
             Vec3 middle{};
             for (std::size_t row = 0; row < scene.parts.size(); ++row)
                 if (scene.parts[row] == Part::Object)
-                    middle = middle + Vec3{scene.scene.gaussians.position()[row * 3], 0, scene.scene.gaussians.position()[row * 3 + 2]};
+                    middle = middle + Vec3{scene.scene.gaussians.position()[row * 3], 0,
+                                           scene.scene.gaussians.position()[row * 3 + 2]};
             middle = middle * (1.0 / static_cast<double>(count(scene, Part::Object)));
             const Vec3 camera = scene_camera(scene, turn_of(spec), 0, 1, 8, 8).centre();
             const Vec3 face = scene.head - middle;
             const double along = face.x * camera.x + face.z * camera.z;
-            DOCTEST_CHECK(along > 0.98 * std::hypot(face.x, face.z) * std::hypot(camera.x, camera.z));   // 11 degrees
+            DOCTEST_CHECK(along >
+                          0.98 * std::hypot(face.x, face.z) * std::hypot(camera.x, camera.z));  // 11 degrees
         }
     }
 }

@@ -19,10 +19,8 @@ namespace {
 std::vector<std::string> split(const std::string& text) {
     std::vector<std::string> words(1);
     for (const char letter : text) {
-        if (letter == ' ')
-            words.emplace_back();
-        else if (letter != ',')
-            words.back() += letter;
+        if (letter == ' ') words.emplace_back();
+        else if (letter != ',') words.back() += letter;
     }
     return words;
 }
@@ -224,8 +222,10 @@ DOCTEST_TEST_CASE("edit sentences change what they name and nothing else") {
         s.material = "green";
         s.accessory = s.accessory_colour = "";
     });
-    expect(bear, "a pink rabbit on the leaves", [](SceneSpec& s) { s.object = "rabbit", s.material = "pink", s.ground = "leaves"; });
-    expect(bear, "a bear with golden horns", [](SceneSpec& s) { s.accessory = "horns", s.accessory_colour = "golden"; });
+    expect(bear, "a pink rabbit on the leaves",
+           [](SceneSpec& s) { s.object = "rabbit", s.material = "pink", s.ground = "leaves"; });
+    expect(bear, "a bear with golden horns",
+           [](SceneSpec& s) { s.accessory = "horns", s.accessory_colour = "golden"; });
     expect(hatted, "a red bear on the tiled floor", [](SceneSpec& s) { s.ground = "tiles"; });
 }
 

@@ -20,10 +20,12 @@ namespace {
 constexpr int Size = 32;
 
 /// Whether one of the words, or one that means the same, is in the text.
-bool says_one(const std::string& text, std::vector<std::string> words, const std::vector<std::string>& synonyms) {
+bool says_one(const std::string& text, std::vector<std::string> words,
+              const std::vector<std::string>& synonyms) {
     words.insert(words.end(), synonyms.begin(), synonyms.end());
     const auto spaced = ' ' + text.substr(0, text.find(',')) + ' ';
-    return std::any_of(words.begin(), words.end(), [&](const auto& word) { return spaced.find(' ' + word + ' ') != std::string::npos; });
+    return std::any_of(words.begin(), words.end(),
+                       [&](const auto& word) { return spaced.find(' ' + word + ' ') != std::string::npos; });
 }
 
 std::string without_side(const std::string& text) { return text.substr(0, text.rfind(", ")); }
@@ -66,7 +68,8 @@ DOCTEST_TEST_CASE("a picture of a scene does not depend on which was asked for b
     DOCTEST_CHECK(source->picture(1, Size).rgb == picture);
 }
 
-DOCTEST_TEST_CASE("a view of before lacks what the caption's edit brings, and nothing else where that is something worn") {
+DOCTEST_TEST_CASE(
+    "a view of before lacks what the caption's edit brings, and nothing else where that is something worn") {
     const auto source = gse::training::make_shape_source(6);
     DOCTEST_REQUIRE(source->before() != nullptr);
     DOCTEST_CHECK(source->before()->before() == nullptr);
@@ -77,15 +80,18 @@ DOCTEST_TEST_CASE("a view of before lacks what the caption's edit brings, and no
     for (std::uint64_t index = 0; index < 24 * views; index += views + 1) {
         const auto after = source->picture(index, Size), before = source->before()->picture(index, Size);
         DOCTEST_CHECK(before.rgb != after.rgb);
-        DOCTEST_CHECK((source->has_outlines() && !source->before()->has_outlines() && before.outline.empty()));
+        DOCTEST_CHECK(
+            (source->has_outlines() && !source->before()->has_outlines() && before.outline.empty()));
         const std::uint8_t* accessory = &after.coverage[2 * Cells * Cells];
-        const bool wears = std::any_of(accessory, accessory + Cells * Cells, [](int covered) { return covered > 0; });
+        const bool wears =
+            std::any_of(accessory, accessory + Cells * Cells, [](int covered) { return covered > 0; });
         (wears ? worn : replaced) += 1;
         // The outline is the coverage of what is new, pixel by pixel.
         DOCTEST_REQUIRE(after.outline.size() == std::size_t{Size} * Size);
         const double pixels = std::accumulate(after.outline.begin(), after.outline.end(), 0.0) / 16;
         const std::uint8_t* part = &after.coverage[(wears ? 2 : 1) * Cells * Cells];
-        DOCTEST_CHECK(std::abs(pixels - std::accumulate(part, part + Cells * Cells, 0.0)) < Cells * Cells);   // a step of rounding each
+        DOCTEST_CHECK(std::abs(pixels - std::accumulate(part, part + Cells * Cells, 0.0)) <
+                      Cells * Cells);  // a step of rounding each
         if (!wears) continue;
         // Away from what is worn and from its shadow most pixels are the same.
         std::size_t same = 0;
@@ -96,8 +102,11 @@ DOCTEST_TEST_CASE("a view of before lacks what the caption's edit brings, and no
     DOCTEST_CHECK(replaced > 3);
 }
 
-DOCTEST_TEST_CASE("what is restyled looked different before, where it is and nowhere else, and the caption tells its look") {
-    const auto source = gse::training::make_shape_source(6, {.restyled = 1}), plain = gse::training::make_shape_source(6);
+DOCTEST_TEST_CASE(
+    "what is restyled looked different before, where it is and nowhere else, and the caption tells its "
+    "look") {
+    const auto source = gse::training::make_shape_source(6, {.restyled = 1}),
+               plain = gse::training::make_shape_source(6);
     const auto views = static_cast<std::uint64_t>(source->views_of_scene());
     DOCTEST_CHECK_FALSE(plain->restyled(0).has_value());
     DOCTEST_CHECK(source->identity() != plain->identity());
@@ -111,54 +120,67 @@ DOCTEST_TEST_CASE("what is restyled looked different before, where it is and now
         constexpr std::size_t Cells = Size / 4;
         double changed = 0, elsewhere = 0;
         for (std::size_t cell = 0; cell < Cells * Cells; ++cell) {
-            const double covered = after.coverage[static_cast<std::size_t>(*part) * Cells * Cells + cell] / 255.0;
+            const double covered =
+                after.coverage[static_cast<std::size_t>(*part) * Cells * Cells + cell] / 255.0;
             double difference = 0;
             for (std::size_t k = 0; k < 16; ++k)
                 for (std::size_t c = 0; c < 3; ++c) {
-                    const std::size_t at = ((cell / Cells * 4 + k / 4) * Size + cell % Cells * 4 + k % 4) * 3 + c;
+                    const std::size_t at =
+                        ((cell / Cells * 4 + k / 4) * Size + cell % Cells * 4 + k % 4) * 3 + c;
                     difference += std::abs(after.rgb[at] - before.rgb[at]) / 48.0;
                 }
             if (covered > 0.9) changed = std::max(changed, difference);
             if (covered == 0) elsewhere = std::max(elsewhere, difference);
         }
-        // Another look changes colours only: where nothing of the part is, both pictures are the same. A cell whose coverage is rounded to 0
-        // may hold half a step of it, and pixels are rounded, too.
+        // Another look changes colours only: where nothing of the part is, both pictures are the same. A cell
+        // whose coverage is rounded to 0 may hold half a step of it, and pixels are rounded, too.
         constexpr double Rounding = 0.5 + 0.5;
         DOCTEST_CHECK(elsewhere < Rounding);
-        const double most_covered = *std::max_element(after.coverage.begin() + static_cast<std::ptrdiff_t>(static_cast<std::size_t>(*part) * Cells * Cells),
-                                                      after.coverage.begin() + static_cast<std::ptrdiff_t>((static_cast<std::size_t>(*part) + 1) * Cells * Cells));
+        const double most_covered = *std::max_element(
+            after.coverage.begin() +
+                static_cast<std::ptrdiff_t>(static_cast<std::size_t>(*part) * Cells * Cells),
+            after.coverage.begin() +
+                static_cast<std::ptrdiff_t>((static_cast<std::size_t>(*part) + 1) * Cells * Cells));
         if (most_covered > 0.95 * 255) DOCTEST_CHECK(changed > 4);
         // A picture's caption tells the look, however it is put.
         for (std::uint64_t wording = 0; wording < 8; ++wording) {
             const auto text = source->caption(index, wording, false).text;
             DOCTEST_CAPTURE(text);
-            if (*part == gse::neural::StarterPart::Object) DOCTEST_CHECK(says_one(text, gse::synth::material_words(), {"wood", "gold"}));
-            if (*part == gse::neural::StarterPart::Ground) DOCTEST_CHECK(says_one(text, gse::synth::ground_words(), {"tiled", "lake"}));
+            if (*part == gse::neural::StarterPart::Object)
+                DOCTEST_CHECK(says_one(text, gse::synth::material_words(), {"wood", "gold"}));
+            if (*part == gse::neural::StarterPart::Ground)
+                DOCTEST_CHECK(says_one(text, gse::synth::ground_words(), {"tiled", "lake"}));
         }
         // There is no room: nothing of another shape was there.
-        DOCTEST_CHECK(std::all_of(before.coverage.begin() + Cells * Cells, before.coverage.begin() + 2 * Cells * Cells, [](int room) { return room == 0; }));
+        DOCTEST_CHECK(std::all_of(before.coverage.begin() + Cells * Cells,
+                                  before.coverage.begin() + 2 * Cells * Cells,
+                                  [](int room) { return room == 0; }));
     }
     DOCTEST_CHECK(parts.size() == 3);
     // Another source of the same seed, asked in between, changes nothing.
     const auto alone = plain->before()->picture(0, Size).rgb;
-    plain->before()->picture(views, Size);   // of another scene: nothing of the first is known
+    plain->before()->picture(views, Size);  // of another scene: nothing of the first is known
     source->before()->picture(0, Size);
     DOCTEST_CHECK(plain->before()->picture(0, Size).rgb == alone);
 }
 
 DOCTEST_TEST_CASE("further words are in as many scenes as asked for, and in the vocabulary") {
-    const auto source = gse::training::make_shape_source(8, {.restyled = 0.3, .more = 0.5}), looks = gse::training::make_shape_source(8, {.more = 1, .more_looks = true});
+    const auto source = gse::training::make_shape_source(8, {.restyled = 0.3, .more = 0.5}),
+               looks = gse::training::make_shape_source(8, {.more = 1, .more_looks = true});
     const auto views = static_cast<std::uint64_t>(source->views_of_scene());
     const auto& known = gse::synth::vocabulary();
     const auto vocabulary = source->vocabulary();
-    const auto has = [](const std::vector<std::string>& words, const std::string& word) { return std::find(words.begin(), words.end(), word) != words.end(); };
+    const auto has = [](const std::vector<std::string>& words, const std::string& word) {
+        return std::find(words.begin(), words.end(), word) != words.end();
+    };
     constexpr std::uint64_t Scenes = 200;
     std::size_t further = 0, grey = 0;
     for (std::uint64_t scene = 0; scene < Scenes; ++scene)
         for (const auto* from : {source.get(), looks.get()}) {
             bool is_further = false;
             for (std::uint64_t wording = 0; wording < 4; ++wording)
-                for (const auto& word : gse::neural::split_caption(from->caption(scene * views, wording, false).text)) {
+                for (const auto& word :
+                     gse::neural::split_caption(from->caption(scene * views, wording, false).text)) {
                     if (word == ",") continue;
                     DOCTEST_CHECK(has(vocabulary, word));
                     is_further = is_further || !has(known, word);
@@ -167,7 +189,7 @@ DOCTEST_TEST_CASE("further words are in as many scenes as asked for, and in the 
                 }
             further += is_further && from == source.get() ? 1 : 0;
         }
-    DOCTEST_CHECK(further > 0.35 * Scenes);   // some captions leave the word out
+    DOCTEST_CHECK(further > 0.35 * Scenes);  // some captions leave the word out
     DOCTEST_CHECK(further < 0.6 * Scenes);
     DOCTEST_CHECK(grey > 0);
     DOCTEST_CHECK(gse::training::make_shape_source(8)->vocabulary() == known);

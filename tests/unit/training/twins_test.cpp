@@ -25,12 +25,13 @@ DOCTEST_TEST_CASE("false sentences of a twin differ from its true one, and are o
             DOCTEST_CHECK(text != own.text);
             std::size_t other = 0;
             for (const auto& word : edit::words_of(text)) other += mine.contains(word) ? 0 : 1;
-            // Of what replaces an accessory: its name, its colour, "wearing a" or "with"; of another thing one word.
+            // Of what replaces an accessory: its name, its colour, "wearing a" or "with"; of another thing
+            // one word.
             DOCTEST_CHECK(other <= 4);
             ++told;
         }
     }
-    DOCTEST_CHECK(told > 120);   // an object at least, of every picture but where the pair is held out
+    DOCTEST_CHECK(told > 120);  // an object at least, of every picture but where the pair is held out
 }
 
 }  // namespace twins_test

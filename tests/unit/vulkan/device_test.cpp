@@ -19,7 +19,8 @@ DOCTEST_TEST_CASE("bytes go to the device and come back") {
     const auto transfer = vk::BufferUsageFlagBits::eTransferSrc | vk::BufferUsageFlagBits::eTransferDst;
     const vulkan::Buffer up(device, {.size = 1024, .usage = transfer, .home = vulkan::BufferHome::Upload});
     const vulkan::Buffer middle(device, {.size = 1024, .usage = transfer});
-    const vulkan::Buffer back(device, {.size = 1024, .usage = transfer, .home = vulkan::BufferHome::Readback});
+    const vulkan::Buffer back(device,
+                              {.size = 1024, .usage = transfer, .home = vulkan::BufferHome::Readback});
     for (std::size_t i = 0; i < 256; ++i) up.as<std::uint32_t>()[i] = static_cast<std::uint32_t>(i * i);
     device.run([&](vk::raii::CommandBuffer& commands) {
         commands.copyBuffer(up.handle(), middle.handle(), vk::BufferCopy(0, 0, 1024));
@@ -87,9 +88,7 @@ DOCTEST_TEST_CASE("the validation layers are listened to") {
         log::set_level(log::Level::Info);
         DOCTEST_CHECK(instance.message_count() > 0);
         DOCTEST_CHECK(!instance.first_message().empty());
-    } catch (const Error& error) {
-        std::printf("[skip] %s\n", error.what());
-    }
+    } catch (const Error& error) { std::printf("[skip] %s\n", error.what()); }
 }
 
 }  // namespace device_test

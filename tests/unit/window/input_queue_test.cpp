@@ -48,7 +48,7 @@ struct Reader {
             deleted |= !event.character && event.action == 1 && event.key == Backspace;
         }
         auto& field = in_right ? right : left;
-        if (arrives < 0 && !tabbed) field += typed;   // else nobody has the focus
+        if (arrives < 0 && !tabbed) field += typed;  // else nobody has the focus
         if (deleted && arrives < 0 && !field.empty()) field.pop_back();
         if (tabbed) arrives = 1;
     }
@@ -102,7 +102,7 @@ DOCTEST_TEST_CASE("a command is seen with its modifier down, and text after it c
     release(queue, ControlKey);
     type(queue, "x");
     const auto first = queue.next_frame();
-    DOCTEST_REQUIRE(first.size() == 2);   // down both: the modifier goes up with the next frame
+    DOCTEST_REQUIRE(first.size() == 2);  // down both: the modifier goes up with the next frame
     DOCTEST_CHECK(first[0].key == ControlKey);
     DOCTEST_CHECK(first[1].key == 'A');
     bool typed = false;

@@ -221,7 +221,8 @@ DOCTEST_TEST_CASE("window shows pictures, survives resizing and a lost device") 
         const Image seen = captured(window, stream.id());
         DOCTEST_CHECK(seen.at(30, 30, 0) > 0.5f);
     }
-    DOCTEST_SUBCASE("a picture that changes its size is seen in every frame, also by who asked for its handle before") {
+    DOCTEST_SUBCASE(
+        "a picture that changes its size is seen in every frame, also by who asked for its handle before") {
         app::StreamedPicture stream(window);
         ui::TextureId known = 0;
         for (int size = 4; size < 40; size += 5) {
@@ -251,7 +252,8 @@ DOCTEST_TEST_CASE("window shows pictures, survives resizing and a lost device") 
         DOCTEST_CHECK(std::chrono::steady_clock::now() - before < std::chrono::seconds(4));
     }
     DOCTEST_SUBCASE("what came in is told once, however late it is asked for") {
-        while (window.poll()) std::this_thread::sleep_for(std::chrono::milliseconds(50));   // of the window's own coming up
+        while (window.poll())
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));  // of the window's own coming up
         app::Window::wake();
         DOCTEST_CHECK(window.wait(0.05));
         app::Window::wake();

@@ -1,6 +1,6 @@
-// A stand-in for NVIDIA's driver library, for tests: the functions of driver_functions.h over the processor's memory, with the
-// emulated kernels. It refuses what the real one refuses: calls without a context, unknown addresses, kernels that the text lacks.
-// The environment variable GSE_FAKE_DRIVER names what goes wrong.
+// A stand-in for NVIDIA's driver library, for tests: the functions of driver_functions.h over the processor's
+// memory, with the emulated kernels. It refuses what the real one refuses: calls without a context, unknown
+// addresses, kernels that the text lacks. The environment variable GSE_FAKE_DRIVER names what goes wrong.
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -92,12 +92,14 @@ DriverResult cuCtxSetCurrent(DriverContext* context) {
     entered = context == reinterpret_cast<DriverContext*>(&token);
     return entered ? DriverSuccess : InvalidContext;
 }
-DriverResult cuModuleLoadDataEx(DriverModule** module, const void* image, unsigned count, int* options, void** values) {
+DriverResult cuModuleLoadDataEx(DriverModule** module, const void* image, unsigned count, int* options,
+                                void** values) {
     if (!entered) return InvalidContext;
     state().text = static_cast<const char*>(image);
     if (wrong("text")) {
         if (count == 2 && options[0] == DriverJitErrorLog && options[1] == DriverJitErrorLogBytes)
-            std::strncpy(static_cast<char*>(values[0]), "ptxas: line 7\nno such instruction", reinterpret_cast<std::size_t>(values[1]));
+            std::strncpy(static_cast<char*>(values[0]), "ptxas: line 7\nno such instruction",
+                         reinterpret_cast<std::size_t>(values[1]));
         return InvalidText;
     }
     *module = reinterpret_cast<DriverModule*>(&token);
@@ -110,7 +112,9 @@ DriverResult cuModuleUnload(DriverModule*) {
 }
 DriverResult cuModuleGetFunction(DriverFunction** function, DriverModule*, const char* name) {
     for (int i = 0; i < kernel_index::count; ++i) {
-        if (std::strcmp(name, KernelNames[i]) != 0 || state().text.find(std::string(".entry ") + name + "(") == std::string::npos) continue;
+        if (std::strcmp(name, KernelNames[i]) != 0 ||
+            state().text.find(std::string(".entry ") + name + "(") == std::string::npos)
+            continue;
         *function = reinterpret_cast<DriverFunction*>(static_cast<std::uintptr_t>(i + 1));
         return DriverSuccess;
     }
@@ -148,13 +152,17 @@ DriverResult cuMemsetD32_v2(DriverAddress to, unsigned word, std::size_t words) 
     for (std::size_t i = 0; i < words; ++i) static_cast<unsigned*>(pointer(to))[i] = word;
     return DriverSuccess;
 }
-DriverResult cuLaunchKernel(DriverFunction* function, unsigned grid_x, unsigned grid_y, unsigned grid_z, unsigned block_x, unsigned block_y,
-                            unsigned block_z, unsigned shared_bytes, DriverStream* stream, void** parameters, void** extra) {
-    if (!entered || grid_x == 0 || grid_y != 1 || grid_z != 1 || block_x != BlockThreads || block_y != 1 || block_z != 1) return InvalidValue;
+DriverResult cuLaunchKernel(DriverFunction* function, unsigned grid_x, unsigned grid_y, unsigned grid_z,
+                            unsigned block_x, unsigned block_y, unsigned block_z, unsigned shared_bytes,
+                            DriverStream* stream, void** parameters, void** extra) {
+    if (!entered || grid_x == 0 || grid_y != 1 || grid_z != 1 || block_x != BlockThreads || block_y != 1 ||
+        block_z != 1)
+        return InvalidValue;
     if (shared_bytes != 0 || stream != nullptr || extra != nullptr) return InvalidValue;
     const int kernel = static_cast<int>(reinterpret_cast<std::uintptr_t>(function)) - 1;
     if (wrong("launch") && kernel == kernel_index::blend) return InvalidValue;
-    if (wrong("result") && kernel == kernel_index::gradient) {  // as a device would that computes something else
+    if (wrong("result") &&
+        kernel == kernel_index::gradient) {  // as a device would that computes something else
         GradientArguments arguments;
         std::memcpy(&arguments, parameters[0], sizeof arguments);
         arguments.view.negative_slope = 0.5f;
@@ -166,6 +174,8 @@ DriverResult cuLaunchKernel(DriverFunction* function, unsigned grid_x, unsigned 
 }
 
 /// Contexts, modules and allocations that were not given back.
-int fake_driver_leaks() { return state().contexts + state().modules + static_cast<int>(state().memory.size()); }
+int fake_driver_leaks() {
+    return state().contexts + state().modules + static_cast<int>(state().memory.size());
+}
 
 }  // extern "C"
